@@ -7,6 +7,14 @@
 #include <algorithm>
 
 namespace limn {
+namespace {
+
+constexpr std::uint32_t kBirths = name_hash("particle births");
+constexpr std::uint32_t kPrewarm = name_hash("particle prewarm");
+constexpr std::uint32_t kAttributes = name_hash("particles");
+constexpr std::uint32_t kSurface = name_hash("particle surface");
+
+}  // namespace
 
 EmitterPlace place_of(const WorldTransform& now, const PreviousWorldTransform& previous) {
     const Vec4& row = previous.world.row[0];
@@ -51,7 +59,7 @@ std::uint64_t subject_of(const ParticleEmitter& emitter, Entity entity) {
 }
 
 Random births_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t frame) {
-    return {seed, subject, name_hash("particle births"), frame};
+    return {seed, subject, kBirths, frame};
 }
 
 bool is_unused(const EmitterClock& clock) {
@@ -65,15 +73,15 @@ int prewarm_steps(const ParticleEmitter& emitter, float dt) {
 }
 
 Random prewarm_random(std::uint64_t seed, std::uint64_t subject, int i) {
-    return {seed, subject, name_hash("particle prewarm"), static_cast<std::uint64_t>(i)};
+    return {seed, subject, kPrewarm, static_cast<std::uint64_t>(i)};
 }
 
 Random attributes_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number) {
-    return {seed, subject, name_hash("particles"), number};
+    return {seed, subject, kAttributes, number};
 }
 
 Random surface_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number) {
-    return {seed, subject, name_hash("particle surface"), number};
+    return {seed, subject, kSurface, number};
 }
 
 }  // namespace limn

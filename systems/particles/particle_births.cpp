@@ -110,6 +110,18 @@ Affine turned_to(const Affine& world, const Vec3& position, const Quat& turn) {
     return affine_from(position, turn, size);
 }
 
+double interval_of(const ParticleBurst& burst) {
+    return std::max(static_cast<double>(burst.interval), 1e-3);
+}
+/// Number of the first repeat of a burst that is not before `begin` [s].
+double first_repeat(const ParticleBurst& burst, double begin) {
+    return std::max(std::ceil((begin - static_cast<double>(burst.time)) / interval_of(burst)), 0.0);
+}
+/// When that is, after `begin` [s].
+double time_of_repeat(const ParticleBurst& burst, double repeat, double begin) {
+    return static_cast<double>(burst.time) + repeat * interval_of(burst) - begin;
+}
+
 /// One piece of a step, without a restart of the emitter within it.
 struct Piece {
     double begin;  ///< of the emitter's time [s]
@@ -135,10 +147,8 @@ class Births {
     }
 
     void add_burst(const Piece& piece, const ParticleBurst& burst, Random& random) {
-        const double interval = std::max(static_cast<double>(burst.interval), 1e-3);
-        const double first = std::ceil((piece.begin - static_cast<double>(burst.time)) / interval);
-        for (double k = std::max(first, 0.0); k <= burst.repeats; ++k) {
-            const double at = static_cast<double>(burst.time) + k * interval - piece.begin;
+        for (double k = first_repeat(burst, piece.begin); k <= burst.repeats; ++k) {
+            const double at = time_of_repeat(burst, k, piece.begin);
             if (at >= piece.length) {
                 break;
             }
@@ -172,6 +182,22 @@ birth_room(const ParticleEmitter& emitter, std::uint64_t window, const EmitterCl
     const std::uint64_t used =
         emitter.population == ParticlePopulation::Linear ? clock.born : window;
     return emitter.capacity > used ? static_cast<std::size_t>(emitter.capacity - used) : 0;
+}
+
+bool has_no_births(const ParticleEmitter& emitter, float dt, const EmitterClock& clock) {
+    if (emitter.duration > 0) {
+        return false;
+    }
+    if (!emitter.active) {
+        return true;
+    }
+    const auto is_due = [&](const ParticleBurst& burst) {
+        const double k = first_repeat(burst, clock.time);
+        return !(k > burst.repeats)
+               && !(time_of_repeat(burst, k, clock.time) >= static_cast<double>(dt));
+    };
+    return emitter.rate == 0 && emitter.rate_spread == 0
+           && std::none_of(emitter.bursts.begin(), emitter.bursts.end(), is_due);
 }
 
 void find_births(
@@ -274,13 +300,16 @@ void add_particles(
     const ParticleEmitter& emitter, const EmitterPlace& place, const ParticleStep& step,
     const SurfaceSource* surface, std::uint64_t seed, std::uint64_t subject,
     const std::vector<BirthRun>& births, ParticlePool& pool) {
-    const Vec3 inherited = inherited_velocity(emitter, place, step.dt);
     std::size_t count = 0;
     for (const BirthRun& run : births) {
         count += run.count;
     }
+    if (count == 0) {
+        return;
+    }
+    const Vec3 inherited = inherited_velocity(emitter, place, step.dt);
     thread_local SurfaceTable table;  // its memory is reused
-    if (surface != nullptr && count > 0 && !fill_surface_table(*surface, table)) {
+    if (surface != nullptr && !fill_surface_table(*surface, table)) {
         pool.clock.dropped += count;
         return;
     }

@@ -22,6 +22,10 @@ namespace limn {
 [[nodiscard]] std::size_t
 birth_room(const ParticleEmitter& emitter, std::uint64_t window, const EmitterClock& clock);
 
+/// Whether a step has no births for sure: then find_births would only advance the clock by `dt`.
+[[nodiscard]] bool
+has_no_births(const ParticleEmitter& emitter, float dt, const EmitterClock& clock);
+
 /// The births of a step: those of the rate in equal intervals that go on across steps, then those
 /// of bursts. Advances the clock. `random` decides the spreads; `scale` is a factor on the rate. At
 /// most `room` births; the others are added to `clock.dropped`.

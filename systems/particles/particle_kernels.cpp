@@ -1,8 +1,10 @@
 #include "systems/particles/particle_kernels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -42,7 +44,10 @@ std::size_t stir_particles_vector(const ParticleBlock&, const Turbulence&, float
 std::size_t wrap_axis_vector(float*, std::size_t, float, float) {
     return 0;
 }
-std::size_t compact_vector(std::uint32_t*, const float*, const float*, std::size_t, std::size_t&) {
+std::size_t find_alive_vector(const float*, const float*, std::size_t, std::uint8_t*) {
+    return 0;
+}
+std::size_t compact_vector(const std::uint32_t*, std::size_t, const std::uint8_t*, std::uint32_t*) {
     return 0;
 }
 
@@ -58,48 +63,78 @@ constexpr Floats d;
 constexpr Words du;
 constexpr Ints di;
 
-HWY_INLINE void
-move_axis(float* HWY_RESTRICT x, float* HWY_RESTRICT v, V push, V air, V keep, V old_dt, V new_dt) {
-    const V old = hn::LoadU(d, v);
-    const V next = hn::Add(air, hn::Mul(hn::Sub(hn::Add(old, push), air), keep));
-    hn::StoreU(next, d, v);
-    const V way = hn::Add(hn::Mul(old, old_dt), hn::Mul(next, new_dt));
-    hn::StoreU(hn::Add(hn::LoadU(d, x), way), d, x);
+/// The first `count` lanes of a vector at `p`, the others 0; all of them for a whole vector.
+HWY_INLINE V load_part(const float* p, std::size_t count) {
+    return count < hn::Lanes(d) ? hn::MaskedLoad(hn::FirstN(d, count), d, p) : hn::LoadU(d, p);
+}
+HWY_INLINE void store_part(V values, float* p, std::size_t count) {
+    if (count < hn::Lanes(d)) {
+        hn::BlendedStore(values, hn::FirstN(d, count), d, p);
+    } else {
+        hn::StoreU(values, d, p);
+    }
 }
 
-std::size_t
-move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::size_t& dead) {
+/// Calls run(first, count) for whole vectors, then for what is left if that can be loaded without
+/// touching what is behind it. Returns how many elements that were.
+template <typename Run>
+HWY_INLINE std::size_t each_vector(std::size_t count, Run run) {
     const std::size_t n = hn::Lanes(d);
-    const V dt = hn::Set(d, step.dt);
-    const V old_dt = hn::Set(d, step.old_dt());
-    const V new_dt = hn::Set(d, step.new_dt());
-    const V keep = hn::Set(d, step.keep);
-    const Vec3 push = step.gravity * step.dt;
-    const V push_x = hn::Set(d, push.x);
-    const V push_y = hn::Set(d, push.y);
-    const V push_z = hn::Set(d, push.z);
-    const V air_x = hn::Set(d, step.air.x);
-    const V air_y = hn::Set(d, step.air.y);
-    const V air_z = hn::Set(d, step.air.z);
     std::size_t i = 0;
-    for (; i + n <= b.count; i += n) {
-        move_axis(b.x + i, b.vx + i, push_x, air_x, keep, old_dt, new_dt);
-        move_axis(b.y + i, b.vy + i, push_y, air_y, keep, old_dt, new_dt);
-        move_axis(b.z + i, b.vz + i, push_z, air_z, keep, old_dt, new_dt);
-        const V age = hn::Add(hn::LoadU(d, b.age + i), dt);
-        hn::StoreU(age, d, b.age + i);
-        dead += hn::CountTrue(d, hn::Ge(age, hn::LoadU(d, b.life + i)));
+    for (; i + n <= count; i += n) {
+        run(i, n);
     }
+#if !HWY_MEM_OPS_MIGHT_FAULT
+    if (i < count) {
+        run(i, count - i);
+        i = count;
+    }
+#endif
     return i;
 }
 
-/// -1 .. 1 of a lattice point, from the products of its coordinates with the multipliers.
+HWY_INLINE void move_axis(
+    float* HWY_RESTRICT x, float* HWY_RESTRICT v, std::size_t count, float push_step,
+    float air_speed, const ParticleStep& step) {
+    const V push = hn::Set(d, push_step);
+    const V air = hn::Set(d, air_speed);
+    const V keep = hn::Set(d, step.keep);
+    const V old_dt = hn::Set(d, step.old_dt());
+    const V new_dt = hn::Set(d, step.new_dt());
+    each_vector(count, [&](std::size_t i, std::size_t n) HWY_ATTR {
+        const V old = load_part(v + i, n);
+        const V next = hn::Add(air, hn::Mul(hn::Sub(hn::Add(old, push), air), keep));
+        store_part(next, v + i, n);
+        const V way = hn::Add(hn::Mul(old, old_dt), hn::Mul(next, new_dt));
+        store_part(hn::Add(load_part(x + i, n), way), x + i, n);
+    });
+}
+
+/// Axis after axis: arrays that begin at the same offset of a page, as large ones do, would
+/// displace each other from the cache if all were walked at once.
+std::size_t
+move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::size_t& dead) {
+    const Vec3 push = step.gravity * step.dt;
+    move_axis(b.x, b.vx, b.count, push.x, step.air.x, step);
+    move_axis(b.y, b.vy, b.count, push.y, step.air.y, step);
+    move_axis(b.z, b.vz, b.count, push.z, step.air.z, step);
+    const V dt = hn::Set(d, step.dt);
+    return each_vector(b.count, [&](std::size_t i, std::size_t n) HWY_ATTR {
+        const V age = hn::Add(load_part(b.age + i, n), dt);
+        store_part(age, b.age + i, n);
+        const auto old = hn::Ge(age, load_part(b.life + i, n));
+        // Lanes behind the end do not count.
+        dead += hn::CountTrue(d, n < hn::Lanes(d) ? hn::And(old, hn::FirstN(d, n)) : old);
+    });
+}
+
+/// -2^23 .. 2^23 of a lattice point, from the products of its coordinates with the multipliers.
+/// Sums of these round as those of values scaled to -1 .. 1 do: the scale is a power of two.
 HWY_INLINE V lattice_value(U x, U y, U z) {
-    U h = hn::Xor(hn::Xor(x, y), z);
+    U h = hn::Xor3(x, y, z);
     h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(du, particles::kHashMix));
-    h = hn::Xor(h, hn::ShiftRight<13>(h));
-    const V unit = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<8>(h)));
-    return hn::Sub(hn::Mul(unit, hn::Set(d, 0x1p-23f)), hn::Set(d, 1.0f));
+    h = hn::Xor3(h, hn::ShiftRight<13>(h), hn::Set(du, 0x80000000u));
+    return hn::ConvertTo(d, hn::ShiftRight<8>(hn::BitCast(di, h)));
 }
 
 /// Quintic weight of the upper lattice point, and its slope.
@@ -158,10 +193,11 @@ HWY_INLINE Gradient noise_gradient(V px, V py, V pz, std::uint32_t seed) {
     const V y1w = blend(x01, x11, fy.weight);
     const V dx0 = blend(hn::Sub(v100, v000), hn::Sub(v110, v010), fy.weight);
     const V dx1 = blend(hn::Sub(v101, v001), hn::Sub(v111, v011), fy.weight);
+    const V unit = hn::Set(d, 0x1p-23f);
     return {
-        hn::Mul(blend(dx0, dx1, fz.weight), fx.slope),
-        hn::Mul(blend(hn::Sub(x10, x00), hn::Sub(x11, x01), fz.weight), fy.slope),
-        hn::Mul(hn::Sub(y1w, y0w), fz.slope)};
+        hn::Mul(hn::Mul(blend(dx0, dx1, fz.weight), unit), fx.slope),
+        hn::Mul(hn::Mul(blend(hn::Sub(x10, x00), hn::Sub(x11, x01), fz.weight), unit), fy.slope),
+        hn::Mul(hn::Mul(hn::Sub(y1w, y0w), unit), fz.slope)};
 }
 
 HWY_INLINE void add_to(float* HWY_RESTRICT v, V push) {
@@ -208,20 +244,32 @@ std::size_t wrap_axis_vector(float* x, std::size_t count, float center, float si
     return i;
 }
 
-/// Moves those of one array that live to its beginning; `kept`: where the next one goes. Compress
-/// and store: CompressStore is ten times as slow on some processors.
-std::size_t compact_vector(
-    std::uint32_t* values, const float* age, const float* life, std::size_t count,
-    std::size_t& kept) {
+/// Who lives of whole vectors, as bits in `alive`: one mask after another, each in whole bytes.
+std::size_t
+find_alive_vector(const float* age, const float* life, std::size_t count, std::uint8_t* alive) {
     const std::size_t n = hn::Lanes(d);
     std::size_t i = 0;
     for (; i + n <= count; i += n) {
-        const auto alive = hn::Lt(hn::LoadU(d, age + i), hn::LoadU(d, life + i));
-        const V packed = hn::Compress(hn::BitCast(d, hn::LoadU(du, values + i)), alive);
-        hn::StoreU(hn::BitCast(du, packed), du, values + kept);
-        kept += hn::CountTrue(d, alive);
+        const auto lives = hn::Lt(hn::LoadU(d, age + i), hn::LoadU(d, life + i));
+        alive += hn::StoreMaskBits(d, lives, alive);
     }
     return i;
+}
+
+/// Moves those of `count` values, whole vectors, that live to `to`, at or before `from`; returns
+/// how many. Compress and store: CompressStore is ten times as slow on some processors.
+std::size_t compact_vector(
+    const std::uint32_t* from, std::size_t count, const std::uint8_t* alive, std::uint32_t* to) {
+    const std::size_t n = hn::Lanes(d);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; i += n) {
+        const auto lives = hn::LoadMaskBits(d, alive);
+        alive += (n + 7) / 8;
+        const V packed = hn::Compress(hn::BitCast(d, hn::LoadU(du, from + i)), lives);
+        hn::StoreU(hn::BitCast(du, packed), du, to + kept);
+        kept += hn::CountTrue(d, lives);
+    }
+    return kept;
 }
 
 #endif
@@ -235,6 +283,7 @@ namespace limn {
 HWY_EXPORT(move_particles_vector);
 HWY_EXPORT(stir_particles_vector);
 HWY_EXPORT(wrap_axis_vector);
+HWY_EXPORT(find_alive_vector);
 HWY_EXPORT(compact_vector);
 
 namespace {
@@ -258,53 +307,36 @@ float blend(float a, float b, float t) {
     return a + (b - a) * t;
 }
 
-/// Moves those of one array that live forward; returns how many.
-template <typename T>
-void compact(
-    std::vector<T>& values, const float* age, const float* life, std::size_t first,
-    std::size_t count, bool vectors) {
-    static_assert(sizeof(T) == sizeof(std::uint32_t));
-    std::size_t kept = 0;
-    std::size_t i = 0;
-    T* const begin = values.data() + first;
-    if (vectors) {
-        i = HWY_DYNAMIC_DISPATCH(compact_vector)(
-            reinterpret_cast<std::uint32_t*>(begin), age, life, count, kept);
-    }
-    for (; i < count; ++i) {
-        begin[kept] = begin[i];
-        kept += age[i] < life[i] ? 1 : 0;
-    }
-}
-
-std::size_t remove_dead(ParticlePool& pool, std::size_t first, bool vectors) {
-    const std::size_t count = pool.size() - first;
-    const float* const age = pool.age.data() + first;
-    const float* const life = pool.life.data() + first;
-    for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz}) {
-        compact(*column, age, life, first, count, vectors);
-    }
-    compact(pool.look, age, life, first, count, vectors);
-    const bool sticks = pool.stuck.size() == pool.size();
-    if (sticks) {
-        compact(pool.stuck, age, life, first, count, vectors);
-    }
-    // These two decide who lives, and are read before they are overwritten: both at once.
-    std::size_t kept = first;
-    for (std::size_t i = first; i < pool.size(); ++i) {
-        const bool alive = pool.age[i] < pool.life[i];
-        pool.age[kept] = pool.age[i];
-        pool.life[kept] = pool.life[i];
-        kept += alive ? 1 : 0;
-    }
+/// Every column of a pool, as words.
+struct Columns {
+    std::array<std::uint32_t*, 10> begin = {};
+    std::size_t count = 0;
+};
+Columns columns_of(ParticlePool& pool) {
+    Columns all;
     for (auto* column :
          {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
-        column->resize(kept);
+        all.begin[all.count++] = reinterpret_cast<std::uint32_t*>(column->data());
     }
-    pool.look.resize(kept);
-    pool.stuck.resize(sticks ? kept : 0);
-    return kept;
+    all.begin[all.count++] = pool.look.data();
+    if (pool.stuck.size() == pool.size()) {
+        all.begin[all.count++] = pool.stuck.data();
+    }
+    return all;
 }
+
+void shrink(ParticlePool& pool, std::size_t size) {
+    const bool sticks = pool.stuck.size() == pool.size();
+    for (auto* column :
+         {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
+        column->resize(size);
+    }
+    pool.look.resize(size);
+    pool.stuck.resize(sticks ? size : 0);
+}
+
+/// Particles whose columns are compacted one after another: who of them lives is found once.
+constexpr std::size_t kCompacted = 16384;
 
 }  // namespace
 
@@ -487,10 +519,48 @@ void wrap_particles(const ParticleBlock& b, const Vec3& center, const Vec3& size
 }
 
 std::size_t remove_dead(ParticlePool& pool, std::size_t first) {
-    return remove_dead(pool, first, true);
+    const Columns columns = columns_of(pool);
+    std::array<std::uint8_t, kCompacted + 8> masks;  // 8 more, which may be loaded and stored
+    std::array<bool, kCompacted> lives;              // of those beyond whole vectors
+    std::size_t kept = first;
+    for (std::size_t begin = first; begin < pool.size(); begin += kCompacted) {
+        const std::size_t count = std::min(pool.size() - begin, kCompacted);
+        const float* const age = pool.age.data() + begin;
+        const float* const life = pool.life.data() + begin;
+        const std::size_t whole =
+            HWY_DYNAMIC_DISPATCH(find_alive_vector)(age, life, count, masks.data());
+        for (std::size_t i = whole; i < count; ++i) {
+            lives[i] = age[i] < life[i];
+        }
+        std::size_t alive = 0;
+        for (std::size_t c = 0; c < columns.count; ++c) {
+            const std::uint32_t* const from = columns.begin[c] + begin;
+            std::uint32_t* const to = columns.begin[c] + kept;
+            alive = HWY_DYNAMIC_DISPATCH(compact_vector)(from, whole, masks.data(), to);
+            for (std::size_t i = whole; i < count; ++i) {
+                std::memcpy(to + alive, from + i, sizeof(*to));
+                alive += lives[i] ? 1 : 0;
+            }
+        }
+        kept += alive;
+    }
+    shrink(pool, kept);
+    return kept;
 }
+
 std::size_t remove_dead_scalar(ParticlePool& pool, std::size_t first) {
-    return remove_dead(pool, first, false);
+    const Columns columns = columns_of(pool);
+    std::size_t kept = first;
+    for (std::size_t i = first; i < pool.size(); ++i) {
+        if (pool.age[i] < pool.life[i]) {
+            for (std::size_t c = 0; c < columns.count; ++c) {
+                std::memcpy(columns.begin[c] + kept, columns.begin[c] + i, sizeof(std::uint32_t));
+            }
+            ++kept;
+        }
+    }
+    shrink(pool, kept);
+    return kept;
 }
 
 }  // namespace limn

@@ -62,17 +62,19 @@ MotionStep find_motion(
         .size = std::max(motion.turbulence_size, 1e-3f),
         .drift_a = kDriftA * turns,
         .drift_b = kDriftB * turns};
-    found.vortex = {
-        .origin = transform_point(world, Vec3(0)),
-        .axis = normalize_or(transform_vector(world, Vec3(0, 1, 0)), Vec3(0, 1, 0)),
-        .around = motion.vortex,
-        .toward = motion.attraction};
-    found.steering = {
-        .origin = found.vortex.origin,
-        .axis = found.vortex.axis,
-        .orbit = 1 - std::pow(1 - std::clamp(motion.orbit, 0.0f, 1.0f), kOrbitRate * dt),
-        .loss = std::max(motion.brake, 0.0f) * dt};
+    found.vortex.around = motion.vortex;
+    found.vortex.toward = motion.attraction;
+    found.steering.orbit = 1 - std::pow(1 - std::clamp(motion.orbit, 0.0f, 1.0f), kOrbitRate * dt);
+    found.steering.loss = std::max(motion.brake, 0.0f) * dt;
+    turn_motion(found, world);
     return found;
+}
+
+void turn_motion(MotionStep& motion, const Affine& world) {
+    motion.vortex.origin = transform_point(world, Vec3(0));
+    motion.vortex.axis = normalize_or(transform_vector(world, Vec3(0, 1, 0)), Vec3(0, 1, 0));
+    motion.steering.origin = motion.vortex.origin;
+    motion.steering.axis = motion.vortex.axis;
 }
 
 namespace {

@@ -20,6 +20,9 @@ inline constexpr float kMaxParticleStep = 0.1f;
     const ParticleMotion& motion, const Affine& world, const Vec3& weather,
     std::span<const Force> forces, float dt, const FrameTime& time);
 
+/// The same about another emitter, at `world`.
+void turn_motion(MotionStep& motion, const Affine& world);
+
 /// Moves particles by a step; returns how many have reached the end of life.
 std::size_t move_block(const MotionStep& motion, const ParticleBlock& block);
 

@@ -12,6 +12,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -88,7 +91,8 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     Random random = births_random(seed, subject, time.frame);
     const std::size_t before = pool.size();
     const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
-    std::vector<BirthRun> births;
+    thread_local std::vector<BirthRun> births;  // its memory is reused
+    births.clear();
     find_births(emitter, work.scale, work.motion.step.dt, room, random, pool.clock, births);
     add_particles(
         emitter, work.place, work.motion.step, surface_of(work), seed, subject, births, pool);
@@ -96,6 +100,97 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
         add_drops(emitter, work.drops->drops, work.motion.step, seed, subject, pool);
     }
     pool.fresh = pool.size() - before;
+}
+
+/// An emitter whose particles meet nothing and have to do with no other emitter: few enough to be
+/// one piece of work.
+struct Alone {
+    Entity entity;
+    const ParticleEmitter* emitter = nullptr;
+    const ParticleMotion* motion = nullptr;  ///< null: none
+    const WorldTransform* now = nullptr;
+    const PreviousWorldTransform* previous = nullptr;
+    const ParticleWrap* wrap = nullptr;
+    ParticlePool* pool = nullptr;
+};
+
+constexpr std::size_t kAloneJob = 64;  ///< emitters of one job
+
+/// What is the same for all emitters in a step.
+struct StepInputs {
+    Vec3 wind;
+    EmitterEye eye;
+    std::span<const Force> forces;
+    float dt;
+    std::uint64_t seed;
+    const FrameTime* time;
+};
+
+/// Motions of emitters one after another: many of them move alike.
+class Motions {
+  public:
+    explicit Motions(const StepInputs& inputs) : inputs_(inputs) {}
+
+    /// Valid until the next call.
+    const MotionStep& of(const Alone& alone) {
+        static const ParticleMotion kStill;
+        const ParticleMotion& asked = alone.motion != nullptr ? *alone.motion : kStill;
+        // Bytes: padding that differs costs time only.
+        if (!known_ || std::memcmp(&asked, &asked_, sizeof(asked)) != 0) {
+            step_ = find_motion(
+                asked, alone.now->world, inputs_.wind, inputs_.forces, inputs_.dt, *inputs_.time);
+            std::memcpy(&asked_, &asked, sizeof(asked));
+            known_ = true;
+        } else if (is_placed()) {
+            turn_motion(step_, alone.now->world);
+        }
+        const bool wraps = alone.wrap != nullptr && !step_.step.closed_form;
+        step_.wrap_size = wraps ? alone.wrap->size : Vec3(0);
+        step_.wrap_center = inputs_.eye.place;
+        return step_;
+    }
+
+  private:
+    /// Whether it depends on where the emitter is.
+    [[nodiscard]] bool is_placed() const {
+        return step_.vortex.around != 0 || step_.vortex.toward != 0 || step_.steering.orbit > 0
+               || step_.steering.loss > 0;
+    }
+
+    const StepInputs& inputs_;
+    bool known_ = false;
+    ParticleMotion asked_;
+    MotionStep step_;
+};
+static_assert(std::is_trivially_copyable_v<ParticleMotion>);
+
+/// All of a step.
+void step_alone(const Alone& alone, Motions& motions, const StepInputs& inputs) {
+    const MotionStep& motion = motions.of(alone);
+    ParticlePool& pool = *alone.pool;
+    if (!is_unused(pool.clock) && has_no_births(*alone.emitter, inputs.dt, pool.clock)) {
+        pool.clock.time += static_cast<double>(inputs.dt);
+        pool.fresh = 0;
+    } else {
+        Work work{.entity = alone.entity, .place = place_of(*alone.now, *alone.previous)};
+        work.emitter = alone.emitter;
+        work.motion = motion;
+        work.scale = seen_share(*alone.emitter, alone.now->world, inputs.eye);
+        work.pool = alone.pool;
+        emit(work, inputs.seed, *inputs.time);
+    }
+    pool.stuck.clear();
+    if (move_block(motion, particle_block(pool, 0, pool.size())) > 0) {
+        remove_dead(pool, 0);
+    }
+}
+
+/// Emitters whose particles give birth, in order.
+std::vector<Entity> find_parents(const Query<const ParticleSource>& sources) {
+    std::vector<Entity> parents;
+    sources.each([&](const ParticleSource& source) { parents.push_back(source.emitter); });
+    std::sort(parents.begin(), parents.end());
+    return parents;
 }
 
 /// Those whose particles are born where others are.
@@ -171,8 +266,9 @@ void update_particles(
         Optional<const ParticleSurface>, Optional<const ParticleMesh>,
         Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
-    MeshQuery meshes, Query<const Pose> poses, Query<const MorphWeights> morphs,
-    Res<const Assets> assets, Res<const ParticleObstacles> obstacles, WaterQuery waters,
+    Query<const ParticleSource> sources, MeshQuery meshes, Query<const Pose> poses,
+    Query<const MorphWeights> morphs, Res<const Assets> assets,
+    Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
@@ -181,14 +277,28 @@ void update_particles(
     const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
     const EmitterEye eye = find_eye(cameras);
     const std::vector<Force> forces = find_forces(fields, time->time);
+    const StepInputs inputs = {wind, eye, forces, dt, seed->seed, &*time};
+    const std::vector<ParticleWater> wet = find_particle_waters(waters, colliders);
+    const ParticleSurroundings around = {&obstacles->solid, wet};
+    const std::vector<Entity> parents = find_parents(sources);
+    std::vector<Alone> alone;
+    alone.reserve(emitters.count());
     std::vector<Work> works;
-    works.reserve(emitters.count());
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const SprayDrops* drops, const ParticleSource* source,
                       const ParticleSurface* surface, const ParticleMesh* mesh,
                       const ParticleCollision* collision, const ParticleWrap* wrap,
                       ParticlePool& pool) {
+        const bool meets_nothing =
+            collision == nullptr || wrap != nullptr
+            || (around.is_empty() && collision->action != CollisionAction::Stick);
+        if (pool.size() <= kParticleBlock && meets_nothing && drops == nullptr && source == nullptr
+            && surface == nullptr
+            && (parents.empty() || !std::binary_search(parents.begin(), parents.end(), entity))) {
+            alone.push_back({entity, &emitter, motion, &now, &previous, wrap, &pool});
+            return;
+        }
         const EmitterPlace place = place_of(now, previous);
         static const ParticleMotion kStill;
         Work work{.entity = entity, .place = place};
@@ -211,14 +321,18 @@ void update_particles(
         works.push_back(std::move(work));
     });
 
+    parallel_for(alone.size(), kAloneJob, [&](std::size_t begin, std::size_t end) {
+        Motions motions(inputs);
+        for (std::size_t i = begin; i < end; ++i) {
+            step_alone(alone[i], motions, inputs);
+        }
+    });
     parallel_for(works.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             emit(works[i], seed->seed, *time);
         }
     });
 
-    const std::vector<ParticleWater> wet = find_particle_waters(waters, colliders);
-    const ParticleSurroundings around = {&obstacles->solid, wet};
     std::vector<Block> blocks;
     for (std::uint32_t w = 0; w < works.size(); ++w) {
         const bool sticks =

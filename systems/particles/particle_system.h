@@ -22,7 +22,8 @@ namespace limn {
 
 // Births, motion and deaths of particles (particle.system), in Reeves' order: new ones are born and
 // get their attributes, all move, those whose time is up go. Bits do not depend on the number of
-// threads: blocks of 1,024 particles move, pools lose their dead.
+// threads: blocks of 1,024 particles move, pools lose their dead. An emitter of few particles that
+// meet nothing and give birth to none does all of that at once.
 //
 // Particles are neither entities nor rows of archetypes but arrays of a component of their emitter:
 // nothing refers to one particle, so handles and change versions would only cost memory and time;
@@ -43,8 +44,9 @@ void update_particles(
         Optional<const ParticleSurface>, Optional<const ParticleMesh>,
         Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
-    MeshQuery meshes, Query<const Pose> poses, Query<const MorphWeights> morphs,
-    Res<const Assets> assets, Res<const ParticleObstacles> obstacles, WaterQuery waters,
+    Query<const ParticleSource> sources, MeshQuery meshes, Query<const Pose> poses,
+    Query<const MorphWeights> morphs, Res<const Assets> assets,
+    Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,

@@ -12,7 +12,7 @@ using namespace limn;
 using namespace limn::test;
 
 TEST_CASE("particles: vectors give the bits of the plain loops, for any number") {
-    for (const std::size_t count : {1u, 7u, 16u, 33u, 1000u}) {
+    for (const std::size_t count : {1u, 7u, 16u, 33u, 1000u, 40001u}) {
         CAPTURE(count);
         ParticlePool a = random_pool(count);
         ParticlePool b = a;
@@ -34,6 +34,18 @@ TEST_CASE("particles: vectors give the bits of the plain loops, for any number")
         CHECK(remove_dead_scalar(b, 0) == count - dead);
         CHECK(same_bits(a, b));
         CHECK(a.size() == count - dead);
+    }
+}
+
+TEST_CASE("particles: moving a part of a pool leaves its neighbors as they are") {
+    const ParticleStep step = {.gravity = {0, -9.8f, 0}, .dt = 0.017f};
+    for (std::size_t count = 0; count <= 40; ++count) {
+        CAPTURE(count);
+        ParticlePool a = random_pool(60);
+        ParticlePool b = a;
+        const std::size_t dead = move_particles(particle_block(a, 9, count), step);
+        CHECK(dead == move_particles_scalar(particle_block(b, 9, count), step));
+        CHECK(same_bits(a, b));
     }
 }
 

@@ -149,6 +149,56 @@ TEST_CASE("particles: threads do not change the bits, nor does a snapshot in bet
     set_thread_count(threads);
 }
 
+TEST_CASE("particles: an emitter moves the same whether or not others are born by it") {
+    // Whoever gives birth to nobody is stepped at once, together with others alike.
+    ParticleEmitter emitter = steady(90);
+    emitter.shape = EmitterShape::Ball;
+    emitter.bursts = {{.time = 0.2f, .count = 30, .spread = 9, .interval = 0.3f, .repeats = 2}};
+    emitter.life = 0.5f;
+    emitter.life_spread = 0.2f;
+    emitter.speed_spread = 1;
+    ParticleMotion swirling = falling();
+    swirling.vortex = 3;
+    swirling.orbit = 0.1f;
+    swirling.drag = 0.5f;
+    Emitters alone;
+    Emitters parents;
+    constexpr std::size_t kCount = 5;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        emitter.seed = i + 1;
+        emitter.rate = i == 3 ? 0.0f : 90.0f;
+        emitter.active = i != 4;
+        const ParticleMotion motion = i == 1 ? falling() : swirling;
+        for (Emitters* const scene : {&alone, &parents}) {
+            const Entity added = scene->add(emitter, motion);
+            scene->world.get<WorldTransform>(added).world =
+                affine_from(Vec3(static_cast<float>(i), 0, 0), Quat(1, 0, 0, 0), Vec3(1));
+            scene->world.get<PreviousWorldTransform>(added).world =
+                scene->world.get<const WorldTransform>(added).world;
+        }
+    }
+    for (std::size_t i = 0; i < kCount; ++i) {
+        parents.world.create(
+            steady(0), ParticleSource{.emitter = parents.entities[i], .count = 0}, WorldTransform{},
+            PreviousWorldTransform{Affine{}});
+    }
+    parents.world.run(add_particle_pools);
+    for (int step = 0; step < 90; ++step) {
+        alone.run();
+        parents.run();
+        for (std::size_t i = 0; i < kCount; ++i) {
+            CAPTURE(i);
+            CHECK(same_bits(alone.pool(i), parents.pool(i)));
+            CHECK(alone.pool(i).clock.time == parents.pool(i).clock.time);
+            CHECK(alone.pool(i).clock.carry == parents.pool(i).clock.carry);
+            CHECK(alone.pool(i).fresh == parents.pool(i).fresh);
+        }
+    }
+    CHECK(alone.pool(0).size() > 30);
+    CHECK(alone.pool(3).clock.born > 60);
+    CHECK(alone.pool(4).clock.born == 0);
+}
+
 TEST_CASE("particles: no number makes a NaN, a hang or more than fits") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInf = std::numeric_limits<float>::infinity();
