@@ -60,8 +60,8 @@ Status write_results(
     return written ? write_report(options.csv, csv) : written;
 }
 
-/// Processor time of this program, the threads of a software OpenGL included [ms]: unlike the time
-/// of a frame, hardly more when other programs run, too.
+/// Processor time of this program, the threads of a software OpenGL included [ms]: depends less
+/// on other programs than the time of a frame.
 double all_threads_ms() {
     std::timespec time{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);

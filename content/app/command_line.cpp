@@ -267,7 +267,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->footer(
         "Every frame simulates one step and renders off screen. Times are in milliseconds; \"all "
         "threads\"\n"
-        "is processor time, which other programs hardly change. Shaders are\n"
+        "is processor time, which depends less on other programs. Shaders are\n"
         "compiled before the first frame (\"compile_ms\"); \"compiled\" counts those that a "
         "measured "
         "frame\n"
