@@ -270,8 +270,9 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option("--svg", options.svg, "of `particles`: draw the cost over their number")
         ->type_name("FILE");
     app->footer(
-        "Every frame simulates one step and renders off screen. Times are in milliseconds. Shaders "
-        "are\n"
+        "Every frame simulates one step and renders off screen. Times are in milliseconds; \"all "
+        "threads\"\n"
+        "is processor time, which depends less on other programs. Shaders are\n"
         "compiled before the first frame (\"compile_ms\"); \"compiled\" counts those that a "
         "measured "
         "frame\n"

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace limn::test {
 namespace {
@@ -193,6 +194,65 @@ TEST_CASE_FIXTURE(Look, "water reflection: in flat water it is what a mirrored c
     }
     CHECK(tested > 3000);
     CHECK(worst < 0.01);
+}
+
+TEST_CASE_FIXTURE(
+    Look, "water reflection: traced on screen, near and far objects are mirrored to their edges") {
+    ball({-0.6f, 0.9f, -1}, 0.5f, {0.9f, 0.1f, 0.1f});
+    ball({1.2f, 0.9f, -3}, 0.4f, {0.1f, 0.9f, 0.2f});
+    ball({20, 8, -200}, 40, {0.1f, 0.2f, 0.9f});
+    const Vec3 eye = {0, 1.2f, 2};
+    const Vec3 target = {0, 0.7f, -2};
+    const auto mirrored = [](const Vec3& p) { return Vec3(p.x, 2 * kLevel - p.y, p.z); };
+    constexpr int kSide = 240;
+    const RenderView below = look(mirrored(eye), mirrored(target), kSide, kSide);
+    const gpu::FloatImage truth = radiance(below);
+    const gpu::FloatImage truth_depth = aov(below, "depth");
+    pour(kMirror);
+    const RenderView view = look(eye, target, kSide, kSide);
+    const gpu::FloatImage seen = radiance(view);
+    const gpu::FloatImage depth = aov(view, "depth");
+    // What the camera does not see, it cannot mirror.
+    const auto is_hidden = [&](const Vec3& point) {
+        const Vec4 clip = view.clip_from_world * Vec4(point, 1);
+        const Vec2 pixel = (0.5f + 0.5f * Vec2(clip) / clip.w) * static_cast<float>(kSide);
+        const int x = std::clamp(static_cast<int>(pixel.x), 0, kSide - 1);
+        const int y = std::clamp(static_cast<int>(pixel.y), 0, kSide - 1);
+        return std::abs(depth.at(x, kSide - 1 - y, 0) - clip.w) > 0.02f * clip.w;
+    };
+    int objects = 0;
+    int wrong = 0;
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            const Vec3 ray = ray_through(view, x, y);
+            const Vec3 point = point_at(view, depth, x, y);
+            if (ray.y > -0.02f || std::abs(point.y - kLevel) > 1e-3f) {
+                continue;  // the sky, or what stands before the water
+            }
+            const float share = fresnel(-ray.y, kMirror.refractive_index);
+            const Vec3 expected = rgb_at(truth, x, kSide - 1 - y);
+            const bool is_sky = expected == Vec3(0.5f);
+            if (!is_sky && is_hidden(point_at(below, truth_depth, x, kSide - 1 - y))) {
+                continue;
+            }
+            bool at_edge = false;  // exact to two pixels
+            for (const auto& [dx, dy] : {std::pair{-2, 0}, {2, 0}, {0, -2}, {0, 2}}) {
+                const int u = std::clamp(x + dx, 0, kSide - 1);
+                const int v = std::clamp(kSide - 1 - y + dy, 0, kSide - 1);
+                at_edge = at_edge || rgb_at(truth, u, v) != expected;
+            }
+            if (at_edge) {
+                continue;
+            }
+            const Vec3 difference = glm::abs(rgb_at(seen, x, y) / share - expected);
+            objects += is_sky ? 0 : 1;
+            wrong += std::max({difference.x, difference.y, difference.z}) > 0.05f ? 1 : 0;
+        }
+    }
+    CAPTURE(objects);
+    CAPTURE(wrong);
+    CHECK(objects > 1500);
+    CHECK(wrong < 0.05 * objects);
 }
 
 TEST_CASE_FIXTURE(Look, "water reflection: waves shift it to what they mirror, or not at all") {

@@ -4,8 +4,15 @@
 layout(binding = 5) uniform sampler2D behind_radiance;   // water_behind.frag
 layout(binding = 26) uniform sampler2D behind_distance;
 
-const int kMirrorSteps = 10;
+// Of reflected rays.
+const float kMirrorStep = 10.0;       // [px] on average; what is narrower may be missed
+const float kMinMirrorSteps = 10.0;
+const float kMaxMirrorSteps = 48.0;
+const float kMirrorReach = 2000.0;    // [m]
+const float kMirrorThickness = 0.2;   // of what they meet, relative to the path, by eye
 const int kBendSteps = 8;
+// Once they have met something, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel goes on as long as the
+// loop of a neighbor runs.
 #ifdef FROM_BELOW
 const int kHalvings = 7;  // total internal reflection would show steps
 #else
@@ -29,9 +36,6 @@ ScreenRay screen_ray(vec3 from, vec3 along) {
 vec3 ray_point(ScreenRay ray, float path) {
     vec3 p = ray.from + path * ray.along;
     return vec3(p.xy / max(p.z, 1e-6), p.z);
-}
-bool on_screen(vec3 at) {
-    return at.z > view.camera_ws.w && all(lessThan(abs(at.xy - 0.5 * view.size.xy), 0.5 * view.size.xy));
 }
 
 // Distance along the view axis of the surface in a pixel [m]; 0: none, or off screen.
@@ -61,68 +65,84 @@ struct Side {
     float up;     // 1: above, -1: below
 };
 
-// Whether the image has a surface at `at` that is nearer than it and on the same side of the water at rest as the ray.
-bool is_hidden(vec3 at, Side side) {
-    float seen = distance_at(at.xy);
-    return seen > 0.0 && seen < at.z && side.up * (height_of(at.xy, seen) - side.level) > 0.0;
+// Distance of the surface in a pixel, if it is on the same side of the water at rest as the ray; else kInfiniteDistance.
+float blocking_distance(vec2 pixel, Side side) {
+    float seen = texelFetch(behind_distance, ivec2(pixel), 0).r;
+    bool blocks = seen > 0.0 && side.up * (height_of(pixel, seen) - side.level) > 0.0;
+    return blocks ? seen : kInfiniteDistance;
 }
 
 // Radiance along a reflected ray: from the image where the ray hits something on screen, else `around`, at infinite
-// distance.
+// distance. The ray is followed in the image, where pixels and the reciprocal of the distance are linear, up to where it
+// leaves the screen; steps grow from the surface on.
 RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     ScreenRay ray = screen_ray(position, direction);
+    vec2 from = gl_FragCoord.xy;
+    vec2 along = ray.along.xy - ray.along.z * from;  // pixel = from + u * along, with u = path / distance
+    vec2 room = mix(view.size.xy - 1.0 - from, 1.0 - from, lessThan(along, vec2(0.0)));
+    vec2 leaving = room / mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
+    float reach = ray.along.z < 0.0 ? min(kMirrorReach, -0.95 * ray.from.z / ray.along.z) : kMirrorReach;
+    float u_reach = reach / (ray.from.z + reach * ray.along.z);
+    float u_end = max(min(u_reach, min(leaving.x, leaving.y)), 0.0);
+    float count = ceil(clamp(u_end * length(along) / kMirrorStep, kMinMirrorSteps, kMaxMirrorSteps));
     float low = 0.0;
-    float high = 0.02 * distance(position, view.camera_ws.xyz) + 0.05;
-    int steps = 0;
-    vec3 at;
-    bool inside;
-    bool hidden;
+    float high = 0.0;
+    float z = ray.from.z;
+    float ahead = 1.0;  // reciprocal distances of the ray and of what is seen, apart: at low
+    float behind;       // and at high
+    bool met = false;
+    float step = 0.0;
     do {
-        at = ray_point(ray, high);
-        inside = on_screen(at);
-        hidden = inside && is_hidden(at, side);
-        low = hidden ? low : high;
-        high = hidden ? high : 1.7 * high;
-    } while (inside && !hidden && ++steps < kMirrorSteps);
-    // It went behind something between the last two steps: bisect.
-    bool met = hidden;
-    float followed = low;
-    steps = 0;
+        float share = min(++step / count, 1.0);
+        high = met ? high : u_end * share * (0.3 + 0.7 * share);
+        float seen = blocking_distance(from + high * along, side);
+        // What it passes far behind does not stop it. Under water, where no sky can take its place, anything does.
+        bool near = side.up < 0.0 || z < seen + kMirrorThickness * low * z + 0.05;
+        z = ray.from.z / (1.0 - high * ray.along.z);
+        behind = 1.0 / seen - 1.0 / z;
+        met = met || (near && behind > 0.0);
+        ahead = met ? ahead : -behind;
+        low = met ? low : high;
+    } while (!met && step < count);
+    // It went behind something between the last two steps: bisect, and assume a plane between the last two points unless
+    // they are on different surfaces.
+    int steps = 0;
     do {
         float middle = 0.5 * (low + high);
-        hidden = is_hidden(ray_point(ray, middle), side);
+        float apart = 1.0 / blocking_distance(from + middle * along, side)
+                      - (1.0 - middle * ray.along.z) / ray.from.z;
+        bool hidden = apart > 0.0;
+        ahead = hidden ? ahead : -apart;
+        behind = hidden ? apart : behind;
         low = hidden ? low : middle;
         high = hidden ? middle : high;
     } while (met && ++steps < kHalvings);
-    vec3 hit = ray_point(ray, high);
-    vec2 pixel = clamp_to_screen(met ? hit.xy : at.xy);
-    vec3 color = radiance_at(pixel);
-    // If it is far behind the occluder, its hit is not visible on screen. Under water, where no sky can take its place,
-    // the occluder is the better guess.
-    float gap = hit.z - distance_at(pixel);
-    vec2 edge = min(hit.xy, view.size.xy - hit.xy) * view.size.zw;
-    float trust = clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0) * clamp(2.0 - gap / (2.0 * (high - low) + 0.05), 0.0, 1.0);
+    float u = !met ? u_end : ahead < 8.0 * behind ? mix(low, high, ahead / (ahead + behind)) : high;
+    z = ray.from.z / (1.0 - u * ray.along.z);
+    float path = u * z;
+    vec2 hit = from + u * along;
+    vec3 color = radiance_at(hit);
+    // If it is far behind the occluder, its hit is not visible on screen.
+    float gap = abs(z - blocking_distance(hit, side));
+    vec2 edge = min(hit, view.size.xy - hit) * view.size.zw;
+    float trust = clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0)
+                  * clamp(2.0 - gap / (kMirrorThickness * path + 0.05), 0.0, 1.0);
     trust = !met ? 0.0 : side.up > 0.0 ? trust : 1.0;
 #ifdef FROM_BELOW
     // Under water no sky can take its place: continue the pixel where the ray leaves the screen.
-    if (side.up < 0.0 && !met && !inside && at.z > view.camera_ws.w) {
-        vec3 start = ray_point(ray, 0.0);
-        vec2 out_of = at.xy - start.xy;
-        vec2 room = mix(view.size.xy - 1.0 - start.xy, 1.0 - start.xy, lessThan(out_of, vec2(0.0)));
-        vec2 shares = room / mix(out_of, vec2(1e-3), lessThan(abs(out_of), vec2(1e-3)));
-        vec2 leaves = clamp_to_screen(start.xy + clamp(min(shares.x, shares.y), 0.0, 1.0) * out_of);
+    if (side.up < 0.0 && !met && u_end < u_reach) {
         // If something above the water is there, follow it down into the water.
-        float seen = distance_at(leaves);
-        float over = max(height_of(leaves, seen) - side.level + 0.2, 0.0);
-        leaves.y -= seen > 0.0 ? over / (seen * 2.0 * view.size.w * max(view.ray_up.y, 1e-3)) : 0.0;
-        leaves = clamp_to_screen(leaves);
-        seen = distance_at(leaves);
-        if (seen > 0.0 && height_of(leaves, seen) < side.level) {
-            return RayHit(radiance_at(leaves), followed);
+        float seen = distance_at(hit);
+        float over = max(height_of(hit, seen) - side.level + 0.2, 0.0);
+        hit.y -= seen > 0.0 ? over / (seen * 2.0 * view.size.w * max(view.ray_up.y, 1e-3)) : 0.0;
+        hit = clamp_to_screen(hit);
+        seen = distance_at(hit);
+        if (seen > 0.0 && height_of(hit, seen) < side.level) {
+            return RayHit(radiance_at(hit), path);
         }
     }
 #endif
-    return RayHit(mix(around, color, trust), trust > 0.5 ? high : kInfiniteDistance);
+    return RayHit(mix(around, color, trust), trust > 0.5 ? path : kInfiniteDistance);
 }
 
 // Hit of a refracted ray on screen: steps until it is behind something, then bisection. Surfaces in front of the water
@@ -143,11 +163,11 @@ RayHit trace_refraction(vec3 position, vec3 direction, float max_distance) {
     float low = 0.0;
     float high = reach;
     vec2 shown = pixel;  // the last pixel on the ray that nothing in front of the water covers
-    bool met;
+    bool met = false;
     int steps = 0;
     do {
         float share = float(steps + 1) / float(kBendSteps);
-        high = reach * share * share;
+        high = met ? high : reach * share * share;
         vec3 at = ray_point(ray, high);
         pixel = clamp_to_screen(at.xy);
         float seen = distance_at(pixel);
@@ -160,7 +180,7 @@ RayHit trace_refraction(vec3 position, vec3 direction, float max_distance) {
         float middle = 0.5 * (low + high);
         vec3 at = ray_point(ray, middle);
         float seen = distance_at(clamp_to_screen(at.xy));
-        bool hidden = seen > here && seen < at.z;
+        bool hidden = met && seen > here && seen < at.z;
         low = hidden ? low : middle;
         high = hidden ? middle : high;
     } while (met && ++steps < kHalvings);
