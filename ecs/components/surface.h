@@ -45,6 +45,17 @@ struct MeshPiece {
     MeshId mesh = {};
 };
 
+/// A named region of a mesh, such as "forehead": how much each vertex belongs to it and, where skin
+/// folds there, across which direction. In glTF: the vertex attributes `_REGION_<NAME>` (float) and
+/// `_ACROSS_<NAME>` (vec3), with the name in capitals.
+struct VertexRegion {
+    std::string name;            ///< a-z, 0-9 and _
+    std::vector<float> weights;  ///< one per vertex, 0 .. 1
+    std::vector<Vec3>
+        across;  ///< one per vertex, mesh space at rest: unit, along which shortening raises
+                 ///< wrinkles, perpendicular to the wrinkles' lines; 0: none there. Or empty
+};
+
 /// Triangle mesh. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be
 /// empty. After editing it in place, increment `version`: the renderer uploads it again.
 struct MeshData {
@@ -61,7 +72,8 @@ struct MeshData {
     SkinWeights skin;                 ///< empty: not skinned
     std::vector<MorphTarget> morphs;  ///< morph targets, in the file's order
     std::vector<MeshPiece> pieces;    ///< all of it in pieces, or empty
-    Bounds bounds;                    ///< of the undeformed mesh
+    std::vector<VertexRegion> regions;  ///< names differ; may overlap
+    Bounds bounds;                      ///< of the undeformed mesh
     std::uint32_t version = 0;
 };
 
