@@ -94,6 +94,10 @@ std::uint32_t duplicate_vertex(MeshData& mesh, std::uint32_t v) {
     append(mesh.uvs);
     append(mesh.uvs1);
     append(mesh.colors);
+    for (VertexRegion& region : mesh.regions) {
+        append(region.weights);
+        append(region.across);
+    }
     append(mesh.positions);  // last, since the others compare with its size
     if (SkinWeights& skin = mesh.skin; !skin.empty()) {
         for (std::uint32_t i = skin.first[v], end = skin.first[v + 1]; i < end; ++i) {
@@ -291,6 +295,7 @@ void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothG
     constexpr float kMinTurn = 1e-6f;  // above the rounding of the sums
     MorphTarget result;
     result.name = std::move(morph.name);
+    result.action_unit = std::move(morph.action_unit);
     for (std::uint32_t v = 0; v < moved.size(); ++v) {
         const std::uint32_t group = groups.group_of[v];
         const Vec3 turn(direction(sums[group]) - direction(groups.sums[group]));

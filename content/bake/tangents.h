@@ -32,8 +32,8 @@ struct TriangleFrame {
 
 /// Replaces the normals of `mesh`. Faces that meet in a point (equal positions, whatever their
 /// index) are smoothed together where they differ by at most `crease_angle` [rad]: 0 gives flat
-/// faces, pi one normal for each point. Vertices are split at creases and keep their skin weights
-/// and morph targets. Degenerate triangles do not count; vertices of no triangle get +y.
+/// faces, pi one normal for each point. Vertices are split at creases and keep their skin weights,
+/// morph targets and regions. Degenerate triangles do not count; vertices of no triangle get +y.
 void generate_normals(MeshData& mesh, float crease_angle = kPi);
 
 /// Replaces the tangents of `mesh` by those of `uvs` (or `uvs1` for set 1), which must be there as

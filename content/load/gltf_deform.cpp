@@ -2,10 +2,12 @@
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 namespace limn {
@@ -16,6 +18,9 @@ constexpr std::size_t kWidth = 4;       ///< influences per vertex of one set
 constexpr double kMaxDeviation = 1e-3;  ///< of a sum of weights from 1
 /// What a weight of 0 may become by rounding.
 constexpr float kMinWeight = -1e-3f;
+constexpr std::string_view kRegion = "_REGION_";
+constexpr std::string_view kAcross = "_ACROSS_";
+constexpr std::size_t kMaxRegions = 256;
 /// [m]; same as for positions.
 constexpr float kLargestOffset = 1e9f;
 
@@ -146,6 +151,20 @@ Vec3 vector_at(const std::vector<float>& values, std::size_t element) {
                : Vec3(values[3 * element], values[3 * element + 1], values[3 * element + 2]);
 }
 
+/// Unit vectors to the bit as they are.
+Vec3 unit_or_zero(const Vec3& direction) {
+    const float length = glm::length(direction);
+    return std::abs(length - 1.0f) < 1e-6f ? direction : normalize_or(direction, Vec3(0));
+}
+
+std::string in_lower_case(std::string_view name) {
+    std::string lower(name);
+    for (char& letter : lower) {
+        letter = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+    }
+    return lower;
+}
+
 MorphTarget keep_displaced(const Differences& all, std::span<const std::uint32_t> used) {
     MorphTarget target;
     for (std::size_t i = 0; i < used.size(); ++i) {
@@ -239,8 +258,10 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
     return skin;
 }
 
-Result<std::vector<MorphTarget>> read_morph_targets(
-    GltfDocument& document, const GltfVertices& vertices, const std::vector<JsonValue>& names) {
+Result<std::vector<MorphTarget>>
+read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const JsonValue& extras) {
+    const std::vector<JsonValue>& names = extras["targetNames"].items;
+    const std::vector<JsonValue>& units = extras["actionUnits"].items;
     std::vector<MorphTarget> targets;
     for (const JsonValue& source : vertices.primitive["targets"].items) {
         const std::size_t i = targets.size();
@@ -248,8 +269,47 @@ Result<std::vector<MorphTarget>> read_morph_targets(
             document, vertices, source, fmt::format("{}.targets[{}]", vertices.place, i)));
         targets.push_back(keep_displaced(all, vertices.used));
         targets.back().name = i < names.size() ? names[i].text : fmt::format("target {}", i);
+        targets.back().action_unit = i < units.size() ? units[i].text : "";
     }
     return targets;
+}
+
+Result<std::vector<VertexRegion>>
+read_regions(GltfDocument& document, const GltfVertices& vertices) {
+    std::vector<VertexRegion> regions;
+    const JsonValue& attributes = vertices.primitive["attributes"];
+    for (const auto& [attribute, at, accessor] : attributes.members) {
+        const std::string here = fmt::format("{}.attributes.{}", vertices.place, attribute);
+        if (attribute.starts_with(kAcross)
+            && attributes.find(std::string(kRegion) + attribute.substr(kAcross.size()))
+                   == nullptr) {
+            document.warnings.push_back(here + " is ignored: there is no region of that name");
+        }
+        if (!attribute.starts_with(kRegion)) {
+            continue;
+        }
+        if (regions.size() == kMaxRegions) {
+            return fail("{}: found more regions, expected at most {}", here, kMaxRegions);
+        }
+        VertexRegion region;
+        region.name = in_lower_case(attribute.substr(kRegion.size()));
+        const std::vector<float> weights =
+            LIMN_TRY(read_attribute(document, vertices, accessor, 1, here));
+        for (const std::uint32_t vertex : vertices.used) {
+            region.weights.push_back(std::clamp(weights[vertex], 0.0f, 1.0f));
+        }
+        const std::string other = std::string(kAcross) + attribute.substr(kRegion.size());
+        if (const JsonValue* const across = attributes.find(other)) {
+            const std::vector<float> values = LIMN_TRY(read_attribute(
+                document, vertices, *across, 3,
+                fmt::format("{}.attributes.{}", vertices.place, other)));
+            for (const std::uint32_t vertex : vertices.used) {
+                region.across.push_back(unit_or_zero(vector_at(values, vertex)));
+            }
+        }
+        regions.push_back(std::move(region));
+    }
+    return regions;
 }
 
 }  // namespace limn

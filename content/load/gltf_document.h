@@ -141,9 +141,16 @@ struct GltfVertices {
 [[nodiscard]] Result<SkinWeights>
 read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::size_t joints);
 
-/// The morph targets of the primitive with the vertices that they move; `names` may be shorter.
-[[nodiscard]] Result<std::vector<MorphTarget>> read_morph_targets(
-    GltfDocument& document, const GltfVertices& vertices, const std::vector<JsonValue>& names);
+/// The morph targets of the primitive with the vertices that they move. Their names and action
+/// units are the lists targetNames and actionUnits of `extras`, which may be shorter or missing.
+[[nodiscard]] Result<std::vector<MorphTarget>>
+read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const JsonValue& extras);
+
+/// The regions _REGION_x, with their directions _ACROSS_x if there. Weights are clamped to 0 .. 1
+/// and directions are normalized. Fails where a number is not finite, and on another number of
+/// elements than POSITION has.
+[[nodiscard]] Result<std::vector<VertexRegion>>
+read_regions(GltfDocument& document, const GltfVertices& vertices);
 
 /// The drawn parts of each mesh of the file.
 using GltfParts = std::vector<std::vector<GltfPart>>;

@@ -19,7 +19,8 @@ namespace limn {
 // sets, normalized and sparse accessors, metal-rough materials, textures, samplers, perspective
 // cameras, KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
 // KHR_mesh_quantization, KHR_texture_transform, skeletons, skins with any number of joints per
-// vertex, morph targets, animation clips, and our components in extras.limn of a node. Ignored with
+// vertex, morph targets with their action units, named regions of vertices (surface.h), animation
+// clips, and our components in extras.limn of a node. Ignored with
 // a warning: points and lines, orthographic cameras, lights of unknown type, bytes after a GLB,
 // textures in unsupported image formats, morph targets of texture coordinates and colors, other
 // extensions unless they are required.

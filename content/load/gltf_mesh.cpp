@@ -186,8 +186,8 @@ class MeshBuilder {
             result_.skin = LIMN_TRY(read_skin_weights(document_, vertices, joints_));
         }
         // Most exporters write the names of the targets there.
-        const std::vector<JsonValue>& names = mesh_["extras"]["targetNames"].items;
-        result_.morphs = LIMN_TRY(read_morph_targets(document_, vertices, names));
+        result_.morphs = LIMN_TRY(read_morph_targets(document_, vertices, mesh_["extras"]));
+        result_.regions = LIMN_TRY(read_regions(document_, vertices));
         return Done{};
     }
 

@@ -93,6 +93,10 @@ void simplify_mesh(MeshData& mesh, std::size_t triangles) {
     for (MorphTarget& morph : mesh.morphs) {
         gather_morph(morph, number);
     }
+    for (VertexRegion& region : mesh.regions) {
+        gather(region.weights, source);
+        gather(region.across, source);
+    }
 }
 
 }  // namespace limn

@@ -99,9 +99,11 @@ struct SkinWeights {
     [[nodiscard]] bool empty() const { return first.empty(); }
 };
 
-/// A morph target: sparse differences from the base mesh (char.morph-target).
+/// A morph target: sparse differences from the base mesh (char.morph-target). Facial action units:
+/// P. Ekman and W. Friesen, "Facial Action Coding System", 1978.
 struct MorphTarget {
     std::string name;
+    std::string action_unit;  ///< of FACS that it shows: "AU12", a half as "AU12_L"; empty: none
     std::vector<std::uint32_t> vertices;  ///< indices of affected vertices, increasing
     std::vector<Vec3> positions;          ///< one per entry of `vertices` [m]
     std::vector<Vec3> normals;            ///< the same, or empty

@@ -47,9 +47,9 @@ struct MeshPiece {
 
 /// A named region of a mesh, such as "forehead": how much each vertex belongs to it and, where skin
 /// folds there, across which direction. In glTF: the vertex attributes `_REGION_<NAME>` (float) and
-/// `_ACROSS_<NAME>` (vec3).
+/// `_ACROSS_<NAME>` (vec3), with the name in capitals.
 struct VertexRegion {
-    std::string name;
+    std::string name;            ///< a-z, 0-9 and _
     std::vector<float> weights;  ///< one per vertex, 0 .. 1
     std::vector<Vec3>
         across;  ///< one per vertex, mesh space at rest: unit, along which shortening raises

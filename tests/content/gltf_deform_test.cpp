@@ -237,7 +237,7 @@ TEST_CASE("gltf deform: a vertex that is split keeps its joints and its morph ta
     roof.skin.first = {0, 1, 3, 4, 5};
     roof.skin.joints = {0, 1, 2, 3, 4};
     roof.skin.weights = {1, 0.25f, 0.75f, 1, 1};
-    roof.morphs.push_back({"ridge", {1}, {Vec3(0, 2, 0)}, {}, {}});
+    roof.morphs.push_back({"ridge", "", {1}, {Vec3(0, 2, 0)}, {}, {}});
     generate_normals(roof, radians(30));
     REQUIRE(roof.positions.size() == 6);
     REQUIRE(roof.skin.first.size() == 7);

@@ -42,6 +42,17 @@ void check_deformations(const limn::MeshData& mesh) {
             require(std::abs(sum - 1.0f) < 1e-4f);
         }
     }
+    for (const limn::VertexRegion& region : mesh.regions) {
+        require(region.weights.size() == count);
+        require(region.across.empty() || region.across.size() == count);
+        for (const float weight : region.weights) {
+            require(weight >= 0 && weight <= 1);
+        }
+        for (const limn::Vec3& across : region.across) {
+            const float length = glm::length(across);
+            require(length == 0 || std::abs(length - 1.0f) < 1e-3f);
+        }
+    }
     for (const limn::MorphTarget& morph : mesh.morphs) {
         const std::size_t moving = morph.vertices.size();
         require(morph.positions.size() == moving);

@@ -427,7 +427,7 @@ TEST_CASE("skin: more than 256 joints and more than 256 morph targets work") {
     Puppet puppet = make_puppet(300, 600, 4);
     std::vector<float> weights;
     for (std::uint32_t t = 0; t < 300; ++t) {
-        puppet.mesh.morphs.push_back({"", {2 * t + 1}, {Vec3(0, 0, 2)}, {}, {}});
+        puppet.mesh.morphs.push_back({"", "", {2 * t + 1}, {Vec3(0, 0, 2)}, {}, {}});
         weights.push_back(0.5f);
     }
     puppet.pose(random_pose(puppet.skeleton, 0.1f));
@@ -452,8 +452,8 @@ TEST_CASE("skin: morph targets are linear, add up in any order and leave the oth
     for (int i = 0; i < 6; ++i) {
         add_vertex(mesh, Vec3(0.1f * static_cast<float>(i), 1, 1), {{0, 1.0f}});
     }
-    mesh.morphs.push_back({"a", {1, 3}, {{1, 0, 0}, {0, 2, 0}}, {{0, 1, 0}, {0, 0, 1}}, {}});
-    mesh.morphs.push_back({"b", {3, 4}, {{0, 0, 4}, {1, 1, 1}}, {}, {{1, 0, 0}, {0, 1, 0}}});
+    mesh.morphs.push_back({"a", "", {1, 3}, {{1, 0, 0}, {0, 2, 0}}, {{0, 1, 0}, {0, 0, 1}}, {}});
+    mesh.morphs.push_back({"b", "", {3, 4}, {{0, 0, 4}, {1, 1, 1}}, {}, {{1, 0, 0}, {0, 1, 0}}});
     const auto shaped = [&](std::vector<float> weights) {
         MeshData copy = mesh;
         add_morphs(mesh.morphs, weights, {copy.positions, copy.normals, copy.tangents});
@@ -476,7 +476,7 @@ TEST_CASE("skin: morph targets are linear, add up in any order and leave the oth
 
 TEST_CASE("skin: a shape that was morphed before it is skinned turns with its joint") {
     Puppet puppet = make_tube({0, 1, 0}, 90, 1);
-    puppet.mesh.morphs.push_back({"bump", {0}, {{1, 0, 0}}, {}, {}});
+    puppet.mesh.morphs.push_back({"bump", "", {0}, {{1, 0, 0}}, {}, {}});
     add_morphs(
         puppet.mesh.morphs, std::vector<float>{1},
         {puppet.mesh.positions, puppet.mesh.normals, puppet.mesh.tangents});
