@@ -30,8 +30,8 @@ std::vector<T> read(const gpu::Buffer& buffer, std::size_t first, std::size_t co
 
 struct SkinReadback::Machine {
     Machine(gpu::Device& device, DeformPass made, WrinkleEffect its, std::size_t storage_bytes)
-        : pass(std::move(made)), wrinkles(std::move(its)), shapes(storage_bytes), ring(device.caps(), "readback", 1 << 16),
-          graph(device) {}
+        : pass(std::move(made)), wrinkles(std::move(its)), shapes(storage_bytes),
+          ring(device.caps(), "readback", 1 << 16), graph(device) {}
 
     DeformPass pass;
     WrinkleEffect wrinkles;
@@ -58,8 +58,7 @@ Result<SkinReadback> SkinReadback::create(gpu::Device& device, std::size_t stora
         return wrinkles.error();
     }
     const auto most = static_cast<std::size_t>(device.caps().max_storage_bytes);
-    return SkinReadback(std::unique_ptr<Machine, Deleter>(
-        new Machine(
+    return SkinReadback(std::unique_ptr<Machine, Deleter>(new Machine(
         device, *std::move(pass), *std::move(wrinkles), storage_bytes > 0 ? storage_bytes : most)));
 }
 

@@ -278,8 +278,8 @@ class LevelParser {
             LIMN_TRY(read_field(*tiling, *scale, &scaled.scale, place_in(at, "tiling"), names));
             for (TextureSlot* const slot :
                  {&material.base_color_texture, &material.metal_rough_texture,
-                  &material.normal_texture, &material.occlusion_texture,
-                  &material.emission_texture, &material.wrinkle_texture}) {
+                  &material.normal_texture, &material.occlusion_texture, &material.emission_texture,
+                  &material.wrinkle_texture}) {
                 slot->scale = scaled.scale;
             }
         }

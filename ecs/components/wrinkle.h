@@ -17,8 +17,8 @@ namespace limn {
 
 /// How wrinkles are drawn.
 enum class WrinkleMethod : std::uint8_t {
-    None,         ///< not at all
-    Alpha,        ///< darkened slopes: C (1 - I W), without light (wrinkle.compression.alpha-shading)
+    None,   ///< not at all
+    Alpha,  ///< darkened slopes: C (1 - I W), without light (wrinkle.compression.alpha-shading)
     Directional,  ///< only slopes that face down the map, as if lit from above
     Bump,         ///< slopes times I: wrinkles as high as I (wrinkle.compression.interp-bump)
     Sphere,       ///< x and y of the normal times I, lifted to the unit sphere (.normal-fit)

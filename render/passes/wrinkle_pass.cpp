@@ -135,8 +135,8 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
             return;
         }
         const auto& state = *frame.world->find<WrinkleState>(entity);
-        layout::WrinkleJob job = make_job(
-            *frame.world->find<WrinkleSurface>(entity), state, find_rest(pool, state));
+        layout::WrinkleJob job =
+            make_job(*frame.world->find<WrinkleSurface>(entity), state, find_rest(pool, state));
         job.vertex_count = count;
         job.slot = slot;
         job.first_group = static_cast<std::uint32_t>(group_list.size());

@@ -108,8 +108,7 @@ std::vector<Vec2> wrinkle_slopes(const ImageData& map) {
         const auto component = [&](std::size_t k) {
             return (static_cast<float>(map.pixels[i + k]) - 128.0f) / 127.0f;
         };
-        slopes.push_back(
-            Vec2{component(0), component(1)} / -std::max(component(2), kMinNormalZ));
+        slopes.push_back(Vec2{component(0), component(1)} / -std::max(component(2), kMinNormalZ));
     }
     return slopes;
 }

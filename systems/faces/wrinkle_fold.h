@@ -21,8 +21,8 @@ namespace limn {
 /// The factor for an excess of length `e`: 0 below 0, that at 1 above 1.
 [[nodiscard]] float fold_strength(const FoldTable& table, float e);
 
-/// The excess, 1 at most, that becomes folds when lengths are `ratio` >= 0 of what they were, squared: after
-/// `slack`, which passes without, `share` of the shortening.
+/// The excess, 1 at most, that becomes folds when lengths are `ratio` >= 0 of what they were,
+/// squared: after `slack`, which passes without, `share` of the shortening.
 [[nodiscard]] float fold_excess(float ratio, float slack, float share);
 
 /// Slopes of an 8-bit tangent-space normal map, row by row. 128 is 0, so that flat is exact. Empty

@@ -27,15 +27,15 @@ const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
 
 /// Whether it says where and across which direction a vertex wrinkles.
 bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::size_t vertices) {
-    const bool named =
-        surface.regions.empty() || std::ranges::find(surface.regions, region.name) != surface.regions.end();
+    const bool named = surface.regions.empty()
+                       || std::ranges::find(surface.regions, region.name) != surface.regions.end();
     return named && region.weights.size() == vertices && region.across.size() == vertices;
 }
 
 }  // namespace
 
-std::uint64_t wrinkle_source(
-    const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets) {
+std::uint64_t
+wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets) {
     const MeshData* const mesh = mesh_of(instance, assets);
     if (mesh == nullptr) {
         return 0;

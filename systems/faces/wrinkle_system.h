@@ -21,8 +21,8 @@ void prepare_wrinkles(
 // ---- parts of the above ----
 
 /// Hash of all that a state is made from; 0: the mesh has no such region.
-[[nodiscard]] std::uint64_t wrinkle_source(
-    const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets);
+[[nodiscard]] std::uint64_t
+wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets);
 
 /// Where regions overlap the stronger one gives the direction, and the sum of their weights is cut
 /// off at 1. Without a wrinkle map folds are flat.

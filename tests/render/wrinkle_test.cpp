@@ -72,8 +72,8 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
           WrinkleMethod::Directional, WrinkleMethod::Isometric}) {
         MeshData tube = make_tube(24, 12, 1);
         add_morphs(tube, 1, 1, 0.03f, random);
-        const Entity entity = skin(
-            std::move(tube), {.method = method, .lambda = 1.1f, .beta = 3, .slack = 0.01f}, 1);
+        const Entity entity =
+            skin(std::move(tube), {.method = method, .lambda = 1.1f, .beta = 3, .slack = 0.01f}, 1);
         const oracle::SkinReadbackVertices found =
             readback->run(world, std::vector<Entity>{entity})[0];
         const WrinkleState& state = world.get<WrinkleState>(entity);
@@ -91,7 +91,8 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
         for (std::size_t v = 0; v < ratio.size(); ++v) {
             const float strength =
                 method == WrinkleMethod::Isometric
-                    ? fold_strength(state.folds, fold_excess(ratio[v], surface.slack, surface.share))
+                    ? fold_strength(
+                        state.folds, fold_excess(ratio[v], surface.slack, surface.share))
                     : std::max(wrinkle_intensity(ratio[v], surface.lambda, surface.beta), 0.0f);
             Vec4 expected = {0, 0, 0, 0};
             expected[component] = strength;
@@ -104,7 +105,8 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
     }
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: slopes are scaled, lifted, or keep the length of skin") {
+TEST_CASE_FIXTURE(
+    WrinkleScene, "wrinkle pass: slopes are scaled, lifted, or keep the length of skin") {
     const float ratio = 0.8f * 0.8f;
     const float intensity = wrinkle_intensity(ratio, 1, 4);
     CHECK(intensity == near(0.712663));
@@ -117,8 +119,9 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: slopes are scaled, lifted, or kee
     const Entity sphere = square({.method = WrinkleMethod::Sphere, .lambda = 1}, 0.2f);
     const Vec3 unit = glm::normalize(Vec3(-map_slope(), 1.0f));
     const float y = intensity * unit.y;
-    CHECK(drawn_factor(aov(view, "normal"))
-          == near(y / std::sqrt(1 - y * y) / -map_slope().y).epsilon(2e-3));
+    CHECK(
+        drawn_factor(aov(view, "normal"))
+        == near(y / std::sqrt(1 - y * y) / -map_slope().y).epsilon(2e-3));
     world.destroy(sphere);
 
     // The one slope of the map times the factor is as long as the skin was.
@@ -130,13 +133,12 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: slopes are scaled, lifted, or kee
 TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: shading darkens slopes, whatever the light") {
     const float intensity = wrinkle_intensity(0.64f, 1, 4);
     const auto darkening = [&](WrinkleMethod method, bool upside_down) {
-        material.wrinkle_texture.image =
-            upside_down ? add(ImageData{
-                              .name = "down",
-                              .width = 1,
-                              .height = 1,
-                              .pixels = {128, 256 - kSlopeByte, 240, 255}})
-                        : slope_map();
+        material.wrinkle_texture.image = upside_down ? add(ImageData{
+                                             .name = "down",
+                                             .width = 1,
+                                             .height = 1,
+                                             .pixels = {128, 256 - kSlopeByte, 240, 255}})
+                                                     : slope_map();
         const Entity entity = square({.method = method, .lambda = 1}, 0.2f);
         const gpu::FloatImage albedo = aov(view, "albedo");
         world.destroy(entity);
@@ -149,7 +151,8 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: shading darkens slopes, whatever 
     CHECK(darkening(WrinkleMethod::Directional, false) == near(1).epsilon(4e-3));
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: at rest, stretched, or without a method skin is as without") {
+TEST_CASE_FIXTURE(
+    WrinkleScene, "wrinkle pass: at rest, stretched, or without a method skin is as without") {
     shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0}));
     const auto pixels = [&](const WrinkleSurface& surface, float weight, bool with) {
         const Entity entity = square(surface, weight);
@@ -161,13 +164,15 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: at rest, stretched, or without a 
         return result;
     };
     for (const WrinkleMethod method :
-         {WrinkleMethod::Bump, WrinkleMethod::Sphere, WrinkleMethod::Alpha, WrinkleMethod::Isometric}) {
+         {WrinkleMethod::Bump, WrinkleMethod::Sphere, WrinkleMethod::Alpha,
+          WrinkleMethod::Isometric}) {
         CHECK(pixels({.method = method}, 0, true) == pixels({.method = method}, 0, false));
         CHECK(pixels({.method = method}, -0.3f, true) == pixels({.method = method}, -0.3f, false));
         CHECK(pixels({.method = method}, 0.3f, true) != pixels({.method = method}, 0.3f, false));
     }
-    CHECK(pixels({.method = WrinkleMethod::None}, 0.3f, true)
-          == pixels({.method = WrinkleMethod::None}, 0.3f, false));
+    CHECK(
+        pixels({.method = WrinkleMethod::None}, 0.3f, true)
+        == pixels({.method = WrinkleMethod::None}, 0.3f, false));
 }
 
 TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: across the fold only; along it nothing happens") {

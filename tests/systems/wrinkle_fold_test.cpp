@@ -40,10 +40,9 @@ TEST_CASE("wrinkle fold: a sine is as high as its elliptic integral says") {
     struct Row {
         float left, amplitude;
     };
-    const std::vector<Row> rows = {{0.99f, 0.0321f}, {0.98f, 0.0458f}, {0.97f, 0.0566f},
-                                   {0.95f, 0.0744f}, {0.92f, 0.0968f}, {0.90f, 0.1104f},
-                                   {0.85f, 0.1421f}, {0.80f, 0.1730f}, {0.75f, 0.2046f},
-                                   {0.70f, 0.2382f}};
+    const std::vector<Row> rows = {
+        {0.99f, 0.0321f}, {0.98f, 0.0458f}, {0.97f, 0.0566f}, {0.95f, 0.0744f}, {0.92f, 0.0968f},
+        {0.90f, 0.1104f}, {0.85f, 0.1421f}, {0.80f, 0.1730f}, {0.75f, 0.2046f}, {0.70f, 0.2382f}};
     const FoldTable table = make_fold_table(sine_slopes());
     for (const Row& row : rows) {
         CAPTURE(row.left);
@@ -98,7 +97,8 @@ TEST_CASE("wrinkle fold: no shortening, no fold; stretch neither, nor what the s
 }
 
 TEST_CASE("wrinkle fold: a map's slopes are its normals', exactly flat at 128") {
-    ImageData map{.name = "m", .width = 2, .height = 1, .pixels = {128, 128, 255, 255, 204, 128, 230, 255}};
+    ImageData map{
+        .name = "m", .width = 2, .height = 1, .pixels = {128, 128, 255, 255, 204, 128, 230, 255}};
     const std::vector<Vec2> slopes = wrinkle_slopes(map);
     REQUIRE(slopes.size() == 2);
     CHECK(slopes[0] == Vec2{0, 0});

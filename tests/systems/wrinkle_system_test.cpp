@@ -1,6 +1,5 @@
-#include "systems/faces/wrinkle_system.h"
-
 #include "ecs/world.h"
+#include "systems/faces/wrinkle_system.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>
@@ -32,7 +31,8 @@ constexpr MeshInstance kInstance = {.mesh = {0}, .material = {0}};
 
 }  // namespace
 
-TEST_CASE("wrinkle system: a mask is the sum of the regions, and the stronger gives the direction") {
+TEST_CASE(
+    "wrinkle system: a mask is the sum of the regions, and the stronger gives the direction") {
     const Assets assets = two_regions();
     const WrinkleState all = make_wrinkle_state({}, kInstance, assets);
     CHECK(all.mask == std::vector<float>{1, 1, 1, 0.6f});
@@ -67,7 +67,8 @@ TEST_CASE("wrinkle system: a state follows its mesh, its regions and what is ask
     CHECK(world.find<WrinkleState>(entity) == nullptr);
 }
 
-TEST_CASE("wrinkle system: regions of the wrong length and instances without a mesh have no state") {
+TEST_CASE(
+    "wrinkle system: regions of the wrong length and instances without a mesh have no state") {
     Assets assets = two_regions();
     CHECK(wrinkle_source({}, {.mesh = {7}, .material = {0}}, assets) == 0);
     CHECK(wrinkle_source({}, {.mesh = {0}, .material = {9}}, assets) != 0);
