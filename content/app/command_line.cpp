@@ -7,6 +7,7 @@
 #include "content/app/compare_command.h"
 #include "content/app/hash_command.h"
 #include "content/app/image_file.h"
+#include "content/app/import_command.h"
 #include "content/app/info_command.h"
 #include "content/app/list_commands.h"
 #include "content/app/log_sink.h"
@@ -489,6 +490,29 @@ Command add_info(CLI::App& program, std::string& file) {
     return {app, [&file] { return run_info(file); }};
 }
 
+Command add_import(CLI::App& program, ImportOptions& options) {
+    CLI::App* app = program.add_subcommand("import", "Convert outside data to glTF");
+    app->add_option("kind", options.kind, "of the data: ict-facekit or makehuman")
+        ->type_name("KIND")
+        ->required()
+        ->check(CLI::IsMember({"ict-facekit", "makehuman"}));
+    app->add_option("in", options.in, "folder with the data")->type_name("FOLDER")->required();
+    app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
+    app->footer(
+        "ict-facekit: the neutral face of ICT FaceKit with all expressions in its folder "
+        "FaceXModel;\n"
+        "where one half of an expression is missing, the other is mirrored.\n"
+        "makehuman: the base mesh of MakeHuman with its expression units, the mean of the young\n"
+        "builds, the default rig and eyes, from base.obj, targets, rigs and proxies.\n"
+        "Shapes keep their names and know their FACS action units; skin has regions that wrinkle,\n"
+        "with the direction across the folds.\n\n"
+        "Examples:\n"
+        "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
+        "  limn import makehuman makehuman -o person.glb\n"
+        "  limn play face.glb");
+    return {app, [&options] { return run_import(options); }};
+}
+
 Command add_levels(CLI::App& program) {
     CLI::App* app = program.add_subcommand("levels", "List the levels");
     app->footer("Example:\n  limn levels");
@@ -540,6 +564,7 @@ struct AllOptions {
     CompareOptions compare;
     BakeOptions bake;
     std::string info_file;
+    ImportOptions import_options;
     std::string show;
     std::string checked;
     ComponentsOptions components;
@@ -557,6 +582,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_compare(program, options.compare),
         add_bake(program, options.bake),
         add_info(program, options.info_file),
+        add_import(program, options.import_options),
         add_levels(program),
         add_shows(program, options.show),
         add_components(program, options.components)};

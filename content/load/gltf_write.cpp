@@ -37,11 +37,6 @@ struct Stored<std::uint32_t> {
     static constexpr int kComponent = kGltfUnsignedInt;
 };
 template <>
-struct Stored<std::uint16_t> {
-    static constexpr const char* kType = "SCALAR";
-    static constexpr int kComponent = kGltfUnsignedShort;
-};
-template <>
 struct Stored<Vec2> {
     static constexpr const char* kType = "VEC2";
     static constexpr int kComponent = kGltfFloat;

@@ -58,8 +58,8 @@ TEST_CASE("cli: --version names the program and its version") {
 TEST_CASE("cli: every command has help with an example") {
     const TemporaryFolder folder;
     for (const char* command :
-         {"play", "render", "bench", "hash", "quality", "compare", "bake", "info", "levels",
-          "shows", "components"}) {
+         {"play", "render", "bench", "hash", "quality", "compare", "bake", "info", "import",
+          "levels", "shows", "components"}) {
         const ProgramRun run = run_limn(folder, {command, "--help"});
         CAPTURE(command);
         CHECK(run.exit_code == 0);
@@ -168,7 +168,7 @@ TEST_CASE("cli: shows lists techniques with their levels, and says how to see on
     check_fails(folder, {"shows", "shadow.penumbr"}, 1, "did you mean shadow.penumbra?");
     check_fails(folder, {"render", "--show", "shadow.penumbr", "-o", "a.png"}, 1, "did you mean");
     check_fails(folder, {"render", "ocean", "--show", "shadow.pcf", "-o", "a.png"}, 1, "ocean");
-    check_fails(folder, {"render", "a.glb", "--show", "shadow.pcf", "-o", "a.png"}, 1, "glTF");
+    check_fails(folder, {"render", "a.glb", "--show", "shadow.pcf", "-o", "a.png"}, 1, "model");
 }
 
 TEST_CASE("cli: levels lists the gallery, components their fields with units") {

@@ -70,6 +70,7 @@ TEST_CASE("pick: a posed mesh is met where its joints take it") {
     mesh.skin = {.first = {0, 1, 2, 3}, .joints = {0, 0, 0}, .weights = {1, 1, 1}};
     mesh.morphs = {
         {.name = "out",
+         .action_unit = {},
          .vertices = {0, 1, 2},
          .positions = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
          .normals = {},

@@ -530,6 +530,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one li
     broken = mesh_of(entity);
     broken.morphs.push_back(
         {.name = "far",
+         .action_unit = {},
          .vertices = {99999},
          .positions = {Vec3(0)},
          .normals = {},

@@ -1,0 +1,47 @@
+#include "content/app/import_command.h"
+
+#include "content/app/progress.h"
+#include "content/load/gltf_write.h"
+#include "content/load/ict_facekit.h"
+#include "content/load/makehuman.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace limn {
+
+Status run_import(const ImportOptions& options) {
+    if (!options.out.ends_with(".glb")) {
+        return fail("{}: expected a file name ending in .glb", options.out);
+    }
+    std::unique_ptr<Progress> progress;
+    const ImportProgress show = [&](int done, int total) {
+        if (progress == nullptr) {
+            progress = std::make_unique<Progress>("file", total);
+        }
+        progress->update(done);
+    };
+    const GltfScene scene = LIMN_TRY(
+        options.kind == "makehuman" ? import_makehuman(options.in, show)
+                                    : import_ict_facekit(options.in, show));
+    LIMN_TRY(save_glb(options.out, scene));
+    progress.reset();
+
+    std::size_t vertices = 0;
+    for (const MeshData& mesh : scene.meshes) {
+        vertices += mesh.positions.size();
+    }
+    const MeshData& skin = scene.meshes[0];
+    std::string joints;
+    if (!scene.skeleton.joints.empty()) {
+        joints = fmt::format(", {} joints", scene.skeleton.joints.size() - 1);
+    }
+    fmt::print(
+        "{}: {} parts, {} vertices, {} shapes, {} regions{}\n", options.out, scene.meshes.size(),
+        vertices, skin.morphs.size(), skin.regions.size(), joints);
+    return Done{};
+}
+
+}  // namespace limn

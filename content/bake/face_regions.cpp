@@ -1,0 +1,167 @@
+#include "content/bake/face_regions.h"
+
+#include "ecs/base/check.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace limn {
+
+namespace {
+
+constexpr float kSoft = 0.4f;        ///< width of a border [cm]
+constexpr float kFacing = 0.15f;     ///< z of the normals of skin that is seen from the front
+constexpr float kFacingSoft = 0.1f;  ///< width of that border
+constexpr float kMiddle = 0.8f;      ///< |x| below which directions turn to the middle's [cm]
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+// Of the reference face [cm].
+constexpr Vec3 kCanthus = {4.459f, 3.432f, 8.603f};  ///< outer corner of the left eye
+constexpr Vec2 kFoldTop = {1.75f, -0.3f};            ///< nasolabial fold beside the left ala
+constexpr Vec2 kFoldEnd = {3.1f, -3.0f};             ///< and outside the corner of the mouth
+constexpr float kFoldReach = 0.6f;                   ///< from the fold
+constexpr Vec2 kMouth = {0, -3.4f};                  ///< center
+constexpr Vec2 kMouthRadii = {2.6f, 1.9f};           ///< of the ellipses around it, across and up
+
+enum class Across : std::uint8_t {
+    Angle,    ///< a fixed angle
+    Canthus,  ///< around the outer corner of the eye: folds radiate from it
+    Mouth,    ///< around the mouth: folds radiate from it
+    None,     ///< no direction
+};
+
+struct Rule {
+    std::string_view name;
+    Vec2 x = {-kInfinite, kInfinite};  ///< range of |x| [cm]
+    Vec2 y = {-kInfinite, kInfinite};
+    float min_z = -kInfinite;
+    bool fold = false;  ///< within kFoldReach of the nasolabial fold
+    bool front = true;  ///< only skin that is seen from the front
+    Across across = Across::Angle;
+    float degrees = 0;  ///< from lateral (0) to up (90), on the left side
+};
+
+constexpr std::array<Rule, 13> kRules = {{
+    {.name = "forehead", .x = {-kInfinite, 5}, .y = {6.8f, 10.5f}, .degrees = 83},
+    {.name = "glabella", .x = {-kInfinite, 1.4f}, .y = {4.4f, 6.8f}, .degrees = 20},
+    {.name = "nose_root", .x = {-kInfinite, 1}, .y = {2.4f, 4.4f}, .degrees = 94},
+    {.name = "nose_side", .x = {0.5f, 1.7f}, .y = {0.8f, 2.9f}, .degrees = 119},
+    {.name = "upper_lid", .x = {2, 4.5f}, .y = {4.3f, 5.2f}, .degrees = 90},
+    {.name = "lower_lid", .x = {2, 4.4f}, .y = {1.4f, 2.8f}, .degrees = 88},
+    {.name = "crows_feet",
+     .x = {4.6f, 6.4f},
+     .y = {2, 4.8f},
+     .front = false,
+     .across = Across::Canthus},
+    {.name = "cheek", .x = {3, 6}, .y = {-2, 1.2f}, .degrees = 57},
+    {.name = "nasolabial", .fold = true, .degrees = 27},
+    {.name = "upper_lip",
+     .x = {-kInfinite, 2},
+     .y = {-2.3f, -1.45f},
+     .min_z = 9.5f,
+     .across = Across::Mouth},
+    {.name = "mouth_corner", .x = {2.6f, 3.8f}, .y = {-5.2f, -2.8f}, .degrees = 167},
+    {.name = "mentolabial", .x = {-kInfinite, 2}, .y = {-5.6f, -4.7f}, .across = Across::Mouth},
+    {.name = "chin", .x = {-kInfinite, 2}, .y = {-7.2f, -5.6f}, .across = Across::None},
+}};
+
+/// 0 below, 1 above `edge`, smooth over `width` around it.
+float soft_step(float edge, float width, float x) {
+    return glm::smoothstep(edge - 0.5f * width, edge + 0.5f * width, x);
+}
+
+/// 1 within `range`, 0 outside.
+float soft_range(const Vec2& range, float x) {
+    const float low = range.x == -kInfinite ? 1 : soft_step(range.x, kSoft, x);
+    const float high = range.y == kInfinite ? 1 : 1 - soft_step(range.y, kSoft, x);
+    return low * high;
+}
+
+/// [cm]
+float distance_to_fold(const Vec2& p) {
+    const Vec2 along = kFoldEnd - kFoldTop;
+    const Vec2 offset = p - kFoldTop;
+    const float t = glm::clamp(glm::dot(offset, along) / glm::dot(along, along), 0.0f, 1.0f);
+    return glm::length(offset - t * along);
+}
+
+/// `p`: on the left side.
+float weight_at(const Rule& rule, const Vec3& p, float facing) {
+    float weight = soft_range(rule.x, p.x) * soft_range(rule.y, p.y);
+    weight *= rule.min_z == -kInfinite ? 1 : soft_step(rule.min_z, kSoft, p.z);
+    weight *= rule.fold ? 1 - soft_step(kFoldReach, kSoft, distance_to_fold({p.x, p.y})) : 1;
+    weight *= rule.front ? soft_step(kFacing, kFacingSoft, facing) : 1;
+    return weight;
+}
+
+/// From lateral towards up [rad] at `p` on the left side; in the middle of the face the nearer of
+/// across and up, so that both sides meet.
+float angle_at(const Rule& rule, const Vec3& p) {
+    float angle = radians(rule.degrees);
+    if (rule.across == Across::Mouth) {
+        const Vec2 outwards = (Vec2(p.x, p.y) - kMouth) / (kMouthRadii * kMouthRadii);
+        angle = std::atan2(outwards.y, outwards.x) + 0.5f * kPi;
+        return outwards.y < 0 ? angle + kPi : angle;
+    }
+    const float middle = std::round(angle / (0.5f * kPi)) * 0.5f * kPi;
+    return glm::mix(middle, angle, glm::smoothstep(0.0f, kMiddle, p.x));
+}
+
+Vec3 across_at(const Rule& rule, const Vec3& reference, const Vec3& normal) {
+    const Vec3 left = {std::abs(reference.x), reference.y, reference.z};
+    const float side = reference.x < 0 ? -1.0f : 1.0f;
+    const Vec3 u = normalize_or(glm::cross(Vec3(0, 1, 0), normal), any_perpendicular(normal));
+    const Vec3 v = glm::cross(normal, u);
+    if (rule.across == Across::Canthus) {
+        const Vec3 outwards = (left - kCanthus) * Vec3(side, 1, 1);
+        return normalize_or(glm::cross(normal, outwards) * side, v);
+    }
+    const float angle = angle_at(rule, left);
+    return std::cos(angle) * side * u + std::sin(angle) * v;
+}
+
+constexpr std::array<std::string_view, kRules.size()> kNames = [] {
+    std::array<std::string_view, kRules.size()> names;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        names[i] = kRules[i].name;
+    }
+    return names;
+}();
+
+}  // namespace
+
+std::span<const std::string_view> face_region_names() {
+    return kNames;
+}
+
+std::vector<VertexRegion>
+make_face_regions(std::span<const Vec3> reference, std::span<const Vec3> normals) {
+    LIMN_CHECK(reference.size() == normals.size());
+    std::vector<VertexRegion> regions;
+    for (const Rule& rule : kRules) {
+        VertexRegion& region = regions.emplace_back();
+        region.name = rule.name;
+        region.weights.assign(reference.size(), 0.0f);
+        if (rule.across != Across::None) {
+            region.across.assign(reference.size(), Vec3(0));
+        }
+        for (std::size_t v = 0; v < reference.size(); ++v) {
+            const Vec3& p = reference[v];
+            const float weight =
+                is_finite(p) ? weight_at(rule, {std::abs(p.x), p.y, p.z}, normals[v].z) : 0.0f;
+            region.weights[v] = weight;
+            if (weight > 0 && rule.across != Across::None) {
+                region.across[v] = across_at(rule, p, normals[v]);
+            }
+        }
+    }
+    return regions;
+}
+
+}  // namespace limn

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/surface.h"
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace limn {
+
+// Where the skin of a face folds, as named regions with soft borders and, at each vertex, the
+// direction across the folds. Rules and directions were measured on the neutral face and the
+// expressions of ICT FaceKit (Li et al. 2020): the direction is that of most shortening in the
+// expressions that fold the region; around the outer corners of the eyes and the mouth, folds
+// radiate; the nasolabial fold is placed by anatomy.
+//
+//     forehead      raised brows          upper_lid     sneer          upper_lip     pucker
+//     glabella      frown                 lower_lid     smile, squint  mouth_corner  smile
+//     nose_root     sneer                 crows_feet    smile          mentolabial   pucker
+//     nose_side     sneer                 cheek         smile          chin          dimples
+//     nasolabial    smile
+//
+// A face of other proportions is first warped to the reference (point_warp.h).
+
+/// Names of the regions, in the order of make_face_regions.
+[[nodiscard]] std::span<const std::string_view> face_region_names();
+
+/// One region for each name, symmetric about the reference's plane x = 0. `reference`: the vertices
+/// in the space of the reference face [cm], with +x to its left, +y up and +z forward; a vertex
+/// that is not skin of the face has NaN there. `normals`: unit, of the mesh at rest, with the same
+/// axes.
+[[nodiscard]] std::vector<VertexRegion>
+make_face_regions(std::span<const Vec3> reference, std::span<const Vec3> normals);
+
+}  // namespace limn

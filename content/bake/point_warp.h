@@ -1,0 +1,31 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// A smooth map of space that takes given points to given points and bends as little as it can in
+// between: the biharmonic spline in three dimensions (Duchon 1977),
+//
+//     f(p) = a + A p + sum over i of w_i |p - c_i|,
+//
+// with weights that are orthogonal to the affine functions. Affine maps are reproduced exactly.
+
+struct PointWarp {
+    std::vector<Vec3> centers;
+    std::vector<Vec3> weights;  ///< one per center
+    Affine affine;
+};
+
+/// The warp that takes from[i] to to[i], solved in double precision in O(n^3). Fails when there are
+/// fewer than four points, two at the same place, or all in one plane.
+[[nodiscard]] Result<PointWarp>
+make_point_warp(std::span<const Vec3> from, std::span<const Vec3> to);
+
+[[nodiscard]] Vec3 warp_point(const PointWarp& warp, const Vec3& p);
+
+}  // namespace limn
