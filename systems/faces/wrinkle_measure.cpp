@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <vector>
 
 namespace limn {
 
@@ -110,17 +112,21 @@ WrinkleRest make_wrinkle_rest(
         }
     }
     std::ranges::stable_sort(corners, {}, &Corner::vertex);
+    std::vector<std::size_t> begin(positions.size() + 1, 0);  // of each vertex's corners
+    for (const Corner& corner : corners) {
+        ++begin[corner.vertex + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
 
     // Triangles of the first vertex at a position, for all that are there.
     for (const std::uint32_t vertex : welded) {
         rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
-        const auto own = std::ranges::equal_range(corners, vertex, {}, &Corner::vertex);
         float sum = 0;
-        for (const Corner& corner : own) {
-            sum += corner.at.weight;
+        for (std::size_t i = begin[vertex]; i < begin[vertex + 1]; ++i) {
+            sum += corners[i].at.weight;
         }
-        for (const Corner& corner : own) {
-            rest.around.push_back({corner.at.corner, corner.at.weight / sum});
+        for (std::size_t i = begin[vertex]; i < begin[vertex + 1]; ++i) {
+            rest.around.push_back({corners[i].at.corner, corners[i].at.weight / sum});
         }
     }
     rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));

@@ -19,7 +19,6 @@ constexpr std::uint32_t kMaxNear = 64;  // of one ball that are tested, so that 
 constexpr float kReach = 1.1f;          // of the radius: whom a push may bring together
 constexpr int kPasses = 12;             // over all pairs: as far as a push goes in a step
 constexpr float kRestSpeed = 0.2f;      // slower toward each other there is no rebound [m/s]
-constexpr float kMaxPush = 0.9f;        // of the radius, in a step
 constexpr int kCellBits = 21;           // of each axis in a key
 constexpr std::int64_t kLastCell = (std::int64_t{1} << kCellBits) - 2;
 
