@@ -2,6 +2,7 @@
 
 #include "content/app/headless.h"
 #include "content/app/stage.h"
+#include "content/load/particle_warnings.h"
 #include "ecs/base/log.h"
 #include "render/render_frame.h"
 #include "render/render_view.h"
@@ -44,6 +45,9 @@ Status run_check(const std::string& scene) {
     const std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(scene));
     for (int i = 0; i < kSteps; ++i) {
         step_stage(*stage);
+    }
+    for (const SceneWarning& warning : find_dropped_births(stage->world)) {
+        log_warn("{}", warning.text);
     }
     std::string drawn = "drew a frame";
     Result<HeadlessRenderer> headless = create_headless_renderer();

@@ -1,5 +1,6 @@
 #include "content/load/scene_warnings.h"
 
+#include "content/load/particle_warnings.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
@@ -7,12 +8,7 @@
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
-#include "ecs/components/particle_collider.h"
-#include "ecs/components/particle_mesh.h"
-#include "ecs/components/particle_surface.h"
-#include "ecs/components/particles.h"
 #include "ecs/components/path.h"
-#include "ecs/components/point_mass.h"
 #include "ecs/components/rotation_track.h"
 #include "ecs/components/script.h"
 #include "ecs/components/shadow.h"
@@ -80,17 +76,6 @@ constexpr Need kNeeds[] = {
 
 constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
 
-std::string label_of(const World& world, Entity entity) {
-    const Name* const name = world.find<Name>(entity);
-    return name != nullptr && !name->text.empty() ? fmt::format("entity \"{}\"", name->text)
-                                                  : fmt::format("entity {}", entity.index);
-}
-
-bool has_component(const World& world, Entity entity, std::string_view name) {
-    const ComponentInfo* const info = name.empty() ? nullptr : find_component(name);
-    return info != nullptr && world.has(entity, info->id);
-}
-
 /// The local +z axis in world space; scales count as uniform.
 Vec3 back_of(const World& world, Entity entity) {
     Vec3 back(0, 0, 1);
@@ -133,101 +118,6 @@ struct SceneCheck {
                 warn(entity, "path_follower has no effect without a path");
             }
         });
-    }
-
-    void check_colliders() {
-        bool any = false;
-        world.query<const ParticleCollider>().each(
-            [&](Entity entity, const ParticleCollider& collider) {
-                any = true;
-                const auto needs = [&](ColliderShape shape, std::string_view what) {
-                    if (collider.shape == shape && !has_component(world, entity, what)) {
-                        warn(entity, fmt::format("particle_collider of this shape needs {}", what));
-                    }
-                };
-                needs(ColliderShape::Mesh, "mesh_instance");
-                needs(ColliderShape::HeightField, "noise_surface");
-                needs(ColliderShape::Water, "water");
-            });
-        world.query<const ParticleCollision>().each([&](Entity entity, const ParticleCollision&) {
-            if (!any) {
-                warn(entity, "particle_collision has no effect without a particle_collider");
-            }
-        });
-    }
-
-    void check_particles() {
-        world.query<const ParticleSource>().each([&](Entity entity, const ParticleSource& source) {
-            if (source.emitter == entity) {
-                warn(entity, "particle_source names itself, so that nothing is born");
-            } else if (!has_component(world, source.emitter, "particle_emitter")) {
-                warn(entity, "particle_source has no effect without the name of an emitter");
-            }
-        });
-    }
-
-    void check_surfaces() {
-        const auto* const assets = world.find_resource<Assets>();
-        const auto has_pieces = [&](Entity entity) {
-            const auto* const mesh = world.find<ParticleMesh>(entity);
-            return mesh != nullptr && assets != nullptr && !mesh->meshes.empty()
-                   && mesh->meshes[0].index < assets->meshes.size()
-                   && !assets->meshes[mesh->meshes[0].index].pieces.empty();
-        };
-        world.query<const ParticleSurface>().each([&](Entity entity,
-                                                      const ParticleSurface& surface) {
-            const Entity owner = surface.entity.is_null() ? entity : surface.entity;
-            if (world.has<ParticleSource>(entity)) {
-                warn(entity, "particle_surface has no effect beside a particle_source");
-            } else if (
-                surface.on == BirthSurface::Mesh && !has_component(world, owner, "mesh_instance")) {
-                warn(entity, "particle_surface on a mesh needs an entity with mesh_instance");
-            } else if (
-                surface.on == BirthSurface::Path
-                && (assets == nullptr || surface.path.index >= assets->paths.size())) {
-                warn(entity, "particle_surface on a path needs a path");
-            } else if (surface.on == BirthSurface::Pieces && !has_pieces(entity)) {
-                warn(entity, "particle_surface on pieces needs a particle_mesh of \"fragments\"");
-            }
-        });
-    }
-
-    void check_gpu_particles() {
-        world.query<const ParticleEmitter>().each(
-            [&](Entity entity, const ParticleEmitter& emitter) {
-                for (const std::string_view one :
-                     {"particle_mesh", "particle_light", "particle_surface", "particle_balls",
-                      "trail"}) {
-                    if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
-                        warn(
-                            entity, fmt::format(
-                                        "{} has no effect on particles of the GPU; set "
-                                        "particle_emitter.executor "
-                                        "to cpu",
-                                        one));
-                    }
-                }
-            });
-        bool for_cpu = false;
-        world.query<const ParticleCollider>().each([&](const ParticleCollider& collider) {
-            for_cpu = for_cpu || collider.shape >= ColliderShape::Mesh;
-        });
-        world.query<const ParticleEmitter, const ParticleCollision>().each(
-            [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision&) {
-                if (for_cpu && runs_on_gpu(emitter)) {
-                    warn(
-                        entity,
-                        "particles of the GPU meet planes, spheres and boxes alone; for meshes, "
-                        "height fields and water set particle_emitter.executor to cpu");
-                }
-            });
-    }
-
-    void check_point_masses() {
-        world.query<const PointMass, const Parent>().each(
-            [&](Entity entity, const PointMass&, const Parent&) {
-                warn(entity, "point_mass has no effect on an entity that has a parent");
-            });
     }
 
     void check_cameras() {
@@ -382,15 +272,22 @@ void check_events(SceneCheck& check) {
 
 }  // namespace
 
+std::string label_of(const World& world, Entity entity) {
+    const Name* const name = world.find<Name>(entity);
+    return name != nullptr && !name->text.empty() ? fmt::format("entity \"{}\"", name->text)
+                                                  : fmt::format("entity {}", entity.index);
+}
+
+bool has_component(const World& world, Entity entity, std::string_view name) {
+    const ComponentInfo* const info = name.empty() ? nullptr : find_component(name);
+    return info != nullptr && world.has(entity, info->id);
+}
+
 std::vector<SceneWarning> find_scene_warnings(const World& world) {
     SceneCheck check{world};
     world.each_entity([&](Entity entity) { check.check_needs(entity); });
     check.check_followers();
-    check.check_particles();
-    check.check_surfaces();
-    check.check_gpu_particles();
-    check.check_colliders();
-    check.check_point_masses();
+    find_particle_warnings(world, check.warnings);
     check.check_cameras();
     check.check_caustics();
     check.check_colors<PointLight>();

@@ -3,6 +3,7 @@
 #include "ecs/entity.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -20,5 +21,10 @@ struct SceneWarning {
 /// water, a follower without a path, a second active camera ... Nothing of it is an error: a
 /// component may wait for an event that adds what it needs.
 [[nodiscard]] std::vector<SceneWarning> find_scene_warnings(const World& world);
+
+/// `entity "lamp"`, or its index.
+[[nodiscard]] std::string label_of(const World& world, Entity entity);
+/// False for a name that is empty or of no component.
+[[nodiscard]] bool has_component(const World& world, Entity entity, std::string_view name);
 
 }  // namespace limn

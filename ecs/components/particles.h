@@ -349,8 +349,9 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
-    LIMN_FIELD(size_curve, "factor on the size over the life, at most 8 keys");
-    LIMN_FIELD(colors, "color and opacity over the life, at most 8 keys; none: white");
+    LIMN_FIELD(size_curve, "factor on the size over the life, drawn at 32 even shares of it");
+    LIMN_FIELD(
+        colors, "color and opacity over the life, drawn at 32 even shares of it; none: white");
     LIMN_FIELD(
         color_function,
         "place in `colors`, 0 .. 1, by the age instead of the life; unless base and amplitude are "

@@ -8,6 +8,7 @@
 #include "ecs/components/beam.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/transform.h"
+#include "ecs/snapshot.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -135,6 +136,42 @@ TEST_CASE("explosion: each releases its children at its place, and none remains 
     CHECK(count().second == first);
     advance_stage(*stage, 12.0);
     CHECK(count().second == 0);
+}
+
+TEST_CASE("explosion: a snapshot in its middle continues with the same bits") {
+    const test::TemporaryFolder folder;
+    MadeAssets made;
+    const std::string text = fmt::format(
+        R"({{"title": "t", "include": ["explosion.effect.json"], "entities": [{},
+                {{"name": "floor", "particle_collider": {{"shape": "plane"}}}},
+                {{"name": "wall", "transform": {{"position": [2, 1, 0]}}, "particle_collider": {{"shape": "box"}}}},
+                {{"name": "pool", "transform": {{"position": [0, 0.1, 3]}}, "water": {{"size": [4, 4]}}, "water_ripples": {{}}}}],
+                "events": [{{"at": 0.5, "spawn": [{{"prefab": "explosion"}}]}}]}})",
+        kCamera);
+    const std::unique_ptr<Stage> stage = open_text(folder, text, made);
+    advance_stage(*stage, 0.9);  // its second burst of smoke is due, at 0.95 s
+    std::size_t particles = 0;
+    stage->world.query<const ParticlePool>().each(
+        [&](const ParticlePool& pool) { particles += pool.size(); });
+    CHECK(particles > 300);
+    const Result<std::vector<std::byte>> saved = save_snapshot(stage->world);
+    REQUIRE(saved.ok());
+    const auto hashes = [](Stage& of) {
+        std::vector<std::uint64_t> found;
+        for (int i = 0; i < 90; ++i) {
+            step_stage(of);
+            found.push_back(state_hash(of.world));
+        }
+        return found;
+    };
+    const std::vector<std::uint64_t> expected = hashes(*stage);
+    CHECK(expected.front() != expected.back());
+    REQUIRE(restore_snapshot(stage->world, *saved).ok());
+    CHECK(hashes(*stage) == expected);
+    // In another program there is nothing but the level and the snapshot.
+    const std::unique_ptr<Stage> other = open_text(folder, text, made);
+    REQUIRE(restore_snapshot(other->world, *saved).ok());
+    CHECK(hashes(*other) == expected);
 }
 
 }  // namespace limn

@@ -1,5 +1,6 @@
 // Births on meshes, as they are deformed, along paths, and of pieces of meshes that fly apart.
 
+#include "ecs/base/jobs.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/particle_surface.h"
@@ -317,6 +318,35 @@ TEST_CASE("particle surface: a place depends on the number of the birth alone") 
     const std::vector<Vec3> last = places(600, 60, 0.5f);  // the others are dead
     REQUIRE(last.size() == 300);
     CHECK(std::equal(last.begin(), last.end(), slow.end() - 300));
+}
+
+TEST_CASE("particle surface: threads do not change the bits of births") {
+    const int threads = thread_count();
+    std::vector<ParticlePool> expected;
+    for (const int count : {1, 2, 3, 7}) {
+        CAPTURE(count);
+        set_thread_count(count);
+        Surfaces scene;
+        const MeshId mesh = scene.add_mesh(two_rectangles());
+        for (int i = 0; i < 40; ++i) {  // more than one job has
+            const Entity on = scene.add_instance(mesh, placed({static_cast<float>(i), 1, 2}));
+            ParticleEmitter emitter = resting(50000);
+            emitter.bursts.clear();
+            emitter.rate = 6000;
+            emitter.life = 0.2f;
+            emitter.life_spread = 0.1f;
+            scene.emit(emitter, {.entity = on, .offset = 0.1f});
+        }
+        scene.run(30);
+        for (std::size_t i = 0; i < 40; ++i) {
+            REQUIRE(scene.pool(i).size() > 1000);
+            if (count == 1) {
+                expected.push_back(scene.pool(i));
+            }
+            CHECK(same_bits(scene.pool(i), expected[i]));
+        }
+    }
+    set_thread_count(threads);
 }
 
 namespace {

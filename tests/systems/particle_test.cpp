@@ -1,6 +1,9 @@
 #include "ecs/base/jobs.h"
 #include "ecs/components/particles.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
 #include "ecs/snapshot.h"
+#include "systems/transform_system.h"
 #include "tests/systems/particle_emitters.h"
 
 #include <doctest/doctest.h>
@@ -187,4 +190,55 @@ TEST_CASE("particles: a step of ten seconds moves them by a tenth of one") {
     scene.run();
     CHECK(scene.pool().size() == 10);
     CHECK(*std::max_element(scene.pool().y.begin(), scene.pool().y.end()) <= 0.1f);
+}
+
+TEST_CASE("particles: without room none is born, and a lifetime of 0 is over at once") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(6000);
+    emitter.bursts = {{.time = 0, .count = 50}};
+    emitter.capacity = 0;
+    scene.add(emitter);
+    emitter.capacity = 500;
+    emitter.life = 0;
+    scene.add(emitter);
+    scene.run(60);
+    CHECK(scene.pool(0).size() == 0);
+    CHECK(scene.pool(0).clock.born == 0);
+    CHECK(scene.pool(0).clock.dropped == 6050);
+    CHECK(scene.pool(1).size() == 0);
+    CHECK(scene.pool(1).clock.born == 6050);
+    CHECK(scene.pool(1).clock.dropped == 0);
+}
+
+TEST_CASE("particles: an emitter without a place has none, one that lost its parent goes on") {
+    Emitters scene;
+    const Entity nowhere = scene.world.create(steady(600));
+    scene.world.run(add_particle_pools);
+    const Entity parent = scene.world.create(Transform{.position = {5, 0, 0}});
+    const Entity child =
+        scene.world.create(steady(600), falling(0), Transform{.position = {1, 2, 0}});
+    REQUIRE(set_parent(scene.world, child, parent).ok());
+    const auto run = [&](int steps) {
+        for (int i = 0; i < steps; ++i) {
+            scene.world.run(add_world_transforms);
+            scene.world.run(add_particle_pools);
+            scene.world.run(update_transforms);
+            scene.run();
+        }
+    };
+    run(10);
+    CHECK(scene.world.get<const ParticlePool>(nowhere).size() == 0);
+    CHECK(scene.world.get<const ParticlePool>(child).size() == 100);
+    CHECK(scene.world.get<const ParticlePool>(child).x.back() == 6.0f);
+    scene.world.destroy(parent);
+    run(10);
+    const ParticlePool& pool = scene.world.get<const ParticlePool>(child);
+    REQUIRE(pool.size() == 200);
+    for (std::size_t i = 0; i < 200; ++i) {
+        CHECK(pool.x[i] >= 1.0f);
+        CHECK(pool.x[i] <= 6.0f);
+        if (i < 100 || i >= 110) {  // it has become a root, at its own transform, within a step
+            CHECK(pool.x[i] == (i < 100 ? 6.0f : 1.0f));
+        }
+    }
 }
