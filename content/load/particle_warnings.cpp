@@ -29,11 +29,11 @@ struct ParticleCheck {
     }
 };
 
-bool has_triangles(const World& world, Entity entity) {
+bool is_without_triangles(const World& world, Entity entity) {
     const auto* const instance = world.find<MeshInstance>(entity);
     const auto* const assets = world.find_resource<Assets>();
     return instance != nullptr && assets != nullptr && instance->mesh.index < assets->meshes.size()
-           && !assets->meshes[instance->mesh.index].indices.empty();
+           && assets->meshes[instance->mesh.index].indices.empty();
 }
 
 /// Emitters of which nothing is ever seen.
@@ -82,6 +82,9 @@ void check_flipbooks(const ParticleCheck& check) {
             return;
         }
         const ImageData& image = assets->images[look.image.index];
+        if (image.width == 0) {
+            return;  // not made yet
+        }
         if (look.columns > static_cast<std::uint32_t>(image.width)
             || look.rows > static_cast<std::uint32_t>(image.height)) {
             check.warn(
@@ -130,7 +133,7 @@ void check_surfaces(const ParticleCheck& check) {
         } else if (
             surface.on == BirthSurface::Mesh && !has_component(world, owner, "mesh_instance")) {
             check.warn(entity, "particle_surface on a mesh needs an entity with mesh_instance");
-        } else if (surface.on == BirthSurface::Mesh && !has_triangles(world, owner)) {
+        } else if (surface.on == BirthSurface::Mesh && is_without_triangles(world, owner)) {
             check.warn(entity, "particle_surface is on a mesh without triangles: nothing is born");
         } else if (
             surface.on == BirthSurface::Path
@@ -205,16 +208,13 @@ std::vector<SceneWarning> find_dropped_births(const World& world) {
     world.query<const ParticleEmitter>().each([&](Entity entity, const ParticleEmitter& emitter) {
         const auto* const pool = world.find<ParticlePool>(entity);
         const auto* const on_gpu = world.find<GpuParticles>(entity);
-        if (pool != nullptr && pool->clock.born == 0) {
-            return;  // not for want of room: another warning says why
-        }
         const std::uint64_t dropped = pool != nullptr     ? pool->clock.dropped
                                       : on_gpu != nullptr ? on_gpu->clock.dropped
                                                           : 0;
         if (dropped > 0) {
             found.push_back(
                 {fmt::format(
-                     "{}: {} births found no room; particle_emitter.capacity is {}",
+                     "{}: {} births were dropped; particle_emitter.capacity is {}",
                      label_of(world, entity), dropped, emitter.capacity),
                  entity});
         }

@@ -13,6 +13,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,9 +49,7 @@ std::string error_of(const char* emitter) {
 /// Of an emitter with these components beside it.
 Lines warnings_beside(const char* components, const char* emitter = "") {
     return warnings_of(fmt::format(
-        R"({{"images": {{"dots": {{"make": "checker", "size": 16}}}},
-             "meshes": {{"box": {{"make": "box"}}}},
-             "entities": [{{"name": "fire", "particle_look": {{}}, "particle_emitter": {{{}}}{}}}]}})",
+        R"({{"entities": [{{"name": "fire", "particle_look": {{}}, "particle_emitter": {{{}}}{}}}]}})",
         emitter, components));
 }
 
@@ -63,10 +62,10 @@ TEST_CASE("bad emitter: rates, lifetimes and capacities that are refused, with w
     };
     CHECK(has(
         error_of(R"("rate": -5)"),
-        R"(t.level.json:1:81: entity "fire": particle_emitter.rate: found the number -5, expected a number 0 .. 10000000 1/s)"));
-    CHECK(has(error_of(R"("rate": NaN)"), R"(t.level.json:1:81: found "N", expected a value)"));
+        R"(t.level.json:1:82: entity "fire": particle_emitter.rate: found the number -5, expected a number 0 .. 10000000 1/s)"));
+    CHECK(has(error_of(R"("rate": NaN)"), R"(t.level.json:1:82: found "N", expected a value)"));
     CHECK(has(error_of(R"("rate": 1e9)"), "found the number 1e9, expected a number 0 .. 10000000"));
-    CHECK(has(error_of(R"("rate": 1e999)"), "t.level.json:1:81: "));
+    CHECK(has(error_of(R"("rate": 1e999)"), "t.level.json:1:82: "));
     CHECK(has(error_of(R"("life": -1)"), "found the number -1, expected a number 0 .. 100000 s"));
     CHECK(
         has(error_of(R"("capacity": 1000000000)"),
@@ -102,18 +101,28 @@ TEST_CASE("bad emitter: a source that is itself, by itself or through others") {
 }
 
 TEST_CASE("bad emitter: a flipbook with more frames than its image has pixels") {
-    const auto of_image = [](int columns, int rows) {
-        return warnings_of(fmt::format(
-            R"({{"images": {{"dots": {{"make": "checker", "size": 16}}}},
-                 "entities": [{{"name": "fire", "particle_emitter": {{}},
-                 "particle_look": {{"image": "dots.base_color", "columns": {}, "rows": {}}}}}]}})",
-            columns, rows));
+    const auto of_image = [](std::uint32_t columns, std::uint32_t rows) {
+        World world;
+        ImageData& image = world.insert_resource(Assets{}).images.emplace_back();
+        image.width = 16;
+        image.height = 8;
+        ParticleLook look;
+        look.image = {0};
+        look.columns = columns;
+        look.rows = rows;
+        world.create(Name{"fire"}, ParticleEmitter{}, ParticleLook(look));
+        Lines lines;
+        std::vector<SceneWarning> found;
+        find_particle_warnings(world, found);
+        for (const SceneWarning& warning : found) {
+            lines.push_back(warning.text);
+        }
+        return lines;
     };
-    CHECK(of_image(16, 16).empty());
+    CHECK(of_image(16, 8).empty());
     CHECK(
         of_image(17, 4)
-        == Lines{
-            R"(entity "fire": particle_look has 17 x 4 frames in an image of 16 x 16 pixels)"});
+        == Lines{R"(entity "fire": particle_look has 17 x 4 frames in an image of 16 x 8 pixels)"});
     CHECK(of_image(4, 64).size() == 1);
 }
 
@@ -124,7 +133,9 @@ TEST_CASE("bad emitter: a mesh without triangles") {
             R"(entity "fire": particle_surface on a mesh needs an entity with mesh_instance)"});
     World world;
     world.insert_resource(Assets{}).meshes.emplace_back();
-    world.create(ParticleEmitter{}, ParticleLook{}, Transform{}, MeshInstance{}, ParticleSurface{});
+    world.create(
+        ParticleEmitter{}, ParticleLook{}, Transform{}, MeshInstance{.mesh = {0}, .material = {}},
+        ParticleSurface{});
     std::vector<SceneWarning> found;
     find_particle_warnings(world, found);
     REQUIRE(found.size() == 1);
@@ -145,7 +156,7 @@ TEST_CASE("bad emitter: births for which there was no room, with the limit to ra
     REQUIRE(found.size() == 1);
     CHECK(
         found[0].text
-        == R"(entity "smoke": 5 births found no room; particle_emitter.capacity is 78)");
+        == R"(entity "smoke": 5 births were dropped; particle_emitter.capacity is 78)");
 }
 
 }  // namespace limn

@@ -85,8 +85,6 @@ TEST_CASE("scene warnings: surfaces that are not there, or on which nothing is b
             "entity \"b\": particle_surface on a mesh needs an entity with mesh_instance",
             "entity \"c\": particle_surface on a path needs a path",
             "entity \"d\": particle_surface on pieces needs a particle_mesh of \"fragments\"",
-            "entity \"g\": particle_surface is on a mesh without triangles: nothing is born",
-            "entity \"e\": particle_surface is on a mesh without triangles: nothing is born",
             "entity \"f\": particle_surface has no effect beside a particle_source",
             "entity \"e\": particle_surface has no effect on particles of the GPU; set "
             "particle_emitter.executor to cpu"});
