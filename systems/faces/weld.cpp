@@ -1,4 +1,4 @@
-#include "ecs/base/weld.h"
+#include "systems/faces/weld.h"
 
 #include <algorithm>
 #include <array>
