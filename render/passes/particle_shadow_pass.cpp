@@ -22,9 +22,9 @@ constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kMapsUnit = 30;
 constexpr unsigned kRecordUnit = 31;
-constexpr int kSide = 128;             // of the maps [texels]
-constexpr int kLayers = 3;             // two of coefficients, one of tints
-constexpr float kLeastExtent = 1e-3f;  // of what the maps cover [m]
+constexpr int kSide = 128;           // of the maps [texels]
+constexpr int kLayers = 3;           // two of coefficients, one of tints
+constexpr float kMinExtent = 1e-3f;  // of what the maps cover [m]
 constexpr float kBorder =
     2.0f / kSide;  // that stays empty, so that nothing is smeared beyond the map
 constexpr unsigned kRangesBinding = 0;
@@ -43,7 +43,7 @@ void grow(ShadowRange& range, float middle, float radius) {
     range.high = std::max(range.high, middle + radius);
 }
 float extent(const ShadowRange& range) {
-    return std::max(range.high - range.low, kLeastExtent);
+    return std::max(range.high - range.low, kMinExtent);
 }
 
 /// Row of an affine map: 0 at `range.low` along `axis`, 1 at its end.
@@ -249,7 +249,7 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
         device.storage_barrier();
         begin(*write_record);
         write_record->set("border", kBorder);
-        write_record->set("min_extent", kLeastExtent);
+        write_record->set("min_extent", kMinExtent);
         record.bind(device, kRecordUnit);
         device.bind_storage(kRecordBinding, fitted_record);
         device.dispatch(1);

@@ -21,7 +21,7 @@ vec3 position_of(uint vertex) {
     return vec3(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
 }
 
-// Square of the length across wrinkles by that at rest; 1 without a triangle, or where it is no number.
+// Square of the length across wrinkles by that at rest; 1 without a triangle, or where it is NaN or infinite.
 float compression(int triangle, int end, uint vertex, uint first) {
     vec3 at = position_of(vertex);
     float ratio = triangle == end ? 1.0 : 0.0;

@@ -308,7 +308,7 @@ TEST_CASE("point mass: it bounces by the share of its speed, ends by a hit, or s
     }
 }
 
-TEST_CASE("point mass: without mass, or with what is no number, it stays and stops") {
+TEST_CASE("point mass: without mass, or with NaN, it stays and stops") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInf = std::numeric_limits<float>::infinity();
     Bodies scene;

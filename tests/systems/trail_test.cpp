@@ -147,7 +147,7 @@ TEST_CASE("trail: what stands still leaves none, and what stops loses its own in
     CHECK(flight.state().strands.empty());
 }
 
-TEST_CASE("trail: a jump, a teleport and what is no number break it") {
+TEST_CASE("trail: a jump, a teleport and NaN break it") {
     const Trail trail = {.spacing = 0.1f, .length = 50, .life = 100, .jump = 2};
     Flight flight(trail, Vec3(0), 1.0f / 60);
     flight.fly([](float time) { return Vec3(5 * time, 0, 0); }, 1);

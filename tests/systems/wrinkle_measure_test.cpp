@@ -182,8 +182,7 @@ TEST_CASE("wrinkle measure: directions have no sign, lie in the plane and are un
     }
 }
 
-TEST_CASE(
-    "wrinkle measure: triangles without area or direction, and what is no number, count as 1") {
+TEST_CASE("wrinkle measure: triangles without area or direction, and NaN positions, count as 1") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Positions shrunk = mapped(kSkew, [](Vec3 p) { return 0.5f * p; });
     CHECK(ratio_of(rest_of(kSkew, {0, 0, 1}), shrunk) == 1);
