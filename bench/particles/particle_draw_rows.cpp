@@ -310,11 +310,14 @@ void add_fill_rows(ParticleBench& bench, gpu::Device& device, Renderer& renderer
     look.softness = 0.3f;
     add("19", "soft sprite", look, 1.4);
     look = engine.look();
+    look.sort = ParticleSort::Weighted;
+    add("19", "weighted sprite", look, 1.1);
+    look = engine.look();
     look.columns = look.rows = 2;
     look.frame_rate = 3;
     look.motion = {1};
     add("19", "flipbook with motion map", look, 2.4);
-    bench.note("19: there are no six-way lit and no weighted blended particles");
+    bench.note("19: there are no six-way lit particles");
 }
 
 /// Particles of 2 px.

@@ -281,6 +281,7 @@ enum class ParticleSort : std::uint8_t {
     Distance,   ///< from back to front, among those of all emitters
     Amortized,  ///< on the GPU by four passes a frame; on the CPU as Distance
     Births,     ///< oldest first, the emitter as a whole among the others
+    Weighted,   ///< in none: mixed, the nearer the heavier, as one layer before all others
 };
 
 /// Which frames of its flipbook a particle shows.
@@ -385,8 +386,9 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(
         sort,
         .doc = "which covers which: the nearer one; likewise by four passes of a sort a frame, on "
-               "the GPU; the younger one",
-        .values = "distance amortized births");
+               "the GPU; the younger one; weighted: all are mixed without a sort, the nearer the "
+               "heavier, at full resolution and in front of those that are sorted",
+        .values = "distance amortized births weighted");
     LIMN_FIELD(stretch, "length of a streak: the way of so much time; facing velocity", "s", 0, 10);
     LIMN_FIELD(
         camera_streak, "share of the camera's own velocity that streaks show; facing velocity", "",

@@ -102,12 +102,17 @@ void set_depth(const DepthState& depth) {
     glDepthFunc(depth.func);
 }
 
-void set_blend(const BlendState& blend) {
+void set_blend(const BlendState& blend, const BlendState& second) {
     enable(GL_BLEND, blend.enabled);
     if (blend.enabled) {
         glBlendFuncSeparate(
             blend.source, blend.destination, blend.source_alpha, blend.destination_alpha);
         glBlendEquation(blend.equation);
+    }
+    if (second.enabled) {
+        glBlendFuncSeparatei(
+            1, second.source, second.destination, second.source_alpha, second.destination_alpha);
+        glBlendEquationi(1, second.equation);
     }
 }
 
@@ -136,8 +141,8 @@ void Device::apply(const PipelineState& state) {
     if (all || state.depth != state_.depth) {
         set_depth(state.depth);
     }
-    if (all || state.blend != state_.blend) {
-        set_blend(state.blend);
+    if (all || state.blend != state_.blend || state.second_blend != state_.second_blend) {
+        set_blend(state.blend, state.second_blend);
     }
     if (all || state.stencil != state_.stencil) {
         set_stencil(state.stencil);

@@ -35,6 +35,9 @@ inline constexpr BlendState kBlendPremultiplied = {
 inline constexpr BlendState kBlendAlpha = {
     true, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA};
 inline constexpr BlendState kBlendAdd = {true, GL_ONE, GL_ONE, GL_ONE, GL_ONE};
+/// result = (1 - source) destination
+inline constexpr BlendState kBlendTransmit = {
+    true, GL_ZERO, GL_ONE_MINUS_SRC_COLOR, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA};
 inline constexpr BlendState kBlendMultiply = {true, GL_DST_COLOR, GL_ZERO, GL_DST_ALPHA, GL_ZERO};
 
 struct StencilFace {
@@ -60,6 +63,7 @@ struct StencilState {
 struct PipelineState {
     DepthState depth = {};
     BlendState blend = {};
+    BlendState second_blend = {};  ///< of color target 1; as `blend` unless enabled
     StencilState stencil = {};
     GLenum cull = GL_BACK;  ///< GL_NONE, GL_FRONT, GL_BACK; counterclockwise is the front
     std::uint8_t color_mask = 0b1111;  ///< bit 0 red .. bit 3 alpha

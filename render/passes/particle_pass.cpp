@@ -11,6 +11,7 @@
 #include "render/gpu/device.h"
 #include "render/lighting.h"
 #include "render/material_pool.h"
+#include "render/particle_weighted.h"
 #include "render/view_block.h"
 
 #include <glm/common.hpp>
@@ -68,6 +69,14 @@ Bounds shape_bounds(const ParticleEmitter& emitter, const Affine& world) {
     return transform_bounds(world, {-half, half});
 }
 
+/// Where its particles get at their first speed.
+Bounds bounds_of_ways(const ParticleEmitter& emitter, const Affine& world) {
+    const float speed = std::abs(emitter.speed) + emitter.speed_spread;
+    const float way = speed * (emitter.life + emitter.life_spread);
+    const Bounds shape = shape_bounds(emitter, world);
+    return {shape.min - way, shape.max + way};
+}
+
 Bounds bounds_of(std::span<const ParticleInstance> instances) {
     Bounds bounds;
     for (const ParticleInstance& instance : instances) {
@@ -93,9 +102,17 @@ bool is_group_in_view(const LookExtent& extent, const Frustum& frustum) {
            || may_be_in_view(frustum, center(group), half_extent(group), extent.radius);
 }
 
+/// What only adds light needs no weights.
+LookLayer layer_of(const ParticleLook& look) {
+    return look.sort == ParticleSort::Weighted && look.cover > 0 ? LookLayer::Weighted
+           : look.resolution == ParticleResolution::Half         ? LookLayer::Half
+                                                                 : LookLayer::Full;
+}
+
 /// Passes of a sort on the GPU a frame, 0: all; none for particles that need no order.
 std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
-    if (look.sort == ParticleSort::Births || look.cover <= 0) {
+    if (look.sort == ParticleSort::Births || look.sort == ParticleSort::Weighted
+        || look.cover <= 0) {
         return std::nullopt;
     }
     return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
@@ -186,7 +203,7 @@ Vec3 entity_velocity(const World& world, Entity entity, float step) {
 }
 
 void order_by_distance(
-    const std::vector<ParticleInstance>& instances, std::span<const std::optional<Vec3>> places,
+    std::span<const ParticleInstance> instances, std::span<const std::optional<Vec3>> places,
     const Vec3& eye, const Vec3& forward, DistanceOrder& order) {
     order.keys.resize(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
@@ -230,8 +247,9 @@ std::uint32_t ParticleEffect::add_look(
     arrays.push_back({.images = image.array, .motions = has_motion ? motion.array : 0});
     places.push_back(place);
     extents.push_back(make_look_extent(look));
-    halves.push_back(look.resolution == ParticleResolution::Half ? 1 : 0);
-    has_halves = has_halves || halves.back() != 0;
+    layers.push_back(layer_of(look));
+    has_halves = has_halves || layers.back() == LookLayer::Half;
+    has_weighted = has_weighted || layers.back() == LookLayer::Weighted;
     lit = lit || look.lit > 0;
     features.images = features.images || has_image;
     features.flipbooks = features.flipbooks || look.columns > 1 || look.rows > 1;
@@ -304,7 +322,7 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
         }
         looks.pop_back();
         arrays.pop_back();
-        halves.pop_back();
+        layers.pop_back();
         places.pop_back();
         extents.pop_back();
         return index - 1;
@@ -355,14 +373,15 @@ void ParticleEffect::collect(FrameData& frame) {
     looks.clear();
     arrays.clear();
     places.clear();
-    halves.clear();
+    layers.clear();
     instances.clear();
+    weighted.clear();
     ribbons.clear();
     billboards.quads.clear();
     billboards.places.clear();
     extents.clear();
     features = {};
-    lit = soft = moving = has_ribbons = has_billboards = has_halves = false;
+    lit = soft = moving = has_ribbons = has_billboards = has_halves = has_weighted = false;
     const float alpha = frame.camera.alpha;
     const auto shape_in_world = [&](Entity entity) {
         const auto* const emitter = world.find<ParticleEmitter>(entity);
@@ -379,13 +398,13 @@ void ParticleEffect::collect(FrameData& frame) {
                 if (look.sort == ParticleSort::Births) {
                     place = place_of(world, entity, alpha);
                 }
-                const std::size_t first = instances.size();
                 const std::uint32_t index = add_look(frame, look, place);
+                auto& its = layers[index] == LookLayer::Weighted ? weighted : instances;
+                const std::size_t first = its.size();
                 add_pull(world, entity, index);
-                append_particles(
-                    particles, index, back, instances, look.camera_streak * eye_velocity);
+                append_particles(particles, index, back, its, look.camera_streak * eye_velocity);
                 if (look.culling == ParticleCulling::Bounds) {
-                    extents[index].group = bounds_of(std::span(instances).subspan(first));
+                    extents[index].group = bounds_of(std::span(its).subspan(first));
                 } else if (look.culling == ParticleCulling::Emitter) {
                     extents[index].group = shape_in_world(entity);
                 }
@@ -404,6 +423,10 @@ void ParticleEffect::collect(FrameData& frame) {
                 gpu.add(frame, entity, emitter, particles, index, sort_passes(look), collision);
                 if (look.culling == ParticleCulling::Emitter) {
                     extents[index].group = shape_in_world(entity);
+                }
+                const std::optional<Affine> pose = pose_of(world, entity, alpha);
+                if (layers[index] == LookLayer::Weighted && pose) {
+                    extents[index].ways = bounds_of_ways(emitter, *pose);
                 }
             }
         });
@@ -425,6 +448,8 @@ void ParticleEffect::collect(FrameData& frame) {
     for (const std::uint32_t i : order.indices) {
         sorted.push_back(instances[i]);
     }
+    sorted.insert(sorted.end(), weighted.begin(), weighted.end());
+    instances.insert(instances.end(), weighted.begin(), weighted.end());
     auto& sprites = frame.data.publish<ParticleSprites>();
     sprites.instances = instances;
     sprites.gpu = &gpu;
@@ -443,6 +468,7 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     seen.instances.clear();
     seen.runs.clear();
     seen.half_bounds = {};
+    seen.weighted_bounds = {};
     seen.half_begin = 0;
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     cull_particles(sorted, extents, frustum, visible);
@@ -452,15 +478,22 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     std::size_t middle = 0;
     if (has_halves) {
         middle = middle_half();
-        append_runs(false, 0, middle, seen);
+        append_runs(LookLayer::Full, 0, middle, seen);
         seen.half_begin = seen.runs.size();
-        append_runs(true, 0, sorted.size(), seen);
+        append_runs(LookLayer::Half, 0, sorted.size(), seen);
         for (const auto& [entity, pool] : gpu.pools()) {
-            grow(seen.half_bounds, halves[pool->look] != 0 ? kAnywhere : Bounds{});
+            grow(seen.half_bounds, layers[pool->look] == LookLayer::Half ? kAnywhere : Bounds{});
         }
     }
     seen.half_end = seen.runs.size();
-    append_runs(false, middle, sorted.size(), seen);
+    append_runs(LookLayer::Full, middle, sorted.size(), seen);
+    seen.weighted_begin = seen.runs.size();
+    append_runs(LookLayer::Weighted, sorted.size() - weighted.size(), sorted.size(), seen);
+    for (const auto& [entity, pool] : gpu.pools()) {
+        grow(
+            seen.weighted_bounds,
+            layers[pool->look] == LookLayer::Weighted ? extents[pool->look].ways : Bounds{});
+    }
     seen.texels.upload(*frame.ring, seen.instances);
     return !seen.runs.empty() || !gpu.pools().empty();
 }
@@ -469,7 +502,7 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
 /// order; 0 without one.
 std::size_t ParticleEffect::middle_half() const {
     const auto is_seen_half = [&](std::size_t i) {
-        return visible[i] != 0 && halves[sorted[i].look_and_share >> 16] != 0;
+        return visible[i] != 0 && layers[sorted[i].look_and_share >> 16] == LookLayer::Half;
     };
     std::size_t count = 0;
     for (std::size_t i = 0; i < sorted.size(); ++i) {
@@ -492,13 +525,13 @@ bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
            && (is_still || run.arrays.motions == arrays[look].motions);
 }
 
-/// Those of this resolution in [first, last) that are visible, from back to front.
+/// Those of this layer in [first, last) that are visible, from back to front.
 void ParticleEffect::append_runs(
-    bool half, std::size_t first, std::size_t last, ViewParticles& seen) {
+    LookLayer layer, std::size_t first, std::size_t last, ViewParticles& seen) {
     const std::size_t first_run = seen.runs.size();
     for (std::size_t i = first; i < last; ++i) {
         const std::uint32_t look = sorted[i].look_and_share >> 16;
-        if (visible[i] == 0 || (halves[look] != 0) != half) {
+        if (visible[i] == 0 || layers[look] != layer) {
             continue;
         }
         if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
@@ -509,8 +542,10 @@ void ParticleEffect::append_runs(
         }
         ++seen.runs.back().count;
         seen.instances.push_back(sorted[i]);
-        if (half) {
+        if (layer == LookLayer::Half) {
             grow(seen.half_bounds, bounds_of(sorted[i], looks[look]));
+        } else if (layer == LookLayer::Weighted) {
+            grow(seen.weighted_bounds, {sorted[i].position, sorted[i].position});
         }
     }
 }
@@ -529,33 +564,33 @@ void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) 
 
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
     const auto& seen = view.data.get<ViewParticles>();
-    const auto add_pass = [&](const char* name, TextureId depth, const Use& target, Part part) {
+    const auto add_pass = [&](const char* name, TextureId depth, std::initializer_list<Use> targets,
+                              Part part) {
         std::vector<Use> reads =
             lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
         add_pool_reads(graph, reads);
-        const Use writes[] = {target};
-        graph.add_pass(name, std::span(reads), writes, [this, part, &view](PassContext& context) {
-            draw_sprites(context, view, part);
-        });
+        graph.add_pass(
+            name, std::span(reads), std::span(targets.begin(), targets.size()),
+            [this, part, &view](PassContext& context) { draw_sprites(context, view, part); });
     };
-    if (has_halves && !layer_programs) {
-        Result<ParticleLayerPrograms> made = create_particle_layer_programs(*frame.device);
-        if (made) {
-            layer_programs = *made;
-        } else {
-            log_error("{}", made.error().message);
-        }
-    }
+    create_layer_programs(*frame.device);
     if (seen.half_begin > 0) {
-        add_pass("particles.behind", view.gbuffer.depth, view.radiance, Part::Behind);
+        add_pass("particles.behind", view.gbuffer.depth, {view.radiance}, Part::Behind);
     }
     if (has_halves && layer_programs && !is_empty(seen.half_bounds)) {
         const ParticleLayer layer =
             begin_particle_layer(graph, *layer_programs, view, seen.half_bounds);
-        add_pass("particles.half", layer.depth, cleared(layer.radiance), Part::Half);
+        add_pass("particles.half", layer.depth, {cleared(layer.radiance)}, Part::Half);
         end_particle_layer(graph, *layer_programs, layer, view);
     }
-    add_pass("particles", view.gbuffer.depth, view.radiance, Part::Front);
+    add_pass("particles", view.gbuffer.depth, {view.radiance}, Part::Front);
+    if (has_weighted && resolve != nullptr && !is_empty(seen.weighted_bounds)) {
+        const WeightedLayers mixed = create_weighted_layers(graph, view);
+        add_pass(
+            "particles.weighted", view.gbuffer.depth,
+            {cleared(mixed.sum), cleared(mixed.kept, Vec4(1))}, Part::Weighted);
+        resolve_weighted(graph, *resolve, mixed, view);
+    }
     if (view.velocity && moving) {
         std::vector<Use> reads = {
             depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)};
@@ -567,6 +602,22 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
     }
     if (view.is(kMainViews) && gpu.meets_depth()) {
         remember_depth(graph, *depth_copy, view, seen_depth);
+    }
+}
+
+void ParticleEffect::create_layer_programs(gpu::Device& device) {
+    const auto assign = [](auto made, auto& target) {
+        if (made) {
+            target = *made;
+        } else {
+            log_error("{}", made.error().message);
+        }
+    };
+    if (has_halves && !layer_programs) {
+        assign(create_particle_layer_programs(device), layer_programs);
+    }
+    if (has_weighted && resolve == nullptr) {
+        assign(load_fullscreen(device, "particle_weighted.frag"), resolve);
     }
 }
 
@@ -606,21 +657,28 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
 /// What the GPU moves at full resolution is in front.
 void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Part part) {
     const bool clipped = is_clipped(view);
+    const bool is_weighted = part == Part::Weighted;
     Variant variant = view.lighting.variant;
     variant.add_if(lit, "LIT");
+    variant.add_if(is_weighted, "WEIGHTED");
     variant.add(sprite_variant(view));
     const gpu::Program* const program = programs.get(variant);
     if (program == nullptr) {
         return;
     }
     gpu::Device& device = context.device();
-    device.use(gpu::Pipeline{
-        program,
-        {.depth = {.write = false},
-         .blend = gpu::kBlendPremultiplied,
-         .cull = GL_NONE,
-         .clip = clipped}});
+    gpu::PipelineState state = kWeightedState;
+    if (!is_weighted) {
+        state.blend = gpu::kBlendPremultiplied;
+        state.second_blend = {};
+    }
+    state.clip = clipped;
+    device.use(gpu::Pipeline{program, state});
     bind_lighting(context, view);
+    if (is_weighted) {
+        const auto& seen = view.data.get<ViewParticles>();
+        program->set("weight_range", weight_range(seen.weighted_bounds, view.camera));
+    }
     draw_runs(context, view, *program, part);
 }
 
@@ -642,11 +700,12 @@ void ParticleEffect::draw_runs(
         }
     };
     const std::span<const ParticleRun> all(seen.runs);
-    const auto runs = part == Part::Behind ? all.first(seen.half_begin)
-                      : part == Part::Half
-                          ? all.subspan(seen.half_begin, seen.half_end - seen.half_begin)
-                      : part == Part::Front ? all.subspan(seen.half_end)
-                                            : all;
+    const auto runs =
+        part == Part::Behind     ? all.first(seen.half_begin)
+        : part == Part::Half     ? all.subspan(seen.half_begin, seen.half_end - seen.half_begin)
+        : part == Part::Front    ? all.subspan(seen.half_end, seen.weighted_begin - seen.half_end)
+        : part == Part::Weighted ? all.subspan(seen.weighted_begin)
+                                 : all;
     for (const ParticleRun& run : runs) {
         program.set("first", run.first);
         bind_images(run.arrays);
@@ -656,7 +715,10 @@ void ParticleEffect::draw_runs(
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     for (const auto& [entity, pool] : gpu.pools()) {
         const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
-        const Part its = halves[pool->look] != 0 ? Part::Half : Part::Front;
+        const LookLayer layer = layers[pool->look];
+        const Part its = layer == LookLayer::Half       ? Part::Half
+                         : layer == LookLayer::Weighted ? Part::Weighted
+                                                        : Part::Front;
         if (count > 0 && (its == part || part == Part::All)
             && is_group_in_view(extents[pool->look], frustum)) {
             bind_images(arrays[pool->look]);

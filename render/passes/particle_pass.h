@@ -27,13 +27,15 @@ namespace limn {
 //          ParticleLook
 // Writes   radiance; velocity, where they cover more than their look states
 // Order    after blended surfaces, before the lens
-// Shaders  particle.vert, particle.frag, particle_velocity.frag; layout in particle_gpu.h
+// Shaders  particle.vert, particle.frag, particle_velocity.frag, particle_weighted.frag; layout in
+// particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
 // format. Sorted by distance of their centers; blended surfaces are all behind. Looks of half the
 // resolution are sorted among themselves, in a layer (particle_layer.h) behind all others. Each
 // view leaves out what it does not see; of particles on the GPU, emitters whose shape alone counts.
+// Looks that are weighted instead of sorted (particle_weighted.h) are one layer before all others.
 
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
@@ -53,7 +55,7 @@ struct DistanceOrder {
 /// (particle.distance-sort). `places`: of each look, where all of its particles count as being, if
 /// they are one thing (ParticleSort::Births).
 void order_by_distance(
-    const std::vector<ParticleInstance>& instances, std::span<const std::optional<Vec3>> places,
+    std::span<const ParticleInstance> instances, std::span<const std::optional<Vec3>> places,
     const Vec3& eye, const Vec3& forward, DistanceOrder& order);
 
 /// What is known of the particles of a look before they are drawn (particle.visibility).
@@ -62,6 +64,7 @@ struct LookExtent {
     float radius = INFINITY;  ///< about a particle's middle, beside what its speed adds [m]
     float stretch = 0;        ///< half the time whose way a streak is as long as [s]
     Bounds group{};           ///< of all of them, unless each counts by itself
+    Bounds ways{};            ///< of weighted ones that the GPU moves: where they are, roughly
 };
 
 /// Without a group; pixels and ribbons have no extent in meters and are always drawn.
@@ -72,9 +75,13 @@ void cull_particles(
     const std::vector<ParticleInstance>& instances, const std::vector<LookExtent>& extents,
     const Frustum& frustum, std::vector<std::uint8_t>& visible);
 
+/// What the particles of a look are drawn into.
+enum class LookLayer : std::uint8_t { Full, Half, Weighted };
+
 struct ParticleEffect {
-    /// What is drawn at half the resolution, and what the middle one of it hides or is hidden by.
-    enum class Part { Behind, Half, Front, All };
+    /// What is drawn at half the resolution, and what the middle one of it hides or is hidden by;
+    /// what is weighted.
+    enum class Part { Behind, Half, Front, Weighted, All };
 
     /// What a view draws.
     struct ViewParticles {
@@ -83,7 +90,9 @@ struct ParticleEffect {
         std::size_t half_begin =
             0;  ///< of the runs at half the resolution; those before are behind
         std::size_t half_end = 0;
-        Bounds half_bounds{};  ///< of those
+        Bounds half_bounds{};            ///< of those
+        std::size_t weighted_begin = 0;  ///< of the runs that are weighted, to the end
+        Bounds weighted_bounds{};        ///< of those
         BufferTexture texels = BufferTexture("particles in view", GL_RGBA32UI);
     };
 
@@ -91,11 +100,12 @@ struct ParticleEffect {
     ProgramVariants velocity_programs;
     std::vector<LookRecord> looks = {};
     std::vector<ParticleArrays> arrays = {};  ///< of each look
-    std::vector<char> halves = {};            ///< of each look: drawn at half the resolution
+    std::vector<LookLayer> layers = {};       ///< of each look
     RibbonList ribbons = {};
     BillboardList billboards = {};
-    std::vector<LookExtent> extents = {};  ///< of each look
-    std::vector<ParticleInstance> instances = {};
+    std::vector<LookExtent> extents = {};          ///< of each look
+    std::vector<ParticleInstance> instances = {};  ///< first those that are sorted
+    std::vector<ParticleInstance> weighted = {};   ///< appended to those
     std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
     DistanceOrder order = {};
     std::vector<ParticleInstance> sorted = {};
@@ -109,7 +119,9 @@ struct ParticleEffect {
     bool has_ribbons = false;
     bool has_billboards = false;
     bool has_halves = false;
+    bool has_weighted = false;
     std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
+    const gpu::Program* resolve = nullptr;  ///< of weighted ones, created with the first
     const gpu::Program* depth_copy = nullptr;
     gpu::Sampler image_sampler = {};
     DepthMemory seen_depth = {};  ///< while some on the GPU meet what the camera sees
@@ -132,7 +144,8 @@ struct ParticleEffect {
     void collect_billboards(const FrameData& frame, float back);
     [[nodiscard]] std::size_t middle_half() const;
     [[nodiscard]] bool fits(const ParticleRun& run, std::uint32_t look) const;
-    void append_runs(bool half, std::size_t first, std::size_t last, ViewParticles& seen);
+    void append_runs(LookLayer layer, std::size_t first, std::size_t last, ViewParticles& seen);
+    void create_layer_programs(gpu::Device& device);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
     [[nodiscard]] Variant sprite_variant(const ViewData& view) const;
     void draw_sprites(PassContext& context, const ViewData& view, Part part);

@@ -1,5 +1,6 @@
 // A particle: an image or a soft disc. Definitions: those of lib/sprite.glsl, and
 //   SOFT  some fade where they meet a surface
+//   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
 #version 450
 #include "lib/radiance.glsl"
 #include "lib/sprite.glsl"
@@ -17,6 +18,17 @@ layout(location = 4) flat in vec4 next_frame;
 layout(location = 5) in float distance_ahead;
 
 layout(location = 0) out vec4 radiance;
+#ifdef WEIGHTED
+layout(location = 1) out float opacity;
+
+uniform vec2 weight_range;  // nearest distance ahead [m], 1 / (farthest - nearest)
+
+const float kWeightFall = 8.0;  // optical depth of the cloud that the weights suit
+
+float weight_at(float ahead) {
+    return exp(-kWeightFall * clamp((ahead - weight_range.x) * weight_range.y, 0.0, 1.0));
+}
+#endif
 
 void main() {
     vec2 place = vec2(corner.x, corner.y / max(corner.z, 1e-6));
@@ -29,4 +41,8 @@ void main() {
 #endif
     float weight = s.a * fade;
     radiance = vec4(storable(light.rgb * s.rgb * weight), light.a * weight * blend.x);
+#ifdef WEIGHTED
+    opacity = radiance.a;
+    radiance *= weight_at(distance_ahead);
+#endif
 }

@@ -1,0 +1,15 @@
+// The weighted mean of all layers of particles, over what is behind them (render/particle_weighted.h).
+#version 450
+#include "lib/radiance.glsl"
+
+layout(binding = 0) uniform sampler2D sum;
+layout(binding = 1) uniform sampler2D kept;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 layers = texelFetch(sum, at, 0);
+    float covered = 1.0 - texelFetch(kept, at, 0).r;
+    radiance = vec4(storable(layers.rgb * (covered / max(layers.a, 1e-20))), covered);
+}
