@@ -22,14 +22,14 @@ Vec4 shadow_texel(const ParticleLook& look) {
 
 }  // namespace
 
-LookRecord make_look_record(const ParticleLook& look, int layer, int motion_layer) {
+LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers) {
     LookRecord record{};
     record[0] = {look.size, look.size_spread, look.turn_spread, look.spin};
     record[1] = {look.spin_spread, look.stretch, look.softness, look.forward};
     record[2] = {look.emission, look.lit, look.cover, static_cast<float>(look.facing)};
     record[3] = {
         static_cast<float>(std::max(look.columns, 1u)), static_cast<float>(std::max(look.rows, 1u)),
-        look.frame_rate, static_cast<float>(layer)};
+        look.frame_rate, static_cast<float>(layers.image)};
     record[layout::kLookMore] = {
         static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
     record[layout::kLookMore + 1] = {look.attenuation, look.fade};
@@ -41,8 +41,9 @@ LookRecord make_look_record(const ParticleLook& look, int layer, int motion_laye
     // A streak is blurred already.
     const bool is_streak = look.facing == ParticleFacing::Velocity && look.stretch != 0;
     record[layout::kLookMotion] = {
-        static_cast<float>(motion_layer), look.motion_strength,
-        is_streak ? 1.0f : to_share(look.velocity_cover), 0};
+        static_cast<float>(layers.motion), look.motion_strength,
+        is_streak ? 1.0f : to_share(look.velocity_cover),
+        static_cast<float>(layers.negative_light)};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =

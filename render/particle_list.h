@@ -21,10 +21,13 @@ static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
 /// The record of a look in particle_gpu.h.
 using LookRecord = std::array<Vec4, layout::kLookTexels>;
 
-/// `layer`: of the texture array that its image is in; -1: a soft disc. `motion_layer`: likewise of
-/// its motion map; -1: none.
-[[nodiscard]] LookRecord
-make_look_record(const ParticleLook& look, int layer, int motion_layer = -1);
+/// Of the texture arrays that the images of a look are in; -1: none.
+struct LookLayers {
+    int image = -1;  ///< a soft disc without
+    int motion = -1;
+    int negative_light = -1;
+};
+[[nodiscard]] LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers);
 
 /// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
 [[nodiscard]] bool moves_pixels(const LookRecord& look);
@@ -39,10 +42,11 @@ void append_particles(
 /// streak.
 [[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
 
-/// Where the image of a look and its motion map are, in ImagePool; 0: it has none.
+/// Where the images of a look are, in ImagePool; 0: it has none.
 struct ParticleArrays {
     std::uint32_t images = 0;
     std::uint32_t motions = 0;
+    std::uint32_t negative_lights = 0;
 
     bool operator==(const ParticleArrays&) const = default;
 };
@@ -52,6 +56,7 @@ struct SpriteFeatures {
     bool images = false;
     bool flipbooks = false;  ///< of several frames
     bool motions = false;    ///< with a motion map
+    bool six_way = false;    ///< with images of the light from six sides
 
     void add_to(Variant& variant) const {
         variant.add_if(images, "IMAGES");

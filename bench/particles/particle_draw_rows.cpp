@@ -317,7 +317,10 @@ void add_fill_rows(ParticleBench& bench, gpu::Device& device, Renderer& renderer
     look.frame_rate = 3;
     look.motion = {1};
     add("19", "flipbook with motion map", look, 2.4);
-    bench.note("19: there are no six-way lit particles");
+    look = engine.look();
+    look.lit = 1;
+    look.negative_light = {0};
+    add("19", "six-way lit sprite, no lights", look, 1.5);
 }
 
 /// Particles of 2 px.

@@ -37,10 +37,34 @@ constexpr LevelKey kLevelKeys[] = {
     {"bindings", JsonKind::Object},  {"shows", JsonKind::Array},
     {"$schema", JsonKind::String},  // for editors
 };
-constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm", ".motion"};
+struct PatternMap {
+    const char* suffix;  ///< of its name
+    ImageData PatternMaps::*image;
+};
+constexpr PatternMap kPatternMaps[] = {
+    {".base_color", &PatternMaps::base_color},
+    {".normal", &PatternMaps::normal},
+    {".orm", &PatternMaps::orm},
+    {".motion", &PatternMaps::motion},
+};
+constexpr PatternMap kPuffMaps[] = {
+    kPatternMaps[0],
+    kPatternMaps[1],
+    kPatternMaps[2],
+    {".positive_light", &PatternMaps::positive_light},
+    {".negative_light", &PatternMaps::negative_light},
+};
 
-std::span<const char* const> pattern_maps(const PatternKind& kind) {
-    return std::span(kPatternMaps).first(kind.has_motion ? 4 : 3);
+std::span<const PatternMap> pattern_maps(const PatternKind& kind) {
+    switch (kind.maps) {
+    case PatternKindMaps::Motion:
+        return kPatternMaps;
+    case PatternKindMaps::Light:
+        return kPuffMaps;
+    case PatternKindMaps::Surface:
+        break;
+    }
+    return std::span(kPatternMaps).first(3);
 }
 
 using Names = std::unordered_map<std::string, std::uint32_t>;
@@ -238,8 +262,8 @@ class LevelParser {
             image.parameters = LIMN_TRY(
                 read_component(without(json, {"make"}), *image.pattern->parameters, at, {}));
             patterns_[member.key] = image.index;
-            for (const char* const map : pattern_maps(*image.pattern)) {
-                const std::string name = member.key + map;
+            for (const PatternMap& map : pattern_maps(*image.pattern)) {
+                const std::string name = member.key + map.suffix;
                 images_[name] = static_cast<std::uint32_t>(level_.assets.images.size());
                 level_.assets.images.emplace_back().name = name;
             }
@@ -508,8 +532,8 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     const FieldInfo* const size = find_field(image.parameters.info().fields, "size");
     const auto side =
         size == nullptr ? 0.0 : get_number(*size, field_ptr(image.parameters.data(), *size));
-    const auto maps_of_it = pattern_maps(*image.pattern).size();
-    const auto pixels = static_cast<std::uint64_t>(static_cast<double>(maps_of_it) * side * side);
+    const std::span<const PatternMap> its = pattern_maps(*image.pattern);
+    const auto pixels = static_cast<std::uint64_t>(static_cast<double>(its.size()) * side * side);
     if (pixels > pixels_left) {
         return fail(
             "{}: found {} pixels, expected at most {} more in this level",
@@ -518,10 +542,9 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     pixels_left -= pixels;
     PatternMaps maps = made.pattern(*image.pattern, image.parameters);
     std::size_t index = image.index;
-    ImageData* const made_maps[] = {&maps.base_color, &maps.normal, &maps.orm, &maps.motion};
-    for (ImageData* const map : std::span(made_maps).first(maps_of_it)) {
-        map->name = level.assets.images[index].name;
-        level.assets.images[index++] = std::move(*map);
+    for (const PatternMap& map : its) {
+        (maps.*map.image).name = level.assets.images[index].name;
+        level.assets.images[index++] = std::move(maps.*map.image);
     }
     return Done{};
 }

@@ -56,8 +56,10 @@ void for_pixels(int size, Body&& body) {
 
 PatternMaps make_pattern_maps(int size, const std::function<PatternTexel(const Vec2& uv)>& texel) {
     LIMN_CHECK(size >= 1);
-    PatternMaps maps = {
-        make_image(size, true), make_image(size, false), make_image(size, false), {}};
+    PatternMaps maps;
+    maps.base_color = make_image(size, true);
+    maps.normal = make_image(size, false);
+    maps.orm = make_image(size, false);
     std::vector<float> heights(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
     const float pixels = static_cast<float>(size);
 

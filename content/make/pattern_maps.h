@@ -24,6 +24,9 @@ struct PatternMaps {
     ImageData normal;      ///< tangent space, green up, from the heights
     ImageData orm;         ///< r occlusion, g roughness, b metalness, as glTF packs them
     ImageData motion;      ///< of flipbooks, as ParticleLook::motion; empty of others
+    /// Of flipbooks of volumes, empty of others: what they scatter of light from the right, above
+    /// and behind, with their opacity; ParticleLook::negative_light.
+    ImageData positive_light, negative_light;
 };
 
 /// Calls texel(uv) once for the center of every pixel, on several threads; `size` >= 1 pixels.

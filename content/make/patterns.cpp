@@ -5,6 +5,7 @@
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
+#include "content/make/puff_pattern.h"
 #include "content/make/sprite_patterns.h"
 
 #include <algorithm>
@@ -358,11 +359,12 @@ PatternMaps make_asphalt(const AsphaltPattern& pattern) {
 namespace {
 
 template <typename Pattern, PatternMaps (*make)(const Pattern&)>
-PatternKind pattern_kind(const char* name, const char* doc, bool has_motion = false) {
+PatternKind
+pattern_kind(const char* name, const char* doc, PatternKindMaps maps = PatternKindMaps::Surface) {
     const auto call = [](const void* parameters) {
         return make(*static_cast<const Pattern*>(parameters));
     };
-    return {name, doc, &component_info<Pattern>(), call, has_motion};
+    return {name, doc, &component_info<Pattern>(), call, maps};
 }
 
 }  // namespace
@@ -380,16 +382,21 @@ std::span<const PatternKind> pattern_kinds() {
             "confetti", "a flipbook of cut paper in bright colors"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
         pattern_kind<FirePattern, make_fire>(
-            "fire", "a flipbook of fire from a simulation, in color, with its motion", true),
+            "fire", "a flipbook of fire from a simulation, in color, with its motion",
+            PatternKindMaps::Motion),
         pattern_kind<FireballPattern, make_fireball>(
             "fireball",
-            "a flipbook of a burst of fire that turns to soot, in color, with its motion", true),
+            "a flipbook of a burst of fire that turns to soot, in color, with its motion",
+            PatternKindMaps::Motion),
         pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
         pattern_kind<FoldsPattern, make_folds>("folds", "folds of skin along u, as a wrinkle map"),
         pattern_kind<FurrowsPattern, make_furrows>(
             "furrows", "skin with wrinkle furrows that grow along two vector fields"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
+        pattern_kind<PuffPattern, make_puff>(
+            "puff", "a flipbook of a cloud, with what it scatters of light from six sides",
+            PatternKindMaps::Light),
         pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),
         pattern_kind<RoseWindowPattern, make_rose_window>(
             "rose_window", "a round window of stained glass; black outside of the glass"),

@@ -13,12 +13,19 @@ namespace limn {
 // the same pixels. Values are chosen by eye, to look right under the gallery's lights, not
 // measured. Parameters are read as those of meshes, see make_mesh.h.
 
+/// Which of PatternMaps a kind makes: base color, normal, occlusion-roughness-metalness, and
+enum class PatternKindMaps {
+    Surface,  ///< no others
+    Motion,   ///< of a flipbook whose shapes are known to move
+    Light,    ///< of a flipbook of volumes, both
+};
+
 struct PatternKind {
     const char* name;                 ///< as in levels
     const char* doc;                  ///< one line
     const ComponentInfo* parameters;  ///< fields, defaults, how to construct and destroy
     PatternMaps (*make)(const void* parameters);
-    bool has_motion = false;  ///< a flipbook whose shapes are known to move: PatternMaps::motion
+    PatternKindMaps maps = PatternKindMaps::Surface;
 };
 
 /// All kinds, by name.

@@ -312,6 +312,7 @@ struct ParticleLook {
     float frame_rate = 0;
     ImageId motion;
     float motion_strength = 0.25f;
+    ImageId negative_light;
     float size = 0.1f;
     float size_spread = 0;
     std::vector<CurveKey> size_curve;
@@ -359,6 +360,12 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(
         motion_strength, "what 255 in that image means, and 1 the other way, as a share of a frame",
         "", 0, 1);
+    LIMN_FIELD(
+        negative_light,
+        "with it the image tells of the light from six sides how much goes to the camera, 1 as a "
+        "white surface that faces the light: red from the right, green from above, blue from "
+        "behind; and this one, of the same frames: from the left, from below, from the camera; "
+        "opacity: a factor on the emission. Neither is sRGB; for quads, not for ribbons");
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
     LIMN_FIELD(size_curve, "factor on the size over the life, drawn at 32 even shares of it");

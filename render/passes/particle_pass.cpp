@@ -33,6 +33,7 @@ constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
 constexpr unsigned kRibbonsUnit = 8;
+constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
 constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
@@ -240,11 +241,20 @@ std::uint32_t ParticleEffect::add_look(
     const bool has_image = frame.assets->images.size() > look.image.index;
     const ImageLayer image = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
     const ImageLayer motion = frame.materials->images().find(look.motion);
+    const ImageLayer negative = frame.materials->images().find(look.negative_light);
     const bool has_motion = has_image && motion.array != 0;
+    const bool is_six_way = has_image && negative.array != 0;
+    const auto layer_if = [](bool has, const ImageLayer& its) {
+        return has ? static_cast<int>(its.layer) : -1;
+    };
     looks.push_back(make_look_record(
-        look, has_image ? static_cast<int>(image.layer) : -1,
-        has_motion ? static_cast<int>(motion.layer) : -1));
-    arrays.push_back({.images = image.array, .motions = has_motion ? motion.array : 0});
+        look, {.image = layer_if(has_image, image),
+               .motion = layer_if(has_motion, motion),
+               .negative_light = layer_if(is_six_way, negative)}));
+    arrays.push_back(
+        {.images = image.array,
+         .motions = has_motion ? motion.array : 0,
+         .negative_lights = is_six_way ? negative.array : 0});
     places.push_back(place);
     extents.push_back(make_look_extent(look));
     layers.push_back(layer_of(look));
@@ -254,6 +264,7 @@ std::uint32_t ParticleEffect::add_look(
     features.images = features.images || has_image;
     features.flipbooks = features.flipbooks || look.columns > 1 || look.rows > 1;
     features.motions = features.motions || has_motion;
+    features.six_way = features.six_way || is_six_way;
     soft = soft || look.softness > 0;
     moving = moving || moves_pixels(looks.back());
     return static_cast<std::uint32_t>(looks.size() - 1);
@@ -275,6 +286,7 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
         const std::uint32_t index = add_look(frame, look);
         looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
         looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
+        looks[index][layout::kLookMotion].w = -1;
         extents[index] = {};
         for (const std::uint32_t before : ribbons.segments) {
             const Vec3 middle =
@@ -520,9 +532,12 @@ std::size_t ParticleEffect::middle_half() const {
 /// Discs fit any arrays.
 bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
     const bool is_disc = looks[look][3].w < 0;
-    const bool is_still = looks[look][layout::kLookMotion].x < 0;
+    const Vec4& its = looks[look][layout::kLookMotion];
+    const bool is_still = its.x < 0;
+    const bool is_flat = its.w < 0;
     return (is_disc || run.arrays.images == arrays[look].images)
-           && (is_still || run.arrays.motions == arrays[look].motions);
+           && (is_still || run.arrays.motions == arrays[look].motions)
+           && (is_flat || run.arrays.negative_lights == arrays[look].negative_lights);
 }
 
 /// Those of this layer in [first, last) that are visible, from back to front.
@@ -660,6 +675,7 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     const bool is_weighted = part == Part::Weighted;
     Variant variant = view.lighting.variant;
     variant.add_if(lit, "LIT");
+    variant.add_if(features.six_way, "SIX_WAY");
     variant.add_if(is_weighted, "WEIGHTED");
     variant.add(sprite_variant(view));
     const gpu::Program* const program = programs.get(variant);
@@ -697,6 +713,10 @@ void ParticleEffect::draw_runs(
         }
         if (features.motions) {
             device.bind_texture(kMotionsUnit, pool.array(its.motions), &image_sampler);
+        }
+        if (features.six_way) {
+            device.bind_texture(
+                kNegativeLightsUnit, pool.array(its.negative_lights), &image_sampler);
         }
     };
     const std::span<const ParticleRun> all(seen.runs);

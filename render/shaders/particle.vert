@@ -1,5 +1,6 @@
 // A particle as a quad, lit at its corners. Definitions: those of lib/lighting.glsl, and
 //   LIT      some particle scatters light
+//   SIX_WAY  some have images of the light from six sides
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
@@ -33,6 +34,12 @@ layout(location = 2) flat out vec4 frames;             // texture coordinates: s
 layout(location = 3) flat out vec4 blend;              // cover, softness [m], share of the next frame, layer
 layout(location = 4) flat out vec4 next_frame;         // its offset; layer of the motion map, its full value
 layout(location = 5) out float distance_ahead;         // along the view axis [m]
+#ifdef SIX_WAY
+layout(location = 7) out vec4 positive_side[3];   // of what comes from the right, above and behind: premultiplied
+                                                       // radiance of a white particle; w: layer of their map, -1: none
+layout(location = 10) out vec3 negative_side[3];  // likewise from the left, from below and from the camera
+layout(location = 13) out vec3 glow_color;        // radiance by itself, premultiplied
+#endif
 
 const int kFacingVelocity = 1;
 const int kFacingGround = 2;
@@ -51,6 +58,57 @@ vec3 scattered(Incoming light, vec3 normal, vec3 to_camera, float forward) {
     return light.irradiance * (mix(wrapped * wrapped, lobe, abs(forward)) / kPi);
 }
 
+#ifdef LOCAL_LIGHTS
+Incoming incoming_shadowed(int index, vec3 position_ws, vec3 normal, vec2 pixel, WaterMedium medium) {
+    Incoming light = incoming_local(index, position_ws, normal, medium);
+    light.irradiance *= index < int(view.grid_depth.w)
+                            ? vec3(1.0)
+                            : light_transmittance(index, position_ws, normal, light.to_light, pixel);
+    return light;
+}
+#endif
+
+#ifdef SIX_WAY
+// Radiance of white surfaces that face the sides.
+struct SixWayLight {
+    vec3 positive[3];
+    vec3 negative[3];
+};
+
+// A light counts at the sides that it faces by the squares of its cosines, whose sum is 1.
+void add_light(inout SixWayLight sum, Incoming light, mat3 axes) {
+    vec3 cosines = light.to_light * axes;
+    for (int i = 0; i < 3; ++i) {
+        vec3 its = light.irradiance * (cosines[i] * cosines[i] / kPi);
+        sum.positive[i] += cosines[i] > 0.0 ? its : vec3(0.0);
+        sum.negative[i] += cosines[i] > 0.0 ? vec3(0.0) : its;
+    }
+}
+
+// `axes`: to the right, up and away from the camera.
+SixWayLight six_way_light(vec3 position_ws, vec3 normal, mat3 axes, vec2 pixel, float distance) {
+    SixWayLight sum;
+    const float kSquared = 2.0 / 3.0;  // of the cosine in an even environment, against the cosine itself
+    for (int i = 0; i < 3; ++i) {
+        sum.positive[i] = kSquared * environment_light(position_ws, axes[i], axes[i], 1.0).irradiance;
+        sum.negative[i] = kSquared * environment_light(position_ws, -axes[i], -axes[i], 1.0).irradiance;
+    }
+#ifdef DIRECTIONAL_LIGHTS
+    for (int i = 0; i < int(view.grid_depth.z); ++i) {
+        add_light(sum, incoming_directional(i, position_ws, normal, pixel), axes);
+    }
+#endif
+#ifdef LOCAL_LIGHTS
+    WaterMedium medium = water_medium(position_ws);
+    uvec2 list = cell_list(clamp(pixel, vec2(0.0), view.size.xy - 1.0), distance);
+    for (uint i = list.x; i < list.x + list.y; ++i) {
+        add_light(sum, incoming_shadowed(int(texelFetch(light_indices, int(i)).x), position_ws, normal, pixel, medium), axes);
+    }
+#endif
+    return sum;
+}
+#endif
+
 vec3 scattered_light(vec3 position_ws, vec3 normal, float forward, vec2 pixel, float distance) {
     vec3 to_camera = to_viewer(position_ws);
     vec3 sum = environment_light(position_ws, normal, normal, 1.0).irradiance;
@@ -64,16 +122,21 @@ vec3 scattered_light(vec3 position_ws, vec3 normal, float forward, vec2 pixel, f
     uvec2 list = cell_list(clamp(pixel, vec2(0.0), view.size.xy - 1.0), distance);
     for (uint i = list.x; i < list.x + list.y; ++i) {
         int index = int(texelFetch(light_indices, int(i)).x);
-        Incoming light = incoming_local(index, position_ws, normal, medium);
-        light.irradiance *= index < int(view.grid_depth.w)
-                                ? vec3(1.0)
-                                : light_transmittance(index, position_ws, normal, light.to_light, pixel);
-        sum += scattered(light, normal, to_camera, forward);
+        sum += scattered(incoming_shadowed(index, position_ws, normal, pixel, medium), normal, to_camera, forward);
     }
 #endif
     return sum;
 }
 #endif
+
+// Where a corner is lit: where shadows of particles are, it varies over the quad.
+vec3 lit_place(Particle p, vec3 offset) {
+#ifdef PARTICLE_SHADOWS
+    return p.position + kShadeReach * offset;
+#else
+    return p.position;
+#endif
+}
 
 // Extent of a pixel at this place [m].
 float pixel_extent(vec3 position_ws) {
@@ -256,17 +319,40 @@ void main() {
 #endif
 
     vec3 radiance = vec3(glow.x);
+#ifdef SIX_WAY
+    float negative_layer = look_texel(look, kLookMotion).w;
+    bool is_six_way = negative_layer >= 0.0;
+    glow_color = color.rgb * glow.x * color.a;
+    for (int i = 0; i < 3; ++i) {
+        positive_side[i] = vec4(0.0, 0.0, 0.0, negative_layer);
+        negative_side[i] = vec3(0.0);
+    }
 #ifdef LIT
+    if (is_six_way && glow.y > 0.0) {
+        vec3 away_axis = -to_viewer(p.position);
+        mat3 axes = mat3(normalize(quad.right), normalize(quad.up), away_axis);
+        vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
+        vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
+        SixWayLight sides =
+            six_way_light(lit_place(p, offset), -away_axis, axes, pixel, max(middle.w, view.camera_ws.w));
+        vec3 white = color.rgb * glow.y * color.a;
+        for (int i = 0; i < 3; ++i) {
+            positive_side[i].rgb = white * sides.positive[i];
+            negative_side[i] = white * sides.negative[i];
+        }
+    }
+#endif
+#endif
+#ifdef LIT
+#ifdef SIX_WAY
+    if (glow.y > 0.0 && !is_six_way) {
+#else
     if (glow.y > 0.0) {
+#endif
         vec3 normal = normalize(to_viewer(p.position) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
         vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
         vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
-#ifdef PARTICLE_SHADOWS
-        vec3 lit_at = p.position + kShadeReach * offset;  // so that shadows of particles vary over it
-#else
-        vec3 lit_at = p.position;
-#endif
-        radiance += glow.y * scattered_light(lit_at, normal, streak.w, pixel, max(middle.w, view.camera_ws.w));
+        radiance += glow.y * scattered_light(lit_place(p, offset), normal, streak.w, pixel, max(middle.w, view.camera_ws.w));
     }
 #endif
     light = vec4(color.rgb * radiance * color.a, color.a);

@@ -48,7 +48,7 @@ const uint kLookMore = 44u;
 //  48  factors on the optical depth of its shadow for red, green and blue; factor on the opacity, 0: casts none
 const uint kLookShadow = 48u;
 //  49  layer of the motion map, -1: none; what its full value means, as a share of a frame; coverage above which pixels
-//      move with it, 1: never
+//      move with it, 1: never; layer of the image of light from negative sides, -1: none
 const uint kLookMotion = 49u;
 //  50  acceleration at rest [m/s^2]; drag [1/s]
 const uint kLookTexels = 51u;

@@ -9,13 +9,13 @@
 layout(binding = 0) uniform sampler2DArray images;
 
 // The frame at `offset`; `frames` as in lib/particle.glsl.
-vec4 image_at(vec2 uv, vec4 frames, vec2 offset, float layer) {
+vec4 image_at(sampler2DArray book, vec2 uv, vec4 frames, vec2 offset, float layer) {
 #ifdef RIBBONS
     vec2 repeated = vec2(uv.x - floor(uv.x), uv.y);
     return textureGrad(
-        images, vec3(repeated * frames.xy + offset, layer), dFdx(uv) * frames.xy, dFdy(uv) * frames.xy);
+        book, vec3(repeated * frames.xy + offset, layer), dFdx(uv) * frames.xy, dFdy(uv) * frames.xy);
 #else
-    return texture(images, vec3(uv * frames.xy + offset, layer));
+    return texture(book, vec3(uv * frames.xy + offset, layer));
 #endif
 }
 
@@ -35,6 +35,25 @@ vec2 within_frame(vec2 uv, vec4 frames) {
     return clamp(uv, rim, 1.0 - rim);
 }
 #endif
+
+// The frame at `place` in the quad, on its way to the next; arguments as of sprite_at, layer >= 0.
+vec4 book_at(
+    sampler2DArray book, vec2 place, vec4 frames, vec2 next_frame, float progress, float layer, vec2 motion) {
+    vec2 uv = vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
+    vec2 from = uv;
+    vec2 to = uv;
+#if defined(MOTION) && defined(FLIPBOOKS)
+    if (motion.x >= 0.0) {
+        from = within_frame(uv - progress * motion_at(uv, frames, frames.zw, motion), frames);
+        to = within_frame(uv + (1.0 - progress) * motion_at(uv, frames, next_frame, motion), frames);
+    }
+#endif
+    vec4 shown = image_at(book, from, frames, frames.zw, layer);
+#ifdef FLIPBOOKS
+    shown = mix(shown, image_at(book, to, frames, next_frame, layer), progress);
+#endif
+    return shown;
+}
 #endif
 
 // Color, and opacity in a.
@@ -45,19 +64,7 @@ vec4 sprite_at(vec2 place, vec4 frames, vec2 next_frame, float progress, float l
     float inside = max(1.0 - dot(place, place), 0.0);
     vec4 disc = vec4(1.0, 1.0, 1.0, inside * inside);
 #ifdef IMAGES
-    vec2 uv = vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
-    vec2 from = uv;
-    vec2 to = uv;
-#if defined(MOTION) && defined(FLIPBOOKS)
-    if (motion.x >= 0.0) {
-        from = within_frame(uv - progress * motion_at(uv, frames, frames.zw, motion), frames);
-        to = within_frame(uv + (1.0 - progress) * motion_at(uv, frames, next_frame, motion), frames);
-    }
-#endif
-    vec4 shown = image_at(from, frames, frames.zw, max(layer, 0.0));
-#ifdef FLIPBOOKS
-    shown = mix(shown, image_at(to, frames, next_frame, max(layer, 0.0)), progress);
-#endif
+    vec4 shown = book_at(images, place, frames, next_frame, progress, max(layer, 0.0), motion);
     return layer < 0.0 ? disc : shown;
 #else
     return disc;
