@@ -53,6 +53,13 @@ LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers) 
     return record;
 }
 
+bool is_point(const LookRecord& look) {
+    const float facing = look[2].w;
+    return look[3].w < 0
+           && (facing == static_cast<float>(ParticleFacing::Point)
+               || facing == static_cast<float>(ParticleFacing::Pixels));
+}
+
 bool moves_pixels(const LookRecord& look) {
     return look[2].z > look[layout::kLookMotion].z;  // no opacity is above 1
 }

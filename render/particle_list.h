@@ -29,6 +29,9 @@ struct LookLayers {
 };
 [[nodiscard]] LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers);
 
+/// Whether it is drawn as points: discs that face the camera, of a size in pixels or of specks.
+[[nodiscard]] bool is_point(const LookRecord& look);
+
 /// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
 [[nodiscard]] bool moves_pixels(const LookRecord& look);
 
@@ -65,9 +68,11 @@ struct SpriteFeatures {
     }
 };
 
-/// Particles that follow one another in the order and have images of the same texture arrays.
+/// Particles that follow one another in the order, have images of the same texture arrays and are
+/// all points or all quads.
 struct ParticleRun {
     ParticleArrays arrays{};
+    bool points = false;
     int first = 0;
     int count = 0;
 };

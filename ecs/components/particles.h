@@ -274,6 +274,7 @@ enum class ParticleFacing : std::uint8_t {
     Velocity,  ///< along the flight, as far as it goes in `stretch`
     Ground,    ///< flat on the world's xz plane
     Pixels,    ///< a point sprite: `size` in pixels, see `attenuation` (particle.gpu-draw)
+    Point,     ///< a disc drawn as one vertex: cheapest for specks
 };
 
 /// In which order particles cover each other (particle.distance-sort).
@@ -384,8 +385,12 @@ LIMN_FIELDS(ParticleLook) {
         "light from behind: 0 evenly, toward 1 ever more forward (Henyey and Greenstein 1941)", "",
         -0.95, 0.95);
     LIMN_FIELD(
-        facing, .doc = "how the quad is turned; pixels: to the camera, with `size` in pixels",
-        .values = "camera velocity ground pixels");
+        facing,
+        .doc =
+            "how the quad is turned; pixels: to the camera, with `size` in pixels; point: a disc "
+            "without an image as one vertex instead of four, for specks of a few pixels: it goes "
+            "with its center and has a largest size, 64 pixels or more",
+        .values = "camera velocity ground pixels point");
     LIMN_FIELD(
         attenuation,
         "of pixels: at the distance d the size is times sqrt(1 / (x + y d + z d^2)); not all 0", "",

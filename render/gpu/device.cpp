@@ -1,12 +1,14 @@
 #include "render/gpu/device.h"
 
 #include "ecs/base/text.h"
-#include "render/gpu/buffer.h"
 #include "render/gpu/shader_library.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace limn::gpu {
 
@@ -21,9 +23,25 @@ Result<std::unique_ptr<Device>> Device::from_current_context(std::optional<Profi
     return std::unique_ptr<Device>(new Device(caps));
 }
 
+namespace {
+
+Buffer make_quad_indices() {
+    std::vector<std::uint16_t> indices;
+    indices.reserve(6 * std::size_t{Device::kQuadsAtOnce});
+    for (int quad = 0; quad < Device::kQuadsAtOnce; ++quad) {
+        for (const int corner : {0, 1, 2, 2, 1, 3}) {
+            indices.push_back(static_cast<std::uint16_t>(4 * quad + corner));
+        }
+    }
+    return Buffer::of("quad indices", std::span<const std::uint16_t>(indices));
+}
+
+}  // namespace
+
 Device::Device(const DeviceCaps& caps)
     : caps_(caps), debug_output_(caps.debug), shaders_(std::make_unique<ShaderLibrary>(caps_)),
-      no_vertices_("no vertices") {
+      no_vertices_("no vertices"), quads_("quads"), quad_indices_(make_quad_indices()) {
+    quads_.set_indices(quad_indices_);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glClearDepth(0.0);
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
@@ -350,6 +368,20 @@ void Device::draw_indexed_indirect(GLenum mode, GLenum type, std::size_t offset,
 void Device::draw_ids(int count) {
     bind_vertex_array(no_vertices_);
     draw(GL_TRIANGLES, 0, count);
+}
+
+void Device::draw_points(int count) {
+    bind_vertex_array(no_vertices_);
+    draw(GL_POINTS, 0, count);
+}
+
+void Device::draw_quads(int count) {
+    bind_vertex_array(quads_);
+    for (int first = 0; first < count; first += kQuadsAtOnce) {
+        draw_indexed(
+            GL_TRIANGLES, 6 * std::min(count - first, kQuadsAtOnce), GL_UNSIGNED_SHORT, 0,
+            4 * first);
+    }
 }
 
 void Device::draw_fullscreen() {

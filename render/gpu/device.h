@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
+#include "render/gpu/buffer.h"
 #include "render/gpu/debug_output.h"
 #include "render/gpu/device_caps.h"
 #include "render/gpu/framebuffer.h"
@@ -89,6 +90,12 @@ class Device {
     void draw_indexed_indirect(GLenum mode, GLenum type, std::size_t offset, int count);
     /// Triangles without attributes, from gl_VertexID 0 .. count - 1.
     void draw_ids(int count);
+    /// Points without attributes, from gl_VertexID 0 .. count - 1.
+    void draw_points(int count);
+    /// Quads without attributes: corner gl_VertexID % 4 of quad gl_VertexID / 4, as a strip has
+    /// them. In one piece up to kQuadsAtOnce; not instances, which waste lanes on so few vertices.
+    void draw_quads(int count);
+    static constexpr int kQuadsAtOnce = 16384;  ///< whose vertices 16 bits can name
     /// One triangle that covers the viewport, from gl_VertexID alone.
     void draw_fullscreen();
     void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
@@ -147,6 +154,8 @@ class Device {
     DebugOutput debug_output_;
     std::unique_ptr<ShaderLibrary> shaders_;
     VertexArray no_vertices_;
+    VertexArray quads_;
+    Buffer quad_indices_;
     Framebuffer blit_source_;  // of the texture that blit_to_window() showed last
     std::uint64_t blit_serial_ = 0;
     DeviceStats stats_;

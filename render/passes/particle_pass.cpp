@@ -23,6 +23,8 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -125,7 +127,8 @@ constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 Bounds bounds_of(const ParticleInstance& instance, const LookRecord& look) {
     const float facing = look[2].w;
     const bool is_quad = facing == static_cast<float>(ParticleFacing::Camera)
-                         || facing == static_cast<float>(ParticleFacing::Ground);
+                         || facing == static_cast<float>(ParticleFacing::Ground)
+                         || facing == static_cast<float>(ParticleFacing::Point);
     const Vec3& p = instance.position;
     const float reach = reach_of(instance, look);
     const bool is_finite = std::isfinite(p.x + p.y + p.z + reach);
@@ -377,6 +380,17 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
     has_billboards = !billboards.quads.empty();
 }
 
+/// For a warm-up, whose image nobody sees: a particle for each program that some look needs.
+void ParticleEffect::append_one_of_each() {
+    std::set<std::pair<LookLayer, bool>> made;
+    for (std::uint32_t i = 0; i < looks.size(); ++i) {
+        if (made.emplace(layers[i], is_point(looks[i])).second) {
+            auto& its = layers[i] == LookLayer::Weighted ? weighted : instances;
+            its.emplace_back().look_and_share = i << 16;
+        }
+    }
+}
+
 void ParticleEffect::collect(FrameData& frame) {
     const World& world = *frame.world;
     const float step = particle_step(frame);
@@ -445,8 +459,8 @@ void ParticleEffect::collect(FrameData& frame) {
     gpu.forget_unused();
     collect_ribbons(frame, back, step);
     collect_billboards(frame, back);
-    if (frame.warm_up && instances.empty() && !looks.empty()) {
-        instances.emplace_back();  // drawn with size 0 or transparent: compiles the program
+    if (frame.warm_up) {
+        append_one_of_each();
     }
 
     const Affine& camera = frame.camera.world_from_camera;
@@ -535,7 +549,8 @@ bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
     const Vec4& its = looks[look][layout::kLookMotion];
     const bool is_still = its.x < 0;
     const bool is_flat = its.w < 0;
-    return (is_disc || run.arrays.images == arrays[look].images)
+    return run.points == is_point(looks[look])
+           && (is_disc || run.arrays.images == arrays[look].images)
            && (is_still || run.arrays.motions == arrays[look].motions)
            && (is_flat || run.arrays.negative_lights == arrays[look].negative_lights);
 }
@@ -552,6 +567,7 @@ void ParticleEffect::append_runs(
         if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
             seen.runs.push_back(
                 {.arrays = arrays[look],
+                 .points = is_point(looks[look]),
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
         }
@@ -636,27 +652,21 @@ void ParticleEffect::create_layer_programs(gpu::Device& device) {
     }
 }
 
-Variant ParticleEffect::sprite_variant(const ViewData& view) const {
+Variant ParticleEffect::sprite_variant(const ViewData& view, bool points) const {
     Variant variant;
-    features.add_to(variant);
     variant.add_if(is_clipped(view), "CLIPPED");
     variant.add_if(soft, "SOFT");
+    if (points) {
+        variant.add("POINTS");
+        return variant;
+    }
+    features.add_to(variant);
     variant.add_if(has_ribbons, "RIBBONS");
     variant.add_if(has_billboards, "BILLBOARDS");
     return variant;
 }
 
 void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
-    const bool clipped = is_clipped(view);
-    Variant variant("VELOCITY");
-    variant.add(sprite_variant(view));
-    const gpu::Program* const program = velocity_programs.get(variant);
-    if (program == nullptr) {
-        return;
-    }
-    context.device().use(
-        gpu::Pipeline{program, {.depth = {.write = false}, .cull = GL_NONE, .clip = clipped}});
-    bind_view(context, view);
     // Frames between steps show particles on straight lines, from the velocity of the step's end.
     const float step = particle_step(*view.frame);
     const float back = particle_lag(*view.frame);
@@ -665,41 +675,51 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
         (camera.alpha - camera.previous_alpha) * step, static_cast<float>(view.frame->time));
     const bool crosses = time + back > 0.999f * step;  // the beginning of the step
     const float bend = crosses ? step * (back + time - 0.5f * step) : 0.0f;
-    program->set("since_previous", Vec2(std::max(time, 0.0f), bend));
-    draw_runs(context, view, *program, Part::All);
+    bind_view(context, view);
+    draw_runs(context, view, Part::All, [&](bool points) {
+        Variant variant("VELOCITY");
+        variant.add(sprite_variant(view, points));
+        const gpu::Program* const program = velocity_programs.get(variant);
+        if (program != nullptr) {
+            context.device().use(gpu::Pipeline{
+                program, {.depth = {.write = false}, .cull = GL_NONE, .clip = is_clipped(view)}});
+            program->set("since_previous", Vec2(std::max(time, 0.0f), bend));
+        }
+        return program;
+    });
 }
 
 /// What the GPU moves at full resolution is in front.
 void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Part part) {
-    const bool clipped = is_clipped(view);
     const bool is_weighted = part == Part::Weighted;
-    Variant variant = view.lighting.variant;
-    variant.add_if(lit, "LIT");
-    variant.add_if(features.six_way, "SIX_WAY");
-    variant.add_if(is_weighted, "WEIGHTED");
-    variant.add(sprite_variant(view));
-    const gpu::Program* const program = programs.get(variant);
-    if (program == nullptr) {
-        return;
-    }
-    gpu::Device& device = context.device();
     gpu::PipelineState state = kWeightedState;
     if (!is_weighted) {
         state.blend = gpu::kBlendPremultiplied;
         state.second_blend = {};
     }
-    state.clip = clipped;
-    device.use(gpu::Pipeline{program, state});
+    state.clip = is_clipped(view);
     bind_lighting(context, view);
-    if (is_weighted) {
-        const auto& seen = view.data.get<ViewParticles>();
-        program->set("weight_range", weight_range(seen.weighted_bounds, view.camera));
-    }
-    draw_runs(context, view, *program, part);
+    draw_runs(context, view, part, [&](bool points) {
+        Variant variant = view.lighting.variant;
+        variant.add_if(lit, "LIT");
+        variant.add_if(features.six_way && !points, "SIX_WAY");
+        variant.add_if(is_weighted, "WEIGHTED");
+        variant.add(sprite_variant(view, points));
+        const gpu::Program* const program = programs.get(variant);
+        if (program != nullptr) {
+            context.device().use(gpu::Pipeline{program, state});
+        }
+        if (program != nullptr && is_weighted) {
+            const auto& seen = view.data.get<ViewParticles>();
+            program->set("weight_range", weight_range(seen.weighted_bounds, view.camera));
+        }
+        return program;
+    });
 }
 
-void ParticleEffect::draw_runs(
-    PassContext& context, const ViewData& view, const gpu::Program& program, Part part) {
+/// `use(points)` uses the program for points or quads and returns it, or null.
+template <typename Use>
+void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use) {
     gpu::Device& device = context.device();
     const auto& seen = view.data.get<ViewParticles>();
     seen.texels.bind(device, kParticlesUnit);
@@ -726,12 +746,25 @@ void ParticleEffect::draw_runs(
         : part == Part::Front    ? all.subspan(seen.half_end, seen.weighted_begin - seen.half_end)
         : part == Part::Weighted ? all.subspan(seen.weighted_begin)
                                  : all;
+    const gpu::Program* program = nullptr;
+    std::optional<bool> as_points;
+    const auto draw_some = [&](const ParticleArrays& its, bool points, int first, int count) {
+        program = as_points == points ? program : use(points);
+        as_points = points;
+        if (program == nullptr) {
+            return;
+        }
+        program->set("first", first);
+        bind_images(its);
+        if (points) {
+            device.draw_points(count);
+        } else {
+            device.draw_quads(count);
+        }
+    };
     for (const ParticleRun& run : runs) {
-        program.set("first", run.first);
-        bind_images(run.arrays);
-        device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
+        draw_some(run.arrays, run.points, run.first, run.count);
     }
-    program.set("first", 0);
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     for (const auto& [entity, pool] : gpu.pools()) {
         const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
@@ -741,9 +774,8 @@ void ParticleEffect::draw_runs(
                                                         : Part::Front;
         if (count > 0 && (its == part || part == Part::All)
             && is_group_in_view(extents[pool->look], frustum)) {
-            bind_images(arrays[pool->look]);
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
-            device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
+            draw_some(arrays[pool->look], is_point(looks[pool->look]), 0, static_cast<int>(count));
         }
     }
 }

@@ -140,6 +140,7 @@ struct ParticleEffect {
     std::uint32_t add_look(
         const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
     void add_pull(const World& world, Entity emitter, std::uint32_t look);
+    void append_one_of_each();
     void collect_ribbons(const FrameData& frame, float back, float step);
     void collect_billboards(const FrameData& frame, float back);
     [[nodiscard]] std::size_t middle_half() const;
@@ -147,11 +148,11 @@ struct ParticleEffect {
     void append_runs(LookLayer layer, std::size_t first, std::size_t last, ViewParticles& seen);
     void create_layer_programs(gpu::Device& device);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
-    [[nodiscard]] Variant sprite_variant(const ViewData& view) const;
+    [[nodiscard]] Variant sprite_variant(const ViewData& view, bool points) const;
     void draw_sprites(PassContext& context, const ViewData& view, Part part);
     void draw_velocity(PassContext& context, const ViewData& view);
-    void
-    draw_runs(PassContext& context, const ViewData& view, const gpu::Program& program, Part part);
+    template <typename Use>
+    void draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use);
 };
 
 }  // namespace limn

@@ -306,13 +306,13 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
     for (const ParticleRun& run : runs) {
         program->set("first", run.first);
         bind_images(run.arrays);
-        device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
+        device.draw_quads(run.count);
     }
     program->set("first", 0);
     for (const GpuShadowCaster& caster : gpu_casters) {
         bind_images(caster.arrays);
         caster.pool->texels.bind(device, kParticlesUnit);
-        device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(caster.pool->count));
+        device.draw_quads(static_cast<int>(caster.pool->count));
     }
 }
 

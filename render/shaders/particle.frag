@@ -42,7 +42,7 @@ float weight_at(float ahead) {
 #endif
 
 void main() {
-    vec2 place = vec2(corner.x, corner.y / max(corner.z, 1e-6));
+    vec2 place = sprite_place(corner);
     vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
     vec3 shown = light.rgb * s.rgb;
 #ifdef SIX_WAY

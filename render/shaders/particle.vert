@@ -1,6 +1,7 @@
 // A particle as a quad, lit at its corners. Definitions: those of lib/lighting.glsl, and
 //   LIT      some particle scatters light
 //   SIX_WAY  some have images of the light from six sides
+//   POINTS   all are discs that face the camera: one vertex each, a point
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
@@ -239,19 +240,30 @@ vec4 ribbon_corner(RibbonSegment s, int vertex, float half_width, bool has_image
 #endif
 
 void main() {
-    Particle p = read_particle(first + gl_InstanceID);
+#ifdef POINTS
+    int index = gl_VertexID;
+    int vertex = 0;
+#else
+    int index = gl_VertexID >> 2;
+    int vertex = gl_VertexID & 3;
+#endif
+    Particle p = read_particle(first + index);
     int look = p.look;
     vec4 shape = look_texel(look, 0u);
     vec4 streak = look_texel(look, 1u);
     vec4 glow = look_texel(look, 2u);
     vec4 book = look_texel(look, 3u);
     vec4 more = look_texel(look, kLookMore);
-    corner = vec3(corner_of(gl_VertexID), 1.0);
+#ifdef POINTS
+    corner = vec3(0.0, 0.0, 1.0);
+#else
+    corner = vec3(corner_of(vertex), 1.0);
+#endif
 #ifdef RIBBONS
     bool is_ribbon = uint(glow.w) == kFacingRibbon;
     RibbonSegment segment;
     if (is_ribbon) {
-        segment = ribbon_segment(p.record, gl_VertexID & 1);
+        segment = ribbon_segment(p.record, vertex & 1);
         p.position = segment.place.xyz;
         p.share = segment.rest.w;
     }
@@ -272,7 +284,15 @@ void main() {
         color.a *= p.opacity;
     }
 #endif
+#ifdef POINTS
+    // Less than a pixel: fainter instead of smaller.
+    float diameter = size / pixel_extent(p.position);
+    gl_PointSize = max(diameter, 1.0);
+    color.a *= min(diameter * diameter, 1.0);
+    Quad quad = Quad(vec3(0.0), vec3(0.0));
+#else
     Quad quad = quad_of(p, shape, streak, more.w, int(glow.w), size);
+#endif
 #ifdef BILLBOARDS
     if (is_billboard) {
         quad = billboard_quad(p.record, p.position);
@@ -290,7 +310,7 @@ void main() {
             float thinnest = pixel_extent(p.position);  // fainter instead of narrower: thin ones would break up into dots
             color.a *= min(0.5 * size / thinnest, 1.0);
             half_width = max(0.5 * size, thinnest);
-            vec4 across = ribbon_corner(segment, gl_VertexID, half_width, book.w >= 0.0);
+            vec4 across = ribbon_corner(segment, vertex, half_width, book.w >= 0.0);
             offset = across.xyz;
             side = across.w;
         }
@@ -349,7 +369,11 @@ void main() {
 #else
     if (glow.y > 0.0) {
 #endif
+#ifdef POINTS
+        vec3 normal = to_viewer(p.position);
+#else
         vec3 normal = normalize(to_viewer(p.position) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
+#endif
         vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
         vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
         radiance += glow.y * scattered_light(lit_place(p, offset), normal, streak.w, pixel, max(middle.w, view.camera_ws.w));

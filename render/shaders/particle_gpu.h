@@ -18,7 +18,7 @@ const uint kParticleTexels = 2u;
 //   0  position xyz [m]; texture coordinate along the ribbon
 //   1  from edge to edge xyz [m], 0: faces the camera; share of the curves
 const uint kRibbonTexels = 2u;
-const uint kFacingRibbon = 4u;  // after those of ParticleFacing
+const uint kFacingRibbon = 5u;  // after those of ParticleFacing
 
 // A billboard, in place of a particle: its look is one of facing kFacingBillboard, its share of the life is that of its
 // colors.
@@ -28,7 +28,7 @@ const uint kFacingRibbon = 4u;  // after those of ParticleFacing
 //   1  half the extent upward xyz [m]; frame of the flipbook
 //   2  velocity xyz [m/s]
 const uint kBillboardTexels = 3u;
-const uint kFacingBillboard = 5u;
+const uint kFacingBillboard = 6u;
 
 // A look: texels of four floats.
 //   0  diameter [m], give or take; angle [rad], give or take; spin [rad/s]

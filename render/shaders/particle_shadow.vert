@@ -15,12 +15,12 @@ layout(location = 4) flat out vec3 tint;
 layout(location = 5) flat out vec2 motion;  // layer of the motion map, its full value
 
 void main() {
-    Particle p = read_particle(first + gl_InstanceID);
+    Particle p = read_particle(first + (gl_VertexID >> 2));
     vec4 shape = look_texel(p.look, 0u);
     vec4 book = look_texel(p.look, 3u);
     float size = size_of(p, shape);
     float angle = angle_of(p, shape, look_texel(p.look, 1u));
-    corner = corner_of(gl_VertexID);
+    corner = corner_of(gl_VertexID & 3);
     vec2 turned = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * corner;
     vec4 place = vec4(p.position + 0.5 * size * (turned.x * light_right + turned.y * light_up), 1.0);
     vec2 st = vec2(dot(texelFetch(particle_shadow, 0), place), dot(texelFetch(particle_shadow, 1), place));

@@ -20,7 +20,7 @@ layout(location = 6) in vec3 previous_clip;
 layout(location = 0) out vec2 velocity;
 
 void main() {
-    vec2 place = vec2(corner.x, corner.y / max(corner.z, 1e-6));
+    vec2 place = sprite_place(corner);
     vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
     float fade = 1.0;
 #ifdef SOFT

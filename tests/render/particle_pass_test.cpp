@@ -136,6 +136,80 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a disc drawn as a point is that drawn as a quad, to a tenth") {
+    // Seen at a right angle, 7.5 to 30 pixels wide.
+    for (const float size : {0.25f, 0.5f, 1.0f}) {
+        for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.09f, -0.07f, 0.02f)}) {
+            CAPTURE(size);
+            ParticleLook look = disc({3, 2, 1}, 0.8f, 0.5f);
+            look.size = size;
+            const auto drawn = [&](ParticleFacing facing) {
+                look.facing = facing;
+                const Entity one = emit({place}, look);
+                gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 60, 60));
+                world.destroy(one);
+                return image;
+            };
+            const gpu::FloatImage quad = drawn(ParticleFacing::Camera);
+            const gpu::FloatImage point = drawn(ParticleFacing::Point);
+            double difference = 0;
+            double sum = 0;
+            for (int y = 0; y < 60; ++y) {
+                for (int x = 0; x < 60; ++x) {
+                    const float a = rgb_at(quad, x, y).x;
+                    const float b = rgb_at(point, x, y).x;
+                    difference += std::abs(static_cast<double>(a - b));
+                    sum += static_cast<double>(a);
+                }
+            }
+            CHECK(sum > 10);
+            CHECK(difference < 0.1 * sum);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: a point smaller than a pixel is fainter, wherever it lies in the pixel") {
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    look.facing = ParticleFacing::Point;
+    const auto sum_of = [&](float diameter, float shift) {  // [px], of 30 a meter
+        look.size = diameter / 30;
+        const Entity one = emit({{shift / 30, 0.01f, 0}}, look);
+        const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 60, 60));
+        world.destroy(one);
+        double sum = 0;
+        for (int i = 0; i < 3600; ++i) {
+            sum += static_cast<double>(rgb_at(image, i % 60, i / 60).x);
+        }
+        return sum;
+    };
+    for (const float shift : {0.1f, 0.4f, 0.8f}) {
+        CAPTURE(shift);
+        const double whole = sum_of(1, shift);
+        CHECK(whole > 0.02);
+        CHECK(sum_of(0.5f, shift) == near(whole / 4).epsilon(0.01));
+        CHECK(sum_of(0.125f, shift) == near(whole / 64).epsilon(0.01));
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: points and quads among each other hide each other in order") {
+    ParticleLook point = disc({1, 0, 0}, 1, 1);
+    point.facing = ParticleFacing::Point;
+    const ParticleLook quad = disc({0, 1, 0}, 1, 1);
+    emit({{0, 0, -0.2f}, {0, 0, 0.2f}}, point);
+    emit({{0, 0, 0}}, quad);
+    CHECK(middle().x > 0.98f);
+    CHECK(middle().y < 0.02f);
+    world.query<ParticleLook>().each([](ParticleLook& its) {
+        its.facing =
+            its.facing == ParticleFacing::Point ? ParticleFacing::Camera : ParticleFacing::Point;
+    });
+    CHECK(middle().x > 0.98f);
+}
+
 TEST_CASE_FIXTURE(ParticleScene, "particle pass: the last seconds of a life fade out") {
     // Half a second of the life of one is left.
     ParticleLook look = disc({1, 1, 1}, 1, 1);

@@ -2,6 +2,7 @@
 //   IMAGES   some particle has an image
 //   FLIPBOOKS  some of them have several frames
 //   RIBBONS  some are segments of ribbons, along which it repeats
+//   POINTS   all are discs, drawn as points
 //   MOTION   some flipbook has a motion map: both frames are fetched where it has been or will be what is seen between
 //            them, so that shapes move instead of cross-fading (particle.motion-vectors)
 
@@ -55,6 +56,15 @@ vec4 book_at(
     return shown;
 }
 #endif
+
+// Place in the quad, -1 .. 1, of a fragment; `corner` as in particle.vert.
+vec2 sprite_place(vec3 corner) {
+#ifdef POINTS
+    return vec2(2.0, -2.0) * (gl_PointCoord - 0.5);
+#else
+    return vec2(corner.x, corner.y / max(corner.z, 1e-6));
+#endif
+}
 
 // Color, and opacity in a.
 //   place     in the quad, -1 .. 1
