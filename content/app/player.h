@@ -48,6 +48,9 @@ class Player {
 
   private:
     using Clock = std::chrono::steady_clock;
+    [[nodiscard]] static double seconds_between(Clock::time_point begin, Clock::time_point end) {
+        return std::chrono::duration<double>(end - begin).count();
+    }
 
     Player(
         std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device,
