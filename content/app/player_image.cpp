@@ -1,8 +1,10 @@
 // What the window of `limn play` shows: the level, of a show with and without, and the HUD.
 
+#include "content/app/emitter_controls.h"
 #include "content/app/outline.h"
 #include "content/app/path_overlay.h"
 #include "content/app/player.h"
+#include "content/game/stones.h"
 #include "ecs/base/log.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/weather.h"
@@ -121,10 +123,12 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     }
     const std::string weather = describe_weather(stage_->world);
     const std::string motion = describe_motion();
+    const std::string drops = describe_drops(stage_->world);
     hud_->draw_status(
         {.level = (stage_->scene.title.empty() ? stage_->scene.name : stage_->scene.title).c_str(),
          .camera = camera_mode_name(camera_.mode),
          .weather = weather.c_str(),
+         .drops = drops.c_str(),
          .time = shown_time_,
          .rate = rate_,
          .motion = motion.c_str(),
@@ -136,7 +140,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .paused = paused_,
          .error = (shader_error_.empty() ? level_error_ : shader_error_).c_str()});
     if (hud_->help_open) {
-        hud_->help = player_help(stage_->world, help_state());
+        hud_->help = player_help(stage_->world, help_state(), keys());
     }
     if (off_stage_ != nullptr && shows_.side == ShowSide::Both) {
         shows_.draw_divider(hud_->style());
@@ -185,12 +189,17 @@ std::string Player::describe_motion() const {
 }
 
 HelpState Player::help_state() const {
+    const UndoStack& undo = inspector_.undo_stack();
     return {
         .camera = camera_.mode,
         .level_camera = stage_->scene.camera,
         .drives = driving_group(stage_->world, stage_->scene.camera) != nullptr,
+        .throws = !std::as_const(stage_->world).query<const StoneThrower>().empty(),
+        .paths = has_paths(stage_->world),
         .model = stage_->scene.model.has_value(),
         .show = off_stage_ != nullptr,
+        .selected = stage_->world.alive(inspector_.selected()),
+        .edited = undo.undo_count() + undo.redo_count() > 0,
         .inspector = inspector_.open,
         .panel = inspector_.open || profiler_.open || buffers_->open || shows_.open
                  || model_panel_.open};

@@ -60,7 +60,7 @@ Input Player::read_input(const WindowEvents& events, float dt) {
         };
         for (const ActionGroup& group : action_groups()) {
             for (const ActionInfo& action : group.actions) {
-                read(action.name, keys_of(action, bindings));
+                read(action.name, free_keys(action, bindings));
             }
         }
         for (const Bindings::Binding& binding :

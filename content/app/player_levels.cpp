@@ -3,7 +3,6 @@
 #include "content/app/player.h"
 #include "content/load/level_list.h"
 #include "ecs/base/log.h"
-#include "ecs/components/rendering.h"
 
 #include <fmt/format.h>
 
@@ -13,22 +12,6 @@
 #include <utility>
 
 namespace limn {
-namespace {
-
-/// Played frames are antialiased unless the player or the level says how.
-void set_antialiasing(World& world, Antialiasing wanted) {
-    if (world.find_resource<Rendering>() == nullptr) {
-        world.insert_resource(Rendering{});
-    }
-    Rendering& rendering = world.resource<Rendering>();
-    if (wanted != Antialiasing::Auto) {
-        rendering.antialiasing = wanted;
-    } else if (rendering.antialiasing == Antialiasing::Auto) {
-        rendering.antialiasing = Antialiasing::Temporal;
-    }
-}
-
-}  // namespace
 
 Status Player::load(const std::string& scene, const std::string& show) {
     draw_loading(scene);
