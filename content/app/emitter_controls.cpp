@@ -4,7 +4,10 @@
 #include "ecs/components/particles.h"
 #include "ecs/world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstddef>
 
 namespace limn {
 
@@ -27,6 +30,22 @@ EmitterCounts count_particles(const World& world, Entity emitter) {
         counts.dropped = clock->dropped;
     }
     return counts;
+}
+
+std::string describe_drops(const World& world) {
+    std::uint64_t dropped = 0;
+    std::size_t emitters = 0;
+    world.query<const ParticleEmitter>().each([&](Entity entity, const ParticleEmitter&) {
+        const std::uint64_t own = count_particles(world, entity).dropped;
+        dropped += own;
+        emitters += own > 0 ? 1 : 0;
+    });
+    if (dropped == 0) {
+        return {};
+    }
+    return fmt::format(
+        "no room for {} birth{} of {} emitter{}: raise particle_emitter.capacity", dropped,
+        dropped == 1 ? "" : "s", emitters, emitters == 1 ? "" : "s");
 }
 
 void restart_emitter(World& world, Entity emitter) {

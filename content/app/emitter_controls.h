@@ -3,6 +3,7 @@
 #include "ecs/entity.h"
 
 #include <cstdint>
+#include <string>
 
 namespace limn {
 
@@ -20,6 +21,9 @@ struct EmitterCounts {
 
 /// All 0 before the first step.
 [[nodiscard]] EmitterCounts count_particles(const World& world, Entity emitter);
+
+/// "no room for 12 births of 2 emitters: ..." for the status; empty: none was dropped.
+[[nodiscard]] std::string describe_drops(const World& world);
 
 /// The emitter begins anew in the next step, prewarmed if it is so.
 void restart_emitter(World& world, Entity emitter);

@@ -18,9 +18,10 @@
 namespace limn {
 namespace {
 
-constexpr float kToastLife = 5.0f;  // [s]
-constexpr float kToastFade = 0.6f;  // [s]
-constexpr float kMargin = 14.0f;    // from the edge of the window, in units of the layout
+constexpr float kToastLife = 5.0f;       // [s]
+constexpr float kToastFade = 0.6f;       // [s]
+constexpr float kMargin = 14.0f;         // from the edge of the window, in units of the layout
+constexpr float kLoadingWidth = 260.0f;  // of what says so, in units of the layout
 constexpr std::size_t kMaxToasts = 5;
 constexpr float kTwoColumns =
     1050.0f;  // width of the window from which help may have them, in units of the layout
@@ -152,6 +153,7 @@ std::string_view Hud::focused_panel() const {
 }
 
 void Hud::toast(std::string text, ToastKind kind) {
+    std::erase_if(toasts_, [&](const Toast& toast) { return toast.text == text; });
     toasts_.push_back({std::move(text), kind});
     if (toasts_.size() > kMaxToasts) {
         toasts_.erase(toasts_.begin());
@@ -204,6 +206,9 @@ void Hud::draw_status(const HudStatus& status) {
         if (*status.weather != '\0') {
             ImGui::TextColored(kHudText, "%s", status.weather);
         }
+        if (*status.drops != '\0') {
+            ImGui::TextColored(kHudBad, "%s", status.drops);
+        }
         if (status.software_gl) {
             ImGui::TextColored(kHudAccent, "software OpenGL: rendering on the CPU");
         }
@@ -237,6 +242,7 @@ void Hud::draw_loading(const std::string& what, const std::string& step) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
     if (ImGui::Begin("##loading", nullptr, kOverlay)) {
+        ImGui::Dummy({kLoadingWidth * style_.scale, 0});  // its steps differ in length
         ImGui::TextColored(kHudDim, "loading");
         ImGui::SameLine();
         ImGui::PushFont(style_.title);

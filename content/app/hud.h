@@ -19,6 +19,7 @@ struct HudStatus {
     const char* level = "";
     const char* camera = "";     ///< name of the camera mode
     const char* weather = "";    ///< wind and rain, where there is any
+    const char* drops = "";      ///< births of particles that found no room
     double time = 0.0;           ///< of the simulation [s]
     double rate = 1.0;           ///< simulated seconds a real second; < 1: slow motion
     const char* motion = "";     ///< of the player's camera: speed, position
@@ -56,7 +57,8 @@ class Hud {
     /// Draws everything since begin_frame into the window's framebuffer.
     void end_frame();
 
-    /// A line that fades after some seconds; the newest is lowest.
+    /// A line that fades after some seconds; the newest is lowest. What is shown already begins
+    /// anew.
     void toast(std::string text, ToastKind kind = ToastKind::Note);
 
     /// The pointer is over a panel, or a text field has the focus: the game ignores that input.

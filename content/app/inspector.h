@@ -33,6 +33,7 @@ class Inspector {
     }
     [[nodiscard]] Entity selected() const { return selected_; }
     [[nodiscard]] UndoStack& undo_stack() { return undo_; }
+    [[nodiscard]] const UndoStack& undo_stack() const { return undo_; }
     /// Edits that leaving the level would lose.
     [[nodiscard]] std::size_t edit_count() const { return undo_.undo_count(); }
     /// What they changed, as a patch of the level (edit_json.h).

@@ -58,6 +58,12 @@ void draw_camera_path(WorldLines& lines, const CameraPath& path) {
 
 }  // namespace
 
+bool has_paths(const World& world) {
+    const auto* const assets = world.find_resource<Assets>();
+    return (assets != nullptr && !assets->paths.empty())
+           || !world.query<const CameraPath>().empty();
+}
+
 void draw_path_overlay(const RenderView& view, const World& world) {
     if (const auto* const assets = world.find_resource<Assets>()) {
         WorldLines lines(view, kPathColor);

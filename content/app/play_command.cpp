@@ -8,6 +8,7 @@
 #include "content/app/window.h"
 #include "content/load/level_list.h"
 #include "ecs/base/text.h"
+#include "ecs/world.h"
 #include "render/render_view.h"
 
 #include <fmt/format.h>
@@ -79,6 +80,18 @@ Status play_headless(const PlayOptions& options, bool no_display) {
 }
 
 }  // namespace
+
+void set_antialiasing(World& world, Antialiasing wanted) {
+    if (world.find_resource<Rendering>() == nullptr) {
+        world.insert_resource(Rendering{});
+    }
+    Rendering& rendering = world.resource<Rendering>();
+    if (wanted != Antialiasing::Auto) {
+        rendering.antialiasing = wanted;
+    } else if (rendering.antialiasing == Antialiasing::Auto) {
+        rendering.antialiasing = Antialiasing::Temporal;
+    }
+}
 
 Status run_play(const PlayOptions& given) {
     PlayOptions options = given;

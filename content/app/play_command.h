@@ -11,6 +11,8 @@
 
 namespace limn {
 
+class World;
+
 /// `limn play`: plays a level in a window or, without a display, renders frames along its camera
 /// path.
 struct PlayOptions {
@@ -27,6 +29,9 @@ struct PlayOptions {
     std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the
                       ///< current one for screenshots
 };
+
+/// Played frames are antialiased unless the player, by `wanted`, or the level says how.
+void set_antialiasing(World& world, Antialiasing wanted);
 
 [[nodiscard]] Status run_play(const PlayOptions& options);
 

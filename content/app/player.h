@@ -27,6 +27,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,14 @@ class Player {
     /// Runs until the window is closed.
     [[nodiscard]] Status run();
 
+    /// What the keys do.
+    [[nodiscard]] static std::span<const PlayerKey> keys();
+
   private:
     using Clock = std::chrono::steady_clock;
+    [[nodiscard]] static double seconds_between(Clock::time_point begin, Clock::time_point end) {
+        return std::chrono::duration<double>(end - begin).count();
+    }
 
     Player(
         std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device,
@@ -65,9 +72,11 @@ class Player {
     void ask_to_quit();
 
     void handle_key(const KeyPress& press);
-    void handle_function_key(int key, bool shift);
-    /// Closes what Esc closes first: a popup, the panel in use, any panel. False: nothing is open.
-    bool close_one();
+    /// Closes what Esc closes first: a popup, the panel in use, any panel; asks to quit if there
+    /// is none.
+    void close_one_or_ask();
+    void cycle_show_side();
+    void toggle_paths();
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events, float dt);
     /// Drag and wheel of an orbiting camera, or of the first camera of a model, which they take

@@ -1,5 +1,4 @@
-// What `limn play` reads and writes while it runs: shaders, the level's files, screenshots,
-// EXR images.
+// What `limn play` reads and writes while it runs: shaders, screenshots, EXR images.
 
 #include "content/app/image_file.h"
 #include "content/app/image_notes.h"
@@ -52,44 +51,6 @@ void Player::reload_shaders(bool all) {
     if (report.errors.empty()) {
         hud_->toast(fmt::format("{} shader programs reloaded", report.reloaded), ToastKind::Good);
     }
-}
-
-std::vector<std::filesystem::file_time_type> Player::level_file_times() const {
-    std::vector<std::filesystem::file_time_type> times;
-    for (const std::string& file : stage_->scene.fields.files) {
-        std::error_code missing;
-        times.push_back(std::filesystem::last_write_time(file, missing));
-    }
-    return times;
-}
-
-void Player::follow_level_files() {
-    std::vector<std::filesystem::file_time_type> times = level_file_times();
-    if (times == level_times_) {
-        return;
-    }
-    level_times_ = std::move(times);
-    level_error_.clear();
-    std::size_t updated = 0;
-    for (Stage* const stage : {stage_.get(), off_stage_.get()}) {
-        if (stage == nullptr) {
-            continue;
-        }
-        const Result<std::size_t> result = update_level(
-            stage->world, stage->scene.fields,
-            {.technique = options_.show, .off = stage == off_stage_.get()}, &made_);
-        if (!result) {
-            level_error_ = result.error().message;
-            level_error_ = level_error_.substr(0, level_error_.find('\n'));
-            log_error("{}", level_error_);
-            return;
-        }
-        updated += *result;
-    }
-    level_times_ = level_file_times();  // it may include others now
-    hud_->toast(
-        fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s"),
-        ToastKind::Good);
 }
 
 std::string Player::next_file(const char* ending) {

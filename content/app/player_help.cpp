@@ -1,23 +1,25 @@
 #include "content/app/player_help.h"
 
-#include "content/game/stones.h"
-#include "ecs/components/camera_path.h"
 #include "ecs/components/input.h"
-#include "ecs/components/surface.h"
 #include "ecs/world.h"
 
-#include <span>
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
 #include <utility>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 namespace limn {
 namespace {
 
 /// The actions of a group; neighbors with the same meaning share a line.
 void add_group(const ActionGroup& group, const Bindings* bindings, std::vector<KeyHelp>& lines) {
-    lines.push_back({"", group.title});
+    const std::size_t first = lines.size();
     const ActionInfo* last = nullptr;
     for (const ActionInfo& action : group.actions) {
-        const std::span<const std::string> keys = keys_of(action, bindings);
+        const std::vector<std::string> keys = free_keys(action, bindings);
         if (keys.empty()) {
             continue;
         }
@@ -27,6 +29,9 @@ void add_group(const ActionGroup& group, const Bindings* bindings, std::vector<K
             lines.push_back({keys.front(), action.doc});
         }
         last = &action;
+    }
+    if (lines.size() > first) {
+        lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(first), KeyHelp{"", group.title});
     }
 }
 
@@ -44,21 +49,24 @@ void add_events(const Bindings* bindings, std::vector<KeyHelp>& lines) {
     }
 }
 
-void add_camera(const HelpState& state, std::vector<KeyHelp>& lines) {
-    lines.push_back({"", "Camera"});
-    if (state.camera == CameraMode::Orbit || state.model) {
-        lines.push_back({"Drag", "circle the target"});
-        lines.push_back({"Right drag", "move sideways"});
-        lines.push_back({"Wheel", "distance"});
-    } else {
-        lines.push_back({"Drag", "look around"});
-        if (state.camera == CameraMode::Fly) {
-            lines.push_back({"Wheel", "fly slower, faster"});
+/// Those of the window that are of use now.
+void add_keys(
+    std::span<const PlayerKey> keys, const HelpState& state, std::vector<KeyHelp>& lines) {
+    std::string_view heading;
+    const PlayerKey* last = nullptr;
+    for (const PlayerKey& key : keys) {
+        if (*key.label == '\0' || (key.shown != nullptr && !key.shown(state))) {
+            continue;
         }
+        if (std::exchange(heading, key.heading) != key.heading) {
+            lines.push_back({"", key.heading});
+        } else if (last != nullptr && last->text == std::string_view(key.text)) {
+            lines.back().keys += std::string(" ") + key.label;
+            continue;
+        }
+        lines.push_back({key.label, key.text});
+        last = &key;
     }
-    lines.push_back({"Double-click", "circle what is under the pointer"});
-    lines.push_back({"Home", "back to the level's camera"});
-    lines.push_back({"C", "next camera: those of the level, fly, orbit"});
 }
 
 }  // namespace
@@ -72,7 +80,37 @@ const ActionGroup* driving_group(const World& world, Entity camera) {
     return nullptr;
 }
 
-std::vector<KeyHelp> player_help(const World& world, const HelpState& state) {
+const PlayerKey* find_key(std::span<const PlayerKey> keys, int key, int modifiers) {
+    const PlayerKey* found = nullptr;
+    for (const PlayerKey& row : keys) {
+        const int missing = row.modifiers & ~modifiers;
+        const int other = (row.modifiers ^ modifiers) & GLFW_MOD_CONTROL;
+        if (row.key == key && row.act != nullptr && missing == 0 && other == 0
+            && (found == nullptr || row.modifiers > found->modifiers)) {
+            found = &row;
+        }
+    }
+    return found;
+}
+
+std::vector<std::string> free_keys(const ActionInfo& action, const Bindings* bindings) {
+    const std::span<const std::string> bound = keys_of(action, bindings);
+    std::vector<std::string> keys(bound.begin(), bound.end());
+    if (bindings != nullptr) {
+        for (const Bindings::Binding& binding : bindings->bindings) {
+            if (!binding.text.empty() && binding.action != action.name) {
+                std::erase_if(keys, [&](const std::string& key) {
+                    return std::find(binding.keys.begin(), binding.keys.end(), key)
+                           != binding.keys.end();
+                });
+            }
+        }
+    }
+    return keys;
+}
+
+std::vector<KeyHelp>
+player_help(const World& world, const HelpState& state, std::span<const PlayerKey> keys) {
     std::vector<KeyHelp> lines;
     const auto* bindings = world.find_resource<Bindings>();
     for (const ActionGroup& group : action_groups()) {
@@ -85,47 +123,7 @@ std::vector<KeyHelp> player_help(const World& world, const HelpState& state) {
         }
     }
     add_events(bindings, lines);
-    add_camera(state, lines);
-    lines.push_back({"", "Time and levels"});
-    lines.push_back({"Space", "pause, resume"});
-    lines.push_back({".", "one step"});
-    lines.push_back({"R", "reload the level from its file"});
-    lines.push_back({"PgUp PgDn", "previous, next level (Tab too)"});
-    lines.push_back({"", "Panels"});
-    if (state.model) {
-        lines.push_back({"M", "clips, morph targets and cameras of the model"});
-    }
-    lines.push_back({"F1", "these keys"});
-    lines.push_back({"F2", "inspector: every entity and component"});
-    lines.push_back({"F3", "profiler of systems and passes"});
-    lines.push_back({"F4", "intermediate textures of the frame"});
-    lines.push_back({"F6", "techniques that levels show, each with and without"});
-    const auto* assets = world.find_resource<Assets>();
-    if ((assets != nullptr && !assets->paths.empty()) || !world.query<const CameraPath>().empty()) {
-        lines.push_back({"F12", "paths with their knots, cameras' with their times"});
-    }
-    if (state.show) {
-        lines.push_back({"F7", "the technique on, off, side by side"});
-    }
-    if (state.panel) {
-        lines.push_back({"Drag", "a number in a panel; Ctrl click to type it"});
-    }
-    lines.push_back({"", "Edit"});
-    const bool throws = !world.query<const StoneThrower>().empty();
-    lines.push_back(
-        {"Click", throws ? "select; throw a stone into the water" : "select what is under it"});
-    if (state.inspector) {
-        lines.push_back({"F", "circle the selection"});
-    }
-    lines.push_back({"Ctrl Z", "undo"});
-    lines.push_back({"Ctrl Y", "redo"});
-    lines.push_back({"", "Program"});
-    lines.push_back({"F5", "reload the shaders (changed files reload by themselves)"});
-    lines.push_back({"F8", "hide the status"});
-    lines.push_back({"F9", "screenshot as PNG; with Shift: panels, too"});
-    lines.push_back({"F10", "HDR image with all layers as EXR"});
-    lines.push_back({"F11", "full screen"});
-    lines.push_back({"Esc", "close the popup, the panel; then quit"});
+    add_keys(keys, state, lines);
     return lines;
 }
 

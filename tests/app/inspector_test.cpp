@@ -16,6 +16,8 @@
 #include <doctest/doctest.h>
 #include <imgui.h>
 
+#include <string>
+
 namespace limn {
 namespace {
 
@@ -47,6 +49,17 @@ class OffscreenHud {
         ImGui::NewFrame();
         draw();
         ImGui::EndFrame();
+    }
+
+    /// The text of one window in one frame.
+    template <typename Draw>
+    [[nodiscard]] std::string text(Draw draw) const {
+        ImGui::SetClipboardText("");
+        frame([&] {
+            ImGui::LogToClipboard();  // until the window ends
+            draw();
+        });
+        return ImGui::GetClipboardText();
     }
 
     HudStyle style;
@@ -139,6 +152,64 @@ TEST_CASE("inspector: a drag of a slider sets the component and is one step of u
     CHECK(strength() == kStrength);
     CHECK_FALSE(inspector.undo_stack().redo(world).empty());
     CHECK(strength() == dragged);
+}
+
+TEST_CASE("inspector: a color has the numbers of the file, and its swatch says that it is sRGB") {
+    const OffscreenHud hud;
+    World world;
+    register_all_components();
+    PointLight light{.color = {0.5f, 0.25f, 0.125f}};
+    const auto draw = [&] {
+        ImGui::SetNextWindowSize({500, 500});
+        ImGui::Begin("one");
+        static_cast<void>(edit_fields(hud.style, world, component_info<PointLight>(), &light));
+        ImGui::End();
+    };
+    hud.frame(draw);
+    const std::string text = hud.text(draw);
+    CAPTURE(text);
+    const std::size_t red = text.find("0.5 ");
+    const std::size_t green = text.find("0.25 ", red);
+    const std::size_t blue = text.find("0.125 ", green);
+    REQUIRE(blue != std::string::npos);
+    CHECK(text.find("sRGB", blue) != std::string::npos);
+    CHECK(text.find("0.735") == std::string::npos);  // 0.5 in sRGB
+}
+
+TEST_CASE("inspector: entities are found by their name, a component or a field") {
+    register_all_components();
+    struct Case {
+        const char* words;
+        bool lamp;
+        bool teapot;
+    };
+    for (const Case& one :
+         {Case{"", true, true},
+          {"LAM", true, false},
+          {"mesh_inst", false, true},
+          {"intensity", true, false},
+          {"illumin", false, false}}) {
+        const OffscreenHud hud;
+        World world;
+        world.create(Name{"lamp"}, PointLight{});
+        world.create(Name{"teapot"}, MeshInstance{});
+        Inspector inspector;
+        inspector.open = true;
+        const auto draw = [&] { inspector.draw(hud.style, world, Schedule()); };
+        for (int i = 0; i < 3; ++i) {
+            hud.frame(draw);
+        }
+        // Into the search field, near the top.
+        hud.frame(draw, {1100, 80});
+        hud.frame(draw, {1100, 80}, true);
+        hud.frame(draw, {1100, 80});
+        ImGui::GetIO().AddInputCharactersUTF8(one.words);
+        hud.frame(draw, {1100, 80});
+        const std::string text = hud.text(draw);
+        CAPTURE(text);
+        CHECK((text.find("lamp") != std::string::npos) == one.lamp);
+        CHECK((text.find("teapot") != std::string::npos) == one.teapot);
+    }
 }
 
 TEST_CASE("inspector: nameless entities are called by what they show or do") {

@@ -125,7 +125,7 @@ TEST_CASE("key list: the plot is as high as the values, in powers of two") {
     CHECK(plot_top({{0, 1000}}) == 1024);
 }
 
-TEST_CASE("emitter controls: counts, a restart without particles, and another seed") {
+TEST_CASE("emitter controls: counts, drops told, a restart without particles, and another seed") {
     register_all_components();
     World world;
     ParticleEmitter settings;
@@ -142,7 +142,9 @@ TEST_CASE("emitter controls: counts, a restart without particles, and another se
     CHECK(counts.born == 80);
     CHECK(counts.dropped == 5);
     CHECK_FALSE(counts.on_gpu);
+    CHECK(describe_drops(world).starts_with("no room for 5 births of 1 emitter:"));
     restart_emitter(world, emitter);
+    CHECK(describe_drops(world).empty());
     CHECK(count_particles(world, emitter).alive == 0);
     CHECK(count_particles(world, emitter).born == 0);
     CHECK(world.get<const ParticlePool>(emitter).clock.time == 0);

@@ -98,6 +98,8 @@ TEST_CASE("play: keys move the camera and open the inspector, and F9 saves what 
     PlaySession session;
     session.start();
 
+    xdotool("search --name '^toy - Limn$'");  // the window's title; fails where there is none
+
     // Time passes until Space stops it. F8 hides the status, whose numbers never rest.
     xdotool("key F8");
     const Pixels first = session.display.grab();
