@@ -35,11 +35,21 @@ Indices welded_indices(const MeshData& mesh) {
     return kept;
 }
 
-/// The largest distance of a vertex of `mesh` from the triangles `coarser` [m].
-float distance_from(const MeshData& mesh, const Indices& coarser) {
+/// The vertices that `indices` name, each once.
+Indices vertices_of(Indices indices) {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    return indices;
+}
+
+/// The largest distance of one of `vertices` from the triangles `coarser` [m].
+float distance_from(const MeshData& mesh, const Indices& vertices, const Indices& coarser) {
+    if (coarser.empty()) {
+        return INFINITY;
+    }
     const TriangleGrid grid(mesh.positions, coarser);
     float largest = 0;
-    for (const std::uint32_t index : mesh.indices) {
+    for (const std::uint32_t index : vertices) {
         largest = std::max(largest, grid.distance(mesh.positions[index], largest));
     }
     return largest;
@@ -74,6 +84,7 @@ std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
     }
     const bool rigid = mesh.skin.empty() && mesh.morphs.empty();
     const Indices all = rigid ? welded_indices(mesh) : mesh.indices;
+    const Indices vertices = vertices_of(all);
     Indices finer = all;
     finer.resize(finer.size() / 3 * 3);
     float error = 0;
@@ -82,9 +93,9 @@ std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
             return static_cast<std::size_t>(of * static_cast<float>(finer.size() / 3)) * 3;
         };
         Indices coarser = collapse(mesh, finer, share(kRatio));
-        float distance = coarser.empty() ? INFINITY : distance_from(mesh, coarser);
+        float distance = distance_from(mesh, vertices, coarser);
         Indices merged = mesh.morphs.empty() ? cluster(mesh, all, share(kRatio)) : Indices();
-        const float merged_distance = merged.empty() ? INFINITY : distance_from(mesh, merged);
+        const float merged_distance = distance_from(mesh, vertices, merged);
         if (coarser.size() > share(kWorthwhile) || merged_distance < distance) {
             coarser = std::move(merged);
             distance = merged_distance;
