@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <tuple>
 
@@ -94,7 +95,7 @@ void InstanceCollector::collect_casters(
         .shading = volume.shading,
         .eye = volume.eye,
         .reach = volume.reach,
-        .casters = true};
+        .casters = &volume};
     collect_from(items, casters, ring, list);
 }
 
@@ -140,29 +141,60 @@ void InstanceCollector::count_block(
     const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
     BlockWork& work) const {
     KeyTable table(work.keys);
-    if (selection.casters && !block.casts_shadows) {
+    if (selection.casters != nullptr && !block.casts_shadows) {
         return;
     }
     const BoxBlock& boxes = block.boxes;
     const auto count = static_cast<int>(block.size());
     std::uint8_t visible[kCullBlock];
     cull_boxes(selection.frustum, boxes, count, visible);
-    if (selection.casters) {
+    if (selection.casters != nullptr) {
         cull_visible_boxes(selection.shading, boxes, count, visible);
         cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
     }
     for (std::uint32_t i = 0; i < block.size(); ++i) {
-        const DrawKey key = block.keys[i];
+        DrawKey key = block.keys[i];
         work.local[i] = kHidden;
-        if (visible[i] == 0 || (selection.casters && is_blended(key))
+        if (visible[i] == 0 || (selection.casters != nullptr && is_blended(key))
             || is_part_of(items.world(), block.entities[i], selection.hidden)) {
             continue;
+        }
+        if (selection.casters != nullptr && selection.casters->detail > 0) {
+            key |= static_cast<DrawKey>(level_of(items, block, i, *selection.casters)) << kLevelBit;
         }
         // Distance to the far side of the box, so that large surroundings (floor, walls) come last.
         const float far_side = glm::dot(selection.forward, boxes.middle(i) - selection.eye)
                                + glm::dot(glm::abs(selection.forward), boxes.half(i));
         work.local[i] = table.count(key, far_side);
     }
+}
+
+std::uint32_t InstanceCollector::level_of(
+    const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
+    const CasterVolume& volume) {
+    const DrawState state = draw_state(block.keys[i]);
+    const std::uint32_t mesh_index =
+        state.deformed ? items.shapes()[state.index].mesh.index : state.index;
+    const std::vector<CoarseRange>& coarse = items.meshes().meshes()[mesh_index].coarse;
+    const bool holes = items.materials().batch(state.batch).features.has(kAlphaMask);
+    if (coarse.empty() || state.inflated || holes) {
+        return 0;
+    }
+    const Vec4* rows = block.now[i].world.row;
+    float scale2 = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 column = {rows[0][axis], rows[1][axis], rows[2][axis]};
+        scale2 = std::max(scale2, glm::dot(column, column));
+    }
+    const Vec3 row = volume.depth_row;
+    const float nearest = glm::dot(row, block.boxes.middle(i)) + volume.depth_row.w
+                          - glm::dot(glm::abs(row), block.boxes.half(i));
+    const float allowed = volume.detail * nearest / (volume.texels_per_unit * std::sqrt(scale2));
+    std::uint32_t level = 0;
+    while (level < coarse.size() && coarse[level].error <= allowed) {
+        ++level;
+    }
+    return level;
 }
 
 void InstanceCollector::write_block(
@@ -296,7 +328,13 @@ void InstanceCollector::add_command(
     run.mirrored = state.mirrored;
     run.first_command = static_cast<std::uint32_t>(commands_.size());
     run.command_count = 1;
-    commands_.push_back({mesh.index_count, count, mesh.first_index, base_vertex, first});
+    if (state.level > 0) {
+        const CoarseRange& level = mesh.coarse[state.level - 1];
+        commands_.push_back({level.index_count, count, level.first_index, base_vertex, first});
+        list.coarse = true;
+    } else {
+        commands_.push_back({mesh.index_count, count, mesh.first_index, base_vertex, first});
+    }
     if (!runs.empty() && runs.back().features == run.features
         && runs.back().textures == run.textures && runs.back().mirrored == run.mirrored) {
         ++runs.back().command_count;

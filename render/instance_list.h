@@ -52,6 +52,7 @@ struct InstanceList {
     int visible = 0;
     int opaque_instances = 0;  ///< these come first in `instances`
     std::int64_t triangles = 0;
+    bool coarse = false;  ///< of casters: some mesh is drawn with coarse triangles
 };
 
 /// The region that a light's shadow casters are collected from.
@@ -60,6 +61,11 @@ struct CasterVolume {
     Frustum shading = kEverywhere;  ///< casters outside shade nothing visible
     Vec3 eye = {0, 0, 0};
     float reach = INFINITY;  ///< from the eye [m]
+    // What a texel of the map is, for the choice of coarse triangles (CoarseTriangles): at `p`,
+    // texels_per_unit / dot(depth_row, p) texels per meter.
+    float texels_per_unit = 0;
+    Vec4 depth_row = {0, 0, 0, 1};
+    float detail = 0;  ///< Shadow::detail [texels]; 0: meshes as they are
 };
 
 /// Reuses its memory from frame to frame.
@@ -84,7 +90,7 @@ class InstanceCollector {
         float reach = INFINITY;
         float previous_alpha = 0;
         bool velocity = false;
-        bool casters = false;
+        const CasterVolume* casters = nullptr;  ///< null: not of casters
         Entity hidden = {};
         bool boxes = false;
     };
@@ -126,6 +132,10 @@ class InstanceCollector {
     void count_block(
         const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
         BlockWork& work) const;
+    /// The level of coarse triangles that `volume` needs of an item: DrawState::level.
+    static std::uint32_t level_of(
+        const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
+        const CasterVolume& volume);
     void write_block(
         const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
         BlockWork& work, InstanceList& list);

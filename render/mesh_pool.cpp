@@ -1,5 +1,6 @@
 #include "render/mesh_pool.h"
 
+#include "ecs/base/jobs.h"
 #include "ecs/base/log.h"
 #include "render/gpu/grown_buffer.h"
 
@@ -85,21 +86,36 @@ MeshPool::MeshPool() : streams_("meshes") {
 void MeshPool::update(std::span<const MeshData> meshes) {
     const std::size_t known = std::min(meshes_.size(), meshes.size());
     meshes_.resize(std::max(meshes_.size(), meshes.size()));
+    // Levels of the meshes that can be drawn, and are new.
+    std::vector<std::vector<CoarseTriangles>> coarse(meshes.size());
+    std::vector<char> drawable(meshes.size());
+    parallel_for(meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const bool fresh = i >= known;
+            if (fresh || meshes_[i].version != meshes[i].version) {
+                drawable[i] = is_drawable(meshes[i]) ? 1 : 0;
+                if (fresh && drawable[i] != 0) {
+                    coarse[i] = simplify_triangles(meshes[i]);
+                }
+            }
+        }
+    });
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i >= known || meshes_[i].version != meshes[i].version) {
             release(meshes_[i]);
             meshes_[i] = {};
             meshes_[i].version = meshes[i].version;
             meshes_[i].bounds = meshes[i].bounds;
-            if (is_drawable(meshes[i])) {
-                upload(meshes[i], meshes_[i]);
+            if (drawable[i] != 0) {
+                upload(meshes[i], coarse[i], meshes_[i]);
             }
             ++revision_;
         }
     }
 }
 
-void MeshPool::upload(const MeshData& mesh, MeshRange& range) {
+void MeshPool::upload(
+    const MeshData& mesh, std::span<const CoarseTriangles> coarse, MeshRange& range) {
     if (is_empty(range.bounds)) {
         for (const Vec3& p : mesh.positions) {
             grow(range.bounds, p);
@@ -113,7 +129,19 @@ void MeshPool::upload(const MeshData& mesh, MeshRange& range) {
     range.base_vertex = static_cast<std::int32_t>(first);
     streams_.reserve(vertex_slots_.capacity());
     const std::size_t old_indices = index_slots_.capacity();
-    range.first_index = index_slots_.allocate_or_grow(range.index_count, kInitialIndices);
+    std::vector<std::uint32_t> indices(
+        mesh.indices.begin(), mesh.indices.begin() + range.index_count);
+    for (const CoarseTriangles& level : coarse) {
+        range.coarse.push_back(
+            {static_cast<std::uint32_t>(indices.size()),
+             static_cast<std::uint32_t>(level.indices.size()), level.error});
+        indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+    }
+    range.first_index =
+        index_slots_.allocate_or_grow(static_cast<std::uint32_t>(indices.size()), kInitialIndices);
+    for (CoarseRange& level : range.coarse) {
+        level.first_index += range.first_index;
+    }
     if (index_slots_.capacity() > old_indices) {
         indices_ = gpu::grown_buffer(
             "mesh indices", indices_, 4 * old_indices, std::size_t{4} * index_slots_.capacity());
@@ -134,15 +162,17 @@ void MeshPool::upload(const MeshData& mesh, MeshRange& range) {
     if (streams_.has(VertexStream::Color)) {
         write_stream(streams_, VertexStream::Color, first, mesh, pack_color);
     }
-    indices_.write(
-        std::size_t{4} * range.first_index,
-        std::span<const std::uint32_t>(mesh.indices).first(range.index_count));
+    indices_.write(std::size_t{4} * range.first_index, std::span<const std::uint32_t>(indices));
 }
 
 void MeshPool::release(const MeshRange& range) {
     if (range.index_count > 0) {
         vertex_slots_.release(static_cast<std::uint32_t>(range.base_vertex), range.vertex_count);
-        index_slots_.release(range.first_index, range.index_count);
+        std::uint32_t count = range.index_count;
+        for (const CoarseRange& level : range.coarse) {
+            count += level.index_count;
+        }
+        index_slots_.release(range.first_index, count);
     }
 }
 

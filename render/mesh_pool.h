@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/surface.h"
+#include "render/coarse_triangles.h"
 #include "render/gpu/buffer.h"
 #include "render/slot_allocator.h"
 #include "render/vertex_streams.h"
@@ -13,6 +14,14 @@ namespace limn {
 // All meshes in one set of vertex streams and one index buffer, so that a multi-draw covers any of
 // them without a state change. Full buffers are replaced by ones twice as large, copied on the GPU.
 // A mesh that was edited or freed (MeshData::version) is uploaded anew; its old range is reused.
+// Coarser triangles are made of new meshes only: what is edited once may be edited every frame.
+
+/// Coarser triangles of a mesh, for its shadows.
+struct CoarseRange {
+    std::uint32_t first_index = 0;
+    std::uint32_t index_count = 0;
+    float error = 0;  ///< CoarseTriangles::error [m]
+};
 
 /// The range of a mesh in the buffers.
 struct MeshRange {
@@ -20,7 +29,8 @@ struct MeshRange {
     std::uint32_t index_count = 0;  ///< 0: nothing to draw
     std::int32_t base_vertex = 0;
     std::uint32_t vertex_count = 0;
-    std::uint32_t version = 0;  ///< of the MeshData
+    std::uint32_t version = 0;        ///< of the MeshData
+    std::vector<CoarseRange> coarse;  ///< from fine to coarse; their indices follow the mesh's own
     Bounds bounds;
     bool colored = false;   ///< has vertex colors
     bool tangents = false;  ///< has vertex tangents, as normal maps need
@@ -47,7 +57,7 @@ class MeshPool {
 
   private:
     void release(const MeshRange& range);
-    void upload(const MeshData& mesh, MeshRange& range);
+    void upload(const MeshData& mesh, std::span<const CoarseTriangles> coarse, MeshRange& range);
 
     std::vector<MeshRange> meshes_;
     std::uint64_t revision_ = 0;

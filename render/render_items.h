@@ -30,8 +30,8 @@ class World;
 // Particles that are meshes (ParticleMesh) are items, too, in blocks after those of the world.
 
 /// Draw state of an item as a number, by which items are sorted and counted. From the high bits:
-/// blended, inflated, deformed, batch (28 bits), mirrored, index of the mesh or, if deformed, of
-/// the deformed instance (32 bits).
+/// blended, inflated, deformed, batch (28 bits), mirrored, level of coarse triangles (3 bits),
+/// index of the mesh or, if deformed, of the deformed instance (29 bits).
 using DrawKey = std::uint64_t;
 
 struct DrawState {
@@ -40,12 +40,15 @@ struct DrawState {
     bool deformed = false;
     bool mirrored = false;
     std::uint32_t batch = 0;  ///< of MaterialPool
+    std::uint32_t level = 0;  ///< 0: the mesh; n: MeshRange::coarse[n - 1], of shadow casters
     std::uint32_t index = 0;  ///< of the mesh or, if deformed, of the deformed instance
 };
+inline constexpr int kLevelBit = 29;
 [[nodiscard]] constexpr DrawKey make_draw_key(const DrawState& s) {
     return static_cast<DrawKey>(s.blended) << 63 | static_cast<DrawKey>(s.inflated) << 62
            | static_cast<DrawKey>(s.deformed) << 61 | static_cast<DrawKey>(s.batch) << 33
-           | static_cast<DrawKey>(s.mirrored) << 32 | s.index;
+           | static_cast<DrawKey>(s.mirrored) << 32 | static_cast<DrawKey>(s.level) << kLevelBit
+           | s.index;
 }
 [[nodiscard]] constexpr bool is_blended(DrawKey key) {
     return key >> 63 != 0;
@@ -57,7 +60,8 @@ struct DrawState {
         .deformed = (key >> 61 & 1) != 0,
         .mirrored = (key >> 32 & 1) != 0,
         .batch = static_cast<std::uint32_t>(key >> 33) & 0x0fffffffu,
-        .index = static_cast<std::uint32_t>(key)};
+        .level = static_cast<std::uint32_t>(key >> kLevelBit) & 7u,
+        .index = static_cast<std::uint32_t>(key) & ((1u << kLevelBit) - 1)};
 }
 
 /// Up to 1024 items of one archetype, or particles of one emitter. The spans are columns of the

@@ -33,6 +33,7 @@ struct Shadow {
     int cascades = 3;
     float distance = 40.0f;
     float bias = 1.0f;
+    float detail = 0.5f;
 };
 
 LIMN_FIELDS(Shadow) {
@@ -47,6 +48,9 @@ LIMN_FIELDS(Shadow) {
     LIMN_FIELD(cascades, "shadow map cascades of a directional light", "", 1, 4);
     LIMN_FIELD(distance, "shadow distance of a directional light, from the camera", "m", 0.1, 1e5);
     LIMN_FIELD(bias, "factor on the automatic bias; 1 needs no tuning, 0 = none", "", 0, 8);
+    LIMN_FIELD(
+        detail, "error up to which casters are drawn with fewer triangles; 0 = as they are",
+        "texels", 0, 8);
 }
 
 /// Tag: the mesh instance casts no shadow.

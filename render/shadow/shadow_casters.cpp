@@ -12,9 +12,15 @@ namespace limn {
 
 CasterVolume make_caster_volume(const ShadowView& view) {
     CasterVolume volume = {make_frustum(view.clip_from_world), view.shading, view.eye, view.reach};
+    const Mat4 rows = glm::transpose(view.clip_from_world);
+    // s = row_s p / q changes by (row_s - s row_q) / q, and s is within -1 .. 1.
+    const float slope = std::max(glm::length(Vec3(rows[0])), glm::length(Vec3(rows[1])));
+    volume.depth_row = rows[3];
+    volume.texels_per_unit =
+        0.5f * static_cast<float>(view.resolution) * (slope + glm::length(Vec3(rows[3])));
+    volume.detail = view.detail;
     if (view.clamp_depth) {
         // Casters in front of the near plane count; beyond the far one (depth 0) they do not.
-        const Mat4 rows = glm::transpose(view.clip_from_world);
         volume.frustum.planes[4] = rows[2] / std::max(glm::length(Vec3(rows[2])), 1e-20f);
     }
     return volume;

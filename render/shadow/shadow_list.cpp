@@ -7,6 +7,9 @@
 #include "render/shadow/light_bounds.h"
 #include "render/shadow/perspective_view.h"
 
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <bit>
 
@@ -70,6 +73,20 @@ slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     return slice;
 }
 
+/// The view with depths farther from the light by its detail, so that where coarse triangles lie
+/// before a surface they do not shadow it.
+Mat4 set_back(const ShadowView& view) {
+    Mat4 rows = glm::transpose(view.clip_from_world);
+    const CasterVolume volume = make_caster_volume(view);
+    const float distance = view.detail / volume.texels_per_unit;  // [m] where q is 1
+    if (rows[3] == Vec4(0, 0, 0, 1)) {
+        rows[2].w -= distance * glm::length(Vec3(rows[2]));
+    } else {
+        rows[2] /= 1 + distance;  // depth = near / q; distances grow with q
+    }
+    return glm::transpose(rows);
+}
+
 std::uint64_t key_of(Entity entity) {
     return static_cast<std::uint64_t>(entity.generation) << 32 | entity.index;
 }
@@ -84,6 +101,7 @@ Shadow sanitize(const Shadow& shadow) {
     valid.cascades = std::clamp(shadow.cascades, 1, kMaxCascades);
     valid.distance = finite_or(shadow.distance, 40.0f);
     valid.distance = valid.distance > 0 ? valid.distance : 40.0f;
+    valid.detail = std::clamp(finite_or(shadow.detail, 0.0f), 0.0f, 8.0f);
     valid.bias = std::clamp(finite_or(shadow.bias, 1.0f), 0.0f, 8.0f);
     if (valid.method == ShadowMethod::Perspective && valid.filter > ShadowFilter::Soft) {
         valid.filter = ShadowFilter::Soft;  // depth per meter is not constant in such a map
@@ -165,6 +183,7 @@ void ShadowCollector::request_views(
         request.view_kind = request.kind == layout::kShadowCascades ? kind : 0u;
         for (std::size_t i = request.first_view; i < views_.size(); ++i) {
             views_[i].reach = light.radius;
+            views_[i].detail = perspective ? 0.0f : settings.detail;
         }
         requests_.push_back(request);
     }
@@ -337,7 +356,9 @@ void ShadowCollector::collect(
         for (std::size_t i = 0; request.placed && i < request.count; ++i) {
             const std::size_t v = request.first_view + i;
             CachedMap& map = cached_map(request, i);
-            const std::uint64_t signature = hash_combine(signatures_[v], frame.assets_identity);
+            const std::uint64_t signature = hash_combine(
+                hash_combine(signatures_[v], frame.assets_identity),
+                std::bit_cast<std::uint32_t>(views_[v].detail));
             if (map.drawn && map.signature == signature
                 && map.clip_from_world == views_[v].clip_from_world) {
                 continue;
@@ -346,16 +367,17 @@ void ShadowCollector::collect(
             map.signature = signature;
             map.clip_from_world = views_[v].clip_from_world;
             layout::ViewBlock block{};
-            block.clip_from_world = views_[v].clip_from_world;
             ShadowDraw& draw = list.due.emplace_back();
             draw.place = map.place;
             draw.clamp_depth = views_[v].clamp_depth;
-            draw.view_block = frame.ring->push_value(block);
             // All that casts shadows may enter a map later.
             const bool all = frame.warm_up && list.due.size() == 1;
             collector_.collect_casters(
                 *frame.items, all ? CasterVolume{kEverywhere} : volumes_[v], *frame.ring,
                 draw.casters);
+            block.clip_from_world =
+                draw.casters.coarse ? set_back(views_[v]) : views_[v].clip_from_world;
+            draw.view_block = frame.ring->push_value(block);
         }
     }
 }

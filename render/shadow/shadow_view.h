@@ -27,6 +27,7 @@ struct ShadowView {
     bool clamp_depth = false;  ///< casters in front of the near plane are clamped to it
     /// Penumbra width [texels] per depth difference of 1 and source size of 1 m (or 1 rad).
     float penumbra = 0;
+    float detail = 0;               ///< Shadow::detail [texels]
     Frustum shading = kEverywhere;  ///< of a cascade: casters outside shade nothing visible
 };
 

@@ -101,13 +101,15 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: every mesh instance once, with its b
 TEST_CASE_FIXTURE(ItemsTest, "render items: the state of a draw survives its key") {
     for (int bits = 0; bits < 16; ++bits) {
         const DrawState state = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
-                                 (bits & 8) != 0, 0x0abcdef1,      0xfedcba98};
+                                 (bits & 8) != 0, 0x0abcdef1,      5,
+                                 0x1edcba98};
         const DrawState back = draw_state(make_draw_key(state));
         CHECK(back.blended == state.blended);
         CHECK(back.inflated == state.inflated);
         CHECK(back.deformed == state.deformed);
         CHECK(back.mirrored == state.mirrored);
         CHECK(back.batch == state.batch);
+        CHECK(back.level == state.level);
         CHECK(back.index == state.index);
     }
 }

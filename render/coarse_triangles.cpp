@@ -1,0 +1,113 @@
+#include "render/coarse_triangles.h"
+
+#include "render/triangle_grid.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace limn {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+constexpr std::size_t kMinTriangles = 48;  // a mesh of fewer costs less than its draw call
+constexpr std::size_t kCoarsestTriangles = 8;
+constexpr float kMaxError = 0.5f;  // quadric error, relative to the size of the mesh
+constexpr float kRatio = 0.4f;     // triangles wanted of a level, of those of the one before
+constexpr float kWorthwhile = 0.75f;
+
+/// The triangles of the mesh that are no lines, with one of the vertices at the same place.
+Indices welded_indices(const MeshData& mesh) {
+    Indices indices(mesh.indices.size() / 3 * 3);
+    meshopt_generateShadowIndexBuffer(
+        indices.data(), mesh.indices.data(), indices.size(), mesh.positions.data(),
+        mesh.positions.size(), sizeof(Vec3), sizeof(Vec3));
+    Indices kept;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        const std::uint32_t* t = &indices[i];
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) {
+            kept.insert(kept.end(), t, t + 3);
+        }
+    }
+    return kept;
+}
+
+/// The vertices that `indices` name, each once.
+Indices vertices_of(Indices indices) {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    return indices;
+}
+
+/// The largest distance of one of `vertices` from the triangles `coarser` [m].
+float distance_from(const MeshData& mesh, const Indices& vertices, const Indices& coarser) {
+    if (coarser.empty()) {
+        return INFINITY;
+    }
+    const TriangleGrid grid(mesh.positions, coarser);
+    float largest = 0;
+    for (const std::uint32_t index : vertices) {
+        largest = std::max(largest, grid.distance(mesh.positions[index], largest));
+    }
+    return largest;
+}
+
+/// `finer` with edges collapsed, as far as that keeps the surface closed.
+Indices collapse(const MeshData& mesh, const Indices& finer, std::size_t wanted) {
+    Indices coarser(finer.size());
+    coarser.resize(meshopt_simplify(
+        coarser.data(), finer.data(), finer.size(), &mesh.positions[0].x, mesh.positions.size(),
+        sizeof(Vec3), wanted, kMaxError));
+    return coarser;
+}
+
+/// `finer` with the vertices in each cell of a grid merged, closed or not.
+Indices cluster(const MeshData& mesh, const Indices& finer, std::size_t wanted) {
+    Indices coarser(finer.size());
+    coarser.resize(meshopt_simplifySloppy(
+        coarser.data(), finer.data(), finer.size(), &mesh.positions[0].x, mesh.positions.size(),
+        sizeof(Vec3), wanted, kMaxError));
+    return coarser;
+}
+
+}  // namespace
+
+std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
+    std::vector<CoarseTriangles> levels;
+    const auto finite = [](const Vec3& p) { return is_finite(p); };
+    if (mesh.indices.size() < 3 * kMinTriangles
+        || !std::all_of(mesh.positions.begin(), mesh.positions.end(), finite)) {
+        return levels;
+    }
+    const bool rigid = mesh.skin.empty() && mesh.morphs.empty();
+    const Indices all = rigid ? welded_indices(mesh) : mesh.indices;
+    const Indices vertices = vertices_of(all);
+    Indices finer = all;
+    finer.resize(finer.size() / 3 * 3);
+    float error = 0;
+    while (levels.size() < kMaxCoarseLevels && finer.size() > 3 * kCoarsestTriangles) {
+        const auto share = [&](float of) {
+            return static_cast<std::size_t>(of * static_cast<float>(finer.size() / 3)) * 3;
+        };
+        Indices coarser = collapse(mesh, finer, share(kRatio));
+        float distance = distance_from(mesh, vertices, coarser);
+        Indices merged = mesh.morphs.empty() ? cluster(mesh, all, share(kRatio)) : Indices();
+        const float merged_distance = distance_from(mesh, vertices, merged);
+        if (coarser.size() > share(kWorthwhile) || merged_distance < distance) {
+            coarser = std::move(merged);
+            distance = merged_distance;
+        }
+        if (coarser.empty() || coarser.size() > share(kWorthwhile)) {
+            break;
+        }
+        error = std::max(error, distance);
+        levels.push_back({coarser, error});
+        finer = std::move(coarser);
+    }
+    return levels;
+}
+
+}  // namespace limn

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Distances to a set of triangles, by a uniform grid of about as many cells as triangles.
+
+/// Distance [m] of `p` from a triangle, which may be a line or a point.
+/// After Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+[[nodiscard]] float
+distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+class TriangleGrid {
+  public:
+    /// Three valid indices per triangle, at least one triangle; all positions finite. Both spans
+    /// must outlive the grid.
+    TriangleGrid(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
+
+    /// The distance of `p` from the nearest triangle, or any that is at most `enough` [m].
+    [[nodiscard]] float distance(const Vec3& p, float enough) const;
+
+  private:
+    [[nodiscard]] IVec3 cell_of(const Vec3& p) const;
+    [[nodiscard]] std::size_t number_of(const IVec3& cell) const;
+
+    std::span<const Vec3> positions_;
+    std::span<const std::uint32_t> indices_;
+    Vec3 low_ = {0, 0, 0};
+    float side_ = 1;                        ///< of a cell [m]
+    IVec3 cells_ = {1, 1, 1};               ///< along each axis
+    std::vector<std::uint32_t> first_;      ///< by cell, and the end
+    std::vector<std::uint32_t> triangles_;  ///< of one cell after the other
+};
+
+}  // namespace limn

@@ -1,0 +1,163 @@
+#include "content/make/shapes.h"
+#include "render/coarse_triangles.h"
+#include "render/triangle_grid.h"
+#include "tests/near.h"
+#include "tests/render/shadow_fixture.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace limn::test {
+namespace {
+
+/// The least distance of `p` from any triangle, by a loop over all.
+float nearest_of_all(const Vec3& p, const MeshData& mesh, std::span<const std::uint32_t> indices) {
+    float nearest = INFINITY;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        nearest = std::min(
+            nearest, distance_to_triangle(
+                         p, mesh.positions[indices[i]], mesh.positions[indices[i + 1]],
+                         mesh.positions[indices[i + 2]]));
+    }
+    return nearest;
+}
+
+MeshData ball() {
+    return make_sphere({.radius = 0.5f, .segments = 48, .rings = 24});
+}
+
+}  // namespace
+
+TEST_CASE("triangle grid: the distance of a triangle is that of its side, edge or corner") {
+    const Vec3 a = {0, 0, 0};
+    const Vec3 b = {2, 0, 0};
+    const Vec3 c = {0, 2, 0};
+    CHECK(distance_to_triangle({0.5f, 0.5f, 3}, a, b, c) == near(3));
+    CHECK(distance_to_triangle({0.5f, -2, 0}, a, b, c) == near(2));
+    CHECK(distance_to_triangle({-3, -4, 0}, a, b, c) == near(5));
+    CHECK(distance_to_triangle({2, 2, 0}, a, b, c) == near(std::sqrt(2.0)));
+    CHECK(distance_to_triangle({1, 1, 1}, a, b, b) == near(std::sqrt(2.0)));  // a line
+    CHECK(distance_to_triangle({3, 4, 0}, a, a, a) == near(5));               // a point
+}
+
+TEST_CASE("triangle grid: it finds the same distances as a loop over all triangles") {
+    const MeshData mesh = ball();
+    const TriangleGrid grid(mesh.positions, mesh.indices);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> place(-1, 1);
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 p = {place(random), place(random), place(random)};
+        CHECK(grid.distance(p, 0) == near(nearest_of_all(p, mesh, mesh.indices)));
+    }
+}
+
+TEST_CASE("coarse triangles: every vertex of the mesh is within the error of each level") {
+    for (const MeshData& mesh :
+         {ball(), make_torus({}), make_box({.bevel = 0.05f, .bevel_segments = 4})}) {
+        const std::vector<CoarseTriangles> levels = simplify_triangles(mesh);
+        CHECK(levels.size() >= 3);
+        std::size_t count = mesh.indices.size();
+        float error = 0;
+        for (const CoarseTriangles& level : levels) {
+            CHECK(level.indices.size() % 3 == 0);
+            CHECK(static_cast<double>(level.indices.size()) <= 0.75 * static_cast<double>(count));
+            CHECK(level.error >= error);
+            float farthest = 0;
+            for (const Vec3& p : mesh.positions) {
+                farthest = std::max(farthest, nearest_of_all(p, mesh, level.indices));
+            }
+            CHECK(farthest <= level.error * 1.0001f);
+            count = level.indices.size();
+            error = level.error;
+        }
+        CHECK(error > 0);
+    }
+}
+
+TEST_CASE("coarse triangles: a flat plate keeps its error of 0 down to few triangles") {
+    const std::vector<CoarseTriangles> levels =
+        simplify_triangles(make_plane({.size = {2, 2}, .divisions = 16}));
+    REQUIRE(!levels.empty());
+    CHECK(levels[0].error < 1e-6f);
+}
+
+TEST_CASE("coarse triangles: small meshes and those with positions that are NaN have none") {
+    CHECK(simplify_triangles(make_box({})).empty());
+    CHECK(simplify_triangles(MeshData{}).empty());
+    MeshData broken = ball();
+    broken.positions[7].y = NAN;
+    CHECK(simplify_triangles(broken).empty());
+}
+
+TEST_CASE("coarse triangles: seams of texture coordinates vanish, but not where morphs may part") {
+    MeshData twice = make_plane({.size = {2, 2}, .divisions = 16});
+    const auto half = static_cast<std::uint32_t>(twice.positions.size());
+    const std::vector<Vec3> copies = twice.positions;
+    twice.positions.insert(twice.positions.end(), copies.begin(), copies.end());
+    for (std::size_t i = 0; i < twice.indices.size(); i += 6) {
+        for (std::size_t j = i; j < i + 3; ++j) {
+            twice.indices[j] += half;  // every other triangle has vertices of its own
+        }
+    }
+    const auto uses_copies = [&] {
+        const std::vector<CoarseTriangles> levels = simplify_triangles(twice);
+        return std::any_of(levels.begin(), levels.end(), [&](const CoarseTriangles& level) {
+            const auto [low, high] =
+                std::minmax_element(level.indices.begin(), level.indices.end());
+            return *low < half && *high >= half;
+        });
+    };
+    CHECK_FALSE(simplify_triangles(twice).empty());
+    const float error = simplify_triangles(twice)[0].error;
+    CHECK(error < 1e-6f);
+    twice.morphs.emplace_back();
+    CHECK((simplify_triangles(twice).empty() || uses_copies()));
+}
+
+TEST_CASE_FIXTURE(
+    ShadowTest,
+    "coarse triangles: a ball's shadow differs at its edge alone, by the detail and a texel") {
+    put(make_plane({.size = {8, 8}}), {0, 0, 0});
+    put(make_sphere({.radius = 0.5f, .segments = 96, .rings = 48}), {0, 1, 0});
+    const Entity lamp = shine(
+        SpotLight{
+            .intensity = 10,
+            .radius = 0,
+            .attenuation = {.falloff = Falloff::None},
+            .inner_angle = radians(20.0f),
+            .outer_angle = radians(20.0f)},
+        look_at({0, 6, 0.01f}, {0, 0, 0}));
+    const RenderView view = look({1, 2, 1}, {0, 0, 0}, 160, 160);
+    world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 128, .detail = 0});
+    const std::vector<Receiver> exact = receivers(lamp, view);
+    const double texel = 2 * std::tan(radians(20.0)) * 6 / 124;
+    // The cone of light about the ball touches it at sqrt(5^2 - 0.5^2).
+    const double edge = 6 * 0.5 / std::sqrt(25 - 0.25);
+    for (const double detail : {0.5, 3.0}) {
+        world.get<Shadow>(lamp).detail = static_cast<float>(detail);
+        const std::vector<Receiver> coarse = receivers(lamp, view);
+        int dark = 0;
+        int other = 0;
+        double farthest = 0;
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            const Receiver& r = exact[i];
+            if (r.there && r.position.y < 0.01) {
+                dark += r.seen < 0.5 ? 1 : 0;
+            }
+            if (r.there && r.position.y < 0.01 && r.seen != coarse[i].seen) {
+                ++other;
+                const double from = std::hypot(r.position.x, r.position.z) - edge;
+                farthest = std::max(farthest, std::abs(from));
+            }
+        }
+        CAPTURE(detail);
+        CHECK(dark > 500);
+        CHECK((other > 0 || detail < 1));
+        CHECK(farthest < (detail + 1) * texel * 6 / 5);  // on the floor, behind the ball
+    }
+}
+
+}  // namespace limn::test
