@@ -1,11 +1,14 @@
 #include "systems/particles/particle_births.h"
 
+#include "systems/particles/birth_attributes.h"
+#include "systems/particles/birth_kernels.h"
 #include "systems/particles/emitter_place.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace limn {
 namespace {
@@ -15,10 +18,6 @@ constexpr double kMostBirths = 1e12;  // of a cause in a step or a second, so th
 constexpr double kSlack =
     1e-5;  // of a birth: 600 per second are 10 in each step of 1/60 s, as far as floats know
 constexpr double kMinDuration = 1e-3;  // [s] of an emitter that starts again
-
-float spread(float mean, float width, Random& random) {
-    return mean + width * random.uniform(-1.0f, 1.0f);
-}
 
 /// Once for all particles that it may hold: what is not used yet costs address space alone.
 void reserve(ParticlePool& pool, std::size_t count) {
@@ -36,70 +35,68 @@ void make_room(const ParticleEmitter& emitter, std::size_t more, ParticlePool& p
     }
 }
 
-constexpr float kLeastKept = 0.37f;  // for which drag is taken back [1/e]
-
-/// Takes a newborn back by the share `at` of a step, on the way along which gravity and drag will
-/// bring it here. Otherwise all births of a step would fall as far, and jets break into clumps.
-void rewind(const ParticleStep& step, float at, Vec3& position, Vec3& velocity) {
-    const Vec3 now = velocity;
-    const float undo_drag = step.keep == 1 ? 1 : std::pow(std::max(step.keep, kLeastKept), -at);
-    velocity = step.air + (now - step.air) * undo_drag - step.gravity * (at * step.dt);
-    position -= (velocity * step.old_share + now * (1 - step.old_share)) * (at * step.dt);
-}
-
-/// `ahead`: how much of the next step's time is before its birth [s].
-void add_particle(
-    ParticlePool& pool, const Vec3& position, const Vec3& velocity, float ahead, float life,
-    std::uint32_t look) {
-    if (!std::isfinite(position.x + position.y + position.z + life)) {
-        return;
+/// Adds particles at the end of a pool, which is resized once for all of them.
+class NewParticles {
+  public:
+    /// At most `count` more.
+    NewParticles(ParticlePool& pool, std::size_t count) : pool_(pool), size_(pool.size()) {
+        resize(size_ + count);
     }
-    pool.x.push_back(position.x);
-    pool.y.push_back(position.y);
-    pool.z.push_back(position.z);
-    pool.vx.push_back(velocity.x);
-    pool.vy.push_back(velocity.y);
-    pool.vz.push_back(velocity.z);
-    pool.age.push_back(-ahead);
-    pool.life.push_back(life);
-    pool.look.push_back(look);
-}
+    NewParticles(const NewParticles&) = delete;
+    NewParticles& operator=(const NewParticles&) = delete;
+    ~NewParticles() { resize(size_); }
 
-/// Each component between -1 and 1.
-Vec3 random_vector(Random& random) {
-    const float x = random.uniform(-1.0f, 1.0f);
-    const float y = random.uniform(-1.0f, 1.0f);
-    return {x, y, random.uniform(-1.0f, 1.0f)};
-}
+    /// Unless its place or life is not finite.
+    void add(const Newborn& born) {
+        if (!born.is_finite()) {
+            return;
+        }
+        const BirthColumns its = next();
+        *its.x = born.position.x;
+        *its.y = born.position.y;
+        *its.z = born.position.z;
+        *its.vx = born.velocity.x;
+        *its.vy = born.velocity.y;
+        *its.vz = born.velocity.z;
+        *its.age = born.age;
+        *its.life = born.life;
+        *its.look = born.look;
+        ++size_;
+    }
 
-/// What is drawn for a birth.
-struct Attributes {
-    Vec3 local;     ///< place in the emitter's space
-    Vec3 velocity;  ///< in world space
-    float life;
-    std::uint32_t look;
+    /// All births of a run.
+    void add(const BirthDraw& draw, const BirthRun& run) {
+        std::uint64_t& number = pool_.clock.born;
+        std::uint32_t i = 0;
+        while (i < run.count) {
+            const std::size_t drawn = draw_births(draw, run, i, run.count - i, number, next());
+            i += static_cast<std::uint32_t>(drawn);
+            number += drawn;
+            size_ += drawn;
+            if (i < run.count) {
+                add(draw_birth(draw, run.at(i++), number++));
+            }
+        }
+    }
+
+  private:
+    [[nodiscard]] BirthColumns next() const {
+        return {pool_.x.data() + size_,   pool_.y.data() + size_,    pool_.z.data() + size_,
+                pool_.vx.data() + size_,  pool_.vy.data() + size_,   pool_.vz.data() + size_,
+                pool_.age.data() + size_, pool_.life.data() + size_, pool_.look.data() + size_};
+    }
+    void resize(std::size_t size) {
+        for (auto* column :
+             {&pool_.x, &pool_.y, &pool_.z, &pool_.vx, &pool_.vy, &pool_.vz, &pool_.age,
+              &pool_.life}) {
+            column->resize(size);
+        }
+        pool_.look.resize(size);
+    }
+
+    ParticlePool& pool_;
+    std::size_t size_;
 };
-
-Attributes draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& random) {
-    Attributes its{};
-    its.local = sample_shape(emitter.shape, emitter.size, random);
-    const bool is_radial = emitter.direction == EmitterDirection::Radial;
-    const Vec3 direction = is_radial && its.local != Vec3(0)
-                               ? glm::normalize(its.local)
-                               : sample_cone(is_radial ? kPi : emitter.cone, random);
-    const Vec3 aim = normalize_or(transform_vector(world, direction), Vec3(0, 1, 0));
-    its.velocity = aim * spread(emitter.speed, emitter.speed_spread, random);
-    its.life = spread(emitter.life, emitter.life_spread, random);
-    its.look = random.word();
-    // Last, so that whoever has none gets the same numbers as ever.
-    if (emitter.size_spread != Vec3(0)) {
-        its.local += emitter.size_spread * random_vector(random);
-    }
-    if (emitter.velocity_spread != Vec3(0)) {
-        its.velocity += transform_vector(world, emitter.velocity_spread * random_vector(random));
-    }
-    return its;
-}
 
 /// The same scale, at another place and turned otherwise.
 Affine turned_to(const Affine& world, const Vec3& position, const Quat& turn) {
@@ -108,6 +105,30 @@ Affine turned_to(const Affine& world, const Vec3& position, const Quat& turn) {
         glm::length(transform_vector(world, {0, 1, 0})),
         glm::length(transform_vector(world, {0, 0, 1}))};
     return affine_from(position, turn, size);
+}
+
+bool is_moving(const EmitterPlace& place) {
+    return !std::equal(std::begin(place.now.row), std::end(place.now.row), place.before.row);
+}
+
+/// A birth on a surface. `draw.added` is not added but the surface's own velocity.
+Newborn draw_birth_on(
+    const SurfaceSource& surface, const SurfaceTable& table, const BirthDraw& draw, float at,
+    std::uint64_t number) {
+    Random random = attributes_random(draw.seed, draw.subject, number);
+    Random places = surface_random(draw.seed, draw.subject, number);
+    const float dt = draw.rewind.step.dt;
+    const SurfacePoint point = surface_point(surface, table, number, at, dt, places);
+    const Affine world = turned_to(mix_places(draw.place, at), point.position, point.turn);
+    const BirthAttributes its = draw_attributes(*draw.emitter, world, random);
+    const Vec3 added = point.velocity * finite_or(surface.surface->inherit, 0);
+    Newborn born = {
+        transform_point(world, its.local), its.velocity + added, -(at * dt), its.life, its.look};
+    if (surface.surface->on == BirthSurface::Pieces) {
+        born.look = (born.look & ~kPieceMask) | point.piece;
+    }
+    draw.rewind.apply(at, born.position, born.velocity);
+    return born;
 }
 
 double interval_of(const ParticleBurst& burst) {
@@ -243,53 +264,6 @@ float screen_share(float radius, float distance, float fov_y) {
     return std::min(kPi * seen * seen / (4.0f * half_height * half_height * kAspect), 1.0f);
 }
 
-Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random) {
-    switch (shape) {
-    case EmitterShape::Point:
-        break;
-    case EmitterShape::Ball: {
-        const float radius = std::cbrt(random.uniform());
-        return size * (random.direction() * radius);
-    }
-    case EmitterShape::Sphere: {
-        const Vec3 direction = random.direction();
-        const Vec3 used = {
-            size.x != 0 ? direction.x : 0, size.y != 0 ? direction.y : 0,
-            size.z != 0 ? direction.z : 0};
-        return size * (used == direction ? direction : normalize_or(used, Vec3(0)));
-    }
-    case EmitterShape::Disc: {
-        const Vec2 p = random.in_disc();
-        return size * Vec3(p.x, 0, p.y);
-    }
-    case EmitterShape::Circle: {
-        const float angle = 2.0f * kPi * random.uniform();
-        return size * Vec3(std::cos(angle), 0, std::sin(angle));
-    }
-    case EmitterShape::Box: {
-        const float x = random.uniform(-1.0f, 1.0f);
-        const float y = random.uniform(-1.0f, 1.0f);
-        return size * Vec3(x, y, random.uniform(-1.0f, 1.0f));
-    }
-    case EmitterShape::Torus: {
-        const Vec2 tube = size.y * random.in_disc();
-        const float angle = 2.0f * kPi * random.uniform();
-        const float cosine = std::cos(angle);
-        const float sine = std::sin(angle);
-        return {(size.x + tube.x) * cosine, tube.y, (size.z + tube.x) * sine};
-    }
-    }
-    return Vec3(0);
-}
-
-Vec3 sample_cone(float cone, Random& random) {
-    const float lowest = std::cos(std::clamp(finite_or(cone, 0), 0.0f, kPi));
-    const float y = 1.0f - random.uniform() * (1.0f - lowest);
-    const float angle = 2.0f * kPi * random.uniform();
-    const float radius = std::sqrt(std::max(1.0f - y * y, 0.0f));
-    return {radius * std::cos(angle), y, radius * std::sin(angle)};
-}
-
 Vec3 inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& place, float dt) {
     const auto origin = [](const Affine& world) { return transform_point(world, Vec3(0)); };
     const Vec3 moved = (origin(place.now) - origin(place.before)) / dt;
@@ -314,29 +288,16 @@ void add_particles(
         return;
     }
     make_room(emitter, count, pool);
-    const auto add = [&](float at) {
-        Random random = attributes_random(seed, subject, pool.clock.born++);
-        Affine world = mix_places(place, at);
-        Vec3 added = inherited;
-        SurfacePoint point;
-        if (surface != nullptr) {
-            Random places = surface_random(seed, subject, pool.clock.born - 1);
-            point = surface_point(*surface, table, pool.clock.born - 1, at, step.dt, places);
-            world = turned_to(world, point.position, point.turn);
-            added = point.velocity * finite_or(surface->surface->inherit, 0);
-        }
-        Attributes its = draw_attributes(emitter, world, random);
-        if (surface != nullptr && surface->surface->on == BirthSurface::Pieces) {
-            its.look = (its.look & ~kPieceMask) | point.piece;
-        }
-        Vec3 velocity = its.velocity + added;
-        Vec3 position = transform_point(world, its.local);
-        rewind(step, at, position, velocity);
-        add_particle(pool, position, velocity, at * step.dt, its.life, its.look);
-    };
+    NewParticles particles(pool, count);
+    const BirthDraw draw = {&emitter,  place, is_moving(place), Rewind(step),
+                            inherited, seed,  subject};
     for (const BirthRun& run : births) {
+        if (surface == nullptr) {
+            particles.add(draw, run);
+            continue;
+        }
         for (std::uint32_t i = 0; i < run.count; ++i) {
-            add(run.at(i));
+            particles.add(draw_birth_on(*surface, table, draw, run.at(i), pool.clock.born++));
         }
     }
 }
@@ -345,16 +306,17 @@ void add_spawns(
     const ParticleEmitter& emitter, const Affine& world, const std::vector<ParticleSpawn>& spawns,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool) {
     make_room(emitter, spawns.size(), pool);
+    NewParticles particles(pool, spawns.size());
     for (const ParticleSpawn& spawn : spawns) {
         Random random = attributes_random(seed, subject, pool.clock.born++);
         const Affine place = spawn.axis == Vec3(0)
                                  ? world
                                  : turned_to(world, Vec3(0), Quat(Vec3(0, 1, 0), spawn.axis));
-        const Attributes its = draw_attributes(emitter, place, random);
+        const BirthAttributes its = draw_attributes(emitter, place, random);
         const Vec3 velocity = its.velocity + spawn.velocity;
         const Vec3 position =
             spawn.position + transform_vector(place, its.local) + velocity * spawn.age;
-        add_particle(pool, position, velocity, -spawn.age, its.life, its.look);
+        particles.add({position, velocity, spawn.age, its.life, its.look});
     }
 }
 
@@ -365,14 +327,16 @@ void add_drops(
     const std::size_t count = std::min(drops.size(), room);
     pool.clock.dropped += drops.size() - count;
     make_room(emitter, count, pool);
+    NewParticles particles(pool, count);
+    const Rewind rewind(step);
     for (std::size_t i = 0; i < count; ++i) {
         Random random = attributes_random(seed, subject, pool.clock.born++);
         const float at = random.uniform();
         const float life = spread(emitter.life, emitter.life_spread, random);
-        Vec3 velocity = drops[i].velocity * finite_or(emitter.drop_speed, 1);
-        Vec3 position = drops[i].position;
-        rewind(step, at, position, velocity);
-        add_particle(pool, position, velocity, at * step.dt, life, random.word());
+        const Vec3 velocity = drops[i].velocity * finite_or(emitter.drop_speed, 1);
+        Newborn drop = {drops[i].position, velocity, -(at * step.dt), life, random.word()};
+        rewind.apply(at, drop.position, drop.velocity);
+        particles.add(drop);
     }
 }
 

@@ -37,11 +37,6 @@ void find_births(
 /// the vertical field of view `fov_y` [rad]; 1 from inside.
 [[nodiscard]] float screen_share(float radius, float distance, float fov_y);
 
-/// A point of the emitter's shape in local space (particle.generation-shape).
-[[nodiscard]] Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random);
-/// Unit: a direction within `cone` [rad] of +y, even by solid angle.
-[[nodiscard]] Vec3 sample_cone(float cone, Random& random);
-
 /// Adds a particle for every drop that waves have thrown up in this step (water.crest-spray,
 /// water.impact-spray), at any instant of it; lifetimes are the emitter's. At most up to its
 /// capacity.

@@ -2,6 +2,9 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/water_spray.h"
+#include "systems/particles/birth_attributes.h"
+#include "systems/particles/birth_kernels.h"
+#include "systems/particles/emitter_place.h"
 #include "systems/particles/particle_births.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
@@ -11,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 using namespace limn;
@@ -352,4 +357,145 @@ TEST_CASE("particles: a moving emitter leaves no gaps, and gives on its velocity
     scene.world.get<ParticleEmitter>(entity).inherit = 0.5f;
     scene.run();
     CHECK(scene.pool().vx.back() == test::near(30));  // of 60 m/s
+}
+
+TEST_CASE("particles: the curves of births are those of the library") {
+    double turn_error = 0;
+    double root_error = 0;
+    double exp_error = 0;
+    constexpr int kSteps = 1 << 20;
+    for (int i = 0; i <= kSteps; ++i) {
+        const float x = static_cast<float>(i) / kSteps;
+        const double exact = static_cast<double>(x);
+        const TurnPoint at = turn_point(x);
+        const double angle = 2 * 3.14159265358979323846 * exact;
+        turn_error =
+            std::max(turn_error, std::abs(static_cast<double>(at.cosine) - std::cos(angle)));
+        turn_error = std::max(turn_error, std::abs(static_cast<double>(at.sine) - std::sin(angle)));
+        const double root = std::cbrt(exact);
+        root_error = std::max(root_error, std::abs(static_cast<double>(cube_root(x)) - root));
+        const double power = std::exp(exact);
+        exp_error = std::max(exp_error, std::abs(static_cast<double>(exp_of_share(x)) / power - 1));
+    }
+    CHECK(turn_error < 2e-7);
+    CHECK(root_error < 2e-7);
+    CHECK(exp_error < 4e-7);
+    CHECK(cube_root(0) < 1e-13f);
+    CHECK(exp_of_share(0) == 1);
+}
+
+namespace {
+
+/// Every attribute at random but for shape and direction.
+ParticleEmitter varied(EmitterShape shape, EmitterDirection direction) {
+    ParticleEmitter emitter;
+    emitter.shape = shape;
+    emitter.size = {0.5f, 2, 3};
+    emitter.direction = direction;
+    emitter.cone = 1.1f;
+    emitter.speed = 4;
+    emitter.speed_spread = 2;
+    emitter.life = 3;
+    emitter.life_spread = 1;
+    return emitter;
+}
+
+/// Checks the births 0 .. count - 1 of a run against those drawn one by one.
+void check_births(const BirthDraw& draw, const BirthRun& run, std::uint64_t number) {
+    const auto count = static_cast<std::size_t>(run.count);
+    std::vector<float> floats(8 * (count + 1), -7.0f);
+    std::vector<std::uint32_t> looks(count + 1, 77);
+    float* const f = floats.data();
+    const auto column = [&](std::size_t c) { return f + c * (count + 1); };
+    const std::size_t drawn = draw_births(
+        draw, run, 0, count, number,
+        {column(0), column(1), column(2), column(3), column(4), column(5), column(6), column(7),
+         looks.data()});
+    CHECK(drawn + 16 > count);
+    for (std::size_t i = 0; i < drawn; ++i) {
+        CAPTURE(i);
+        const Newborn one = draw_birth(draw, run.at(static_cast<std::uint32_t>(i)), number + i);
+        const float expected[] = {one.position.x, one.position.y, one.position.z, one.velocity.x,
+                                  one.velocity.y, one.velocity.z, one.age,        one.life};
+        for (std::size_t c = 0; c < 8; ++c) {
+            CAPTURE(c);
+            REQUIRE(std::memcmp(&expected[c], column(c) + i, sizeof(float)) == 0);
+        }
+        REQUIRE(one.look == looks[i]);
+    }
+    for (std::size_t c = 0; c < 8; ++c) {
+        CHECK(column(c)[count] == -7.0f);
+    }
+    CHECK(looks[count] == 77);
+}
+
+}  // namespace
+
+TEST_CASE("particles: births in vectors have the bits of those drawn one by one") {
+    const EmitterPlace still = {
+        affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f}),
+        affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f})};
+    EmitterPlace moving = still;
+    moving.now = affine_from({2, 2, 4}, Quat(0.6f, 0, 0, 0.8f), {1, 1, 1});
+    const ParticleStep fall = {
+        .gravity = {0.1f, -9.8f, 0}, .air = {3, 0, 1}, .keep = 0.9f, .dt = 0.02f};
+    for (int shape = 0; shape <= static_cast<int>(EmitterShape::Torus); ++shape) {
+        for (const EmitterDirection direction :
+             {EmitterDirection::Cone, EmitterDirection::Radial}) {
+            for (const std::uint32_t count : {0u, 1u, 5u, 16u, 33u, 1000u}) {
+                CAPTURE(shape);
+                CAPTURE(static_cast<int>(direction));
+                CAPTURE(count);
+                ParticleEmitter emitter = varied(static_cast<EmitterShape>(shape), direction);
+                const BirthRun run = {.first = 0.01f, .spacing = 0.0013f, .count = count};
+                check_births(
+                    {&emitter, still, false, Rewind({.dt = 0.02f}), {0, 0, 0}, 5, 6}, run, 100);
+                emitter.size_spread = {0.1f, 0, 0.2f};
+                emitter.velocity_spread = {1, 2, 0};
+                if (count > 5) {
+                    emitter.size.z = 0;
+                }
+                check_births(
+                    {&emitter, moving, true, Rewind(fall), {1, 0, -2}, 5, 6ull << 33}, run,
+                    7ull << 32);
+            }
+        }
+    }
+}
+
+TEST_CASE("particles: the number of a birth may pass 32 bits between births of a vector") {
+    const std::uint64_t last = (std::uint64_t{1} << 32) - 3;
+    ParticleEmitter emitter = varied(EmitterShape::Ball, EmitterDirection::Cone);
+    const std::vector<BirthRun> births = {{.first = 0.5f, .count = 20}};
+    ParticlePool pool;
+    pool.clock.born = last;
+    add_particles(emitter, {}, {.dt = 0.02f}, nullptr, 1, 2, births, pool);
+    REQUIRE(pool.size() == 20);
+    CHECK(pool.clock.born == last + 20);
+    const BirthDraw draw = {&emitter, {}, false, Rewind({.dt = 0.02f}), {0, 0, 0}, 1, 2};
+    for (std::size_t i = 0; i < 20; ++i) {
+        CAPTURE(i);
+        CHECK(pool.look[i] == draw_birth(draw, 0.5f, last + i).look);
+    }
+}
+
+TEST_CASE("particles: births that are not finite are left out, their neighbors are not") {
+    ParticleEmitter emitter = varied(EmitterShape::Box, EmitterDirection::Cone);
+    emitter.life = 3e38f;
+    emitter.life_spread = 1e38f;  // beyond the largest float for some
+    ParticlePool pool;
+    add_particles(
+        emitter, {}, {.dt = 0.02f}, nullptr, 1, 2, {{.first = 0.5f, .count = 1000}}, pool);
+    std::vector<std::uint32_t> expected;
+    const BirthDraw draw = {&emitter, {}, false, Rewind({.dt = 0.02f}), {0, 0, 0}, 1, 2};
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        const Newborn one = draw_birth(draw, 0.5f, i);
+        if (one.is_finite()) {
+            expected.push_back(one.look);
+        }
+    }
+    CHECK(expected.size() > 600);
+    CHECK(expected.size() < 900);
+    CHECK(pool.look == expected);
+    CHECK(pool.clock.born == 1000);
 }
