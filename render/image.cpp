@@ -28,6 +28,7 @@
 #include "render/passes/vignette_pass.h"
 #include "render/passes/water_pass.h"
 #include "render/passes/water_veil_pass.h"
+#include "render/passes/wrinkle_maps_pass.h"
 #include "render/passes/wrinkle_pass.h"
 #include "render/tone_mapper.h"
 #include "render/water/water_surfaces.h"
@@ -38,6 +39,7 @@ namespace {
 constexpr EffectEntry kImage[] = {
     // What is in the world, and what of it each view shows.
     effect<TextureCombineEffect>(0),
+    effect<WrinkleMapsEffect>(0),          // normals, which textures are shaded with
     effect<TextureShadeEffect>(0),         // after textures are combined
     effect<DeformEffect>(kSceneViews),     // before all that draws meshes
     effect<WrinkleEffect>(kSceneViews),    // where deformed skin is compressed

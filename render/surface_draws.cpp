@@ -96,6 +96,7 @@ std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vect
     };
     add_images(frame.data.find<DrawnImages>());
     add_images(frame.data.find<ShadedImages>());
+    add_images(frame.data.find<WrinkledImages>());
     if (!frame.shapes->work().batches.empty()) {
         for (const BufferId buffer : import_deformed(graph, frame.shapes->vertices())) {
             reads.emplace_back(buffer);

@@ -58,8 +58,13 @@ struct ShadedImages {
     std::vector<const gpu::Texture*> arrays;
 };
 
-/// `reads`, the DrawnImages, the ShadedImages and, where meshes are deformed in this frame, their
-/// vertices: what passes that call the functions above must declare.
+/// The same, of normal maps that are composed of several.
+struct WrinkledImages {
+    std::vector<const gpu::Texture*> arrays;
+};
+
+/// `reads`, the DrawnImages, the ShadedImages, the WrinkledImages and, where meshes are deformed in
+/// this frame, their vertices: what passes that call the functions above must declare.
 [[nodiscard]] std::vector<Use>
 mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {});
 

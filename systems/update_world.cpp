@@ -10,6 +10,7 @@
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/faces/wrinkle_system.h"
+#include "systems/faces/wrinkle_track_system.h"
 #include "systems/fly_camera_system.h"
 #include "systems/lens_control_system.h"
 #include "systems/mesh_level_system.h"
@@ -68,6 +69,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<add_rotation_track_states>(Create, Both);
     systems.add<prepare_rotation_tracks>(Move);
     systems.add<update_rotation_tracks>(Move, Both);
+    systems.add<update_wrinkle_tracks>(Move, Both);
     systems.add<advance_clips>(Animate);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
     systems.add<update_attachments>(Animate, Both);

@@ -16,6 +16,7 @@
 #include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/wrinkle_maps.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
@@ -28,6 +29,7 @@
 #include <bit>
 #include <compare>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string_view>
 #include <type_traits>
@@ -75,6 +77,9 @@ constexpr Need kNeeds[] = {
     {"point_mass", {"transform", "", ""}},
     {"air_drag", {"point_mass", "", ""}},
     {"variable_mass", {"point_mass", "", ""}},
+    {"wrinkle_maps", {"wrinkle_weights", "", ""}},
+    {"wrinkle_weights", {"wrinkle_maps", "", ""}},
+    {"wrinkle_track", {"wrinkle_weights", "", ""}},
 };
 
 constexpr double kInside = 0.5;       // winding number of what is rather closed
@@ -247,6 +252,38 @@ struct SceneCheck {
         });
     }
 
+    /// Images of a face that do not lie over each other.
+    void check_wrinkle_maps() {
+        const auto* const assets = world.find_resource<Assets>();
+        world.query<const WrinkleMaps>().each([&](Entity entity, const WrinkleMaps& maps) {
+            const auto find = [&](ImageId id) {
+                return assets != nullptr && id.index < assets->images.size()
+                           ? &assets->images[id.index]
+                           : nullptr;
+            };
+            const ImageData* const base = find(maps.base);
+            const std::pair<const char*, ImageId> fields[] = {
+                {"stretched", maps.stretched},
+                {"compressed", maps.compressed},
+                {"first_masks", maps.first_masks},
+                {"second_masks", maps.second_masks},
+                {"target", maps.target}};
+            for (const auto& [field, id] : fields) {
+                const ImageData* const image = find(id);
+                if (base != nullptr && image != nullptr
+                    && std::int64_t{image->width} * base->height
+                           != std::int64_t{image->height} * base->width) {
+                    warn(
+                        entity, fmt::format(
+                                    "wrinkle_maps.{} \"{}\" is {} x {} px; expected the aspect "
+                                    "ratio of base \"{}\", {} x {} px",
+                                    field, image->name, image->width, image->height, base->name,
+                                    base->width, base->height));
+                }
+            }
+        });
+    }
+
     /// Sizes that the renderer and the simulation round to a power of two.
     void check_resolutions() {
         const auto check = [&](Entity entity, const char* field, int asked, unsigned used) {
@@ -362,6 +399,8 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_colors<DirectionalLight>();
     check.check_key_order<CameraPath>();
     check.check_key_order<RotationTrack>();
+    check.check_key_order<WrinkleTrack>();
+    check.check_wrinkle_maps();
     check.check_resolutions();
     check_events(check);
     return std::move(check.warnings);

@@ -2,6 +2,7 @@
 
 #include "content/make/fold_pattern.h"
 #include "content/make/furrow_patterns.h"
+#include "content/make/mask_pattern.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -394,6 +395,8 @@ std::span<const PatternKind> pattern_kinds() {
             "furrows", "skin with wrinkle furrows that grow along two vector fields"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
+        pattern_kind<MasksPattern, make_masks>(
+            "masks", "where four regions are, one in each channel, for wrinkle_maps"),
         pattern_kind<PuffPattern, make_puff>(
             "puff", "a flipbook of a cloud, with what it scatters of light from six sides",
             PatternKindMaps::Light),

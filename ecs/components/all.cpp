@@ -58,6 +58,7 @@
 #include "ecs/components/water_waves.h"
 #include "ecs/components/weather.h"
 #include "ecs/components/wrinkle.h"
+#include "ecs/components/wrinkle_maps.h"
 #include "ecs/hierarchy.h"
 
 namespace limn {
@@ -107,6 +108,9 @@ void register_all_components() {
     register_component<MorphPlayer>();
     register_component<Deformed>();
     register_component<WrinkleSurface>();
+    register_component<WrinkleMaps>();
+    register_component<WrinkleWeights>();
+    register_component<WrinkleTrack>();
     register_component<JointAttachment>();
     register_component<PathFollower>();
     register_component<RotationTrack>();

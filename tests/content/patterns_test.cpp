@@ -1,3 +1,4 @@
+#include "content/make/mask_pattern.h"
 #include "content/make/patterns.h"
 #include "content/make/sprite_fluid.h"
 #include "content/make/sprite_patterns.h"
@@ -62,7 +63,7 @@ std::uint64_t bits(const PatternMaps& maps) {
 }  // namespace
 
 TEST_CASE("patterns: every kind makes three whole images of the size asked for") {
-    REQUIRE(pattern_kinds().size() == 30);
+    REQUIRE(pattern_kinds().size() == 31);
     for (const PatternKind& kind : pattern_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 64);
@@ -71,7 +72,7 @@ TEST_CASE("patterns: every kind makes three whole images of the size asked for")
             CHECK(image->height == 64);
             CHECK(image->pixels.size() == 64 * 64 * 4);
         }
-        CHECK(maps.base_color.srgb);
+        CHECK(maps.base_color.srgb == (std::string(kind.name) != "masks"));
         CHECK(!maps.normal.srgb);
         CHECK(!maps.orm.srgb);
         CHECK(make_small(kind, 1).normal.pixels.size() == 4);
@@ -249,6 +250,28 @@ TEST_CASE("fluid: pressure takes out the divergence, heat rises, cools and sprea
     CHECK(heat.sum < 0.95 * soot.sum);
     const FluidGrid burst = run(20, 6);
     CHECK(moments(burst, burst.soot).radius2 > 1.5 * moments(run(0, 6), run(0, 6).soot).radius2);
+}
+
+TEST_CASE("patterns: masks are 1 inside, 0 outside, and nowhere more than 1 together") {
+    MasksPattern pattern;
+    pattern.image.size = 64;
+    pattern.regions = {{0, {0.3f, 0.5f}, {0.25f, 0.25f}}, {3, {0.6f, 0.5f}, {0.25f, 0.25f}}};
+    const ImageData masks = make_masks(pattern).base_color;
+    CHECK(channel(masks, 16, 32, 0) == 255);
+    CHECK(channel(masks, 16, 32, 3) == 0);
+    CHECK(channel(masks, 42, 32, 3) == 255);
+    int shared = 0;
+    for (int i = 0; i < 64 * 64; ++i) {
+        int sum = 0;
+        for (int k = 0; k < 4; ++k) {
+            sum += channel(masks, i % 64, i / 64, k);
+        }
+        CHECK(sum <= 255);
+        CHECK(channel(masks, i % 64, i / 64, 1) == 0);
+        shared += channel(masks, i % 64, i / 64, 0) > 0 && channel(masks, i % 64, i / 64, 3) > 0;
+    }
+    CHECK(shared > 20);
+    CHECK(channel(masks, 2, 2, 0) == 0);
 }
 
 TEST_CASE("patterns: no seam shows where an image meets itself") {

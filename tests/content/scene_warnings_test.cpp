@@ -5,7 +5,9 @@
 #include "content/load/scene_load.h"
 #include "content/load/scene_warnings.h"
 #include "ecs/components/all.h"
+#include "ecs/components/name.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/wrinkle_maps.h"
 #include "ecs/world.h"
 #include "tests/near.h"
 #include "tests/support.h"
@@ -15,6 +17,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -311,4 +314,27 @@ TEST_CASE("scene warnings: state that systems keep, written by hand") {
         logged[0]
         == "t.level.json:1:29: entity \"a\": systems keep world_transform and overwrite "
            "what is written here");
+}
+
+TEST_CASE("scene warnings: wrinkle maps and masks of another aspect ratio than the skin") {
+    World world;
+    Assets assets;
+    const auto add = [&](const char* name, int width, int height) {
+        assets.images.push_back({.name = name, .width = width, .height = height, .pixels = {}});
+        return ImageId{static_cast<std::uint32_t>(assets.images.size() - 1)};
+    };
+    WrinkleMaps maps;
+    maps.base = add("skin", 512, 256);
+    maps.stretched = add("surprise", 256, 128);  // of another size, but it lies over it
+    maps.compressed = maps.stretched;
+    maps.first_masks = add("masks", 64, 64);
+    maps.target = add("target", 512, 256);
+    world.insert_resource(std::move(assets));
+    world.create(Name{"face"}, maps, WrinkleWeights{});
+    const std::vector<SceneWarning> found = find_scene_warnings(world);
+    REQUIRE(found.size() == 1);
+    CHECK(
+        found[0].text
+        == "entity \"face\": wrinkle_maps.first_masks \"masks\" is 64 x 64 px; expected the "
+           "aspect ratio of base \"skin\", 512 x 256 px");
 }

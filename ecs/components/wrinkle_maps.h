@@ -1,0 +1,103 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+#include "ecs/reflect.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+
+// Wrinkles that an animator sets (wrinkle.maps.*): a face has two wrinkle maps for its two
+// extremes, skin that is stretched (surprise) and skin that is compressed (a sour lemon); masks
+// divide it into regions, and each region shows as much of one map or the other as its weight says.
+// After Oat, "Animated Wrinkle Maps", 2007.
+
+/// How far each region shows a wrinkle map: -1 the stretched one, 0 none, 1 the compressed one.
+struct WrinkleWeights {
+    float left_brow = 0;
+    float right_brow = 0;
+    float middle_brow = 0;
+    float lips = 0;
+    float left_cheek = 0;
+    float right_cheek = 0;
+    float upper_left_cheek = 0;
+    float upper_right_cheek = 0;
+
+    bool operator==(const WrinkleWeights&) const = default;
+};
+
+LIMN_FIELDS(WrinkleWeights) {
+    LIMN_FIELD(left_brow, "red of first_masks", "", -1, 1);
+    LIMN_FIELD(right_brow, "green of first_masks", "", -1, 1);
+    LIMN_FIELD(middle_brow, "blue of first_masks", "", -1, 1);
+    LIMN_FIELD(lips, "opacity of first_masks", "", -1, 1);
+    LIMN_FIELD(left_cheek, "red of second_masks", "", -1, 1);
+    LIMN_FIELD(right_cheek, "green of second_masks", "", -1, 1);
+    LIMN_FIELD(upper_left_cheek, "blue of second_masks", "", -1, 1);
+    LIMN_FIELD(upper_right_cheek, "opacity of second_masks", "", -1, 1);
+}
+
+/// In the order of the channels of both masks.
+inline constexpr std::array<float WrinkleWeights::*, 8> kWrinkleRegions = {
+    &WrinkleWeights::left_brow,        &WrinkleWeights::right_brow,
+    &WrinkleWeights::middle_brow,      &WrinkleWeights::lips,
+    &WrinkleWeights::left_cheek,       &WrinkleWeights::right_cheek,
+    &WrinkleWeights::upper_left_cheek, &WrinkleWeights::upper_right_cheek};
+
+/// How two wrinkle maps and the skin's own normals become one normal.
+enum class WrinkleBlend : std::uint8_t {
+    Lerp,    ///< towards each map in turn, then x and y are added and z multiplied (Oat)
+    Slopes,  ///< slopes of all three add up: wrinkles as high as their influence, in any order
+};
+
+/// Composes a normal map before each frame, for materials that use `target`. All images have one
+/// uv set and one aspect ratio.
+struct WrinkleMaps {
+    ImageId base = {};
+    ImageId stretched = {};
+    ImageId compressed = {};
+    ImageId first_masks = {};
+    ImageId second_masks = {};
+    ImageId target = {};  ///< rendered to; keeps its size and format
+    WrinkleBlend blend = WrinkleBlend::Lerp;
+};
+
+LIMN_FIELDS(WrinkleMaps) {
+    LIMN_FIELD(base, "normal map of skin without wrinkles, green up");
+    LIMN_FIELD(stretched, "wrinkle map of skin that is stretched everywhere: weight -1");
+    LIMN_FIELD(compressed, "wrinkle map of skin that is compressed everywhere: weight 1");
+    LIMN_FIELD(first_masks, "where four regions are: one in each channel");
+    LIMN_FIELD(second_masks, "four more; without it there are four");
+    LIMN_FIELD(target, "image to render to");
+    LIMN_FIELD(
+        blend, .doc = "from normal to normal and then added, or slopes added: higher in between",
+        .values = "lerp slopes");
+}
+
+/// Weights at a time.
+struct WrinkleKey {
+    float time = 0;
+    WrinkleWeights weights;
+};
+
+LIMN_FIELDS(WrinkleKey) {
+    LIMN_FIELD(time, "since the start of the level; greater than the previous key's", "s", 0, 1e6);
+    visit_fields(self.weights, visit);
+}
+
+/// Moves the WrinkleWeights of its entity from key to key (wrinkle.maps.animation).
+struct WrinkleTrack {
+    std::vector<WrinkleKey> keys;
+    bool smooth = true;
+    bool loop = false;
+};
+
+LIMN_FIELDS(WrinkleTrack) {
+    LIMN_FIELD(keys, "keyframes, in order of time");
+    LIMN_FIELD(smooth, "slow at both keys; otherwise with a corner at each");
+    LIMN_FIELD(loop, "starts over after the last key");
+}
+
+}  // namespace limn

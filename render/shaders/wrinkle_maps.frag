@@ -1,0 +1,33 @@
+// A normal map of skin with the wrinkles of its face: see lib/wrinkle_maps.glsl.
+#version 450
+#include "lib/wrinkle_maps.glsl"
+
+layout(binding = 0) uniform sampler2D base;
+layout(binding = 1) uniform sampler2D stretched;
+layout(binding = 2) uniform sampler2D compressed;
+layout(binding = 3) uniform sampler2D first_masks;
+layout(binding = 4) uniform sampler2D second_masks;
+
+uniform vec2 size;            // of the target [px]
+uniform vec4 first_weights;   // -1 .. 1
+uniform vec4 second_weights;
+uniform vec4 decoding;        // scale and offset of texels of the stretched map (xy) and the compressed one (zw)
+uniform bool by_slopes;
+
+layout(location = 0) out vec4 normal;
+
+void main() {
+    vec2 uv = gl_FragCoord.xy / size;
+    vec4 skin = textureLod(base, uv, 0.0);
+    vec2 influence = wrinkle_influence(
+        textureLod(first_masks, uv, 0.0), textureLod(second_masks, uv, 0.0), first_weights, second_weights);
+    if (influence == vec2(0.0)) {
+        normal = skin;  // as it is, to the bit
+        return;
+    }
+    vec3 n = 2.0 * skin.xyz - 1.0;
+    vec3 w1 = textureLod(stretched, uv, 0.0).xyz * decoding.x + decoding.y;
+    vec3 w2 = textureLod(compressed, uv, 0.0).xyz * decoding.z + decoding.w;
+    vec3 composed = by_slopes ? compose_by_slopes(n, w1, w2, influence) : compose_by_lerp(n, w1, w2, influence);
+    normal = vec4(0.5 + 0.5 * composed, skin.w);
+}
