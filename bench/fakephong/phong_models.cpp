@@ -1,0 +1,148 @@
+#include "bench/fakephong/phong_models.h"
+
+#include "content/make/teapot.h"
+#include "ecs/components/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace limn::fakephong {
+namespace {
+
+constexpr double kTurn = 6.283185307179586;
+
+/// A view of the unit sphere at the origin, lit by `light`.
+PhongScene ball_scene(const char* name, PhongMesh mesh, const PhongLight& light) {
+    PhongScene scene = {.name = name, .mesh = std::move(mesh), .lights = {light}};
+    scene.material.color = {0.2, 0.4, 1};
+    return scene;
+}
+
+constexpr PhongLight kBallLight = {.at = {-1.5, 1.5, 3}};
+
+}  // namespace
+
+PhongMesh make_coarse_sphere(int slices, int stacks) {
+    PhongMesh mesh;
+    for (int j = 0; j <= stacks; ++j) {
+        for (int i = 0; i < slices; ++i) {
+            const double polar = 0.5 * kTurn * j / stacks;
+            const double around = kTurn * i / slices;
+            mesh.positions.emplace_back(
+                std::sin(polar) * std::sin(around), std::cos(polar),
+                std::sin(polar) * std::cos(around));
+        }
+    }
+    mesh.normals = mesh.positions;
+    const auto vertex = [slices](int i, int j) {
+        return static_cast<std::uint32_t>(j * slices + i % slices);
+    };
+    for (int j = 0; j < stacks; ++j) {
+        for (int i = 0; i < slices; ++i) {
+            if (j + 1 < stacks) {
+                mesh.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1)});
+            }
+            if (j > 0) {
+                mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j)});
+            }
+        }
+    }
+    return mesh;
+}
+
+PhongMesh make_dodecahedron() {
+    // Vertices: a cube and three rectangles; faces: the five vertices nearest to each axis of the
+    // icosahedron, sorted around it.
+    const double golden = (1 + std::sqrt(5.0)) / 2;
+    PhongMesh mesh;
+    std::vector<dvec3> axes;
+    for (const double a : {-1.0, 1.0}) {
+        for (const double b : {-1.0, 1.0}) {
+            for (const double c : {-1.0, 1.0}) {
+                mesh.positions.push_back(dvec3(a, b, c));
+            }
+            const double x = a / golden;
+            const double y = b * golden;
+            mesh.positions.insert(mesh.positions.end(), {{0, x, y}, {x, y, 0}, {y, 0, x}});
+            axes.insert(axes.end(), {{0, a * golden, b}, {a * golden, b, 0}, {b, 0, a * golden}});
+        }
+    }
+    for (dvec3& p : mesh.positions) {
+        p = glm::normalize(p);
+    }
+    mesh.normals = mesh.positions;
+    for (const dvec3& axis : axes) {
+        const dvec3 n = glm::normalize(axis);
+        std::vector<std::pair<double, std::uint32_t>> around;
+        dvec3 u(0);
+        for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
+            if (glm::dot(n, mesh.positions[i]) > 0.7) {
+                const dvec3 p = mesh.positions[i] - glm::dot(n, mesh.positions[i]) * n;
+                u = around.empty() ? p : u;
+                around.emplace_back(std::atan2(glm::dot(glm::cross(n, u), p), glm::dot(u, p)), i);
+            }
+        }
+        std::sort(around.begin(), around.end());
+        for (std::size_t k = 2; k < around.size(); ++k) {
+            mesh.triangles.push_back({around[0].second, around[k - 1].second, around[k].second});
+        }
+    }
+    return mesh;
+}
+
+PhongScene triangle_scene() {
+    PhongScene scene = {.name = "triangle"};
+    const double x = std::sqrt(0.75);
+    scene.mesh = {
+        .positions = {{0, 1, 0}, {-x, -0.5, 0}, {x, -0.5, 0}},
+        .normals = std::vector<dvec3>(3, dvec3(0, 0, 1)),
+        .uvs = {{0.5, 0}, {0, 1}, {1, 1}},
+        .triangles = {{0, 1, 2}}};
+    scene.material.color = {0, 0, 1};
+    scene.lights = {{.at = {0, -0.2, 0.6}}};
+    scene.camera = {.eye = {0, 0, 20}, .target = dvec3(0), .half_size = 0.052, .size = 256};
+    scene.row = 133;
+    return scene;
+}
+
+PhongScene teapot_scene() {
+    const MeshData pot = make_teapot({.divisions = 8, .height = 1.5f, .bottom = false});
+    PhongScene scene = {.name = "teapot"};
+    for (std::size_t i = 0; i < pot.positions.size(); ++i) {
+        scene.mesh.positions.emplace_back(dvec3(pot.positions[i]) - dvec3(0, 0.75, 0));
+        scene.mesh.normals.emplace_back(dvec3(pot.normals[i]));
+        scene.mesh.uvs.emplace_back(dvec2(pot.uvs[i]));
+    }
+    for (std::size_t i = 0; i + 2 < pot.indices.size(); i += 3) {
+        scene.mesh.triangles.push_back({pot.indices[i], pot.indices[i + 1], pot.indices[i + 2]});
+    }
+    scene.material.color = {0.7, 0.3, 0.2};
+    scene.lights = {{.directional = true, .at = {-1, 1, 1}}};
+    scene.camera = {.eye = {0, 1.2, 5}, .target = dvec3(0), .half_size = 0.32, .size = 256};
+    return scene;
+}
+
+PhongScene dodecahedron_scene() {
+    return ball_scene("dodecahedron", make_coarse_sphere(5, 4), kBallLight);
+}
+
+PhongScene sphere_scene() {
+    return ball_scene("sphere", make_coarse_sphere(5, 5), kBallLight);
+}
+
+PhongScene fine_sphere_scene() {
+    return ball_scene(
+        "fine sphere", make_coarse_sphere(75, 26), {.directional = true, .at = {-1, 1, 1}});
+}
+
+std::span<const PrintedRow> printed_table() {
+    static constexpr PrintedRow kTable[] = {
+        {"teapot", {0.9870, 0.9939, 0.9949, 0.9872, 0.9886, 0.9888}},
+        {"triangle", {0.7644, 0.8970, 0.9058, 0.5589, 0.8205, 0.9311}}};
+    return kTable;
+}
+
+}  // namespace limn::fakephong

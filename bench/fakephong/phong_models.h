@@ -1,0 +1,33 @@
+#pragma once
+
+#include "bench/fakephong/phong_scene.h"
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace limn::fakephong {
+
+// The scenes of the thesis, rebuilt (fakephong.scenes). It gives the models and the kinds of light;
+// positions, exponents and cameras are fitted.
+
+/// A latitude and longitude sphere of 2 slices (stacks - 1) triangles, with radial normals.
+[[nodiscard]] PhongMesh make_coarse_sphere(int slices, int stacks);
+/// The regular dodecahedron as 12 fans of three triangles, with radial normals.
+[[nodiscard]] PhongMesh make_dodecahedron();
+
+[[nodiscard]] PhongScene triangle_scene();      ///< one triangle, point light near it
+[[nodiscard]] PhongScene teapot_scene();        ///< about 3,750 facets, directional light
+[[nodiscard]] PhongScene dodecahedron_scene();  ///< 30 triangles, point light
+[[nodiscard]] PhongScene sphere_scene();        ///< 40 triangles, point light
+[[nodiscard]] PhongScene fine_sphere_scene();   ///< 3,750 triangles, directional light
+
+/// Table 6.1 of the thesis, in the order of shading_methods()[1 .. 6].
+struct PrintedRow {
+    std::string_view model;
+    std::array<double, 6> correctness;
+};
+[[nodiscard]] std::span<const PrintedRow> printed_table();  ///< teapot, triangle
+
+}  // namespace limn::fakephong
