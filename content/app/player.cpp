@@ -5,10 +5,12 @@
 #include "content/app/pick.h"
 #include "content/load/level_list.h"
 #include "ecs/base/log.h"
+#include "ecs/components/gpu_particles.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/weather.h"
+#include "render/gpu_particle_pools.h"
 #include "render/graph/frame_graph.h"
 #include "systems/transform_system.h"
 
@@ -64,6 +66,12 @@ void set_antialiasing(World& world, Antialiasing wanted) {
     } else if (rendering.antialiasing == Antialiasing::Auto) {
         rendering.antialiasing = Antialiasing::Temporal;
     }
+}
+
+/// The world has Rendering, by set_antialiasing().
+void limit_particles(World& world, float share) {
+    Rendering& rendering = world.resource<Rendering>();
+    rendering.particle_share = std::min(rendering.particle_share, share);
 }
 
 }  // namespace
@@ -145,6 +153,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     paused_ = false;
     rate_ = 1.0;
     real_seconds_ = simulated_seconds_ = 0.0;
+    scale_.particle_share = 1;
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
         if (played != nullptr) {
             set_antialiasing(played->world, options_.antialiasing);
@@ -357,6 +366,11 @@ void Player::draw_frame(float dt, const Input& input) {
         }
     }
     const Clock::time_point begin = Clock::now();
+    for (Stage* const played : {stage_.get(), off_stage_.get()}) {
+        if (played != nullptr) {
+            limit_particles(played->world, scale_.particle_share);
+        }
+    }
     const IVec2 size = render_size(scale_, window_size);
     view_ = move_camera(dt, input, size);
     if (exr_wanted_) {
@@ -439,6 +453,8 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .window_size = window_size,
          .software_gl = device_->caps().software,
          .scale_auto = scale_.automatic,
+         .particle_stride =
+             static_cast<int>(particle_stride(stage_->world.resource<Rendering>().particle_share)),
          .paused = paused_,
          .error = (shader_error_.empty() ? level_error_ : shader_error_).c_str()});
     if (hud_->help_open) {
@@ -553,6 +569,8 @@ Status Player::run() {
         profiler_.add_frame(cost_);
         const double busy =
             std::max(cost_.simulate_ms + cost_.render_ms, frame_graph(*renderer_).total_gpu_ms());
+        scale_.thins_particles =
+            device_->caps().software && !stage_->world.query<const GpuParticles>().empty();
         update_render_scale(
             scale_, static_cast<float>(profiler_.median_frame_ms()), static_cast<float>(busy), dt);
     }
