@@ -114,7 +114,33 @@ void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
     pool.done = 0;
 }
 
+/// From the oldest particle to the oldest that is moved: one whose number the stride divides.
+std::uint32_t offset_of(const GpuParticlePool& pool) {
+    return (0u - pool.first) & (pool.stride - 1);
+}
+
+/// How many of the `count` oldest are moved.
+std::uint32_t moved_of(std::uint64_t count, const GpuParticlePool& pool) {
+    const std::uint64_t offset = offset_of(pool);
+    return count > offset
+               ? static_cast<std::uint32_t>((count - offset + pool.stride - 1) / pool.stride)
+               : 0;
+}
+
+/// Those that are moved, numbered without gaps.
+ParticleWindow sort_window(const GpuParticlePool& pool) {
+    return {(pool.first + offset_of(pool)) / pool.stride, pool.count};
+}
+
 }  // namespace
+
+std::uint32_t particle_stride(float share) {
+    std::uint32_t stride = 1;
+    while (stride < 1024 && static_cast<float>(stride) * share < 1) {
+        stride *= 2;
+    }
+    return stride;
+}
 
 std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const ParticleCollision* collision,
@@ -216,7 +242,7 @@ bool GpuParticlePools::meets_depth() const {
 void GpuParticlePools::add(
     FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
     std::uint32_t look, std::optional<std::uint32_t> sort_passes,
-    const ParticleCollision* collision) {
+    const ParticleCollision* collision, std::uint32_t stride) {
     std::unique_ptr<GpuParticlePool>& found = pools_[entity.bits()];
     if (found == nullptr) {
         found = std::make_unique<GpuParticlePool>();
@@ -227,10 +253,11 @@ void GpuParticlePools::add(
     const auto slots =
         static_cast<std::uint32_t>(std::max<std::uint64_t>(emitter.capacity, window));
     const std::uint64_t first_kept = particles.step - particles.kept().size();
-    if (pool.capacity != std::max(slots, 1u) || pool.done > particles.step
-        || pool.done < first_kept) {
+    if (pool.capacity != std::max(slots, 1u) || pool.done > particles.step || pool.done < first_kept
+        || stride < pool.stride) {
         make_buffers(slots, pool);  // and all steps again
     }
+    pool.stride = stride;
     pool.steps.upload(
         *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
     const std::span<const GpuParticleStep> to_do =
@@ -239,10 +266,9 @@ void GpuParticlePools::add(
     pool.used = true;
     pool.look = look;
     pool.first = static_cast<std::uint32_t>(particles.oldest());
-    pool.count = static_cast<std::uint32_t>(window);
+    pool.count = moved_of(window, pool);
     const std::uint64_t born_before = to_do.empty() ? particles.clock.born : to_do.front().first;
-    pool.old =
-        static_cast<std::uint32_t>(std::max(born_before, particles.oldest()) - particles.oldest());
+    pool.old = moved_of(std::max(born_before, particles.oldest()) - particles.oldest(), pool);
     pool.plain.reset();
     if (to_do.size() == 1 && is_plain(to_do.front())) {
         pool.plain = to_do.front().motion.step;
@@ -257,7 +283,7 @@ void GpuParticlePools::add(
     pool.collide_depth = depth > 0 && !closed_form && can_meet_depth(*frame.device) ? depth : 0.0f;
     pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
-        plan_particle_sort({pool.first, pool.count}, *sort_passes, pool.sort);
+        plan_particle_sort(sort_window(pool), *sort_passes, pool.sort);
     }
 }
 
@@ -278,6 +304,8 @@ void GpuParticlePools::move(
         program.set("first", pool.first);
         program.set("begin", begin);
         program.set("end", end);
+        program.set("stride", pool.stride);
+        program.set("offset", offset_of(pool));
         program.set("first_slot", pool.first % pool.capacity);
         program.set("capacity", pool.capacity);
         program.set("step_count", pool.layout.steps);
@@ -345,7 +373,7 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
             graph.import("sorted particles", pool.sort.instances)};
         graph.add_pass("sort particles", unsorted, order, [=, this, &pool](PassContext& context) {
             run_particle_sort(
-                context, *sort_programs_, {pool.first, pool.count}, pool.instances,
+                context, *sort_programs_, sort_window(pool), pool.instances,
                 {view.eye, view.forward}, pool.sort);
         });
     }

@@ -25,6 +25,10 @@ class World;
 // of slots, 36 bytes each, that particle_update.comp brings up to date with the steps that the
 // systems have written down (systems/particles/gpu_particle_system.h), and a list of what to draw,
 // oldest first.
+//
+// Where a million are too many, every `stride`th by its number is moved and drawn, the others are
+// as if they were not there. A larger stride leaves some of those that were moved; for a smaller
+// one all steps that are kept are done again.
 
 /// Where the parts of the texels of steps begin.
 struct ParticleStepTexels {
@@ -46,8 +50,9 @@ struct GpuParticlePool {
     // Of this frame.
     bool used = false;
     std::uint32_t look = 0;
-    std::uint32_t first = 0;  ///< number of the oldest particle, low word
-    std::uint32_t count = 0;  ///< to draw
+    std::uint32_t stride = 1;  ///< a power of two
+    std::uint32_t first = 0;   ///< number of the oldest particle, low word
+    std::uint32_t count = 0;   ///< to move and draw
     ParticleStepTexels layout{};
     bool sorted = false;
     GpuParticleSort sort{};
@@ -58,6 +63,9 @@ struct GpuParticlePool {
     std::optional<ParticleStep> plain{};
     float collide_depth = 0;  ///< as ParticleCollision::collide_depth
 };
+
+/// The stride that leaves `share` of the particles, or less: 1 .. 1024.
+[[nodiscard]] std::uint32_t particle_stride(float share);
 
 /// When and from where they are seen.
 struct GpuParticleView {
@@ -80,13 +88,13 @@ class GpuParticlePools {
     /// Before those of a frame are added: forgets all pools of another world, or of one that was
     /// loaded anew.
     void begin_frame(const World& world);
-    /// An emitter's particles, drawn with the look of this number. `sort_passes`: none: as they
-    /// were born; 0: sorted; otherwise so many passes of a sort.
+    /// An emitter's particles, every `stride`th, drawn with the look of this number. `sort_passes`:
+    /// none: as they were born; 0: sorted; otherwise so many passes of a sort.
     void
     add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
         const GpuParticles& particles, std::uint32_t look,
         std::optional<std::uint32_t> sort_passes = std::nullopt,
-        const ParticleCollision* collision = nullptr);
+        const ParticleCollision* collision = nullptr, std::uint32_t stride = 1);
     /// After they have been added: forgets all others.
     void forget_unused();
     /// Adds the passes that move and sort them, unless someone has in this frame.

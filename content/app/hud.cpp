@@ -200,6 +200,11 @@ void Hud::draw_status(const HudStatus& status) {
                     "{} x {} shown at {} x {}{}", status.render_size.x, status.render_size.y,
                     status.window_size.x, status.window_size.y,
                     status.scale_auto ? " (auto)" : ""));
+        if (status.particle_stride > 1) {
+            numbers_text(
+                style_, kHudDim,
+                format("one particle of {}, to keep it playable", status.particle_stride));
+        }
         if (*status.motion != '\0') {
             numbers_text(style_, kHudDim, status.motion);
         }

@@ -28,6 +28,7 @@ struct HudStatus {
     IVec2 window_size = {0, 0};  ///< of the framebuffer [px]
     bool software_gl = false;    ///< OpenGL runs on the CPU
     bool scale_auto = false;
+    int particle_stride = 1;  ///< one of so many particles is drawn
     bool paused = false;
     const char* error = "";  ///< shown until it is fixed: of a shader or the level
 };

@@ -1,6 +1,7 @@
 #include "content/app/player.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/gpu_particles.h"
 #include "render/graph/frame_graph.h"
 
 #include <fmt/format.h>
@@ -184,6 +185,8 @@ Status Player::run() {
         profiler_.add_frame(cost_);
         const double busy =
             std::max(cost_.simulate_ms + cost_.render_ms, frame_graph(*renderer_).total_gpu_ms());
+        scale_.thins_particles =
+            device_->caps().software && !stage_->world.query<const GpuParticles>().empty();
         update_render_scale(
             scale_, static_cast<float>(profiler_.median_frame_ms()), static_cast<float>(busy), dt);
     }

@@ -6,13 +6,16 @@
 #include "content/app/player.h"
 #include "content/game/stones.h"
 #include "ecs/base/log.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/weather.h"
+#include "render/gpu_particle_pools.h"
 #include "render/graph/frame_graph.h"
 #include "systems/transform_system.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -41,6 +44,12 @@ std::string describe_weather(const World& world) {
     return line;
 }
 
+/// The world has Rendering, as each that is played.
+void limit_particles(World& world, float share) {
+    Rendering& rendering = world.resource<Rendering>();
+    rendering.particle_share = std::min(rendering.particle_share, share);
+}
+
 }  // namespace
 
 void Player::draw_frame(float dt, const Input& input) {
@@ -53,6 +62,11 @@ void Player::draw_frame(float dt, const Input& input) {
         }
     }
     const Clock::time_point begin = Clock::now();
+    for (Stage* const played : {stage_.get(), off_stage_.get()}) {
+        if (played != nullptr) {
+            limit_particles(played->world, scale_.particle_share);
+        }
+    }
     const IVec2 size = render_size(scale_, window_size);
     view_ = move_camera(dt, input, size);
     if (exr_wanted_) {
@@ -137,6 +151,8 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .window_size = window_size,
          .software_gl = device_->caps().software,
          .scale_auto = scale_.automatic,
+         .particle_stride =
+             static_cast<int>(particle_stride(stage_->world.resource<Rendering>().particle_share)),
          .paused = paused_,
          .error = (shader_error_.empty() ? level_error_ : shader_error_).c_str()});
     if (hud_->help_open) {

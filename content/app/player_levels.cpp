@@ -42,6 +42,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     paused_ = false;
     rate_ = 1.0;
     real_seconds_ = simulated_seconds_ = 0.0;
+    scale_.particle_share = 1;
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
         if (played != nullptr) {
             set_antialiasing(played->world, options_.antialiasing);

@@ -37,6 +37,7 @@ struct Rendering {
     ShadingRate shading = ShadingRate::Pixel;
     Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
+    float particle_share = 1;      ///< of those that the GPU moves, see below
 };
 
 LIMN_FIELDS(Rendering) {
@@ -49,6 +50,11 @@ LIMN_FIELDS(Rendering) {
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",
         .values = "auto none temporal");
     LIMN_FIELD(infinite_viewer, "highlights use one view direction, as if infinitely far away");
+    LIMN_FIELD(
+        particle_share,
+        "share of the particles moved by the GPU that are moved and drawn, larger by as much; "
+        "rounded down to 1, 1/2, 1/4 ...",
+        "", 0.0009765625, 1);
 }
 
 }  // namespace limn

@@ -4,6 +4,7 @@
 #include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/particle_collider.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -119,6 +120,15 @@ std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
         return std::nullopt;
     }
     return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
+}
+
+/// One for `stride` particles: their area in one.
+ParticleLook enlarged(ParticleLook look, std::uint32_t stride) {
+    const float factor = std::sqrt(static_cast<float>(stride));
+    look.size *= factor;
+    look.size_spread *= factor;
+    look.stretch *= factor;
+    return look;
 }
 
 constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
@@ -436,6 +446,9 @@ void ParticleEffect::collect(FrameData& frame) {
                 }
             }
         });
+    const auto* const rendering = world.find_resource<Rendering>();
+    const std::uint32_t stride =
+        particle_stride(rendering != nullptr ? rendering->particle_share : 1);
     gpu.begin_frame(world);
     world
         .query<
@@ -444,9 +457,10 @@ void ParticleEffect::collect(FrameData& frame) {
         .each([&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
                   const GpuParticles& particles, const ParticleCollision* collision) {
             if (looks.size() < kMaxLooks) {
-                const std::uint32_t index = add_look(frame, look);
+                const std::uint32_t index = add_look(frame, enlarged(look, stride));
                 add_pull(world, entity, index);
-                gpu.add(frame, entity, emitter, particles, index, sort_passes(look), collision);
+                gpu.add(
+                    frame, entity, emitter, particles, index, sort_passes(look), collision, stride);
                 if (look.culling == ParticleCulling::Emitter) {
                     extents[index].group = shape_in_world(entity);
                 }

@@ -18,12 +18,14 @@ layout(std430, binding = 1) buffer Bits {
     uint bits[];  // of each slot: random
 };
 layout(std430, binding = 2) writeonly buffer Instances {
-    uvec4 instances[];  // of each particle, oldest first: as particle.vert reads them
+    uvec4 instances[];  // of each particle that is moved, oldest first: as particle.vert reads them
 };
 
 uniform uint first;       // number of the oldest particle, low word
-uniform uint begin;       // of those to move, from the oldest on
+uniform uint begin;       // of those to move, from the oldest of them on
 uniform uint end;         // one after the last
+uniform uint stride;      // every so many are moved
+uniform uint offset;      // from the oldest particle to the oldest that is moved
 uniform uint first_slot;  // of the oldest
 uniform uint capacity;    // slots
 uniform int step_count;   // steps to do
@@ -379,10 +381,11 @@ void move(inout Particle p, int texel) {
 #endif
 
 void main() {
-    uint index = begin + gl_GlobalInvocationID.x;
-    if (index >= end) {
+    uint moved = begin + gl_GlobalInvocationID.x;
+    if (moved >= end) {
         return;
     }
+    uint index = offset + moved * stride;
     uint slot = first_slot + index;
     slot -= slot >= capacity ? capacity : 0u;
     vec4 place_age = state[2u * slot];
@@ -424,7 +427,7 @@ void main() {
         p.velocity += gravity * age;
     }
 #endif
-    instances[2u * index] = uvec4(floatBitsToUint(place), look << 16 | uint(share * 65535.0));
-    instances[2u * index + 1u] =
+    instances[2u * moved] = uvec4(floatBitsToUint(place), look << 16 | uint(share * 65535.0));
+    instances[2u * moved + 1u] =
         uvec4(packHalf2x16(p.velocity.xy), packHalf2x16(vec2(p.velocity.z, age)), p.look_bits, is_alive ? 0u : 1u);
 }

@@ -56,6 +56,29 @@ TEST_CASE("render_scale: auto settles where the frame time is met, from above an
     }
 }
 
+TEST_CASE("render_scale: only at the lowest resolution are particles thinned, until it is met") {
+    RenderScale scale = make_render_scale(0, false, true, {1280, 720});
+    scale.thins_particles = true;
+    float frame = 0;
+    for (int i = 0; i < 400; ++i) {
+        frame = 5.0f + 40.0f * scale.scale * scale.scale + 1000.0f * scale.particle_share;
+        const float share = scale.particle_share;
+        const float before = scale.scale;
+        update_render_scale(scale, frame, frame, frame * 1e-3f);
+        CHECK((scale.particle_share == share || before == kMinScale));
+        CHECK(scale.particle_share <= share);
+    }
+    CHECK(frame <= 1.1f * 60.0f);
+    CHECK(scale.particle_share < 0.1f);
+    CHECK(scale.particle_share > 0.01f);
+
+    RenderScale still = make_render_scale(0, false, true, {1280, 720});
+    for (int i = 0; i < 100; ++i) {
+        update_render_scale(still, 1000, 1000, 1);  // without such particles
+    }
+    CHECK(still.particle_share == 1);
+}
+
 TEST_CASE("render_scale: without auto nothing changes") {
     RenderScale scale = make_render_scale(0.5f, false, false, {1280, 720});
     CHECK_FALSE(update_render_scale(scale, 200.0f, 200.0f, 10.0f));
