@@ -202,10 +202,12 @@ struct Reader {
             const double as_degrees = read * kDegree;
             const bool seems_degrees = !with_unit && unit == "rad" && as_degrees >= info.meta.min
                                        && as_degrees <= info.meta.max;
+            const bool seems_byte = info.meta.color && read > info.meta.max && read <= 255.0;
             return unexpected(
                 json, at,
                 expected_number(info, "a number")
                     + (seems_degrees ? fmt::format(" (for degrees write \"{}deg\")", json.text)
+                       : seems_byte  ? " (for 0 .. 255 write \"#rrggbb\")"
                                      : std::string()));
         }
         number = read;

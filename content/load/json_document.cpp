@@ -348,10 +348,17 @@ class JsonParser {
             ++next_;
             return true;
         }
-        while (parse_item() && skip_blank()) {
+        while (parse_item()) {
+            const std::uint32_t item_end = line_;
+            if (!skip_blank()) {
+                return false;
+            }
             const char c = peek();
             if (c != close && c != ',') {
-                return refuse(expected);
+                return refuse(
+                    line_ == item_end
+                        ? std::string(expected)
+                        : fmt::format("{} (line {} ends without one)", expected, item_end));
             }
             const SourcePosition at = position();
             ++next_;

@@ -377,6 +377,13 @@ TEST_CASE("component json: numbers that become infinite as float are refused") {
     CHECK(read<Everything>(R"({"fine": 1e39})").fine == 1e39);
 }
 
+TEST_CASE("component json: a color of 0 .. 255 is told how to be written") {
+    const std::string hint = "(for 0 .. 255 write \"#rrggbb\")";
+    CHECK(error_of<Everything>(R"({"tint": [255, 128, 0]})").ends_with(hint));
+    CHECK(error_of<Everything>(R"({"tint": [0, 0, 300]})").find(hint) == std::string::npos);
+    CHECK(error_of<Everything>(R"({"tint": [-1, 0, 0]})").find(hint) == std::string::npos);
+}
+
 TEST_CASE("component json: colors and angles that are none are refused") {
     for (const char* text :
          {"\"ff8000\"", "\"#ff80\"", "\"#gg8000\"", "\"#ff800080\"", "\"\"", "\"#\""}) {

@@ -71,6 +71,10 @@ TEST_CASE("json: what is no JSON is refused with its place and what was expected
     CHECK(error_of("{\"a\": }") == "t.json:1:7: found \"}\", expected a value");
     CHECK(error_of("{\"a\" 1}") == "t.json:1:6: found \"1\", expected ':' after the key \"a\"");
     CHECK(error_of("[1 2]") == "t.json:1:4: found \"2\", expected ',' or ']' in the array");
+    CHECK(
+        error_of("{\"a\": 1  // one\n\n\"b\": 2}")
+        == "t.json:3:1: found \"\\\"\", expected ',' or '}' in the object (line 1 ends without "
+           "one)");
     CHECK(error_of("[1,]") == "t.json:1:3: found a comma before ], expected none there");
     CHECK(
         error_of("{\"a\": [1],  // one\n}")
