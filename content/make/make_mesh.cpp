@@ -3,6 +3,7 @@
 #include "content/make/bar.h"
 #include "content/make/boat.h"
 #include "content/make/fragments.h"
+#include "content/make/head.h"
 #include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
 #include "content/make/shapes.h"
@@ -56,6 +57,7 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
         mesh_kind<FragmentsShape, make_fragments>(
             "fragments", "another mesh of the level, broken into pieces that can fly apart"),
+        mesh_kind<HeadShape, make_head>("head", "the skin of a human head that faces z"),
         mesh_kind<HovercraftShape, make_hovercraft>(
             "hovercraft", "a racing craft that hovers, facing z"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "content/make/head.h"
+#include "ecs/base/math.h"
+
+#include <span>
+
+namespace limn {
+
+// The skin of a head as an implicit surface: solids that blend into one another, sculpted by
+// strokes. All in centimeters, on the left side (x >= 0), mirrored; y = 0 is 3.5 cm below the
+// pupils, z = 0 near the ears.
+
+// The ball of the left eye and the opening of its lids.
+inline constexpr Vec3 kEyeCenter = {3.15f, 3.5f, 7.92f};
+inline constexpr float kEyeRadius = 1.3f;
+inline constexpr float kLidThickness = 0.17f;
+
+// The jaw turns about this axis, parallel to x (y, z).
+inline constexpr Vec2 kJawAxis = {-0.55f, 1.82f};
+
+/// < 0 inside; about the distance near the surface. `detail` 0: cranium, face and neck alone, 1:
+/// with nose, lids, lips and all strokes.
+[[nodiscard]] float head_distance(const Vec3& p, const HeadShape& shape, float detail);
+
+/// Moves `p` along the gradient onto the surface.
+[[nodiscard]] Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail);
+
+/// Likewise along z, to the foremost point: for the nose, where gradients would fold the mesh.
+[[nodiscard]] Vec3 project_forwards(Vec3 p, const HeadShape& shape, float detail);
+
+/// Of the left lids: outer edge of the margin at `angle` [rad], 0 lateral, pi / 2 up.
+[[nodiscard]] Vec3 lid_margin(float angle);
+
+/// Where the lips touch, at `angle` around the mouth.
+[[nodiscard]] Vec3 lip_line(float angle);
+
+}  // namespace limn

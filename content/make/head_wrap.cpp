@@ -1,0 +1,258 @@
+#include "content/make/head_wrap.h"
+
+#include "content/make/head_layout.h"
+#include "content/make/head_surface.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+/// Mirrors `p`, of the left side, to the side of `vertex`.
+Vec3 to_side(const HeadVertex& vertex, Vec3 p) {
+    return vertex.left || vertex.loops == HeadLoops::Mouth ? p : Vec3(-p.x, p.y, p.z);
+}
+
+/// The outer edge of the margin, its inner edge, and the pocket between lids and ball.
+Vec3 lid_point(const HeadVertex& vertex) {
+    const Vec3 margin = lid_margin(vertex.angle);
+    const int inwards = vertex.loop - kLidLoop;
+    if (inwards == 0) {
+        return margin;
+    }
+    const Vec3 offset = margin - kEyeCenter;
+    const Vec3 direction = glm::normalize(offset);
+    const float around = std::atan2(offset.y, offset.x);
+    const float opening = std::acos(direction.z);
+    constexpr std::array<float, 4> kOpen = {0, 0.3f, 0.65f, 1};
+    const float angle =
+        inwards < 5 ? glm::mix(opening, std::max(opening, 1.75f), kOpen[inwards - 1]) : 2.6f;
+    const float reach = inwards == 1 ? std::max(kEyeRadius + 0.015f, glm::length(offset) - 0.2f)
+                                     : kEyeRadius + 0.05f;
+    return kEyeCenter
+           + reach
+                 * Vec3(
+                     std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around),
+                     std::cos(angle));
+}
+
+/// Onto the surface.
+Vec3 project(const HeadVertex& vertex, const Vec3& p, const HeadShape& shape, float detail) {
+    const Vec3& start = vertex.start;
+    const bool nose = vertex.loops == HeadLoops::None && start.z > 8 && std::abs(start.x) < 2.4f
+                      && start.y > -2 && start.y < 5;
+    return nose ? project_forwards(p, shape, detail) : project_to_head(p, shape, detail);
+}
+
+/// From where the lips touch to the back of the mouth.
+Vec3 mouth_point(const HeadVertex& vertex, const HeadShape& shape, float detail) {
+    struct Profile {
+        float depth, open, width;  // behind the lips, above or below their line, share of its width
+    };
+    constexpr std::array<Profile, 7> kProfile = {{
+        {0.10f, 0.015f, 1},
+        {0.40f, 0.02f, 0.99f},
+        {0.75f, 0.25f, 0.99f},
+        {1.2f, 0.8f, 1.02f},
+        {2.2f, 1.1f, 1.02f},
+        {4.0f, 1.2f, 0.95f},
+        {5.5f, 0.9f, 0.7f},
+    }};
+    const Profile& profile = kProfile[vertex.loop - kLipLoop];
+    const Vec3 line = lip_line(vertex.angle);
+    return {
+        line.x * profile.width, line.y + profile.open * std::sin(vertex.angle),
+        project_forwards({line.x, line.y, 0}, shape, detail).z - profile.depth};
+}
+
+struct EarProfile {
+    float out;     ///< share of the outline's radius
+    float height;  ///< above the plane of the ear [cm]
+};
+
+// From the head over the back of the ear, the helix, the scapha and the antihelix to the concha;
+// in front, from the cheek over the tragus.
+constexpr std::array<EarProfile, kEarLoops> kFreeEar = {{
+    {0.60f, -1.05f},
+    {0.66f, -0.65f},
+    {0.80f, -0.36f},
+    {0.93f, -0.22f},
+    {0.995f, -0.05f},
+    {1.0f, 0.10f},
+    {0.96f, 0.20f},
+    {0.90f, 0.19f},
+    {0.865f, 0.06f},
+    {0.82f, -0.07f},
+    {0.75f, -0.04f},
+    {0.67f, 0.09f},
+    {0.58f, 0.15f},
+    {0.51f, 0.03f},
+    {0.47f, -0.25f},
+    {0.42f, -0.52f},
+    {0.25f, -0.62f},
+    {0.08f, -0.66f},
+}};
+constexpr std::array<EarProfile, kEarLoops> kFrontEar = {{
+    {1.36f, -0.66f},
+    {1.28f, -0.62f},
+    {1.20f, -0.58f},
+    {1.12f, -0.54f},
+    {1.04f, -0.48f},
+    {0.96f, -0.40f},
+    {0.88f, -0.28f},
+    {0.80f, -0.15f},
+    {0.72f, -0.05f},
+    {0.64f, -0.01f},
+    {0.56f, -0.03f},
+    {0.50f, -0.12f},
+    {0.47f, -0.25f},
+    {0.44f, -0.38f},
+    {0.40f, -0.48f},
+    {0.33f, -0.56f},
+    {0.2f, -0.63f},
+    {0.08f, -0.66f},
+}};
+
+/// Of the ear's outline from the concha [cm]; angle 0 backwards, pi / 2 up.
+float ear_radius(float angle) {
+    const float c = std::cos(angle);
+    const float s = std::sin(angle);
+    const Vec2 radii = {c > 0 ? 2.0f : 1.15f, s > 0 ? 2.75f : 2.95f};
+    const float lobe = s < 0 ? 1 - 0.16f * s * s * std::abs(c) * 2 : 1.0f;  // narrower below
+    return lobe / std::sqrt(square(c / radii.x) + square(s / radii.y));
+}
+
+Vec3 ear_point(const HeadVertex& vertex, const Vec3& root) {
+    // The ear leans back, and stands out from the head.
+    const Vec3 up = glm::normalize(Vec3(0.10f, std::cos(0.28f), -std::sin(0.28f)));
+    const Vec3 back =
+        glm::normalize(Vec3(0.48f, -std::sin(0.28f) * 0.88f, -std::cos(0.28f) * 0.88f));
+    const Vec3 out = glm::normalize(glm::cross(up, back));
+    const float c = std::cos(vertex.angle);
+    const float s = std::sin(vertex.angle);
+    const float front =
+        glm::smoothstep(-0.1f, -0.75f, c) * (1 - 0.5f * glm::smoothstep(0.7f, 0.95f, s));
+    const EarProfile& free = kFreeEar[vertex.loop - 1];
+    EarProfile profile = {
+        glm::mix(free.out, kFrontEar[vertex.loop - 1].out, front),
+        glm::mix(free.height, kFrontEar[vertex.loop - 1].height, front)};
+    const float lobe = glm::smoothstep(-0.55f, -0.9f, s);  // no folds, but a pillow
+    if (vertex.loop > 6 && vertex.loop < 15) {
+        profile.height =
+            glm::mix(profile.height, 0.12f - 0.02f * (static_cast<float>(vertex.loop) - 7), lobe);
+    }
+    const float radius = ear_radius(vertex.angle) * profile.out;
+    return root + radius * (c * back + s * up) + profile.height * out;
+}
+
+class HeadWrap {
+  public:
+    explicit HeadWrap(const HeadShape& shape)
+        : shape_(shape), layout_(head_layout()), neighbors_(layout_.vertices.size()) {
+        for (const auto& quad : layout_.quads) {
+            for (int k = 0; k < 4; ++k) {
+                neighbors_[quad[k]].push_back(quad[(k + 1) % 4]);
+            }
+        }
+        for (std::uint32_t v = 0; v < layout_.vertices.size(); ++v) {
+            positions_.push_back(layout_.vertices[v].start);
+            const bool end = layout_.vertices[v].chart.y >= kHeadRows;
+            free_.push_back(!end);
+        }
+    }
+
+    std::vector<Vec3> run() {
+        constexpr int kSteps = 12;
+        for (int step = 0; step <= kSteps; ++step) {
+            const float detail = static_cast<float>(step) / kSteps;
+            set_curves(detail);
+            for (int round = 0; round < (step == kSteps ? 6 : 2); ++round) {
+                relax(detail);
+            }
+        }
+        for (std::size_t v = 0; v < positions_.size(); ++v) {
+            if (free_[v]) {
+                positions_[v] = project(layout_.vertices[v], positions_[v], shape_, 1);
+            }
+        }
+        set_ears();
+        make_symmetric();
+        return std::move(positions_);
+    }
+
+  private:
+    void set_curves(float detail) {
+        for (std::size_t v = 0; v < positions_.size(); ++v) {
+            const HeadVertex& vertex = layout_.vertices[v];
+            if (vertex.loops == HeadLoops::Eye && vertex.loop >= kLidLoop) {
+                positions_[v] = to_side(vertex, lid_point(vertex));
+                free_[v] = false;
+            } else if (vertex.loops == HeadLoops::Mouth && vertex.loop >= kLipLoop) {
+                positions_[v] = mouth_point(vertex, shape_, detail);
+                free_[v] = false;
+            } else if (vertex.chart.y >= kHeadRows) {
+                positions_[v] = project_to_head(positions_[v], shape_, detail);
+            }
+        }
+    }
+
+    void relax(float detail) {
+        const std::vector<Vec3> before = positions_;
+        for (std::size_t v = 0; v < positions_.size(); ++v) {
+            if (!free_[v]) {
+                continue;
+            }
+            Vec3 mean = Vec3(0);
+            for (const std::uint32_t other : neighbors_[v]) {
+                mean += before[other];
+            }
+            mean /= static_cast<float>(neighbors_[v].size());
+            positions_[v] =
+                project(layout_.vertices[v], glm::mix(before[v], mean, 0.35f), shape_, detail);
+        }
+    }
+
+    void set_ears() {
+        const Vec3 root = project_to_head({7, 0.95f, -0.9f}, shape_, 1) + Vec3(0.75f, 0, 0.1f);
+        for (std::size_t v = 0; v < positions_.size(); ++v) {
+            const HeadVertex& vertex = layout_.vertices[v];
+            if (vertex.loops == HeadLoops::Ear) {
+                positions_[v] = to_side(vertex, ear_point(vertex, root));
+            }
+        }
+    }
+
+    void make_symmetric() {
+        const std::vector<Vec3> before = positions_;
+        for (std::size_t v = 0; v < positions_.size(); ++v) {
+            const Vec3& other = before[layout_.mirror[v]];
+            positions_[v] = 0.5f * (before[v] + Vec3(-other.x, other.y, other.z));
+        }
+        // One side a little higher, the chin and the nose a little aside.
+        for (Vec3& p : positions_) {
+            const float low = glm::smoothstep(6.0f, -7.0f, p.y);
+            p.x += shape_.asymmetry * 0.18f * low * glm::smoothstep(0.0f, 8.0f, p.z);
+            p.y += shape_.asymmetry * 0.02f * p.x;
+        }
+    }
+
+    HeadShape shape_;
+    const HeadLayout& layout_;
+    std::vector<std::vector<std::uint32_t>> neighbors_;
+    std::vector<Vec3> positions_;
+    std::vector<bool> free_;
+};
+
+}  // namespace
+
+std::vector<Vec3> wrap_head(const HeadShape& shape) {
+    return HeadWrap(shape).run();
+}
+
+}  // namespace limn
