@@ -3,7 +3,7 @@
 #include "content/app/bake_command.h"
 #include "content/app/bench_command.h"
 #include "content/app/check_command.h"
-#include "content/app/command_values.h"
+#include "content/app/command_options.h"
 #include "content/app/compare_command.h"
 #include "content/app/hash_command.h"
 #include "content/app/image_file.h"
@@ -24,7 +24,6 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,108 +42,6 @@ struct Command {
     CLI::App* app = nullptr;
     std::function<Status()> run;
 };
-
-/// An option whose value `parse` checks; what it rejects is wrong usage.
-template <typename T, typename Parse>
-CLI::Option*
-add_parsed(CLI::App& app, const std::string& name, const std::string& doc, T& target, Parse parse) {
-    CLI::Option* option = app.add_option_function<std::string>(
-        name,
-        [&target, parse, name](const std::string& text) {
-            auto value = parse(text);
-            if (!value) {
-                const std::size_t dashes = name.find("--");  // none: a positional one
-                throw CLI::ValidationError(
-                    name.substr(dashes == std::string::npos ? 0 : dashes), value.error().message);
-            }
-            target = static_cast<T>(*std::move(value));
-        },
-        doc);
-    return option;
-}
-
-CLI::Option* add_size(CLI::App& app, IVec2& size) {
-    return add_parsed(app, "--size", "of the image [px]", size, parse_size)
-        ->type_name("WxH")
-        ->default_str(fmt::format("{}x{}", size.x, size.y));
-}
-
-template <typename T>
-CLI::Option* add_integer(
-    CLI::App& app, const std::string& name, const std::string& doc, T& target, std::int64_t min,
-    std::int64_t max) {
-    return add_parsed(
-               app, name, doc, target,
-               [min, max](const std::string& text) { return parse_integer(text, min, max); })
-        ->type_name("N");
-}
-
-template <typename T>
-CLI::Option* add_number(
-    CLI::App& app, const std::string& name, const std::string& doc, T& target, double min,
-    double max) {
-    return add_parsed(
-               app, name, doc, target,
-               [min, max](const std::string& text) { return parse_number(text, min, max); })
-        ->type_name("X");
-}
-
-Result<std::string> parse_png_path(const std::string& text) {
-    const Result<ImageFileKind> kind = image_file_kind(text);
-    if (!kind || *kind != ImageFileKind::Png) {
-        return Error{fmt::format("found \"{}\", expected a file name ending in .png", text)};
-    }
-    return text;
-}
-
-CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
-    return add_integer(
-        app, "--seed", "seed of all random numbers; overrides the level's", seed, 0,
-        std::numeric_limits<std::int64_t>::max());
-}
-
-void add_assignments(CLI::App& app, std::vector<Assignment>& assignments) {
-    app.add_option_function<std::vector<std::string>>(
-           "--set",
-           [&assignments](const std::vector<std::string>& texts) {
-               for (const std::string& text : texts) {
-                   Result<Assignment> assignment = parse_assignment(text);
-                   if (!assignment) {
-                       throw CLI::ValidationError("--set", assignment.error().message);
-                   }
-                   assignments.push_back(*std::move(assignment));
-               }
-           },
-           "change a field after loading; may be repeated")
-        ->type_name("PATH=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
-void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile) {
-    add_parsed(
-        app, "--profile", "render as on a GPU or as on a software OpenGL; default: by the device",
-        profile, parse_profile)
-        ->type_name("gpu|software");
-}
-
-CLI::Option* add_show(CLI::App& app, std::string& technique) {
-    return app
-        .add_option(
-            "--show", technique,
-            "show a technique of TECHNIQUES.md (`limn shows`); SCENE may be left out")
-        ->type_name("ID");
-}
-
-void add_model_view(CLI::App& app, ModelViewOptions& options) {
-    app.add_option(
-           "--backdrop", options.backdrop,
-           "of a model: studio, sky, gray, black, or an image, a panorama that lights it")
-        ->type_name("NAME|IMAGE");
-    add_number(
-        app, "--turntable", "of a model: turn it in so many seconds", options.turntable, 0.1, 3600)
-        ->type_name("SECONDS");
-}
 
 Command add_play(CLI::App& program, PlayOptions& options) {
     CLI::App* app = program.add_subcommand("play", "Play a level in a window");
