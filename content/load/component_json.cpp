@@ -282,13 +282,20 @@ struct Reader {
     static std::string expected_color(std::span<const float> floats) {
         return floats.size() == 4
                    ? R"([r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"
-                   : R"([r, g, b], "#rrggbb" or a name such as "orange")";
+                   : R"([r, g, b], "#rrggbb", "#rgb" or a name such as "orange")";
     }
 
     Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
-        const std::string& text = json.text;
-        const std::size_t digits = text.size() - 1;
+        std::string text = json.text;
         const std::optional<std::uint32_t> named = find_color(text);
+        if (text.starts_with('#') && text.size() <= 5) {  // "#f80" is "#ff8800"
+            std::string doubled = "#";
+            for (const char digit : text.substr(1)) {
+                doubled.append(2, digit);
+            }
+            text = doubled;
+        }
+        const std::size_t digits = text.size() - 1;
         std::uint32_t code = named.value_or(0);
         bool good = text.starts_with('#') && (digits == 6 || (digits == 8 && floats.size() == 4));
         if (good) {
@@ -297,7 +304,8 @@ struct Reader {
             good = parsed.ec == std::errc() && parsed.ptr == end;
         }
         if (!good && !named) {
-            return unexpected(json, at, expected_color(floats) + did_you_mean(text, color_names()));
+            return unexpected(
+                json, at, expected_color(floats) + did_you_mean(json.text, color_names()));
         }
         if (!named && digits == 8) {
             floats[3] = static_cast<float>(code & 0xff) / 255.0f;

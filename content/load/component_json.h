@@ -24,7 +24,8 @@ namespace limn {
 //     enum           the enumerator's name: "inverse_square"
 //     vector         an array of its length
 //     color          linear [r, g, b] or [r, g, b, a], or "#rrggbb", "#rrggbbaa" in sRGB, or
-//                    a color of CSS: "orange"; without alpha, the field keeps its own
+//                    short "#rgb", "#rgba", or a color of CSS: "orange"; without alpha, the field
+//                    keeps its own
 //     rotation       [x, y, z, w], or [yaw, pitch, roll] in degrees, or with a unit, about y, then
 //                    x, then z (R = Ry Rx Rz)
 //     matrix         an array of its elements, column-major; Affine row-major

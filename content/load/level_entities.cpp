@@ -104,19 +104,30 @@ void follow_character(Prefab& list, std::uint32_t index) {
 
 LevelEntities::LevelEntities(
     std::string file, const std::vector<JsonMember>& prefabs, NameResolver names,
-    const EntityLimits& limits)
-    : file_(std::move(file)), names_(std::move(names)), limits_(limits) {
+    const EntityLimits& limits, ErrorList& errors)
+    : file_(std::move(file)), names_(std::move(names)), limits_(limits), errors_(errors) {
     for (const JsonMember& prefab : prefabs) {
         prefabs_[prefab.key].json = &prefab.value;
     }
 }
 
-Status LevelEntities::add(const JsonValue& node, const std::string& path) {
-    open_.clear();
-    return add_node(level_, node, {}, path);
+void LevelEntities::add(const JsonValue& node, const std::string& path) {
+    add_node(level_, node, {}, path);
 }
 
-Status LevelEntities::add_node(
+void LevelEntities::add_node(
+    List& list, const JsonValue& json, const Context& context, const std::string& path) {
+    const std::size_t open_before = open_.size();
+    const Status status = try_add_node(list, json, context, path);
+    open_.resize(open_before);
+    if (!status) {
+        errors_.keep(status);
+        note_missing(json);
+        has_left_out_ = true;
+    }
+}
+
+Status LevelEntities::try_add_node(
     List& list, const JsonValue& json, const Context& context, const std::string& path) {
     Node node;
     node.json = &json;
@@ -126,12 +137,23 @@ Status LevelEntities::add_node(
         return refuse(
             path, json.at, fmt::format("more than {} nested entities", limits_.max_depth), "fewer");
     }
-    const std::size_t open_before = open_.size();
     LIMN_TRY(read_own_keys(node));
     LIMN_TRY(find_layers(node));
-    LIMN_TRY(add_copies(list, node, context));
-    open_.resize(open_before);
-    return Done{};
+    return add_copies(list, node, context);
+}
+
+/// Notes the names that `node` and its descendants would have had.
+void LevelEntities::note_missing(const JsonValue& node) {
+    if (const std::string& name = node["name"].text; !name.empty()) {
+        missing_.insert(name);
+    }
+    for (const JsonValue& child : node["children"].items) {
+        note_missing(child);
+    }
+}
+
+bool LevelEntities::has_failed(std::string_view name) const {
+    return has_gaps_ || missing_.contains(std::string(name.substr(0, name.find('['))));
 }
 
 Status LevelEntities::read_own_keys(Node& node) const {
@@ -235,26 +257,32 @@ NameResolver LevelEntities::names_in(List& list) const {
 
 Status LevelEntities::add_copies(List& list, Node& node, const Context& context) {
     LIMN_TRY(charge_limits(node, 1));
-    std::vector<AnyComponent> components = LIMN_TRY(read_components(list, node));
+    std::vector<AnyComponent> components = read_components(list, node);
     const JsonValue json = merged_repeat(node.layers);
     if (json.kind == JsonKind::Null) {
-        return add_copy(list, node, context, std::move(components), node.name);
+        add_copy(list, node, context, std::move(components), node.name);
+        return Done{};
     }
     node.is_copy = true;
     const Repeat repeat =
         LIMN_TRY(read_repeat(json, components, {file_, node.path + ".repeat"}, names_in(list)));
     const std::uint64_t count = repeat_count(repeat);
     LIMN_TRY(charge_limits(node, count - 1));
+    const std::size_t errors_before = errors_.count();
     for (std::uint64_t i = 0; i < count; ++i) {
+        if (errors_.count() > errors_before) {  // the other copies would have the same
+            note_missing(*node.json);
+            break;
+        }
         std::vector<AnyComponent> copy = components;
         apply_repeat(repeat, i, copy);
         const std::string name = node.name.empty() ? "" : fmt::format("{}[{}]", node.name, i);
-        LIMN_TRY(add_copy(list, node, context, std::move(copy), name));
+        add_copy(list, node, context, std::move(copy), name);
     }
     return Done{};
 }
 
-Status LevelEntities::add_copy(
+void LevelEntities::add_copy(
     List& list, const Node& node, const Context& context, std::vector<AnyComponent> components,
     const std::string& name) {
     const auto index = static_cast<std::uint32_t>(list.entities.entities.size());
@@ -266,11 +294,11 @@ Status LevelEntities::add_copy(
         components.push_back(AnyComponent::of(Name{name}));
         const auto [place, is_new] = list.scopes[context.scope].names.try_emplace(name, index);
         if (!is_new) {
-            return refuse(
+            errors_.keep(refuse(
                 node.path, node.json->find("name")->at, "a duplicate name " + in_quotes(name),
                 fmt::format(
                     "each name once (the first is in line {})",
-                    list.positions[place->second].line));
+                    list.positions[place->second].line)));
         }
     }
     list.entities.entities.push_back({std::move(components)});
@@ -283,20 +311,20 @@ Status LevelEntities::add_copy(
     }
     list.scope_of.push_back(scope);
 
-    LIMN_TRY(add_gltf(list, node, index));
+    errors_.keep(add_gltf(list, node, index));
     for (const JsonValue* const layer : node.layers) {
         const JsonValue* const children = layer->find("children");
         if (children == nullptr) {
             continue;
         }
-        LIMN_TRY(expect(*children, JsonKind::Array, {file_, node.path}, "an array of entities"));
-        for (std::size_t i = 0; i < children->items.size(); ++i) {
-            LIMN_TRY(add_node(
+        errors_.keep(
+            expect(*children, JsonKind::Array, {file_, node.path}, "an array of entities"));
+        for (std::size_t i = 0; i < children->items.size() && !is_full_; ++i) {
+            add_node(
                 list, children->items[i], {index, scope, context.depth + 1},
-                fmt::format("{}.children[{}]", node.path, i)));
+                fmt::format("{}.children[{}]", node.path, i));
         }
     }
-    return Done{};
 }
 
 /// The file of an entity, and the changes of its nodes.
@@ -327,12 +355,15 @@ Status LevelEntities::add_gltf(List& list, const Node& node, std::uint32_t index
     return Done{};
 }
 
-Result<std::vector<AnyComponent>> LevelEntities::read_components(List& list, const Node& node) {
+std::vector<AnyComponent> LevelEntities::read_components(List& list, const Node& node) {
     std::vector<AnyComponent> components;
     components.push_back(AnyComponent::of(Transform{}));
+    const NameResolver names = names_in(list);
     bool has_center = false;
     for (const JsonValue* const layer : node.layers) {
-        LIMN_TRY(read_layer(list, *layer, node, components));
+        for (const JsonMember& member : layer->members) {
+            errors_.keep(read_member(member, node, names, components));
+        }
         has_center = has_center || (*layer)["sway"].find("center") != nullptr;
     }
     const auto* const transform = find_in<Transform>(components);
@@ -343,55 +374,52 @@ Result<std::vector<AnyComponent>> LevelEntities::read_components(List& list, con
     return components;
 }
 
-Status LevelEntities::read_layer(
-    List& list, const JsonValue& layer, const Node& node, std::vector<AnyComponent>& components) {
-    const NameResolver names = names_in(list);
-    for (const JsonMember& member : layer.members) {
-        if (is_node_key(member.key)) {
-            continue;
-        }
-        const ComponentInfo* const info = find_component(member.key);
-        if (info == &component_info<Parent>()) {
-            return refuse(
-                node.path, member.at, "the key \"parent\"",
-                "the entity in the list \"children\" of its parent");
-        }
-        if (info == nullptr || info->ops.construct_default == nullptr
-            || info->ops.construct_copy == nullptr) {
-            std::vector<std::string_view> known = kNodeKeys;
-            const std::vector<const ComponentInfo*> all = all_components();
-            for (const ComponentInfo* const component : all) {
-                known.emplace_back(component->name);
-            }
-            return refuse(
-                node.path, member.at, "the component " + in_quotes(member.key),
-                "one of `limn components`, or one of name prefab gltf nodes repeat children"
-                    + where_it_belongs(member.key, did_you_mean(member.key, known)));
-        }
-        if (is_internal(*info)) {
-            log_warn(
-                "{}: {}: systems keep {} and overwrite what is written here",
-                place_text(file_, member.at), node.path, member.key);
-        }
-        AnyComponent* component = find_in(components, info->id);
-        if (member.value.kind == JsonKind::Null) {
-            std::erase_if(components, [info](const AnyComponent& c) { return &c.info() == info; });
-            continue;
-        }
-        if (component == nullptr) {
-            component = &components.emplace_back(*info);
-        }
-        LIMN_TRY(read_component(
-            member.value, *info, component->data(), {file_, node.path + ": " + member.key}, names));
+Status LevelEntities::read_member(
+    const JsonMember& member, const Node& node, const NameResolver& names,
+    std::vector<AnyComponent>& components) {
+    if (is_node_key(member.key)) {
+        return Done{};
     }
-    return Done{};
+    const ComponentInfo* const info = find_component(member.key);
+    if (info == &component_info<Parent>()) {
+        return refuse(
+            node.path, member.at, "the key \"parent\"",
+            "the entity in the list \"children\" of its parent");
+    }
+    if (info == nullptr || info->ops.construct_default == nullptr
+        || info->ops.construct_copy == nullptr) {
+        std::vector<std::string_view> known = kNodeKeys;
+        const std::vector<const ComponentInfo*> all = all_components();
+        for (const ComponentInfo* const component : all) {
+            known.emplace_back(component->name);
+        }
+        return refuse(
+            node.path, member.at, "the component " + in_quotes(member.key),
+            "one of `limn components`, or one of name prefab gltf nodes repeat children"
+                + where_it_belongs(member.key, did_you_mean(member.key, known)));
+    }
+    if (is_internal(*info)) {
+        log_warn(
+            "{}: {}: systems keep {} and overwrite what is written here",
+            place_text(file_, member.at), node.path, member.key);
+    }
+    if (member.value.kind == JsonKind::Null) {
+        std::erase_if(components, [info](const AnyComponent& c) { return &c.info() == info; });
+        return Done{};
+    }
+    AnyComponent* component = find_in(components, info->id);
+    if (component == nullptr) {
+        component = &components.emplace_back(*info);
+    }
+    return read_component(
+        member.value, *info, component->data(), {file_, node.path + ": " + member.key}, names);
 }
 
-Status LevelEntities::resolve_names() {
-    return resolve(level_, true);
+void LevelEntities::resolve_names() {
+    resolve(level_, true);
 }
 
-Status LevelEntities::resolve(List& list, bool is_level) const {
+void LevelEntities::resolve(List& list, bool is_level) {
     const auto find_use = [&](const NameUse& use, std::uint32_t scope) -> std::optional<Entity> {
         while (true) {
             const auto found = list.scopes[scope].names.find(use.name);
@@ -408,8 +436,6 @@ Status LevelEntities::resolve(List& list, bool is_level) const {
                            : std::optional(level_entity(static_cast<std::uint32_t>(outside)));
     };
     for (std::size_t i = 0; i < list.entities.entities.size(); ++i) {
-        const NameUse* unknown = nullptr;
-        std::string place;
         std::vector<AnyComponent>& components = list.entities.entities[i].components;
         const auto read_names = [&](const ComponentInfo& info, const FieldInfo& field, void* data) {
             for_each_entity(std::span(&field, 1), data, [&](Entity& entity) {
@@ -418,13 +444,9 @@ Status LevelEntities::resolve(List& list, bool is_level) const {
                 }
                 const NameUse& use = list.uses[entity.index];
                 const std::optional<Entity> named = find_use(use, list.scope_of[i]);
-                if (!named) {
-                    const auto* const name = find_in<Name>(components);
-                    unknown = &use;
-                    place = fmt::format(
-                        "entity {}: {}.{}",
-                        name != nullptr ? in_quotes(name->text) : std::to_string(i), info.name,
-                        field.name);
+                if (!named && !has_failed(use.name)) {
+                    errors_.keep(
+                        unknown_name(list, i, use, fmt::format("{}.{}", info.name, field.name)));
                 }
                 entity = named.value_or(Entity{});
             });
@@ -435,17 +457,23 @@ Status LevelEntities::resolve(List& list, bool is_level) const {
                 read_names(info, info.fields[k], component.data());
             }
         }
-        if (unknown != nullptr) {
-            std::vector<std::string_view> known = names();
-            for (const auto& [name, index] : list.scopes[list.scope_of[i]].names) {
-                known.emplace_back(name);
-            }
-            return refuse(
-                place, unknown->at, "the entity " + in_quotes(unknown->name),
-                "an existing name" + did_you_mean(unknown->name, known));
-        }
     }
-    return Done{};
+}
+
+/// The error of a name that no entity has, in `field` of entity `index`.
+Error LevelEntities::unknown_name(
+    List& list, std::size_t index, const NameUse& use, std::string_view field) const {
+    const auto* const name = find_in<Name>(list.entities.entities[index].components);
+    std::vector<std::string_view> known = names();
+    for (const auto& [inner, entity] : list.scopes[list.scope_of[index]].names) {
+        known.emplace_back(inner);
+    }
+    return refuse(
+        fmt::format(
+            "entity {}: {}", name != nullptr ? in_quotes(name->text) : std::to_string(index),
+            field),
+        use.at, "the entity " + in_quotes(use.name),
+        "an existing name" + did_you_mean(use.name, known));
 }
 
 std::int64_t LevelEntities::find(std::string_view name) const {
@@ -464,8 +492,8 @@ std::vector<std::string_view> LevelEntities::names() const {
 
 Result<Prefab> LevelEntities::read_prefab(const JsonValue& node, const std::string& path) {
     List list;
-    LIMN_TRY(add_node(list, node, {}, path));
-    LIMN_TRY(resolve(list, false));
+    add_node(list, node, {}, path);
+    resolve(list, false);
     if (!list.gltfs.empty()) {
         return refuse(
             path, list.gltfs[0].at, "a glTF file",
@@ -474,8 +502,14 @@ Result<Prefab> LevelEntities::read_prefab(const JsonValue& node, const std::stri
     return std::move(list.entities);
 }
 
-Status LevelEntities::check_unused_prefabs() {
+void LevelEntities::check_unused_prefabs() {
+    if (has_left_out_) {
+        return;  // it may be what uses them
+    }
     for (const auto& [name, prefab] : prefabs_) {
+        if (is_full_) {
+            return;
+        }
         if (prefab.is_used) {
             continue;
         }
@@ -484,10 +518,9 @@ Status LevelEntities::check_unused_prefabs() {
         node.at = prefab.json->at;
         node.members[0].value.at = prefab.json->at;
         List list;
-        LIMN_TRY(add_node(list, node, {}, "prefabs." + name));
-        LIMN_TRY(resolve(list, false));
+        add_node(list, node, {}, "prefabs." + name);
+        resolve(list, false);
     }
-    return Done{};
 }
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/load/component_json.h"
+#include "content/load/error_list.h"
 #include "content/load/json_document.h"
 #include "content/load/level_nodes.h"
 #include "content/load/level_repeat.h"
@@ -13,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace limn {
@@ -37,30 +39,36 @@ struct GltfUse {
 
 class LevelEntities {
   public:
-    /// `prefabs` are those of `file` and must outlive this. `names` resolves assets.
+    /// `prefabs` are those of `file` and must outlive this, as must `errors`, which keeps what is
+    /// found. `names` resolves assets.
     LevelEntities(
         std::string file, const std::vector<JsonMember>& prefabs, NameResolver names,
-        const EntityLimits& limits);
+        const EntityLimits& limits, ErrorList& errors);
 
     /// Appends the entity `node` and its descendants. `path` is used in messages if it has no name.
-    /// After an error others can be added, to find more errors, but not resolved.
-    [[nodiscard]] Status add(const JsonValue& node, const std::string& path);
+    /// What has an error is left out, so that the rest is read.
+    void add(const JsonValue& node, const std::string& path);
     /// Whether an entity exceeded the limits, as all further ones would.
     [[nodiscard]] bool is_full() const { return is_full_; }
 
     /// Replaces names by entity indices, after all nodes are added.
-    [[nodiscard]] Status resolve_names();
+    void resolve_names();
 
     /// Index of the entity with this name outside of prefabs, or -1.
     [[nodiscard]] std::int64_t find(std::string_view name) const;
     [[nodiscard]] std::vector<std::string_view> names() const;
+    /// Any name may be that of an entity that could not be read.
+    void expect_gaps() { has_gaps_ = true; }
+    /// Whether an entity with this name, or a copy `name[i]`, was left out because of an error:
+    /// what names it has no further one.
+    [[nodiscard]] bool has_failed(std::string_view name) const;
 
     /// `node` and its descendants as a separate prefab, after all nodes are added. Names that it
     /// does not define are those of the level and become level_entity(index). It may use no glTF.
     [[nodiscard]] Result<Prefab> read_prefab(const JsonValue& node, const std::string& path);
 
     /// Validates the prefabs that no entity uses.
-    [[nodiscard]] Status check_unused_prefabs();
+    void check_unused_prefabs();
 
     [[nodiscard]] Prefab& entities() { return level_.entities; }
     /// Where each of them is written.
@@ -103,22 +111,27 @@ class LevelEntities {
         bool is_copy = false;  // a prefab instance, or repeated: has its own scope
     };
 
-    [[nodiscard]] Status
+    void
     add_node(List& list, const JsonValue& json, const Context& context, const std::string& path);
+    [[nodiscard]] Status try_add_node(
+        List& list, const JsonValue& json, const Context& context, const std::string& path);
+    void note_missing(const JsonValue& node);
     [[nodiscard]] Status find_layers(Node& node);
     [[nodiscard]] Status read_own_keys(Node& node) const;
     [[nodiscard]] Status add_copies(List& list, Node& node, const Context& context);
-    [[nodiscard]] Status add_copy(
+    void add_copy(
         List& list, const Node& node, const Context& context, std::vector<AnyComponent> components,
         const std::string& name);
     [[nodiscard]] Status add_gltf(List& list, const Node& node, std::uint32_t index);
-    [[nodiscard]] Result<std::vector<AnyComponent>> read_components(List& list, const Node& node);
-    [[nodiscard]] Status read_layer(
-        List& list, const JsonValue& layer, const Node& node,
+    [[nodiscard]] std::vector<AnyComponent> read_components(List& list, const Node& node);
+    [[nodiscard]] Status read_member(
+        const JsonMember& member, const Node& node, const NameResolver& names,
         std::vector<AnyComponent>& components);
     [[nodiscard]] Status charge_limits(const Node& node, std::uint64_t copies);
     [[nodiscard]] NameResolver names_in(List& list) const;
-    [[nodiscard]] Status resolve(List& list, bool is_level) const;
+    void resolve(List& list, bool is_level);
+    [[nodiscard]] Error
+    unknown_name(List& list, std::size_t index, const NameUse& use, std::string_view field) const;
     [[nodiscard]] Error refuse(
         const std::string& path, SourcePosition at, std::string_view found,
         std::string_view expected) const {
@@ -138,6 +151,10 @@ class LevelEntities {
     std::size_t entities_ = 0;
     std::size_t values_ = 0;
     bool is_full_ = false;
+    bool has_gaps_ = false;
+    bool has_left_out_ = false;
+    ErrorList& errors_;
+    std::unordered_set<std::string> missing_;  // names of entities that were left out
     List level_;
 };
 

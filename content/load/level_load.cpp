@@ -1,6 +1,7 @@
 #include "content/load/level_load.h"
 
 #include "content/load/component_json.h"
+#include "content/load/error_list.h"
 #include "content/load/gltf_file.h"
 #include "content/load/level_events.h"
 #include "content/load/level_hints.h"
@@ -17,7 +18,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <unordered_map>
-#include <unordered_set>
 
 namespace limn {
 
@@ -91,14 +91,15 @@ JsonValue without(const JsonValue& json, std::initializer_list<std::string_view>
 class LevelParser {
   public:
     LevelParser(const JsonValue& json, const std::string& file, const LevelLimits& limits)
-        : json_(json), limits_(limits) {
+        : json_(json), limits_(limits), errors_(file) {
         level_.file = file;
         const std::string name = std::filesystem::path(file).filename().string();
         level_.name = name.substr(0, name.find('.'));
     }
 
     Result<Level> parse() {
-        LIMN_TRY(check_keys());
+        LIMN_TRY(expect(json_, JsonKind::Object, place(""), "a level (an object)"));
+        check_keys();
         level_.title = json_["title"].text;
         read_section("images", &LevelParser::read_image);
         read_section("materials", &LevelParser::read_material);
@@ -106,8 +107,9 @@ class LevelParser {
         read_section("meshes", &LevelParser::read_mesh);
         read_section("resources", &LevelParser::read_resource);
         read_section("bindings", &LevelParser::read_binding);
-        LIMN_TRY(read_entities());
-        level_.shows = LIMN_TRY(read_shows(json_, level_.file));
+        read_entities();
+        level_.shows = read_shows(json_, level_.file, errors_);
+        LIMN_TRY(errors_.status());
         place_cameras();
         return std::move(level_);
     }
@@ -115,74 +117,45 @@ class LevelParser {
   private:
     [[nodiscard]] JsonPlace place(std::string path) const { return {level_.file, std::move(path)}; }
 
-    Status check_keys() {
+    void check_keys() {
         std::vector<std::string_view> names;
         for (const LevelKey& key : kLevelKeys) {
             names.push_back(key.name);
         }
-        LIMN_TRY(expect(json_, JsonKind::Object, place(""), "a level (an object)"));
         for (const JsonMember& member : json_.members) {
             if (std::find(names.begin(), names.end(), member.key) == names.end()) {
-                return error_at(
+                errors_.keep(error_at(
                     place(""), member.at, "the key " + in_quotes(member.key),
                     fmt::format("one of {}", fmt::join(names, " "))
-                        + where_it_belongs(member.key, did_you_mean(member.key, names)));
+                        + where_it_belongs(member.key, did_you_mean(member.key, names))));
             }
         }
         for (const auto& [name, kind] : kLevelKeys) {
             if (const JsonValue* const value = json_.find(name)) {
-                LIMN_TRY(expect(
+                errors_.keep(expect(
                     *value, kind, place(std::string(name)),
                     kind == JsonKind::String   ? "a string"
                     : kind == JsonKind::Object ? "an object"
                                                : "an array"));
             }
         }
-        return Done{};
+        has_bad_keys_ = !errors_.empty();
     }
-
-    /// Keeps an error for kept_errors(), so that one run reports several; one for each place in the
-    /// file, since a prefab has the same errors in all its copies.
-    void keep_error(const Status& status) {
-        if (status) {
-            return;
-        }
-        const std::string& message = status.error().message;
-        const std::size_t place = message.find(": ", level_.file.size());
-        if (error_places_.insert(message.substr(0, place)).second
-            && errors_.size() < kShownErrors) {
-            errors_.push_back(message);
-        }
-    }
-
-    [[nodiscard]] Status kept_errors() const {
-        if (errors_.empty()) {
-            return Done{};
-        }
-        std::string lines = join_text(errors_, "\n");
-        if (const std::size_t more = error_places_.size() - errors_.size(); more > 0) {
-            lines += fmt::format(
-                "\n{}: and {}{} more", level_.file, has_room() ? "" : "at least ", more);
-        }
-        return Error{std::move(lines)};
-    }
-
-    /// Whether further errors are counted.
-    [[nodiscard]] bool has_room() const { return error_places_.size() < kMaxErrors; }
 
     void read_section(
         const char* section, Status (LevelParser::*read)(const JsonMember&, const JsonPlace&)) {
         for (const JsonMember& member : json_[section].members) {
-            if (!has_room()) {
+            if (!errors_.has_room()) {
                 break;
             }
-            keep_error((this->*read)(member, place(fmt::format("{}.{}", section, member.key))));
+            errors_.keep((this->*read)(member, place(fmt::format("{}.{}", section, member.key))));
         }
     }
 
-    /// Whether `name` is in the section, but what it names had an error: no further one then.
+    /// Whether `name` is in the section, or may be in one that could not be read, but what it names
+    /// had an error: no further one then.
     [[nodiscard]] bool has_failed(const char* section, std::string_view name) const {
-        return !errors_.empty() && json_[section].find(name) != nullptr;
+        return has_bad_keys_ || (!errors_.empty() && json_[section].find(name) != nullptr);
     }
 
     Status read_resource(const JsonMember& member, const JsonPlace& at) {
@@ -381,34 +354,36 @@ class LevelParser {
         return Done{};
     }
 
-    Status read_entities() {
+    void read_entities() {
         LevelEntities entities(
-            level_.file, json_["prefabs"].members, asset_names(), limits_.entities);
+            level_.file, json_["prefabs"].members, asset_names(), limits_.entities, errors_);
+        if (has_bad_keys_) {
+            entities.expect_gaps();
+        }
         const std::vector<JsonValue>& nodes = json_["entities"].items;
-        for (std::size_t i = 0; i < nodes.size() && has_room(); ++i) {
-            keep_error(entities.add(nodes[i], fmt::format("entities[{}]", i)));
+        for (std::size_t i = 0; i < nodes.size() && errors_.has_room(); ++i) {
+            entities.add(nodes[i], fmt::format("entities[{}]", i));
             if (entities.is_full()) {
-                break;
+                return;  // what is missing would be an error of what names it
             }
         }
-        LIMN_TRY(kept_errors());
-        keep_error(entities.resolve_names());
+        entities.resolve_names();
         read_events(entities);
-        keep_error(entities.check_unused_prefabs());
-        LIMN_TRY(kept_errors());
+        entities.check_unused_prefabs();
         level_.entities = std::move(entities.entities());
         level_.entity_positions = std::move(entities.positions());
         level_.gltfs = std::move(entities.gltfs());
         level_.node_changes = std::move(entities.node_changes());
-        return Done{};
     }
 
     void read_events(LevelEntities& entities) {
         NameResolver names = asset_names();
         names.entity = [&](std::string_view name, SourcePosition) -> std::optional<Entity> {
             const std::int64_t index = entities.find(name);
-            return index < 0 ? std::nullopt
-                             : std::optional(prefab_entity(static_cast<std::uint32_t>(index)));
+            if (index >= 0) {
+                return prefab_entity(static_cast<std::uint32_t>(index));
+            }
+            return entities.has_failed(name) ? std::optional(Entity{}) : std::nullopt;
         };
         names.all = [&entities, assets = names.all](std::string_view kind) {
             return kind == "entity" ? entities.names() : assets(kind);
@@ -417,11 +392,11 @@ class LevelParser {
             return entities.read_prefab(node, at.path);
         };
         const std::vector<JsonValue>& events = json_["events"].items;
-        for (std::size_t i = 0; i < events.size() && has_room(); ++i) {
+        for (std::size_t i = 0; i < events.size() && errors_.has_room(); ++i) {
             Result<ScriptEvent> event =
                 read_event(events[i], place(fmt::format("events[{}]", i)), names, read_prefab);
             if (!event) {
-                keep_error(event.error());
+                errors_.keep(event.error());
                 continue;
             }
             level_.events.events.push_back(*std::move(event));
@@ -506,13 +481,10 @@ class LevelParser {
         return names;
     }
 
-    static constexpr std::size_t kShownErrors = 10;
-    static constexpr std::size_t kMaxErrors = 1000;  // that are looked for
-
     const JsonValue& json_;
     LevelLimits limits_;
-    std::vector<std::string> errors_;  // the first, independent of each other, a line each
-    std::unordered_set<std::string> error_places_;  // of all
+    ErrorList errors_;
+    bool has_bad_keys_ = false;  // of the level itself: whole sections are missing
     Level level_;
     Names images_;
     Names materials_;
@@ -627,19 +599,25 @@ Status load_level_assets(
     MadeAssets& makes = made != nullptr ? *made : own;
     makes.begin_level();
     std::uint64_t pixels_left = limits.max_pixels;
+    ErrorList errors(level.file);
     for (const LevelImage& image : level.images) {
-        LIMN_TRY(
+        errors.keep(
             image.pattern != nullptr ? make_pattern(level, image, makes, pixels_left)
                                      : load_image_file(level, image, folder, limits, pixels_left));
     }
-    LIMN_TRY(make_meshes(level, limits, makes));
     for (const GltfUse& use : level.gltfs) {
-        GltfScene scene = LIMN_TRY(load_scene_file(level, use, folder, limits));
-        for (const std::string& warning : scene.warnings) {
+        Result<GltfScene> scene = load_scene_file(level, use, folder, limits);
+        if (!scene) {
+            errors.keep(scene.error());
+            continue;
+        }
+        for (const std::string& warning : scene->warnings) {
             log_warn("{}", warning);
         }
-        level.scenes.push_back(std::move(scene));
+        level.scenes.push_back(*std::move(scene));
     }
+    LIMN_TRY(errors.status());
+    LIMN_TRY(make_meshes(level, limits, makes));
     LIMN_TRY(find_changed_nodes(level));
     return resolve_deferred_names(level);
 }

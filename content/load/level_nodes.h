@@ -21,9 +21,9 @@ struct Level;
 //     {
 //       "name": "left lamp", "gltf": "lamp.glb",
 //       "nodes": {
-//         "Bulb": {"point_light": {"intensity": 40}},   // fields that are not named keep the
-//         file's "Glass": {"mesh_instance": {"material": "amber"}, "no_shadow": {}}, "Sun":
-//         {"directional_light": null}             // removes it
+//         "Bulb": {"point_light": {"intensity": 40}},  // other fields keep the file's values
+//         "Glass": {"mesh_instance": {"material": "amber"}, "no_shadow": {}},
+//         "Sun": {"directional_light": null}           // removes it
 //       }
 //     }
 

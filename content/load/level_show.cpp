@@ -166,22 +166,35 @@ Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& 
 
 }  // namespace
 
-Result<std::vector<LevelShow>> read_shows(const JsonValue& level, std::string_view file) {
+std::vector<LevelShow>
+read_shows(const JsonValue& level, std::string_view file, ErrorList& errors) {
     std::vector<LevelShow> shows;
     const JsonValue& list = level["shows"];
-    for (std::size_t i = 0; i < list.items.size(); ++i) {
+    for (std::size_t i = 0; i < list.items.size() && errors.has_room(); ++i) {
         const JsonPlace place{file, fmt::format("shows[{}]", i)};
-        LevelShow show = LIMN_TRY(read_show(list.items[i], place));
+        Result<LevelShow> show = read_show(list.items[i], place);
+        if (!show) {
+            errors.keep(show.error());
+            continue;
+        }
         const bool is_new = std::none_of(shows.begin(), shows.end(), [&](const LevelShow& other) {
-            return other.technique == show.technique;
+            return other.technique == show->technique;
         });
         if (!is_new) {
-            return error_at(
-                place, list.items[i].at, "a second show of " + show.technique,
-                "one of each technique");
+            errors.keep(error_at(
+                place, list.items[i].at, "a second show of " + show->technique,
+                "one of each technique"));
+            continue;
         }
-        shows.push_back(std::move(show));
+        shows.push_back(*std::move(show));
     }
+    return shows;
+}
+
+Result<std::vector<LevelShow>> read_shows(const JsonValue& level, std::string_view file) {
+    ErrorList errors{std::string(file)};
+    std::vector<LevelShow> shows = read_shows(level, file, errors);
+    LIMN_TRY(errors.status());
     return shows;
 }
 

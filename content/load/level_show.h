@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/load/error_list.h"
 #include "content/load/json_document.h"
 #include "content/load/level_list.h"
 #include "ecs/base/math.h"
@@ -69,6 +70,9 @@ struct ShowChoice {
 /// The shows of a level, in file order; no two of one technique. `file` is for messages.
 [[nodiscard]] Result<std::vector<LevelShow>>
 read_shows(const JsonValue& level, std::string_view file);
+/// The same; those with errors are left out, and their errors kept.
+[[nodiscard]] std::vector<LevelShow>
+read_shows(const JsonValue& level, std::string_view file, ErrorList& errors);
 
 /// Changes the level to what `show` is when it is on, or off. Fails where a patch names an entity
 /// that the level does not have.

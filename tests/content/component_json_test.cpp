@@ -231,6 +231,14 @@ TEST_CASE("component json: a color may be written in sRGB, and its alpha left ou
     CHECK(all.glass == Vec4(0, 1, 0, 128.0f / 255.0f));
     CHECK(read<Everything>(R"({"glass": [0, 0, 1]})").glass == Vec4(0, 0, 1, 0.5f));
     CHECK(read<Everything>(R"({"glass": "#0000ff"})").glass == Vec4(0, 0, 1, 0.5f));
+    // One digit a channel stands for two.
+    CHECK(
+        read<Everything>(R"({"tint": "#f80"})").tint
+        == read<Everything>(R"({"tint": "#ff8800"})").tint);
+    CHECK(
+        read<Everything>(R"({"glass": "#f80a"})").glass
+        == read<Everything>(R"({"glass": "#ff8800aa"})").glass);
+    CHECK(read<Everything>(R"({"glass": "#00f"})").glass == Vec4(0, 0, 1, 0.5f));
 }
 
 TEST_CASE("component json: a color may be named as in CSS, which keeps the alpha") {
@@ -259,7 +267,7 @@ TEST_CASE("component json: a color may be named as in CSS, which keeps the alpha
     CHECK(
         error_of<Everything>(R"({"tint": "ornage"})")
         == "t.json:1:10: thing.tint: found the string \"ornage\", expected [r, g, b], "
-           "\"#rrggbb\" or a name such as \"orange\" (did you mean orange?)");
+           "\"#rrggbb\", \"#rgb\" or a name such as \"orange\" (did you mean orange?)");
 }
 
 TEST_CASE("component json: angles turn about y, then x, then z") {

@@ -95,7 +95,7 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
         {R"({"entities": [{"point_light": {"fov_y": 1}}]})", R"(("fov_y" is a field of camera))"},
         {R"({"resources": {"ev": 1}})", R"(("ev" is a field of exposure))"},
         {R"({"entities": [{"point_light": {"color": "ornage"}}]})",
-         R"(expected [r, g, b], "#rrggbb" or a name such as "orange" (did you mean orange?))"},
+         R"(expected [r, g, b], "#rrggbb", "#rgb" or a name such as "orange" (did you mean orange?))"},
         {R"({"materials": {"m": {"base_color": [1, 1]}}})",
          R"(expected [r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"},
         {R"({"materials": {"m": {"pattern": "leaf.png"}}})",
@@ -239,6 +239,25 @@ TEST_CASE(
 "entities": [{"autofocus": {"target": "nobody"}}],
 "events": [{"at": 1, "destroy": ["nobody"]}]})")
         == Lines{"t.level.json:2:39", "t.level.json:3:34", "t.level.json:1:25"});
+    // Errors of entities hide neither each other, in one entity or in several, nor later sections.
+    CHECK(
+        lines_of(R"({"titel": "x", "entities": [
+{"name": "a", "spinn": {}, "camera": {"fov": 1}, "children": [{"name": "b", "lod": {"x": 1}}]},
+{"autofocus": {"target": "nobody"}}, {"autofocus": {"target": "noone"}}],
+"events": [{"at": -1}, {"at": 1, "destroy": ["a", "b"]}],
+"shows": [{"technique": "x", "text": "y"}]})")
+        == Lines{
+            "t.level.json:1:2", "t.level.json:2:15", "t.level.json:2:39", "t.level.json:2:77",
+            "t.level.json:4:19", "t.level.json:5:11"});
+    CHECK(
+        lines_of(R"({"entities": [{"autofocus": {"target": "nobody"}},
+{"autofocus": {"target": "noone"}}], "events": [{"at": 1, "destroy": ["neither"]}]})")
+        == Lines{"t.level.json:1:40", "t.level.json:2:26", "t.level.json:2:71"});
+    CHECK(
+        lines_of(R"({"entities": [{"name": "a", "prefab": "none", "children": [{"name": "c"}]},
+{"name": "b", "repeat": {"cuont": 3}}, {"autofocus": {"target": "b[1]"}}],
+"events": [{"at": 1, "destroy": ["a", "c", "d"]}]})")
+        == Lines{"t.level.json:1:39", "t.level.json:2:26", "t.level.json:3:44"});
     const auto last_line_of = [](std::size_t errors) {
         std::string many = R"({"entities": [3)";
         for (std::size_t i = 1; i < errors; ++i) {
