@@ -108,6 +108,29 @@ PhongScene triangle_scene() {
     return scene;
 }
 
+PhongScene printed_triangle_scene() {
+    PhongScene scene = triangle_scene();
+    scene.name = "triangle, fitted";
+    scene.mesh.positions = {{0.33, 1, 0}, {-2.2, -0.5, 0}, {2.2, -0.5, 0}};
+    scene.material.exponent = 10;
+    scene.environment_exponent = 90;
+    scene.lights = {{.at = {0.707, -0.67, 1.098}}};
+    scene.camera.eye = {0, 0, 27};
+    scene.camera.half_size = 0.085;
+    scene.row = 150;
+    return scene;
+}
+
+PhongScene printed_teapot_scene() {
+    PhongScene scene = teapot_scene();
+    scene.name = "teapot, fitted";
+    scene.texture_size = 11;
+    scene.material.exponent = 16;
+    scene.environment_exponent = 4;
+    scene.camera.half_size = 0.25;
+    return scene;
+}
+
 PhongScene teapot_scene() {
     const MeshData pot = make_teapot({.divisions = 8, .height = 1.5f, .bottom = false});
     PhongScene scene = {.name = "teapot"};

@@ -48,6 +48,7 @@ struct QualityImage {
 struct QualityReport {
     std::vector<QualityRow> rows;
     std::vector<QualityImage> images;
+    std::string html = {};  ///< sections of the page that only this effect has
 
     // Each adds a row.
     void at_most(std::string name, double found, double limit, std::string unit = {});
@@ -87,5 +88,8 @@ quality_json(std::span<const MeasuredQuality> measured, std::string_view gl_rend
 /// A self-contained page: numbers, then effect, oracle and difference side by side.
 [[nodiscard]] Result<std::string>
 quality_html(std::span<const MeasuredQuality> measured, std::string_view gl_renderer);
+
+/// An element with a display-encoded image in it, as PNG, above its caption.
+[[nodiscard]] Result<std::string> image_tag(const ColorImage& image, std::string_view caption);
 
 }  // namespace limn

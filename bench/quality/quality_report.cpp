@@ -94,24 +94,6 @@ std::string base64(std::span<const std::uint8_t> bytes) {
     return text;
 }
 
-Result<std::string> image_tag(const ColorImage& image, std::string_view caption) {
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(3 * image.pixels.size());
-    for (const Vec3& pixel : image.pixels) {
-        for (int c = 0; c < 3; ++c) {
-            const float value = pixel[c] > 0.0f ? std::min(pixel[c], 1.0f) : 0.0f;
-            bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0f * value)));
-        }
-    }
-    const auto png = png_bytes(image.width, image.height, 3, bytes);
-    if (!png) {
-        return png.error();
-    }
-    return fmt::format(
-        "<div><img src=\"data:image/png;base64,{}\" alt=\"{}\"><small>{}</small></div>\n",
-        base64(*png), caption, caption);
-}
-
 Result<std::string> figure(const QualityImage& picture) {
     std::string html = fmt::format(
         "<figure><figcaption>{}</figcaption><div class=\"row\">\n", escaped(picture.title));
@@ -139,6 +121,24 @@ Result<std::string> figure(const QualityImage& picture) {
 }
 
 }  // namespace
+
+Result<std::string> image_tag(const ColorImage& image, std::string_view caption) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * image.pixels.size());
+    for (const Vec3& pixel : image.pixels) {
+        for (int c = 0; c < 3; ++c) {
+            const float value = pixel[c] > 0.0f ? std::min(pixel[c], 1.0f) : 0.0f;
+            bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0f * value)));
+        }
+    }
+    const auto png = png_bytes(image.width, image.height, 3, bytes);
+    if (!png) {
+        return png.error();
+    }
+    return fmt::format(
+        "<div><img src=\"data:image/png;base64,{}\" alt=\"{}\"><small>{}</small></div>\n",
+        base64(*png), caption, caption);
+}
 
 std::string quality_table(std::span<const MeasuredQuality> measured) {
     std::size_t width = 0;
@@ -216,6 +216,7 @@ quality_html(std::span<const MeasuredQuality> measured, std::string_view gl_rend
             }
             html += *tag;
         }
+        html += one.report.html;
     }
     return html + "</body></html>\n";
 }

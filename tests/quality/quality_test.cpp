@@ -127,7 +127,7 @@ TEST_CASE("quality: wrong usage ends with 2, and the effects are listed in the h
     CHECK(wrong.err.find("--jsn") != std::string::npos);
     const ProgramRun help = run_limn(folder, {"quality", "--help"});
     CHECK(help.exit_code == 0);
-    CHECK(quality_effects().size() == 14);
+    CHECK(quality_effects().size() == 15);
     for (const QualityEffect& effect : quality_effects()) {
         CHECK(
             help.out.find(fmt::format("  {:<12}vs {}\n", effect.name, effect.oracle))
@@ -139,6 +139,16 @@ TEST_CASE("quality: lights keep their bounds by every method, and no list misses
     const nlohmann::json rows = measured_rows("lights");
     REQUIRE(rows.size() == 7);
     CHECK(rows[0]["found"] <= 1.0);
+}
+
+TEST_CASE(
+    "quality: fakephong keeps the printed figures and orders, and tells each method on the page") {
+    const TemporaryFolder folder;
+    measured_rows("fakephong", folder);
+    const std::string page = read_text(folder.file("q.html"));
+    CHECK(count_of(page, "It holds best on") == 12);
+    CHECK(count_of(page, "<svg") == 12 * 7);
+    CHECK(count_of(page, "as printed</td>") == 2);
 }
 
 TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none is named") {

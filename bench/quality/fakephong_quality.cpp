@@ -1,0 +1,90 @@
+#include "bench/fakephong/phong_models.h"
+#include "bench/quality/fakephong_page.h"
+#include "bench/quality/quality.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+using namespace fakephong;
+
+/// Each figure of the table, and whether the columns keep their printed order.
+void compare_with_printed(
+    const SceneResult& result, const PrintedRow& row, double limit, QualityReport& report) {
+    int swapped = 0;
+    for (std::size_t i = 0; i < kTableColumns; ++i) {
+        const MethodResult& one = result.methods[i];
+        report.inform(fmt::format("{}: {}", result.scene.name, one.method->name), one.correctness);
+        report.at_most(
+            fmt::format(
+                "{}: {}, from the printed {:.4f}", result.scene.name, one.method->name,
+                row.correctness[i]),
+            std::abs(one.correctness - row.correctness[i]), limit);
+        for (std::size_t j = 0; j < kTableColumns; ++j) {
+            swapped += row.correctness[i] < row.correctness[j]
+                               && !(one.correctness < result.methods[j].correctness)
+                           ? 1
+                           : 0;
+        }
+    }
+    report.at_most(
+        fmt::format("{}: pairs not in the printed order", result.scene.name), swapped, 0);
+}
+
+/// On coarse closed meshes: quadratic Blinn map, Blinn map, then all others of the table.
+void check_coarse(const SceneResult& result, QualityReport& report) {
+    double others = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        others = std::max(others, result.methods[i].correctness);
+    }
+    const double blinn = result.methods[4].correctness;
+    report.at_least(
+        fmt::format("{}: Blinn map above all but the quadratic", result.scene.name), blinn - others,
+        0);
+    report.at_least(
+        fmt::format("{}: quadratic Blinn map above the Blinn map", result.scene.name),
+        result.methods[5].correctness - blinn, 0);
+}
+
+Status measure_fakephong(HeadlessRenderer& /*headless*/, QualityReport& report) {
+    std::vector<SceneResult> results;
+    for (const PhongScene& scene :
+         {printed_teapot_scene(), printed_triangle_scene(), triangle_scene(), teapot_scene(),
+          dodecahedron_scene(), sphere_scene(), fine_sphere_scene()}) {
+        LIMN_TRY(check_scene(scene));
+        results.push_back(evaluate_scene(scene));
+    }
+    compare_with_printed(results[0], printed_table()[0], 0.0035, report);
+    compare_with_printed(results[1], printed_table()[1], 0.01, report);
+    compare_with_printed(results[2], printed_table()[1], 0.028, report);  // the canonical scene
+    check_coarse(results[4], report);
+    check_coarse(results[5], report);
+    double lowest = 1;
+    double at_samples = 0;
+    for (std::size_t i = 0; i < kTableColumns; ++i) {
+        lowest = std::min(lowest, results[6].methods[i].correctness);
+        for (const SceneResult& result : results) {
+            if (result.methods[i].method->exact_points > 0) {
+                at_samples = std::max(at_samples, result.methods[i].error_at_samples);
+            }
+        }
+    }
+    report.at_least("fine sphere: lowest of the six", lowest, 0.98);
+    report.at_most(
+        "all scenes: error at sample points, but of the environment map", at_samples, 1e-5);
+    report.html = LIMN_TRY(fakephong_html(results));
+    return Done{};
+}
+
+const RegisterQuality kRegistered(
+    "fakephong", "Phong shading per pixel, and Table 6.1 of the thesis", measure_fakephong);
+
+}  // namespace
+}  // namespace limn
