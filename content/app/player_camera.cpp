@@ -37,7 +37,7 @@ Quat rotation_of(const Affine& pose) {
 const char* camera_mode_name(CameraMode mode) {
     switch (mode) {
     case CameraMode::Level:
-        return "level camera";
+        return "scene camera";
     case CameraMode::Fly:
         return "fly";
     case CameraMode::Orbit:

@@ -173,7 +173,7 @@ bool Player::next_level_camera() {
         hud_->toast(
             describe_group(*driver, std::as_const(stage_->world).find_resource<Bindings>()));
     } else {
-        hud_->toast(name != nullptr ? name->text : "level camera");
+        hud_->toast(name != nullptr ? name->text : "scene camera");
     }
     return true;
 }

@@ -21,12 +21,17 @@
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 namespace limn {
 
@@ -40,6 +45,21 @@ bool ends_with_any(std::string_view text, std::initializer_list<std::string_view
     return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) {
         return lower.ends_with(ending);
     });
+}
+
+/// The first few scenes that a folder holds: ", as DIR/a.glb DIR/b.obj"; nothing if it has none.
+std::string scenes_in(const std::string& folder) {
+    std::vector<std::string> found;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string path = entry.path().string();
+        if (ends_with_any(path, {".gltf", ".glb", ".obj", ".level.json"})) {
+            found.push_back(path);
+        }
+    }
+    std::sort(found.begin(), found.end());
+    found.resize(std::min(found.size(), std::size_t{3}));
+    return found.empty() ? std::string() : fmt::format(", as {}", fmt::join(found, " "));
 }
 
 template <typename T>
@@ -168,11 +188,12 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
         return fail("{}: found a level, expected a model with --backdrop and --turntable", scene);
     }
     const bool is_path = ends_with_any(scene, {".json"}) || scene.find('/') != std::string::npos;
-    if (is_path) {
-        return load_level_scene(world, scene, options);
+    const Result<std::string> path = is_path ? scene : find_level(scene);
+    std::error_code error;
+    if ((is_path || !path) && std::filesystem::is_directory(scene, error)) {
+        return fail("{}: found a folder, expected a file{}", scene, scenes_in(scene));
     }
-    const std::string path = LIMN_TRY(find_level(scene));
-    return load_level_scene(world, path, options);
+    return load_level_scene(world, LIMN_TRY(path), options);
 }
 
 }  // namespace limn

@@ -121,6 +121,7 @@ TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one 
         check_fails(folder, {"hash", scene, "--frames", "1"}, 1, scene);
         check_fails(folder, {"info", scene}, 1, scene);
     }
+    check_fails(folder, {"info", "."}, 1, "expected a file, as ./empty.glb ./empty.gltf");
     check_fails(folder, {"bench", "missing.glb", "--frames", "1"}, 1, "missing.glb");
     check_fails(folder, {"play", "missing.glb", "--headless-frames", "1"}, 1, "missing.glb");
     CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
