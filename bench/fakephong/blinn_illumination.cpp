@@ -1,5 +1,7 @@
 #include "bench/fakephong/blinn_illumination.h"
 
+#include <glm/geometric.hpp>
+
 namespace limn::fakephong {
 namespace {
 

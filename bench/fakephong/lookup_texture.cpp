@@ -2,6 +2,9 @@
 
 #include "bench/fakephong/blinn_illumination.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>

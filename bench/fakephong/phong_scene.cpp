@@ -2,6 +2,8 @@
 
 #include "ecs/base/text.h"
 
+#include <glm/geometric.hpp>
+
 #include <cmath>
 
 namespace limn::fakephong {

@@ -1,5 +1,7 @@
 #include "bench/fakephong/shading_method.h"
 
+#include <glm/common.hpp>
+
 namespace limn::fakephong {
 namespace {
 

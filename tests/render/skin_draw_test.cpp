@@ -22,7 +22,7 @@ struct SkinPicture : SkinScene {
         world.insert_resource(Environment{.sky = SkyKind::Gradient, .visible = false});
         wall = place(add(make_square()), white, affine_from({0, 0.5f, -1}, {1, 0, 0, 0}, Vec3(3)));
         light = shine(PointLight{.intensity = 30, .radius = 15}, at({1.5f, 1.5f, 2}));
-        world.add(light, Shadow{.method = ShadowMethod::Map, .resolution = 256});
+        world.add(light, Shadow{.method = ShadowMethod::Map, .resolution = 256, .detail = 0});
         Random random(1, 0, 0, 0);
         MeshData tube = make_tube(24, 12, 1);
         add_weights(tube, 5, 3, random);

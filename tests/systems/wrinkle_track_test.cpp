@@ -2,6 +2,8 @@
 #include "systems/faces/wrinkle_track_system.h"
 #include "tests/near.h"
 
+#include <doctest/doctest.h>
+
 namespace limn::test {
 namespace {
 
