@@ -12,7 +12,7 @@
 namespace limn {
 namespace {
 
-constexpr float kLeastKept = 0.37f;  // for which drag is taken back [1/e]
+constexpr float kMinKept = 0.37f;  // for which drag is taken back [1/e]
 
 /// Unit, uniform by area.
 Vec3 sample_direction(Random& random) {
@@ -159,7 +159,7 @@ draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& ran
 }
 
 Rewind::Rewind(const ParticleStep& its_step)
-    : step(its_step), drag(-std::log(std::clamp(its_step.keep, kLeastKept, 1.0f))) {}
+    : step(its_step), drag(-std::log(std::clamp(its_step.keep, kMinKept, 1.0f))) {}
 
 void Rewind::apply(float at, Vec3& position, Vec3& velocity) const {
     const Vec3 now = velocity;

@@ -198,16 +198,32 @@ TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: points and quads among each other hide each other in order") {
     ParticleLook point = disc({1, 0, 0}, 1, 1);
     point.facing = ParticleFacing::Point;
-    const ParticleLook quad = disc({0, 1, 0}, 1, 1);
+    ParticleLook quad = disc({0, 1, 0}, 1, 1);
+    ImageData white;
+    white.width = white.height = 1;
+    white.pixels = {255, 255, 255, 255};
+    quad.image = add(white);
+    quad.turn_spread = 0;
     emit({{0, 0, -0.2f}, {0, 0, 0.2f}}, point);
     emit({{0, 0, 0}}, quad);
+    const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 60, 60));
+    CHECK(rgb_at(image, 30, 30).x > 0.98f);  // the nearer point
+    CHECK(rgb_at(image, 30, 30).y < 0.02f);
+    // A corner of the quad, where a disc does not reach.
+    CHECK(rgb_at(image, 17, 17).y > 0.98f);
+    CHECK(rgb_at(image, 17, 17).x < 0.02f);
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a disc on the ground is none of the points behind it") {
+    ParticleLook point = disc({1, 0, 0}, 1, 1);
+    point.facing = ParticleFacing::Point;
+    ParticleLook flat = disc({0, 1, 0}, 1, 1);
+    flat.facing = ParticleFacing::Ground;
+    emit({{0, 0, -0.2f}}, point);
+    emit({{0, 0.001f, 0}}, flat);  // seen from its edge
     CHECK(middle().x > 0.98f);
     CHECK(middle().y < 0.02f);
-    world.query<ParticleLook>().each([](ParticleLook& its) {
-        its.facing =
-            its.facing == ParticleFacing::Point ? ParticleFacing::Camera : ParticleFacing::Point;
-    });
-    CHECK(middle().x > 0.98f);
 }
 
 TEST_CASE_FIXTURE(ParticleScene, "particle pass: the last seconds of a life fade out") {
