@@ -20,6 +20,10 @@ namespace {
 
 constexpr std::uint16_t kHidden = 0xffff;
 
+/// How far coarse casters are set back, in departures from their mesh: a departure is across the
+/// surface, this along the light, which may graze it.
+constexpr float kSetBack = 1.5f;
+
 /// Whether `entity` is `whole` or one of its descendants; false if `whole` is null.
 bool is_part_of(const World& world, Entity entity, Entity whole) {
     if (whole.is_null()) {
@@ -33,6 +37,31 @@ bool is_part_of(const World& world, Entity entity, Entity whole) {
         entity = parent->entity;
     }
     return true;
+}
+
+/// Largest factor by which the transform lengthens an axis, squared.
+float largest_scale2(const Affine& a) {
+    float scale2 = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 column = {a.row[0][axis], a.row[1][axis], a.row[2][axis]};
+        scale2 = std::max(scale2, glm::dot(column, column));
+    }
+    return scale2;
+}
+
+std::uint32_t mesh_index(const RenderItems& items, const DrawState& state) {
+    return state.deformed ? items.shapes()[state.index].mesh.index : state.index;
+}
+
+const MeshRange& mesh_of(const RenderItems& items, const DrawState& state) {
+    return items.meshes().meshes()[mesh_index(items, state)];
+}
+
+/// CasterVolume's depth where an item is nearest.
+float nearest_depth(const CasterVolume& volume, const RenderItemBlock& block, std::uint32_t i) {
+    const Vec3 row = volume.depth_row;
+    return glm::dot(row, block.boxes.middle(i)) + volume.depth_row.w
+           - glm::dot(glm::abs(row), block.boxes.half(i));
 }
 
 }  // namespace
@@ -173,28 +202,41 @@ std::uint32_t InstanceCollector::level_of(
     const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
     const CasterVolume& volume) {
     const DrawState state = draw_state(block.keys[i]);
-    const std::uint32_t mesh_index =
-        state.deformed ? items.shapes()[state.index].mesh.index : state.index;
-    const std::vector<CoarseRange>& coarse = items.meshes().meshes()[mesh_index].coarse;
+    const std::vector<CoarseRange>& coarse = mesh_of(items, state).coarse;
     const bool holes = items.materials().batch(state.batch).features.has(kAlphaMask);
     if (coarse.empty() || state.inflated || holes) {
         return 0;
     }
-    const Vec4* rows = block.now[i].world.row;
-    float scale2 = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const Vec3 column = {rows[0][axis], rows[1][axis], rows[2][axis]};
-        scale2 = std::max(scale2, glm::dot(column, column));
-    }
-    const Vec3 row = volume.depth_row;
-    const float nearest = glm::dot(row, block.boxes.middle(i)) + volume.depth_row.w
-                          - glm::dot(glm::abs(row), block.boxes.half(i));
-    const float allowed = volume.detail * nearest / (volume.texels_per_unit * std::sqrt(scale2));
+    const float scale2 = largest_scale2(block.now[i].world);
+    const float allowed = volume.detail * nearest_depth(volume, block, i)
+                          / (volume.texels_per_unit * std::sqrt(scale2));
     std::uint32_t level = 0;
     while (level < coarse.size() && coarse[level].error <= allowed) {
         ++level;
     }
     return level;
+}
+
+void InstanceCollector::set_back(
+    const RenderItems& items, const RenderItemBlock& block, std::uint32_t i, DrawKey key,
+    const CasterVolume& volume, Affine& world) {
+    const DrawState state = draw_state(key);
+    if (state.level == 0) {
+        return;
+    }
+    const float departure = kSetBack * mesh_of(items, state).coarse[state.level - 1].error
+                            * std::sqrt(largest_scale2(world));
+    if (volume.away != Vec3(0)) {
+        for (int axis = 0; axis < 3; ++axis) {
+            world.row[axis].w += departure * volume.away[axis];
+        }
+        return;
+    }
+    const float factor = 1 + departure / std::max(nearest_depth(volume, block, i), 1e-6f);
+    for (int axis = 0; axis < 3; ++axis) {
+        world.row[axis] *= factor;
+        world.row[axis].w += (1 - factor) * volume.eye[axis];
+    }
 }
 
 void InstanceCollector::write_block(
@@ -212,7 +254,10 @@ void InstanceCollector::write_block(
         }
         KeyCount& kind = work.keys[work.local[i]];
         const std::uint32_t place = kind.place++;
-        const Affine a = block.world_at(i, items.alpha());
+        Affine a = block.world_at(i, items.alpha());
+        if (selection.casters != nullptr) {
+            set_back(items, block, i, kind.key, *selection.casters, a);
+        }
         const std::uint32_t record = materials.record_of(block.surfaces[i].material);
         instances[place] = {
             {a.row[0], a.row[1], a.row[2]},
@@ -307,9 +352,7 @@ void InstanceCollector::add_command(
     InstanceList& list) {
     const DrawState state = draw_state(key);
     std::vector<DrawRun>& runs = state.blended ? list.blended : list.opaque;
-    const std::uint32_t mesh_index =
-        state.deformed ? items.shapes()[state.index].mesh.index : state.index;
-    const MeshRange& mesh = items.meshes().meshes()[mesh_index];
+    const MeshRange& mesh = mesh_of(items, state);
     const std::int32_t base_vertex =
         state.deformed ? items.shapes().request(state.index, velocity) : mesh.base_vertex;
     const SurfaceBatch& batch = items.materials().batch(state.batch);
@@ -319,7 +362,7 @@ void InstanceCollector::add_command(
                          | (state.deformed ? kDeformed : 0u);
     if (run.features.maps.has(layout::kNormalSlot) && !mesh.tangents) {
         run.features.maps.remove(layout::kNormalSlot);
-        list.without_tangents.push_back(mesh_index);
+        list.without_tangents.push_back(mesh_index(items, state));
     }
     if (!state.deformed || !items.shapes()[state.index].wrinkled || !mesh.tangents) {
         run.features.maps.remove(layout::kWrinkleSlot);
@@ -331,7 +374,6 @@ void InstanceCollector::add_command(
     if (state.level > 0) {
         const CoarseRange& level = mesh.coarse[state.level - 1];
         commands_.push_back({level.index_count, count, level.first_index, base_vertex, first});
-        list.coarse = true;
     } else {
         commands_.push_back({mesh.index_count, count, mesh.first_index, base_vertex, first});
     }

@@ -52,15 +52,17 @@ struct InstanceList {
     int visible = 0;
     int opaque_instances = 0;  ///< these come first in `instances`
     std::int64_t triangles = 0;
-    bool coarse = false;  ///< of casters: some mesh is drawn with coarse triangles
 };
 
-/// The region that a light's shadow casters are collected from.
+/// The region that a light's shadow casters are collected from. Those drawn with coarse triangles
+/// are moved away from the light by what these depart from the mesh, so that where they lie before
+/// a surface they do not shadow it; seen from the light they stay where they are.
 struct CasterVolume {
     Frustum frustum;
     Frustum shading = kEverywhere;  ///< casters outside shade nothing visible
     Vec3 eye = {0, 0, 0};
     float reach = INFINITY;  ///< from the eye [m]
+    Vec3 away = {0, 0, 0};   ///< unit, along parallel light; 0: light comes from the eye
     // What a texel of the map is, for the choice of coarse triangles (CoarseTriangles): at `p`,
     // texels_per_unit / dot(depth_row, p) texels per meter.
     float texels_per_unit = 0;
@@ -136,6 +138,10 @@ class InstanceCollector {
     static std::uint32_t level_of(
         const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
         const CasterVolume& volume);
+    /// Moves a caster away from the light by what the triangles of its key depart from its mesh.
+    static void set_back(
+        const RenderItems& items, const RenderItemBlock& block, std::uint32_t i, DrawKey key,
+        const CasterVolume& volume, Affine& world);
     void write_block(
         const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
         BlockWork& work, InstanceList& list);

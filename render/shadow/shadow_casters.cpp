@@ -16,6 +16,9 @@ CasterVolume make_caster_volume(const ShadowView& view) {
     // s = row_s p / q changes by (row_s - s row_q) / q, and s is within -1 .. 1.
     const float slope = std::max(glm::length(Vec3(rows[0])), glm::length(Vec3(rows[1])));
     volume.depth_row = rows[3];
+    if (rows[3] == Vec4(0, 0, 0, 1)) {
+        volume.away = -glm::normalize(Vec3(rows[2]));
+    }
     volume.texels_per_unit =
         0.5f * static_cast<float>(view.resolution) * (slope + glm::length(Vec3(rows[3])));
     volume.detail = view.detail;

@@ -73,20 +73,6 @@ slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     return slice;
 }
 
-/// The view with depths farther from the light by its detail, so that where coarse triangles lie
-/// before a surface they do not shadow it.
-Mat4 set_back(const ShadowView& view) {
-    Mat4 rows = glm::transpose(view.clip_from_world);
-    const CasterVolume volume = make_caster_volume(view);
-    const float distance = view.detail / volume.texels_per_unit;  // [m] where q is 1
-    if (rows[3] == Vec4(0, 0, 0, 1)) {
-        rows[2].w -= distance * glm::length(Vec3(rows[2]));
-    } else {
-        rows[2] /= 1 + distance;  // depth = near / q; distances grow with q
-    }
-    return glm::transpose(rows);
-}
-
 std::uint64_t key_of(Entity entity) {
     return static_cast<std::uint64_t>(entity.generation) << 32 | entity.index;
 }
@@ -375,8 +361,7 @@ void ShadowCollector::collect(
             collector_.collect_casters(
                 *frame.items, all ? CasterVolume{kEverywhere} : volumes_[v], *frame.ring,
                 draw.casters);
-            block.clip_from_world =
-                draw.casters.coarse ? set_back(views_[v]) : views_[v].clip_from_world;
+            block.clip_from_world = views_[v].clip_from_world;
             draw.view_block = frame.ring->push_value(block);
         }
     }

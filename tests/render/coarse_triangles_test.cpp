@@ -160,4 +160,57 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    ShadowTest, "coarse triangles: a plate that loses no shape shadows the floor close below it") {
+    put(make_plane({.size = {8, 8}}), {0, 0, 0});
+    put(make_plane({.size = {1, 1}, .divisions = 32}), {0, 0.2f, 0});
+    const Entity lamp = shine(
+        SpotLight{
+            .intensity = 10,
+            .radius = 0,
+            .attenuation = {.falloff = Falloff::None},
+            .inner_angle = radians(20.0f),
+            .outer_angle = radians(20.0f)},
+        look_at({0, 6, 0.01f}, {0, 0, 0}));
+    const RenderView view = look({1.2f, 0.15f, 0}, {0, 0.05f, 0}, 160, 160);
+    world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 128, .detail = 0});
+    const std::vector<Receiver> exact = receivers(lamp, view);
+    world.get<Shadow>(lamp).detail = 8;  // 0.28 m: more than the plate's height
+    const std::vector<Receiver> coarse = receivers(lamp, view);
+    int dark = 0;
+    int other = 0;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+        dark += exact[i].there && exact[i].seen < 0.5 ? 1 : 0;
+        other += exact[i].there && exact[i].seen != coarse[i].seen ? 1 : 0;
+    }
+    CHECK(dark > 500);
+    CHECK(other == 0);
+}
+
+TEST_CASE_FIXTURE(ShadowTest, "coarse triangles: a hollow is not shadowed by those that span it") {
+    MeshData hollow = make_plane({.size = {4, 4}, .divisions = 64});
+    for (std::size_t i = 0; i < hollow.positions.size(); ++i) {
+        Vec3& p = hollow.positions[i];
+        p.y = 0.25f * (p.x * p.x + p.z * p.z);
+        hollow.normals[i] = glm::normalize(Vec3(-0.5f * p.x, 1, -0.5f * p.z));
+    }
+    put(hollow, {0, 0, 0});
+    const auto lit = [&](Entity lamp, float detail) {
+        world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 512, .detail = detail});
+        const std::vector<Receiver> seen = receivers(lamp, look({1, 5, 1}, {0, 0, 0}, 160, 160));
+        const auto there =
+            std::count_if(seen.begin(), seen.end(), [](const Receiver& r) { return r.there; });
+        const auto bright = std::count_if(
+            seen.begin(), seen.end(), [](const Receiver& r) { return r.there && r.seen > 0.5; });
+        world.destroy(lamp);
+        return static_cast<double>(bright) / static_cast<double>(there);
+    };
+    const Affine above = look_at({0, 6, 0.01f}, {0, 0, 0});
+    const SpotLight spot = {.radius = 0, .inner_angle = 0.5f, .outer_angle = 0.6f};
+    for (const float detail : {1.0f, 8.0f}) {
+        CHECK(lit(shine(spot, above), detail) == 1);
+        CHECK(lit(shine(DirectionalLight{}, above), detail) == 1);
+    }
+}
+
 }  // namespace limn::test
