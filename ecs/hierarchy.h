@@ -20,9 +20,9 @@ namespace limn {
 //     set_parent(world, child, parent);              // appends to the children; rejects cycles
 //     for (Entity child : children_of(world, lamp_post)) ...
 //
-// A link to a destroyed entity is ignored: its children become roots and stay in place. A cycle,
-// which only a Parent written directly can create, is logged as an error and broken at its lowest
-// entity.
+// A link to a destroyed entity is ignored: its children become roots, and their Transform, which
+// was relative to the parent, is relative to the world from then on. A cycle, which only a Parent
+// written directly can create, is logged as an error and broken at its lowest entity.
 
 struct Parent {
     Entity entity;

@@ -6,18 +6,17 @@
 namespace limn {
 namespace {
 
-constexpr float kRows = 1080;  // of the image that pixels are measured in
-
 Vec3 position_of(const WorldTransform& transform) {
     const Affine& world = transform.world;
     return {world.row[0].w, world.row[1].w, world.row[2].w};
 }
 
-/// Length of the image of `span` meters along the entity's x axis [px].
-float projected_span(const MeshLevels& levels, const Affine& world, float distance, float fov_y) {
+/// Length of the image of `span` meters along the entity's x axis, in an image `rows` high [px].
+float projected_span(
+    const MeshLevels& levels, const Affine& world, float distance, float fov_y, float rows) {
     const float scale = glm::length(Vec3(world.row[0].x, world.row[1].x, world.row[2].x));
     const float height = 2.0f * std::max(distance, 1e-6f) * std::tan(0.5f * fov_y);
-    return levels.span * scale / height * kRows;
+    return levels.span * scale / height * rows;
 }
 
 }  // namespace
@@ -40,7 +39,7 @@ int choose_mesh_level(float projected_pixels, int count, int current, float pixe
 
 void choose_mesh_levels(
     Query<const MeshLevels, const WorldTransform, MeshInstance> entities,
-    Query<const Camera, const WorldTransform> cameras) {
+    Query<const Camera, const WorldTransform> cameras, OptionalRes<const Rendering> rendering) {
     const Camera* active = nullptr;
     Vec3 eye(0);
     cameras.each([&](const Camera& camera, const WorldTransform& transform) {
@@ -52,6 +51,7 @@ void choose_mesh_levels(
     if (active == nullptr) {
         return;
     }
+    const float rows = rendering ? rendering->level_rows : Rendering{}.level_rows;
     entities.each(
         [&](const MeshLevels& levels, const WorldTransform& transform, MeshInstance& instance) {
             if (levels.meshes.empty()) {
@@ -62,7 +62,7 @@ void choose_mesh_levels(
                 now != levels.meshes.end() ? static_cast<int>(now - levels.meshes.begin()) : 0;
             const float distance = glm::length(position_of(transform) - eye);
             const int level = choose_mesh_level(
-                projected_span(levels, transform.world, distance, active->fov_y),
+                projected_span(levels, transform.world, distance, active->fov_y, rows),
                 static_cast<int>(levels.meshes.size()), current, levels.pixels_per_quad);
             instance.mesh = levels.meshes[static_cast<std::size_t>(level)];
         });

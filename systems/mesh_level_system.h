@@ -2,6 +2,7 @@
 
 #include "ecs/components/camera.h"
 #include "ecs/components/mesh_levels.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
 
@@ -12,10 +13,10 @@ namespace limn {
 [[nodiscard]] int
 choose_mesh_level(float projected_pixels, int count, int current, float pixels_per_quad = 8.0f);
 
-/// Sets MeshInstance::mesh to the level that suits the distance to the active camera, whatever the
-/// size of the image: a simulation does not depend on the window.
+/// Sets MeshInstance::mesh to the level that suits the distance to the active camera, in an image
+/// of Rendering::level_rows: what is simulated depends on the world alone, not on a window.
 void choose_mesh_levels(
     Query<const MeshLevels, const WorldTransform, MeshInstance> entities,
-    Query<const Camera, const WorldTransform> cameras);
+    Query<const Camera, const WorldTransform> cameras, OptionalRes<const Rendering> rendering);
 
 }  // namespace limn

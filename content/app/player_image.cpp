@@ -44,10 +44,11 @@ std::string describe_weather(const World& world) {
     return line;
 }
 
-/// The world has Rendering, as each that is played.
-void limit_particles(World& world, float share) {
+/// Detail that suits the image. The world has Rendering, as each that is played.
+void fit_detail(World& world, float particle_share, int rows) {
     Rendering& rendering = world.resource<Rendering>();
-    rendering.particle_share = std::min(rendering.particle_share, share);
+    rendering.particle_share = std::min(rendering.particle_share, particle_share);
+    rendering.level_rows = static_cast<float>(std::clamp(rows, 16, 16384));
 }
 
 }  // namespace
@@ -62,12 +63,12 @@ void Player::draw_frame(float dt, const Input& input) {
         }
     }
     const Clock::time_point begin = Clock::now();
+    const IVec2 size = render_size(scale_, window_size);
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
         if (played != nullptr) {
-            limit_particles(played->world, scale_.particle_share);
+            fit_detail(played->world, scale_.particle_share, size.y);
         }
     }
-    const IVec2 size = render_size(scale_, window_size);
     view_ = move_camera(dt, input, size);
     if (exr_wanted_) {
         exr_wanted_ = false;

@@ -19,7 +19,8 @@ LIMN_FIELDS(MeshLevels) {
     LIMN_FIELD(meshes, "meshes of the level, by name, from coarse to fine");
     LIMN_FIELD(span, "length that the single quad of the coarsest mesh spans", "m", 1e-6, 1e6);
     LIMN_FIELD(
-        pixels_per_quad, "wanted length of a quad, in an image of 1080 rows", "px", 0.1, 10000);
+        pixels_per_quad, "wanted length of a quad in an image of rendering.level_rows, 1080", "px",
+        0.1, 10000);
 }
 
 }  // namespace limn

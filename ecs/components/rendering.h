@@ -38,6 +38,7 @@ struct Rendering {
     Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
     float particle_share = 1;      ///< of those that the GPU moves, see below
+    float level_rows = 1080;       ///< of the image that MeshLevels are chosen for [px]
 };
 
 LIMN_FIELDS(Rendering) {
@@ -55,6 +56,10 @@ LIMN_FIELDS(Rendering) {
         "share of the particles moved by the GPU that are moved and drawn, larger by as much; "
         "rounded down to 1, 1/2, 1/4 ...",
         "", 0.0009765625, 1);
+    LIMN_FIELD(
+        level_rows,
+        "rows of the image that mesh_levels are chosen for; `play` sets it to the rows it draws",
+        "px", 16, 16384);
 }
 
 }  // namespace limn

@@ -47,4 +47,12 @@ TEST_CASE("mesh_levels: an entity has a finer mesh near the camera, at any size 
     CHECK(mesh_of(middle) == 6);
     CHECK(mesh_of(far) == 4);
     CHECK(mesh_of(large) == 6);
+
+    // An image of half the rows halves the quads, and levels with them.
+    world.insert_resource(Rendering{.level_rows = 540});
+    step_world(world, schedule);
+    CHECK(mesh_of(near) == 6);
+    CHECK(mesh_of(middle) == 5);
+    CHECK(mesh_of(far) == 4);
+    CHECK(mesh_of(large) == 5);
 }
