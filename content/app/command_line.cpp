@@ -127,6 +127,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     add_profile(*app, options.profile);
     app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
         ->type_name("NAME");
+    app->add_flag("--quiet", options.quiet, "print nothing but errors and warnings");
     app->footer("Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
                 "shadow_texels (shadow map texels per pixel), volume_layers (of shadow volumes).\n"
                 "An EXR holds linear radiance, a PNG the tone-mapped image.\n"

@@ -127,6 +127,39 @@ TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one 
     CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
 }
 
+TEST_CASE("cli: render says what it wrote in one line, and nothing if it is to be quiet") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Words words = {"render", "a.obj", "-o", "a.png", "--size", "64x36"};
+    const ProgramRun run = run_limn(folder, words);
+    CHECK(run.exit_code == 0);
+    CHECK(run.err.empty());
+    CHECK(count_lines(run.out) == 1);
+    CHECK(run.out.find("a.png: 64x36, ") == 0);
+    CHECK(run.out.find(" s\n") != std::string::npos);
+    const ProgramRun range = run_limn(
+        folder, {"render", "a.obj", "-o", "a_%04d.png", "--size", "64x36", "--frames", "0:1"});
+    CHECK(range.out.find("a_%04d.png: 2 x 64x36, ") == 0);
+    CHECK(std::filesystem::exists(folder.file("a_0001.png")));
+    Words quiet = words;
+    quiet.push_back("--quiet");
+    const ProgramRun silent = run_limn(folder, quiet);
+    CHECK(silent.exit_code == 0);
+    CHECK(silent.out.empty());
+    CHECK(silent.err.empty());
+}
+
+TEST_CASE("cli: a model without a mesh is told in one line") {
+    const TemporaryFolder folder;
+    test::write_text(
+        folder.file("a.gltf"),
+        R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{}]})");
+    const ProgramRun run =
+        run_limn(folder, {"render", "a.gltf", "-o", "a.png", "--size", "64x36", "--quiet"});
+    CHECK(run.exit_code == 0);
+    CHECK(run.err == "warning: a.gltf: found no mesh to draw, expected one\n");
+}
+
 TEST_CASE("cli: errors of a level are a line each, whatever characters its names hold") {
     const TemporaryFolder folder;
     test::write_text(
