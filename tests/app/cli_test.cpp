@@ -1,9 +1,14 @@
+#include "content/load/json_document.h"
 #include "tests/app/run_program.h"
 
 #include <doctest/doctest.h>
 
+#include <cctype>
 #include <filesystem>
 #include <initializer_list>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace limn {
 
@@ -252,6 +257,57 @@ TEST_CASE("cli: components NAME prints one type, as a level writes it") {
     CHECK(printed("exposure").find("Resources") != std::string::npos);
     check_fails(folder, {"components", "point_ligth"}, 1, "(did you mean point_light?)");
     check_fails(folder, {"components", "box", "--schema"}, 2);
+}
+
+namespace {
+
+/// Names of all properties of a JSON Schema, but those of internal types, which levels only read.
+void find_properties(const JsonValue& schema, std::set<std::string>& names) {
+    for (const JsonValue& item : schema.items) {
+        find_properties(item, names);
+    }
+    for (const auto& [key, at, value] : schema.members) {
+        if (key == "properties") {
+            for (const auto& [property, place, its_schema] : value.members) {
+                names.insert(property);
+                find_properties(its_schema, names);
+            }
+        } else if (key != "default") {
+            find_properties(value, names);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("cli: components lists every key that the schema of a level has") {
+    const TemporaryFolder folder;
+    const std::string listed = run_limn(folder, {"components", "--all"}).out;
+    const Result<JsonValue> schema =
+        parse_json(run_limn(folder, {"components", "--schema"}).out, "schema");
+    REQUIRE(schema.ok());
+    std::set<std::string> names;
+    find_properties(*schema, names);
+    CHECK(names.size() > 500);
+    for (const char* const key : {"tiling", "pattern", "like", "vary", "srgb", "every"}) {
+        CHECK(names.contains(key));
+    }
+    std::set<std::string> words;
+    std::string word;
+    for (const char c : listed) {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$') {
+            word += c;
+        } else {
+            words.insert(std::exchange(word, {}));
+        }
+    }
+    for (const std::string& name : names) {
+        CAPTURE(name);
+        CHECK((words.contains(name) || name == "make"));  // "make" is in the headings
+    }
+    const std::string material = run_limn(folder, {"components", "material"}).out;
+    CHECK(material.find("    tiling   list  repetitions") != std::string::npos);
+    CHECK(run_limn(folder, {"components", "event"}).out.find("    every ") != std::string::npos);
 }
 
 TEST_CASE("cli: info shows the hierarchy, skins, and what textures hold") {
