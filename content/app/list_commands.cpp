@@ -259,6 +259,9 @@ Status print_named(const std::string& name) {
 
 Status run_levels() {
     const std::vector<LevelEntry> levels = list_levels();
+    if (levels.empty()) {
+        return find_level("levels").error();
+    }
     std::size_t width = 0;
     for (const LevelEntry& level : levels) {
         width = std::max(width, level.name.size());

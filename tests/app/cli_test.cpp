@@ -233,6 +233,21 @@ TEST_CASE("cli: levels lists the gallery, components their fields with units") {
     CHECK(schema.out.find("\"point_light\"") != std::string::npos);
 }
 
+TEST_CASE("cli: a program that was moved with its tree finds the levels there") {
+    const TemporaryFolder folder;
+    namespace fs = std::filesystem;
+    fs::create_directories(folder.file("build/release"));
+    fs::create_directories(folder.file("content/levels"));
+    test::write_text(folder.file("content/levels/moved.level.json"), R"({"title": "Moved"})");
+    const std::string program = folder.file("build/release/limn");
+    fs::copy_file(LIMN_PROGRAM, program);
+    test::Program moved(folder, {"levels"}, program);
+    const ProgramRun run = moved.wait();
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.find("moved") != std::string::npos);
+    CHECK(run.out.find("Moved") != std::string::npos);
+}
+
 TEST_CASE("cli: components NAME prints one type, as a level writes it") {
     const TemporaryFolder folder;
     const auto printed = [&](const char* name) {
