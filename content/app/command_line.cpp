@@ -127,6 +127,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     add_profile(*app, options.profile);
     app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
         ->type_name("NAME");
+    app->add_flag("--quiet", options.quiet, "print nothing but errors and warnings");
     app->footer("Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
                 "shadow_texels (shadow map texels per pixel), volume_layers (of shadow volumes).\n"
                 "An EXR holds linear radiance, a PNG the tone-mapped image.\n"
@@ -226,8 +227,11 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
 }
 
 Command add_view(CLI::App& program, ViewOptions& options) {
-    CLI::App* app = program.add_subcommand("view", "Tone map an HDR image, interactively");
-    app->add_option("file", options.file, ".exr or .hdr")->type_name("FILE")->required();
+    CLI::App* app =
+        program.add_subcommand("view", "Show an image; tone map an HDR image, interactively");
+    app->add_option("file", options.file, ".exr, .hdr, .png, .jpg ...")
+        ->type_name("FILE")
+        ->required();
     add_parsed(*app, "-o,--out", "write the image, without a window", options.out, parse_png_path)
         ->type_name("FILE.png");
     add_size(*app, options.size)->description("of the window");
@@ -263,7 +267,8 @@ Command add_view(CLI::App& program, ViewOptions& options) {
             ->type_name("X");
     }
     app->footer(
-        "An EXR of `limn render` is shown with the exposure of its scene, as the PNG would be.\n"
+        "An EXR of `limn render` is shown with the exposure of its scene, as the PNG would be;\n"
+        "an image of 8 bits as it is.\n"
         "Prints log-average luminance, mean color and dynamic range. Pixels with NaN or infinity\n"
         "are counted, left out of the statistics and shown black or white.\n"
         "Knee is 0.3333 (ln(contrast c + 1) / contrast)^(1 / gamma) with c = 2^ev (light - "

@@ -10,12 +10,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <utility>
 #include <vector>
 
 namespace limn {
 namespace {
+
+/// An image of sRGB codes in linear light.
+ImageData decode_srgb(const ImageData& image) {
+    std::array<float, 256> linear;
+    for (std::size_t code = 0; code < linear.size(); ++code) {
+        const double c = static_cast<double>(code) / 255.0;
+        linear[code] =
+            static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    ImageData decoded = {
+        .name = image.name,
+        .width = image.width,
+        .height = image.height,
+        .format = PixelFormat::Rgba32F,
+        .pixels = std::vector<std::uint8_t>(4 * image.pixels.size())};
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const float value =
+            i % 4 == 3 ? static_cast<float>(image.pixels[i]) / 255.0f : linear[image.pixels[i]];
+        std::memcpy(&decoded.pixels[4 * i], &value, sizeof(value));
+    }
+    return decoded;
+}
 
 /// The image with OpenGL's bottom row first.
 Result<gpu::Texture> upload(const gpu::Device& device, const ImageData& image) {
@@ -59,8 +83,7 @@ Result<std::unique_ptr<HdrImage>> HdrImage::load(gpu::Device& device, const std:
         return image.error();
     }
     if (image->format == PixelFormat::Rgba8) {
-        return fail(
-            "{}: found an 8-bit image, expected floating-point radiance (.exr, .hdr)", path);
+        *image = decode_srgb(*image);
     }
     image->name = path;
     Result<gpu::Texture> radiance = upload(device, *image);

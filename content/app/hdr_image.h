@@ -33,7 +33,8 @@ struct HdrStatistics {
 
 class HdrImage {
   public:
-    /// OpenEXR or Radiance HDR. Fails with "path: found X, expected Y", also for 8-bit images.
+    /// Any image that load_image reads; those of 8 bits become linear. Fails with "path: found X,
+    /// expected Y".
     [[nodiscard]] static Result<std::unique_ptr<HdrImage>>
     load(gpu::Device& device, const std::string& path);
 

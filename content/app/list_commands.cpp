@@ -1,5 +1,6 @@
 #include "content/app/list_commands.h"
 
+#include "content/app/level_keys.h"
 #include "content/game/game.h"
 #include "content/load/level_hints.h"
 #include "content/load/level_list.h"
@@ -151,6 +152,20 @@ void print_type(const ListedType& listed) {
     fmt::print("\n");
 }
 
+void print_keys(const LevelKeys& listed) {
+    fmt::print("{}\n", listed.name);
+    std::size_t path = 0;
+    std::size_t type = 0;
+    for (const LevelKey& key : listed.keys) {
+        path = std::max(path, key.path.size());
+        type = std::max(type, key.type.size());
+    }
+    for (const LevelKey& key : listed.keys) {
+        fmt::print("    {:<{}}  {:<{}}  {}\n", key.path, path, key.type, type, key.doc);
+    }
+    fmt::print("\n");
+}
+
 /// What a show changes, and the commands that render it on and off.
 void print_show(const FoundShow& found) {
     const LevelShow& show = found.show;
@@ -171,6 +186,13 @@ void print_types(const ListedTypes& listed) {
     fmt::print("==== {}\n\n", listed.heading);
     for (const ListedType& type : listed.types) {
         print_type(type);
+    }
+}
+
+void print_all_keys(const std::vector<LevelKeys>& all) {
+    fmt::print("==== Keys of a level, beside what is above\n\n");
+    for (const LevelKeys& listed : all) {
+        print_keys(listed);
     }
 }
 
@@ -217,6 +239,16 @@ Status print_named(const std::string& name) {
             is_known = true;
         }
     }
+    const std::vector<LevelKeys> keys = list_level_keys();
+    for (const LevelKeys& listed : keys) {
+        names.push_back(listed.name);
+    }
+    const auto same = std::find_if(
+        keys.begin(), keys.end(), [&](const LevelKeys& listed) { return listed.name == name; });
+    if (same != keys.end()) {
+        print_all_keys({*same});
+        is_known = true;
+    }
     return is_known ? Status(Done{})
                     : fail(
                         "found {}, expected a name that `limn components` lists{}", in_quotes(name),
@@ -227,6 +259,9 @@ Status print_named(const std::string& name) {
 
 Status run_levels() {
     const std::vector<LevelEntry> levels = list_levels();
+    if (levels.empty()) {
+        return find_level("levels").error();
+    }
     std::size_t width = 0;
     for (const LevelEntry& level : levels) {
         width = std::max(width, level.name.size());
@@ -271,6 +306,7 @@ Status run_components(const std::string& name, bool schema, bool all) {
             print_types(listed);
         }
     }
+    print_all_keys(list_level_keys());
     return Done{};
 }
 

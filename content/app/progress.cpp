@@ -16,9 +16,10 @@ constexpr const char* kClearLine = "\r\033[K";
 
 }  // namespace
 
-Progress::Progress(std::string what, int total)
-    : what_(std::move(what)), total_(std::max(total, 1)), on_terminal_(isatty(STDERR_FILENO) == 1),
-      begin_(Clock::now()), last_draw_(begin_ - kRedraw) {}
+Progress::Progress(std::string what, int total, bool shown)
+    : what_(std::move(what)), total_(std::max(total, 1)),
+      on_terminal_(shown && isatty(STDERR_FILENO) == 1), begin_(Clock::now()),
+      last_draw_(begin_ - kRedraw) {}
 
 Progress::~Progress() {
     if (drawn_) {

@@ -9,8 +9,9 @@ namespace limn {
 /// Prints nothing unless stderr is a terminal, so logs stay clean. The destructor clears the line.
 class Progress {
   public:
-    /// `what` names the unit counted, e.g. "frame"; `total` of them make 100 %.
-    Progress(std::string what, int total);
+    /// `what` names the unit counted, e.g. "frame"; `total` of them make 100 %. Not `shown`: prints
+    /// nothing.
+    Progress(std::string what, int total, bool shown = true);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     ~Progress();

@@ -1,5 +1,6 @@
 #include "content/app/render_command.h"
 
+#include "content/app/activity.h"
 #include "content/app/exposure_samples.h"
 #include "content/app/headless.h"
 #include "content/app/image_file.h"
@@ -19,6 +20,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -100,10 +102,10 @@ FrameOutput draw_played(
 }
 
 /// Averages samples over shutter, lens and pixel while the simulation advances: the ground truth
-/// that the real-time effects approximate.
+/// that the real-time effects approximate. `progress`: counts the samples.
 FrameOutput draw_sampled(
     Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options,
-    const FrameTimes& time) {
+    const FrameTimes& time, Progress* progress = nullptr) {
     const double open = open_seconds(stage.world, time);
     const float weight = 1.0f / static_cast<float>(options.samples);
     begin_accumulation(renderer, options.size, SampleKind::Instant);
@@ -123,6 +125,9 @@ FrameOutput draw_sampled(
             with_lens_sample(
                 with_jitter(view, sample.jitter), point_on_aperture(view.lens, sample.square)),
             weight);
+        if (progress != nullptr) {
+            progress->update(i + 1);
+        }
     }
     return finish_accumulation(renderer, stage.world, shown);
 }
@@ -156,6 +161,37 @@ int previous_frames(const World& world, double step) {
 Status
 write_frame(const FrameOutput& frame, const Stage& stage, double time, const std::string& path) {
     return write_image_file(path, frame, image_notes(stage, time));
+}
+
+/// The image at --time, or the show's.
+Status render_still(Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options) {
+    const double time = options.time.value_or(stage.scene.show ? stage.scene.show->time : 0.0);
+    if (options.samples == 0) {
+        const Activity activity("drawing " + options.out, !options.quiet);
+        const FrameOutput frame = draw_still(renderer, stage, camera, options, time);
+        return write_frame(frame, stage, time, options.out);
+    }
+    Progress progress("sample", options.samples, !options.quiet);
+    const FrameOutput frame =
+        draw_sampled(renderer, stage, camera, options, {time, time - stage_step(stage)}, &progress);
+    return write_frame(frame, stage, time, options.out);
+}
+
+/// All of --frames.
+Status render_range(Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options) {
+    const int count = options.frames->last - options.frames->first + 1;
+    Progress progress("frame", count, !options.quiet);
+    progress.update(0);
+    for (int i = 0; i < count; ++i) {
+        const int frame = options.frames->first + i;
+        const FrameTimes time = {frame / options.fps, (frame - 1) / options.fps};
+        const FrameOutput output = options.samples > 0
+                                       ? draw_sampled(renderer, stage, camera, options, time)
+                                       : draw_played(renderer, stage, camera, options, time);
+        LIMN_TRY(write_frame(output, stage, time.shown, numbered_path(options.out, frame)));
+        progress.update(i + 1);
+    }
+    return Done{};
 }
 
 }  // namespace
@@ -212,52 +248,34 @@ Status check_render_options(const RenderOptions& options) {
 }
 
 Status run_render(const RenderOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
     const std::string scene = !options.scene.empty()
                                   ? options.scene
                                   : LIMN_TRY(find_show(options.show.technique)).level.path;
+    std::optional<Activity> loading(std::in_place, "loading " + scene, !options.quiet);
     const std::unique_ptr<Stage> opened = LIMN_TRY(open_stage(
         scene, {.seed = options.seed,
                 .assignments = options.assignments,
                 .show = options.show,
                 .model = options.model}));
     Stage& stage = *opened;
-    const Result<Entity> camera = choose_camera(stage, options.camera);
-    if (!camera) {
-        return camera.error();
-    }
-    const Status folder = check_folder(options.out);
-    if (!folder) {
-        return folder.error();
-    }
-    Result<HeadlessRenderer> headless = create_headless_renderer(options.profile);
-    if (!headless) {
-        return headless.error();
-    }
-    if (const Status fits = check_image_size(*headless->device, options.size); !fits) {
-        return fits.error();
-    }
-    if (!options.frames) {
-        const double time = options.time.value_or(stage.scene.show ? stage.scene.show->time : 0.0);
-        const FrameOutput frame =
-            options.samples > 0 ? draw_sampled(
-                *headless->renderer, stage, *camera, options, {time, time - stage_step(stage)})
-                                : draw_still(*headless->renderer, stage, *camera, options, time);
-        return write_frame(frame, stage, time, options.out);
-    }
-    const int count = options.frames->last - options.frames->first + 1;
-    Progress progress("frame", count);
-    for (int i = 0; i < count; ++i) {
-        const int frame = options.frames->first + i;
-        const FrameTimes time = {frame / options.fps, (frame - 1) / options.fps};
-        const FrameOutput output =
-            options.samples > 0 ? draw_sampled(*headless->renderer, stage, *camera, options, time)
-                                : draw_played(*headless->renderer, stage, *camera, options, time);
-        const Status status =
-            write_frame(output, stage, time.shown, numbered_path(options.out, frame));
-        if (!status) {
-            return status.error();
-        }
-        progress.update(i + 1);
+    const Entity camera = LIMN_TRY(choose_camera(stage, options.camera));
+    LIMN_TRY(check_folder(options.out));
+    HeadlessRenderer headless = LIMN_TRY(create_headless_renderer(options.profile));
+    LIMN_TRY(check_image_size(*headless.device, options.size));
+    loading.reset();
+    LIMN_TRY(
+        options.frames ? render_range(*headless.renderer, stage, camera, options)
+                       : render_still(*headless.renderer, stage, camera, options));
+    if (!options.quiet) {
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const std::string frames =
+            options.frames ? fmt::format("{} x ", options.frames->last - options.frames->first + 1)
+                           : "";
+        fmt::print(
+            "{}: {}{}x{}, {:.1f} s\n", options.out, frames, options.size.x, options.size.y,
+            seconds);
     }
     return Done{};
 }

@@ -30,6 +30,7 @@ struct RenderOptions {
     ShowChoice show;                      ///< what to show of the level
     std::optional<gpu::Profile> profile;  ///< empty = by the device
     ModelViewOptions model;               ///< of a model by itself
+    bool quiet = false;                   ///< prints nothing but errors and warnings
 };
 
 /// One frame at `time` as `limn play` shows it, antialiased. Draws first what it depends on: the
@@ -42,7 +43,8 @@ struct RenderOptions {
 [[nodiscard]] Status check_render_options(const RenderOptions& options);
 
 /// Writes every image under a temporary name and renames it, so an interrupted run leaves only
-/// complete files.
+/// complete files. On a terminal shows what goes on; at last prints a line with the file, its size
+/// and the time it took.
 [[nodiscard]] Status run_render(const RenderOptions& options);
 
 }  // namespace limn

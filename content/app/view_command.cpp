@@ -16,6 +16,9 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+#include <ios>
+
 namespace limn {
 namespace {
 
@@ -70,6 +73,14 @@ Status set_exposure(Exposure& exposure, std::string_view field, std::string_view
 
 Exposure exposure_of_file(const std::string& path) {
     Exposure exposure;
+    std::ifstream file(path, std::ios::binary);
+    char first[2] = {};
+    file.read(first, sizeof(first));
+    const std::string_view magic(first, sizeof(first));
+    if (magic != "\x76\x2f"
+        && magic != "#?") {  // neither OpenEXR nor Radiance: tone mapped already
+        return {.curve = ToneCurve::Linear, .dither = false};
+    }
     for (const auto& [name, text] : read_exr_metadata(path)) {
         if (name != kExposureNote) {
             continue;
@@ -88,8 +99,9 @@ Status run_view(const ViewOptions& options) {
         return view_headless(options);
     }
     if (!Window::has_display()) {
+        LIMN_TRY(view_headless(options));
         fmt::print("There is no display, so no window is opened. -o FILE.png writes the image.\n");
-        return view_headless(options);
+        return Done{};
     }
     Result<std::unique_ptr<ImageViewer>> viewer =
         ImageViewer::open(options.file, shown_exposure(options), options.size);

@@ -19,8 +19,9 @@ namespace {
 
 constexpr std::array kExtensions = {
     std::string_view("KHR_lights_punctual"),   std::string_view("KHR_materials_emissive_strength"),
-    std::string_view("KHR_materials_unlit"),   std::string_view("KHR_mesh_quantization"),
-    std::string_view("KHR_texture_transform"),
+    std::string_view("KHR_materials_ior"),     std::string_view("KHR_materials_transmission"),
+    std::string_view("KHR_materials_unlit"),   std::string_view("KHR_materials_volume"),
+    std::string_view("KHR_mesh_quantization"), std::string_view("KHR_texture_transform"),
 };
 
 /// Maximum number of elements without a buffer view.

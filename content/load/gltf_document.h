@@ -119,9 +119,10 @@ read_indices(GltfDocument& document, std::int32_t index, const std::string& plac
 /// twice, since only one copy is sRGB.
 [[nodiscard]] Status build_materials(GltfDocument& document, GltfScene& scene);
 
-/// Primitive `primitive` of mesh `mesh` as triangles with normals, tangents, bounds, skin weights
-/// for `joints` > 0 joints, and morph targets; unused vertices are dropped. Empty when there is
-/// nothing to draw (points, lines, no positions); then a warning is added to the document.
+/// Primitive `primitive` of mesh `mesh` as triangles, points and lines as well, with normals,
+/// tangents, bounds, skin weights for `joints` > 0 joints, and morph targets; unused vertices are
+/// dropped. Empty when there is nothing to draw (no positions, no area); then a warning is added to
+/// the document.
 [[nodiscard]] Result<std::optional<MeshData>>
 build_mesh(GltfDocument& document, std::size_t mesh, std::size_t primitive, std::size_t joints);
 

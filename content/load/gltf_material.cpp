@@ -5,7 +5,10 @@
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
 
+#include <cmath>
 #include <optional>
 
 namespace limn {
@@ -22,6 +25,9 @@ struct UsedImage {
 constexpr std::int32_t kNearest = 9728;
 constexpr std::int32_t kClampToEdge = 33071;
 constexpr std::int32_t kMirroredRepeat = 33648;
+
+constexpr float kIndex = 1.5f;  ///< of refraction, of every material
+constexpr float kHaze = 0.5f;   ///< share that a rough surface hides of what is behind; by eye
 
 Wrap to_wrap(std::int32_t mode) {
     switch (mode) {
@@ -72,12 +78,41 @@ class MaterialBuilder {
         material.normal_texture = slot(source["normalTexture"], false);
         material.occlusion_texture = slot(source["occlusionTexture"], false);
         material.emission_texture = slot(source["emissiveTexture"], true);
+        transmit(extensions, material);
         return material;
     }
 
     [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
 
   private:
+    /// Clear media become blended: what is behind is seen as much as they transmit, not refracted.
+    void transmit(const JsonValue& extensions, Material& material) {
+        const JsonValue& transmission = extensions["KHR_materials_transmission"];
+        const float factor = number_of(transmission["transmissionFactor"], 0);
+        const float index = number_of(extensions["KHR_materials_ior"]["ior"], kIndex);
+        if (std::abs(index - kIndex) > 0.01f) {
+            warn(fmt::format("ior {:.3g} is drawn as {}", index, kIndex));
+        }
+        if (factor <= 0 || material.alpha_mode == AlphaMode::Mask) {
+            return;
+        }
+        if (transmission.find("transmissionTexture") != nullptr) {
+            warn("transmissionTexture is unsupported, it is drawn opaque");
+            return;
+        }
+        const JsonValue& volume = extensions["KHR_materials_volume"];
+        const float distance = number_of(volume["attenuationDistance"], 0);
+        const float path = distance > 0 ? number_of(volume["thicknessFactor"], 0) / distance : 0;
+        Vec3 color = Vec3(material.base_color);
+        if (path > 0) {
+            color *= glm::pow(vector_of(volume["attenuationColor"], Vec3(1)), Vec3(path));
+        }
+        const float seen = factor * (1 - material.metalness) * (1 - kHaze * material.roughness)
+                           * glm::dot(color, Vec3(0.2126f, 0.7152f, 0.0722f));
+        material.alpha_mode = AlphaMode::Blend;
+        material.base_color = Vec4(color, material.base_color.w * (1 - seen));
+    }
+
     TextureSlot slot(const JsonValue& info, bool srgb) {
         TextureSlot result;
         const std::int32_t index = index_of(info["index"]);

@@ -1,5 +1,6 @@
 #include "content/bake/tangents.h"
 #include "content/load/gltf_document.h"
+#include "content/load/gltf_strokes.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 namespace limn {
 
@@ -59,22 +61,22 @@ class MeshBuilder {
     }
 
     Result<std::optional<MeshData>> build() {
-        if (mode_ < kTriangles) {
-            return skip("points and lines are unsupported");
-        }
         if (source_["attributes"].find("POSITION") == nullptr) {
             return skip("it has no POSITION attribute");
         }
         LIMN_TRY(read_positions());
         LIMN_TRY(read_triangles());
-        LIMN_TRY(read("NORMAL", result_.normals));
-        LIMN_TRY(read("TANGENT", result_.tangents));
+        if (!strokes()) {
+            LIMN_TRY(read("NORMAL", result_.normals));
+            LIMN_TRY(read("TANGENT", result_.tangents));
+        }
         LIMN_TRY(read("TEXCOORD_0", result_.uvs));
         LIMN_TRY(read("TEXCOORD_1", result_.uvs1));
         LIMN_TRY(read_colors());
         LIMN_TRY(read_deformations());
         if (result_.indices.empty()) {
-            return skip("all of its triangles are degenerate");
+            return skip(
+                strokes() ? "it has no point or line" : "all of its triangles are degenerate");
         }
         complete();
         return std::optional(std::move(result_));
@@ -102,7 +104,8 @@ class MeshBuilder {
         return Done{};
     }
 
-    /// Fills the indices and, in `used_`, the vertices that they reference in order of appearance.
+    /// Fills the indices and, in `used_`, the vertices that they reference in order of appearance;
+    /// of points and lines the normals, too.
     Status read_triangles() {
         std::vector<std::uint32_t> list;
         const std::string place = place_ + ".indices";
@@ -122,6 +125,10 @@ class MeshBuilder {
         if (mode_ == kTriangles && list.size() % 3 != 0) {
             return fail("{}: found {} indices, expected a multiple of 3", place, list.size());
         }
+        if (strokes()) {
+            stroke(list);
+            return Done{};
+        }
         result_.indices = make_triangles(list, mode_);
         std::vector<std::uint32_t> number(positions_.size(), kNoAsset);
         for (std::uint32_t& index : result_.indices) {
@@ -133,6 +140,25 @@ class MeshBuilder {
         }
         result_.positions = gather(positions_);
         return Done{};
+    }
+
+    /// Points and lines, which have no triangles of their own.
+    [[nodiscard]] bool strokes() const { return mode_ < kTriangles; }
+
+    void stroke(const std::vector<std::uint32_t>& list) {
+        Strokes made = make_strokes(positions_, list, mode_);
+        if (made.found > kMaxStrokes) {
+            document_.warnings.push_back(fmt::format(
+                "{}: {} of its {} {} are drawn", place_, kMaxStrokes, made.found,
+                mode_ == kGltfPoints ? "points" : "lines"));
+        }
+        used_ = std::move(made.sources);
+        result_.indices = std::move(made.indices);
+        result_.normals = std::move(made.normals);
+        result_.positions = gather(positions_);
+        for (std::size_t i = 0; i < used_.size(); ++i) {
+            result_.positions[i] += made.offsets[i];
+        }
     }
 
     template <typename T>
@@ -187,6 +213,11 @@ class MeshBuilder {
         }
         // Most exporters write the names of the targets there.
         result_.morphs = LIMN_TRY(read_morph_targets(document_, vertices, mesh_["extras"]));
+        if (strokes()) {
+            for (MorphTarget& morph : result_.morphs) {
+                morph.normals.clear();
+            }
+        }
         result_.regions = LIMN_TRY(read_regions(document_, vertices));
         return Done{};
     }
@@ -240,7 +271,7 @@ class MeshBuilder {
     std::string place_;
     std::int32_t mode_ = kTriangles;
     std::vector<Vec3> positions_;      ///< all of the accessor
-    std::vector<std::uint32_t> used_;  ///< vertices of the file that the triangles use
+    std::vector<std::uint32_t> used_;  ///< the vertex of the file of each vertex of the result
     MeshData result_;
 };
 

@@ -54,9 +54,12 @@ std::vector<LevelEntry> find_levels() {
 std::vector<std::string> level_folders() {
     std::vector<std::string> folders;
     std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    for (const fs::path& folder : {program.parent_path() / "levels", fs::path(LIMN_LEVELS_DIR)}) {
-        if (fs::is_directory(folder, error)) {
+    const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+    for (const fs::path& folder :
+         {program / "levels", (program / "../../content/levels").lexically_normal(),
+          fs::path(LIMN_LEVELS_DIR)}) {
+        const bool is_new = std::find(folders.begin(), folders.end(), folder) == folders.end();
+        if (is_new && fs::is_directory(folder, error)) {
             folders.push_back(folder.string());
         }
     }
@@ -73,6 +76,11 @@ std::vector<LevelEntry> list_levels() {
 
 Result<std::string> find_level(std::string_view name) {
     const std::vector<LevelEntry> levels = find_levels();
+    if (levels.empty()) {
+        return fail(
+            "{}: found no folder with levels, expected {} (as it was when the program was built)",
+            name, LIMN_LEVELS_DIR);
+    }
     std::vector<std::string_view> names;
     for (const LevelEntry& level : levels) {
         if (level.name == name) {

@@ -16,8 +16,9 @@ struct LevelEntry {
     std::string title;  ///< one line; the error when the file cannot be read
 };
 
-/// Search folders, in order: `levels` next to the program, and that of the source tree that the
-/// program was built from. Missing folders are omitted.
+/// Search folders, in order: `levels` next to the program, that of the source tree in whose
+/// build/PRESET the program is, also if it was moved, and that of the source tree that the program
+/// was built from. Missing folders are omitted.
 [[nodiscard]] std::vector<std::string> level_folders();
 
 /// All levels, sorted by name; of equal names the one in the first folder.

@@ -2,6 +2,7 @@
 
 #include "content/load/asset_lists.h"
 #include "content/load/component_json.h"
+#include "content/load/error_list.h"
 #include "ecs/base/text.h"
 #include "ecs/components/name.h"
 
@@ -50,28 +51,28 @@ class DeferredNames {
 
     Status resolve() {
         for (AnyComponent& resource : level_.resources) {
-            LIMN_TRY(resolve(resource, resource.info().name, {}));
+            resolve(resource, resource.info().name, {});
         }
-        LIMN_TRY(resolve(level_.entities, true));
+        resolve(level_.entities, true);
         for (NodeChange& change : level_.node_changes) {
             if (!change.set.value.is_empty()) {
-                LIMN_TRY(resolve(
+                resolve(
                     change.set.value, fmt::format("nodes.{}.{}", change.node, change.info->name),
-                    scene_of(change.entity)));
+                    scene_of(change.entity));
             }
         }
         for (ScriptEvent& event : level_.events.events) {
             for (ScriptAction& action : event.actions) {
-                LIMN_TRY(resolve(action.prefab, false));
+                resolve(action.prefab, false);
                 if (!action.value.is_empty()) {
                     const bool is_entity = action.entity.generation == prefab_entity(0).generation;
-                    LIMN_TRY(resolve(
+                    resolve(
                         action.value, "events: " + action.value.info().name,
-                        is_entity ? scene_of(action.entity.index) : std::nullopt));
+                        is_entity ? scene_of(action.entity.index) : std::nullopt);
                 }
             }
         }
-        return Done{};
+        return errors_.status();
     }
 
   private:
@@ -97,7 +98,7 @@ class DeferredNames {
         return found == scene_of_.end() ? std::nullopt : std::optional(found->second);
     }
 
-    Status resolve(Prefab& prefab, bool is_level) {
+    void resolve(Prefab& prefab, bool is_level) {
         for (std::uint32_t i = 0; i < prefab.entities.size(); ++i) {
             std::vector<AnyComponent>& components = prefab.entities[i].components;
             const auto* const name = find_in<Name>(components);
@@ -105,19 +106,17 @@ class DeferredNames {
                 const std::string place = fmt::format(
                     "entity {}: {}", name != nullptr ? in_quotes(name->text) : std::to_string(i),
                     component.info().name);
-                LIMN_TRY(resolve(component, place, is_level ? scene_of(i) : std::nullopt));
+                resolve(component, place, is_level ? scene_of(i) : std::nullopt);
             }
         }
-        return Done{};
     }
 
-    Status resolve(AnyComponent& component, std::string_view place, SceneNumber own) {
-        Status result = Done{};
+    void resolve(AnyComponent& component, std::string_view place, SceneNumber own) {
         for_each_asset(
             component.info().fields, component.data(),
             [&](std::string_view kind, std::uint32_t& index) {
                 const auto lists = lists_.find(std::string(kind));
-                if (lists == lists_.end() || index == kNoAsset || !result) {
+                if (lists == lists_.end() || index == kNoAsset) {
                     return;
                 }
                 const auto& [name, at] = level_.deferred_names[index];
@@ -127,14 +126,13 @@ class DeferredNames {
                     return;
                 }
                 const std::vector<std::string_view> known = known_names(lists->second, own);
-                result = fail(
+                errors_.keep(fail(
                     "{}: {}: found the {} {}, expected {}{}", place_text(level_.file, at), place,
                     kind, in_quotes(name),
                     known.empty() ? "one of a glTF file or a generated mesh, which have none"
                                   : "one of " + some_of(known),
-                    did_you_mean(name, known));
+                    did_you_mean(name, known)));
             });
-        return result;
     }
 
     /// Those of the entity's own file, or else all.
@@ -166,6 +164,7 @@ class DeferredNames {
     }
 
     Level& level_;
+    ErrorList errors_{level_.file};
     std::unordered_map<std::string, std::vector<NameList>> lists_;  ///< the level's own first
     std::unordered_map<std::uint32_t, std::size_t> scene_of_;       ///< entity -> of `scenes`
 };

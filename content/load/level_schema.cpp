@@ -322,7 +322,10 @@ JsonValue schema_of_node() {
              "nodes", described(
                           map_of(reference("components")),
                           "changes of the nodes of \"gltf\", by name; null removes a component")),
-         member("repeat", any_of({reference("repeat of a node"), of_type("null")})),
+         member(
+             "repeat", described(
+                           any_of({reference("repeat of a node"), of_type("null")}),
+                           "copies of it in a grid or a ring")),
          member(
              "children",
              described(
@@ -379,13 +382,11 @@ JsonValue schema_of_event() {
 }
 
 JsonValue schema_of_show() {
-    const auto patch = [] {
-        return of_type("object", {member("description", text("JSON merge patch of the level"))});
-    };
     return closed_object(
         {member("technique", described(of_type("string"), "its id, for --show")),
          member("text", described(of_type("string"), "a sentence: what to look at")),
-         member("set", patch()), member("off", patch()),
+         member("set", described(of_type("object"), "JSON merge patch of the level, on")),
+         member("off", described(of_type("object"), "JSON merge patch of the level, without it")),
          member("time", described(schema_of_time(3600), "when it is seen best [s]")),
          member(
              "camera", described(

@@ -2,6 +2,7 @@
 
 #include "content/load/gltf_scene.h"
 #include "content/load/image_load.h"
+#include "content/load/model_ground.h"
 #include "content/load/scene_bounds.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
@@ -42,7 +43,6 @@ constexpr float kMinReflectance = 0.08f;
 /// The studio around lights of kReferenceLux: weak enough that they shape the form.
 constexpr float kStudioIntensity = 0.32f;
 constexpr float kMaxStudioIntensity = 2000.0f;  // its lamps stay within half floats
-constexpr float kGroundRadius = 6.0f;           // of the subject's
 constexpr float kShadowDistance = 14.0f;        // of the subject's radius, from the camera
 constexpr int kShadowedLights = 4;
 
@@ -152,8 +152,16 @@ Shadow shadow_for(float radius) {
         .distance = std::clamp(kShadowDistance * radius, 0.1f, 1e5f)};
 }
 
+/// How flat `subject` lies: 1 without height, 0 from 0.4 of its width on.
+float flatness(const Bounds& subject) {
+    const Vec3 half = half_extent(subject);
+    const float width = std::max(half.x, half.z);
+    return is_empty(subject) || width <= 0 ? 0 : 1 - std::min(half.y / (0.4f * width), 1.0f);
+}
+
 /// A warm key from the upper right, where the studio has its large soft box, and a rim light from
-/// behind on the left that separates the model from the backdrop; the studio itself fills.
+/// behind on the left that separates the model from the backdrop; the studio itself fills. The key
+/// grazes what lies flat, or its relief would not show.
 void add_studio_lights(World& world, const Quat& camera, float radius, ModelView& view) {
     struct RigLight {
         const char* name;
@@ -161,10 +169,12 @@ void add_studio_lights(World& world, const Quat& camera, float radius, ModelView
         Vec3 color;
         float illuminance;
     };
-    constexpr RigLight kRig[] = {
-        {"key light", {0.75f, 0.8f, 0.55f}, {1.0f, 0.95f, 0.88f}, kReferenceLux},
+    const Vec3 key =
+        glm::mix(Vec3(0.66f, 0.6f, 0.7f), Vec3(0.92f, 0.22f, 0.3f), flatness(view.subject));
+    const RigLight rig[] = {
+        {"key light", key, {1.0f, 0.95f, 0.88f}, kReferenceLux},
         {"rim light", {-0.8f, 0.5f, -0.75f}, {0.88f, 0.94f, 1.0f}, 1.3f}};
-    for (const RigLight& light : kRig) {
+    for (const RigLight& light : rig) {
         Transform transform;
         transform.rotation = look_along(camera * -light.from);
         const Entity entity = world.create(
@@ -187,59 +197,6 @@ void add_sun(World& world, const Quat& camera, float radius, ModelView& view) {
         shadow_for(radius));
     world.get<Shadow>(sun).source_size = 0.02f;
     view.added.push_back(sun);
-}
-
-/// A disc whose vertices fade from opaque to nothing, into whatever is behind it.
-MeshData make_ground(float radius) {
-    constexpr int kSegments = 96;
-    constexpr int kRings = 24;
-    MeshData mesh;
-    mesh.name = "ground";
-    for (int ring = 0; ring <= kRings; ++ring) {
-        const float t = static_cast<float>(ring) / kRings;
-        const float opacity = square(square(1 - square(t)));
-        for (int i = 0; i < kSegments; ++i) {
-            const float angle = 2 * kPi * static_cast<float>(i) / kSegments;
-            mesh.positions.push_back(radius * t * Vec3(std::cos(angle), 0, -std::sin(angle)));
-            mesh.normals.push_back({0, 1, 0});
-            mesh.tangents.push_back({1, 0, 0, 1});
-            mesh.uvs.push_back({0, 0});
-            mesh.colors.push_back({1, 1, 1, opacity});
-        }
-    }
-    for (std::uint32_t ring = 0; ring < kRings; ++ring) {
-        for (std::uint32_t i = 0; i < kSegments; ++i) {
-            const std::uint32_t a = ring * kSegments + i;
-            const std::uint32_t b = ring * kSegments + (i + 1) % kSegments;
-            if (ring > 0) {
-                mesh.indices.insert(mesh.indices.end(), {a, b + kSegments, b});
-            }
-            mesh.indices.insert(mesh.indices.end(), {a, a + kSegments, b + kSegments});
-        }
-    }
-    mesh.bounds = {{-radius, 0, -radius}, {radius, 0, radius}};
-    return mesh;
-}
-
-void add_ground(World& world, const Bounds& subject, ModelView& view) {
-    const float radius = glm::length(half_extent(subject));
-    auto& assets = world.resource<Assets>();
-    const MaterialId material = {static_cast<std::uint32_t>(assets.materials.size())};
-    assets.materials.push_back(
-        {.name = "ground",
-         .shading = ShadingModel::Blinn,  // opacity does not weaken reflections, so it has none
-         .alpha_mode = AlphaMode::Blend,
-         .base_color = {0.22f, 0.22f, 0.228f, 1},
-         .specular = {0, 0, 0}});
-    const MeshId mesh = {static_cast<std::uint32_t>(assets.meshes.size())};
-    assets.meshes.push_back(make_ground(kGroundRadius * radius));
-    view.meshes = 1;
-    view.materials = 1;
-    Vec3 place = center(subject);
-    place.y = subject.min.y - 1e-3f * radius;
-    view.added.push_back(world.create(
-        Name{"ground"}, Transform{.position = place},
-        MeshInstance{.mesh = mesh, .material = material}, NoShadow{}));
 }
 
 /// The framing camera, on a turning pivot if it has a turntable.
@@ -350,14 +307,17 @@ Result<Backdrop> load_backdrop(const std::string& name) {
 
 ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
     ModelView view;
-    const std::vector<Bounds> boxes = find_boxes(world, SceneMatrices(world));
-    const std::vector<bool> scenery = find_scenery(boxes);
+    std::vector<Entity> drawn;
+    const std::vector<Bounds> boxes = find_boxes(world, SceneMatrices(world), &drawn);
+    const std::vector<bool> is_scenery = find_scenery(boxes);
+    std::vector<Entity> scenery;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (!scenery[i]) {
+        if (is_scenery[i]) {
+            scenery.push_back(drawn[i]);
+        } else {
             grow(view.subject, boxes[i]);
         }
     }
-    const bool has_scenery = std::find(scenery.begin(), scenery.end(), true) != scenery.end();
     const float radius = is_empty(view.subject) ? 1.0f : glm::length(half_extent(view.subject));
     const LightMeter meter(world, view.subject);
     const float lux = meter.total();
@@ -366,6 +326,9 @@ ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
         add_panorama(world, *std::move(backdrop.panorama));
     } else {
         Environment environment = backdrop_environment(backdrop.name);
+        if (environment.sky == SkyKind::Studio) {  // its ceiling would level what lies flat
+            environment.intensity *= 1 - 0.6f * flatness(view.subject);
+        }
         float ev = 0;
         if (lux > kNoLight) {
             ev = std::clamp(std::log2(kReferenceLux / lux), -24.0f, 24.0f);
@@ -391,9 +354,10 @@ ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
             world.add(readings[i].light, shadow);
         }
     }
-    if (!has_scenery && !is_empty(view.subject)) {
-        add_ground(world, view.subject, view);
+    if (scenery.empty() && !is_empty(view.subject)) {
+        add_ground(world, view);
     }
+    fade_grounds(world, scenery, view);
     return view;
 }
 

@@ -135,7 +135,8 @@ Affine SceneMatrices::of(Entity entity) const {
     return found == children_.end() ? local_matrix(world_, entity) : found->second;
 }
 
-std::vector<Bounds> find_boxes(World& world, const SceneMatrices& matrices) {
+std::vector<Bounds>
+find_boxes(World& world, const SceneMatrices& matrices, std::vector<Entity>* entities) {
     std::vector<Bounds> boxes;
     const Assets& assets = world.resource<Assets>();
     RestBounds rest(world, assets);
@@ -146,6 +147,9 @@ std::vector<Bounds> find_boxes(World& world, const SceneMatrices& matrices) {
         const Bounds box = transform_bounds(matrices.of(entity), rest.of(entity, instance));
         if (!is_empty(box)) {
             boxes.push_back(box);
+            if (entities != nullptr) {
+                entities->push_back(entity);
+            }
         }
     });
     return boxes;

@@ -28,8 +28,9 @@ class SceneMatrices {
 };
 
 /// World-space bounds of everything drawn, a box for each mesh instance, skinned ones in the rest
-/// pose [m]. Needs the resource Assets.
-[[nodiscard]] std::vector<Bounds> find_boxes(World& world, const SceneMatrices& matrices);
+/// pose [m]. Needs the resource Assets. `entities`: gets the entity of each.
+[[nodiscard]] std::vector<Bounds>
+find_boxes(World& world, const SceneMatrices& matrices, std::vector<Entity>* entities = nullptr);
 
 /// Bounds of all boxes; may be empty.
 [[nodiscard]] Bounds join_boxes(std::span<const Bounds> boxes);

@@ -17,12 +17,14 @@
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
 #include "ecs/components/rendering.h"
+#include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -109,6 +111,28 @@ void complete_scene(World& world, const SceneOptions& options, LoadedScene& scen
     });
 }
 
+/// Moves a model that is far from the origin there: floats at 80 km have steps of 8 mm.
+void move_to_origin(World& world, const std::vector<Entity>& roots) {
+    constexpr float kFar = 100;  // of its radius
+    const std::vector<Bounds> boxes = find_boxes(world, SceneMatrices(world));
+    const std::vector<bool> scenery = find_scenery(boxes);
+    Bounds subject;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (!scenery[i]) {
+            grow(subject, boxes[i]);
+        }
+    }
+    if (is_empty(subject)) {
+        return;
+    }
+    const Vec3 middle = center(subject);
+    if (glm::length(middle) > kFar * glm::length(half_extent(subject))) {
+        for (const Entity root : roots) {
+            world.get<Transform>(root).position -= middle;
+        }
+    }
+}
+
 Result<LoadedScene>
 load_model_scene(World& world, const std::string& path, const SceneOptions& options) {
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
@@ -119,11 +143,17 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
     scene.path = path;
     insert_missing<Assets>(world);
     const std::string file = std::filesystem::path(path).filename().string();
-    for (const Entity root : spawn_gltf(world, world.resource<Assets>(), std::move(model)).roots) {
+    const std::vector<Entity> roots =
+        spawn_gltf(world, world.resource<Assets>(), std::move(model)).roots;
+    for (const Entity root : roots) {
         if (!is_obj) {  // which levels cannot place
             world.add(root, GltfSource{file});
         }
     }
+    if (world.query<const MeshInstance>().empty()) {
+        log_warn("{}: found no mesh to draw, expected one", path);
+    }
+    move_to_origin(world, roots);
     complete_scene(world, options, scene);
     scene.model = add_model_view(world, std::move(backdrop), options.model.turntable);
     scene.camera = scene.model->camera;

@@ -1,9 +1,14 @@
+#include "content/load/json_document.h"
 #include "tests/app/run_program.h"
 
 #include <doctest/doctest.h>
 
+#include <cctype>
 #include <filesystem>
 #include <initializer_list>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace limn {
 
@@ -127,6 +132,39 @@ TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one 
     CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
 }
 
+TEST_CASE("cli: render says what it wrote in one line, and nothing if it is to be quiet") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Words words = {"render", "a.obj", "-o", "a.png", "--size", "64x36"};
+    const ProgramRun run = run_limn(folder, words);
+    CHECK(run.exit_code == 0);
+    CHECK(run.err.empty());
+    CHECK(count_lines(run.out) == 1);
+    CHECK(run.out.find("a.png: 64x36, ") == 0);
+    CHECK(run.out.find(" s\n") != std::string::npos);
+    const ProgramRun range = run_limn(
+        folder, {"render", "a.obj", "-o", "a_%04d.png", "--size", "64x36", "--frames", "0:1"});
+    CHECK(range.out.find("a_%04d.png: 2 x 64x36, ") == 0);
+    CHECK(std::filesystem::exists(folder.file("a_0001.png")));
+    Words quiet = words;
+    quiet.push_back("--quiet");
+    const ProgramRun silent = run_limn(folder, quiet);
+    CHECK(silent.exit_code == 0);
+    CHECK(silent.out.empty());
+    CHECK(silent.err.empty());
+}
+
+TEST_CASE("cli: a model without a mesh is told in one line") {
+    const TemporaryFolder folder;
+    test::write_text(
+        folder.file("a.gltf"),
+        R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{}]})");
+    const ProgramRun run =
+        run_limn(folder, {"render", "a.gltf", "-o", "a.png", "--size", "64x36", "--quiet"});
+    CHECK(run.exit_code == 0);
+    CHECK(run.err == "warning: a.gltf: found no mesh to draw, expected one\n");
+}
+
 TEST_CASE("cli: errors of a level are a line each, whatever characters its names hold") {
     const TemporaryFolder folder;
     test::write_text(
@@ -195,6 +233,21 @@ TEST_CASE("cli: levels lists the gallery, components their fields with units") {
     CHECK(schema.out.find("\"point_light\"") != std::string::npos);
 }
 
+TEST_CASE("cli: a program that was moved with its tree finds the levels there") {
+    const TemporaryFolder folder;
+    namespace fs = std::filesystem;
+    fs::create_directories(folder.file("build/release"));
+    fs::create_directories(folder.file("content/levels"));
+    test::write_text(folder.file("content/levels/moved.level.json"), R"({"title": "Moved"})");
+    const std::string program = folder.file("build/release/limn");
+    fs::copy_file(LIMN_PROGRAM, program);
+    test::Program moved(folder, {"levels"}, program);
+    const ProgramRun run = moved.wait();
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.find("moved") != std::string::npos);
+    CHECK(run.out.find("Moved") != std::string::npos);
+}
+
 TEST_CASE("cli: components NAME prints one type, as a level writes it") {
     const TemporaryFolder folder;
     const auto printed = [&](const char* name) {
@@ -219,6 +272,57 @@ TEST_CASE("cli: components NAME prints one type, as a level writes it") {
     CHECK(printed("exposure").find("Resources") != std::string::npos);
     check_fails(folder, {"components", "point_ligth"}, 1, "(did you mean point_light?)");
     check_fails(folder, {"components", "box", "--schema"}, 2);
+}
+
+namespace {
+
+/// Names of all properties of a JSON Schema, but those of internal types, which levels only read.
+void find_properties(const JsonValue& schema, std::set<std::string>& names) {
+    for (const JsonValue& item : schema.items) {
+        find_properties(item, names);
+    }
+    for (const auto& [key, at, value] : schema.members) {
+        if (key == "properties") {
+            for (const auto& [property, place, its_schema] : value.members) {
+                names.insert(property);
+                find_properties(its_schema, names);
+            }
+        } else if (key != "default") {
+            find_properties(value, names);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("cli: components lists every key that the schema of a level has") {
+    const TemporaryFolder folder;
+    const std::string listed = run_limn(folder, {"components", "--all"}).out;
+    const Result<JsonValue> schema =
+        parse_json(run_limn(folder, {"components", "--schema"}).out, "schema");
+    REQUIRE(schema.ok());
+    std::set<std::string> names;
+    find_properties(*schema, names);
+    CHECK(names.size() > 500);
+    for (const char* const key : {"tiling", "pattern", "like", "vary", "srgb", "every"}) {
+        CHECK(names.contains(key));
+    }
+    std::set<std::string> words;
+    std::string word;
+    for (const char c : listed) {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$') {
+            word += c;
+        } else {
+            words.insert(std::exchange(word, {}));
+        }
+    }
+    for (const std::string& name : names) {
+        CAPTURE(name);
+        CHECK((words.contains(name) || name == "make"));  // "make" is in the headings
+    }
+    const std::string material = run_limn(folder, {"components", "material"}).out;
+    CHECK(material.find("    tiling   list  repetitions") != std::string::npos);
+    CHECK(run_limn(folder, {"components", "event"}).out.find("    every ") != std::string::npos);
 }
 
 TEST_CASE("cli: info shows the hierarchy, skins, and what textures hold") {

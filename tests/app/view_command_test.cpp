@@ -1,5 +1,6 @@
 #include "bench/oracles/tone_oracle.h"
 #include "content/load/exr_file.h"
+#include "content/load/png_file.h"
 #include "tests/app/virtual_display.h"
 
 #include <doctest/doctest.h>
@@ -86,6 +87,21 @@ TEST_CASE(
     CHECK_FALSE(shown(folder, {"--ev", "0"}) == direct);
 }
 
+TEST_CASE("view: an image of 8 bits is shown code for code") {
+    const TemporaryFolder folder;
+    std::vector<std::uint8_t> codes;
+    for (int i = 0; i < 256; ++i) {
+        codes.insert(
+            codes.end(), {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(255 - i),
+                          static_cast<std::uint8_t>(i / 2)});
+    }
+    REQUIRE(write_png(folder.file("codes.png"), 64, 4, 3, codes).ok());
+    const ProgramRun run = run_limn(folder, {"view", "codes.png", "-o", "a.png"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    CHECK(test::read_png(folder.file("a.png")).bytes == codes);
+}
+
 TEST_CASE("view: every pixel of the PNG is the formula's to one code") {
     const TemporaryFolder folder;
     const std::vector<glm::vec3> pixels = make_ramp();
@@ -166,7 +182,7 @@ TEST_CASE("view: what is no image of light ends with 1 and one line") {
     const std::string whole = test::read_text(folder.file("a.exr"));
     test::write_text(folder.file("half.exr"), whole.substr(0, whole.size() / 2));
     test::write_text(folder.file("words.exr"), "no light in here");
-    for (const char* file : {"a.png", "half.exr", "words.exr", "missing.exr"}) {
+    for (const char* file : {"half.exr", "words.exr", "missing.exr"}) {
         const ProgramRun run = run_limn(folder, {"view", file, "-o", "b.png"});
         CAPTURE(file);
         CHECK(run.exit_code == 1);

@@ -135,7 +135,9 @@ TEST_CASE("gltf: cameras of any field of view, and orthographic ones, leave the 
     CHECK_FALSE(with_camera(R"({"type": "perspective"})").ok());
 }
 
-TEST_CASE("gltf: points, lines, strips and fans are read or ignored with a warning") {
+TEST_CASE("gltf: points, lines, strips and fans become triangles") {
+    // Four points of 8 triangles; two, four and three lines of 6; strip and fan.
+    constexpr std::size_t kIndices[] = {4 * 24, 2 * 18, 4 * 18, 3 * 18, 0, 6, 6};
     for (const int mode : {0, 1, 2, 3, 4, 5, 6}) {
         CAPTURE(mode);
         const Result<GltfScene> scene =
@@ -145,10 +147,8 @@ TEST_CASE("gltf: points, lines, strips and fans are read or ignored with a warni
             continue;
         }
         REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
-        CHECK(scene->meshes.size() == (mode < 4 ? 0 : 1));
-        CHECK(scene->warnings.size() == (mode < 4 ? 1 : 0));
-        if (mode > 4) {
-            CHECK(scene->meshes[0].indices.size() == 6);
-        }
+        CHECK(scene->warnings.empty());
+        REQUIRE(scene->meshes.size() == 1);
+        CHECK(scene->meshes[0].indices.size() == kIndices[mode]);
     }
 }

@@ -169,14 +169,6 @@ TEST_CASE("gltf: strips keep the winding of their first triangle") {
     }
 }
 
-TEST_CASE("gltf: points and lines are left out with a warning") {
-    const GltfScene scene = load_square({{R"("indices": 1)", R"("indices": 1, "mode": 1)"}});
-    CHECK(scene.meshes.empty());
-    CHECK(scene.nodes[1].parts.empty());
-    REQUIRE(scene.warnings.size() == 1);
-    CHECK(scene.warnings[0].find("meshes[0].primitives[0]") != std::string::npos);
-}
-
 TEST_CASE("gltf: vertices that no triangle names are dropped") {
     std::vector<std::byte> binary = square_binary();
     const std::uint16_t one_triangle[6] = {1, 2, 3, 3, 2, 1};
@@ -263,6 +255,42 @@ TEST_CASE("gltf: materials have the defaults of the specification and what the e
     REQUIRE(bare.materials.size() == 2);
     CHECK(bare.nodes[1].parts[0].material == 1);
     CHECK(bare.materials[1].metalness == 1);
+}
+
+TEST_CASE("gltf: clear media hide what they do not transmit, and metal and maps hide all") {
+    const auto glass = [](const std::string& pbr, const std::string& extensions) {
+        return load_square(
+                   {{R"({"name": "paint"})", R"({"pbrMetallicRoughness": {)" + pbr
+                                                 + R"(}, "extensions": {)" + extensions + "}}"}})
+            .materials[0];
+    };
+    const std::string smooth = R"("metallicFactor": 0, "roughnessFactor": 0)";
+    const std::string clear = R"("KHR_materials_transmission": {"transmissionFactor": 1})";
+    const Material window = glass(smooth, clear);
+    CHECK(window.alpha_mode == AlphaMode::Blend);
+    CHECK(window.base_color.w == test::near(0).scale(1));
+    CHECK(
+        glass(smooth, R"("KHR_materials_transmission": {"transmissionFactor": 0.25})").base_color.w
+        == test::near(0.75));
+    CHECK(glass(smooth, R"("KHR_materials_transmission": {})").alpha_mode == AlphaMode::Opaque);
+    CHECK(glass(R"("metallicFactor": 1)", clear).base_color.w == 1);
+    CHECK(
+        glass(smooth, R"("KHR_materials_transmission":
+                {"transmissionFactor": 1, "transmissionTexture": {"index": 0}})")
+            .alpha_mode
+        == AlphaMode::Opaque);
+    // Beer and Lambert: twice the thickness squares what is transmitted.
+    const auto through = [&](const char* thickness) {
+        return glass(
+                   smooth, clear
+                               + R"(, "KHR_materials_volume": {"attenuationColor": [0.5, 0.5, 0.5],
+                    "attenuationDistance": 2, "thicknessFactor": )"
+                               + thickness + "}")
+            .base_color;
+    };
+    CHECK(through("2").x == test::near(0.5));
+    CHECK(through("4").x == test::near(0.25));
+    CHECK(1 - through("4").w == test::near((1 - through("2").w) * (1 - through("2").w)));
 }
 
 TEST_CASE("gltf: textures keep wrap, filter, uv set and transform; color and data are apart") {

@@ -127,6 +127,23 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
                 + " (did you mean Fox.glb?)"));
 }
 
+TEST_CASE("bad level: all unknown clips, skins and skeletons are told in one run") {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("t.level.json");
+    std::ofstream(path) << "{\"entities\": [\n{\"clip_player\": {\"clip\": \"Run\"}},\n"
+                           "{\"skeleton\": {\"skeleton\": \"bones\"}, "
+                           "\"deformed\": {\"skin\": \"hide\"}}]}";
+    World world;
+    const Result<LoadedScene> scene = load_scene(world, path);
+    REQUIRE_FALSE(scene.ok());
+    const std::string& message = scene.error().message;
+    CHECK(std::count(message.begin(), message.end(), '\n') == 2);
+    CHECK(has(message, "t.level.json:2:26: entity 0: clip_player: found the clip \"Run\""));
+    CHECK(has(message, "t.level.json:3:27: entity 1: skeleton: found the skeleton \"bones\""));
+    CHECK(has(message, "t.level.json:3:58: entity 1: deformed: found the skin \"hide\""));
+    CHECK(world.entity_count() == 0);
+}
+
 TEST_CASE("bad level: a missing file, a directory, an empty file, a syntax error") {
     const test::TemporaryFolder folder;
     World world;

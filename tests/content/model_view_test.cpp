@@ -17,6 +17,7 @@
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <array>
@@ -144,7 +145,7 @@ TEST_CASE("model view: a ground plane or a sky dome of the file is not what is f
         const ModelView view = model.view();
         CHECK(view.subject.min == alone.min);
         CHECK(view.subject.max == alone.max);
-        CHECK(view.meshes == 0);  // and no other ground is laid over it
+        CHECK(view.added.size() == 3);  // camera and two lights: no other ground is laid over it
     }
     CHECK(plain.world.resource<Assets>().meshes.size() == 2);
 }
@@ -198,6 +199,77 @@ TEST_CASE("model view: the camera frames the subject, and its own ground lies be
     const Transform floor = model.world.get<const Transform>(view.added.back());
     CHECK(floor.position.y < view.subject.min.y);
     CHECK(floor.position.y > view.subject.min.y - 0.01f);
+}
+
+TEST_CASE("model view: the key light reaches the front, and grazes what lies flat") {
+    const auto toward_key = [](const Vec3& size) {
+        Model model;
+        auto& assets = model.world.resource<Assets>();
+        assets.meshes[0] = make_box({.size = size});
+        (void)model.view();
+        Vec3 direction(0);
+        model.world.query<const Transform, const DirectionalLight, const Shadow>().each(
+            [&](const Transform& place, const DirectionalLight&, const Shadow&) {
+                direction = place.rotation * Vec3(0, 0, 1);
+            });
+        return direction;
+    };
+    const Vec3 standing = toward_key({1, 1, 1});
+    CHECK(standing.z > 0.15f);
+    CHECK(standing.x > standing.z);  // from the side
+    CHECK(standing.y > 0.5f);
+    const Vec3 lying = toward_key({4, 0.1f, 4});
+    CHECK(lying.y > 0.2f);
+    CHECK(lying.y < 0.4f);
+}
+
+TEST_CASE("model view: a wide ground of the file fades to nothing, and is whole at the subject") {
+    Model model;
+    const Entity ground = model.add_box({2000, 0.01f, 2000}, {300, -0.005f, 0});
+    const ModelView view = model.view();
+    const auto& assets = model.world.resource<Assets>();
+    const MeshInstance drawn = model.world.get<const MeshInstance>(ground);
+    REQUIRE(view.meshes == 1);
+    REQUIRE(view.materials == 1);
+    CHECK(drawn.mesh.index == assets.meshes.size() - 1);
+    CHECK(assets.materials[drawn.material.index].alpha_mode == AlphaMode::Blend);
+    const MeshData& mesh = assets.meshes[drawn.mesh.index];
+    const float radius = glm::length(half_extent(view.subject));
+    double area = 0;
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        Vec3 p[3];
+        float below = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = mesh.indices[i + k];
+            p[k] = mesh.positions[vertex] + Vec3(300, -0.005f, 0);
+            const float distance = glm::length(Vec2(p[k].x, p[k].z));
+            const float opacity = mesh.colors[vertex].w;
+            CHECK_FALSE((distance < radius && opacity < 0.95f));
+            CHECK_FALSE((distance > 12.01f * radius && opacity > 0));
+            below += mesh.normals[vertex].y;
+        }
+        if (below > 2.9f) {
+            area += 0.5 * static_cast<double>(glm::cross(p[1] - p[0], p[2] - p[0]).y);
+        }
+    }
+    // Nothing is missing of the disc that is seen.
+    CHECK(area > static_cast<double>(kPi * square(12 * radius)));
+    CHECK(mesh.indices.size() < 30'000);
+}
+
+TEST_CASE("model view: a model far away is moved to the origin, one that is near is not") {
+    for (const float x : {2.0f, 80000.0f}) {
+        const test::TemporaryFolder folder;
+        const std::string path = folder.file("far.obj");
+        std::ofstream(path) << fmt::format("v {} 1 0\nv {} 1 0\nv {} 2 0\nf 1 2 3\n", x, x + 1, x);
+        World world;
+        const Result<LoadedScene> scene = load_scene(world, path);
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        const Vec3 middle = center(scene->model->subject);
+        CHECK(middle.x == near(x > 100 ? 0 : 2.5).scale(1));
+        CHECK(middle.y == near(x > 100 ? 0 : 1.5).scale(1));
+        CHECK(2.0f * half_extent(scene->model->subject).y == near(1).epsilon(1e-4));
+    }
 }
 
 TEST_CASE("model view: a turntable turns the camera once in so many seconds") {
