@@ -161,6 +161,12 @@ std::string_view take_step(std::string_view& path) {
     return step;
 }
 
+/// A limit as people write it: 0.1 where it is the float nearest to that.
+std::string limit_text(double limit) {
+    const float as_float = static_cast<float>(limit);
+    return as_float == limit ? format_text("{}", as_float) : format_text("{}", limit);
+}
+
 }  // namespace
 
 std::size_t element_count(const FieldInfo& field, const void* data) {
@@ -424,13 +430,13 @@ std::string range_text(const FieldMeta& meta) {
     const bool has_max = meta.max < INFINITY;
     const std::string unit = *meta.unit == '\0' ? "" : std::string(" ") + meta.unit;
     if (has_min && has_max) {
-        return format_text("{} .. {}{}", meta.min, meta.max, unit);
+        return format_text("{} .. {}{}", limit_text(meta.min), limit_text(meta.max), unit);
     }
     if (has_min) {
-        return format_text("{} or more{}", meta.min, unit);
+        return format_text("{} or more{}", limit_text(meta.min), unit);
     }
     if (has_max) {
-        return format_text("{} or less{}", meta.max, unit);
+        return format_text("{} or less{}", limit_text(meta.max), unit);
     }
     return "";
 }

@@ -41,7 +41,7 @@ Result<std::vector<const QualityEffect*>> choose_effects(const std::string& name
         const std::string nearest = nearest_name(name, names);
         return fail(
             "found effect \"{}\", expected one of {}{}", name, join_text(names, " "),
-            nearest.empty() ? "" : ", perhaps " + nearest);
+            nearest.empty() ? "" : " (did you mean " + nearest + "?)");
     }
     return chosen;
 }

@@ -12,6 +12,8 @@ namespace {
 
 constexpr BenchKind kKinds[] = {BenchKind::Frame, BenchKind::System, BenchKind::Pass};
 
+constexpr double kShownMs = 0.005;  // the table has systems that take this long
+
 const char* kind_name(BenchKind kind) {
     switch (kind) {
     case BenchKind::Frame:
@@ -76,11 +78,21 @@ std::string bench_table(const BenchReport& report) {
         std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
             return a.summary.median > b.summary.median;
         });
+        // Most systems have nothing to do in a level.
+        const std::size_t left_out =
+            kind != BenchKind::System ? 0 : std::erase_if(lines, [](const Line& line) {
+                return line.summary.median < kShownMs && line.summary.max < 10 * kShownMs;
+            });
         for (const Line& line : lines) {
             fmt::format_to(
                 out, "{:<6} {:<27} {:>3} {:>11.3f} {:>11.3f} {:>11.3f}\n", kind_name(kind),
                 line.series->name, clock_name(line.series->clock), line.summary.median,
                 line.summary.p95, line.summary.max);
+        }
+        if (left_out > 0) {
+            fmt::format_to(
+                out, "system {} more, below {} each; --json and --csv have them\n", left_out,
+                kShownMs);
         }
     }
     return text;

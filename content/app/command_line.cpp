@@ -510,7 +510,7 @@ bool explain_unknown_command(std::string_view word, const std::vector<Command>& 
         return false;
     }
     const std::string nearest = nearest_name(word, names);
-    const std::string hint = nearest.empty() ? "" : fmt::format(", perhaps {}", nearest);
+    const std::string hint = nearest.empty() ? "" : fmt::format(" (did you mean {}?)", nearest);
     fmt::print(
         stderr, "limn: found command \"{}\", expected one of {}{}\n", word, fmt::join(names, " "),
         hint);

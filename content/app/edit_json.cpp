@@ -95,13 +95,40 @@ std::string node_as_json(const World& world, Entity node, JsonValue components) 
     return write_json(object);
 }
 
-/// Where the components of an entity are in a patch of a level.
-JsonValue& patched(const World& world, JsonValue& entities, Entity entity, const Name& name) {
-    const Entity source = world.has<FromGltf>(entity) ? source_of(world, entity) : Entity{};
-    const Name* const owner = name_of(world, source);
-    return owner == nullptr || world.has<FromGltf>(source)
-               ? named(entities, name.text)
-               : member(member(named(entities, owner->text), "nodes"), name.text);
+/// Whether `repeat` made the entity.
+bool is_copy(const Name& name) {
+    const std::size_t open = name.text.rfind('[');
+    return open != std::string::npos && open > 0 && name.text.ends_with(']');
+}
+
+/// The named entity that a level has by itself: the one that placed a node, or the outermost
+/// parent.
+Entity owner_of(const World& world, Entity entity) {
+    for (Entity parent = parent_of(world, entity); !parent.is_null();
+         parent = parent_of(world, entity)) {
+        if (world.has<FromGltf>(entity) && !world.has<FromGltf>(parent)) {
+            return parent;
+        }
+        entity = parent;
+    }
+    return entity;
+}
+
+/// Where the components of an entity are in a patch of a level; null where a level has no words for
+/// it. A copy is changed when it begins to play.
+JsonValue* patched(
+    const World& world, JsonValue& entities, JsonValue& copies, Entity entity, const Name& name) {
+    const Entity owner = owner_of(world, entity);
+    const Name* const outer = name_of(world, owner);
+    if (owner == entity) {
+        return is_copy(name) ? &member(copies, name.text) : &named(entities, name.text);
+    }
+    if (outer == nullptr || world.has<FromGltf>(owner)) {
+        return &named(entities, name.text);
+    }
+    return is_copy(*outer) || is_copy(name)
+               ? nullptr
+               : &member(member(named(entities, outer->text), "nodes"), name.text);
 }
 
 /// What the value was before the first of its edits.
@@ -153,6 +180,8 @@ std::string entity_as_json(const World& world, Entity entity) {
 std::string edits_as_json(const World& world, std::span<const Edit> edits) {
     JsonValue patch = json_object();
     JsonValue entities = json_array();
+    JsonValue copies = json_object();
+    bool left_out = false;
     const NameProvider names = make_name_provider(world);
     for (const Edit& edit : edits) {
         const ComponentInfo& info = edit.before.is_empty() ? edit.after.info() : edit.before.info();
@@ -169,8 +198,11 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
                 if (world.has(edit.entity, info.id)) {
                     value = edited(AnyComponent::read(world, edit.entity, info).data());
                 }
-                set_member(
-                    patched(world, entities, edit.entity, *name), info.name, std::move(value));
+                if (JsonValue* const place = patched(world, entities, copies, edit.entity, *name)) {
+                    set_member(*place, info.name, std::move(value));
+                } else {
+                    left_out = true;
+                }
             }
             break;
         case EditKind::Resource:
@@ -191,7 +223,14 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
     if (!entities.items.empty()) {
         set_member(patch, "entities", std::move(entities));
     }
-    return write_json(patch);
+    if (!copies.members.empty()) {
+        JsonValue event = json_object();
+        set_member(event, "at", json_of(0.0));
+        set_member(event, "set", std::move(copies));
+        set_member(patch, "events", json_array({std::move(event)}));
+    }
+    return write_json(patch)
+           + (left_out ? "  // without edits of children of copies: no level can name those" : "");
 }
 
 }  // namespace limn

@@ -23,8 +23,9 @@ component_as_json(const World& world, const ComponentInfo& info, const void* val
 [[nodiscard]] std::string entity_as_json(const World& world, Entity entity);
 
 /// The edited fields of components, resources and materials with their present values, as a level
-/// has them: what its file has to be changed to. Nameless entities are left out; removed components
-/// are null.
+/// has them: what its file has to be changed to. Children are in the "nodes" of their outermost
+/// parent, copies that `repeat` made in an event. Nameless entities and children of copies are left
+/// out; removed components are null.
 [[nodiscard]] std::string edits_as_json(const World& world, std::span<const Edit> edits);
 
 }  // namespace limn

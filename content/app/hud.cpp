@@ -73,10 +73,7 @@ Hud::Hud(Window& window) : window_(&window) {
     io.IniFilename = nullptr;  // panels start at their default places; nothing is written to disk
     io.LogFilename = nullptr;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
-    // Readable on a fine display and from across the room on a large one.
-    const float height = static_cast<float>(window.framebuffer_size().y);
-    const float scale = std::max(window.content_scale(), std::clamp(height / 900.0f, 1.0f, 2.5f));
-    style_ = apply_hud_style(scale);
+    style_ = apply_hud_style(hud_scale(window.content_scale(), window.framebuffer_size().y));
     // Keys and text go through the window's queue (feed_typing), not through ImGui's callbacks.
     GLFWwindow* const handle = window.handle();
     const GLFWkeyfun on_key = glfwSetKeyCallback(handle, nullptr);
@@ -93,8 +90,20 @@ Hud::~Hud() {
     ImGui::DestroyContext();
 }
 
+/// The window may have another height now.
+void Hud::follow_window() {
+    const int height = window_->framebuffer_size().y;
+    const float scale = hud_scale(window_->content_scale(), height);
+    if (height > 0 && scale != style_.scale) {
+        style_ = apply_hud_style(scale);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+}
+
 void Hud::begin_frame(float dt) {
     ImGui_ImplOpenGL3_NewFrame();
+    follow_window();
     ImGui_ImplGlfw_NewFrame();
     feed_typing();
     ImGui::NewFrame();

@@ -85,6 +85,7 @@ class Hud {
     };
 
     void feed_typing();
+    void follow_window();
     void draw_help();
     void draw_toasts();
 

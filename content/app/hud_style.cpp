@@ -1,6 +1,8 @@
 #include "content/app/hud_style.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -84,6 +86,15 @@ void set_colors(ImGuiStyle& style) {
 
 }  // namespace
 
+float hud_scale(float content_scale, int window_height) {
+    constexpr float kText = 14.0f;  // [px] of the text at 1
+    constexpr float kSmallest = 11.0f;
+    const auto height = static_cast<float>(window_height);
+    const float small = std::clamp(height / content_scale / 720.0f, kSmallest / kText, 1.0f);
+    const float scale = std::max(content_scale * small, std::min(height / 900.0f, 2.5f));
+    return std::round(kText * scale) / kText;
+}
+
 HudStyle apply_hud_style(float scale) {
     ImGuiStyle style;
     ImGui::StyleColorsDark(&style);
@@ -112,9 +123,7 @@ HudStyle apply_hud_style(float scale) {
     ImGui::GetStyle() = style;
 
     ImGui::GetIO().Fonts->Clear();
-    const auto pixels = [scale](float size) {
-        return static_cast<float>(static_cast<int>(size * scale + 0.5f));
-    };
+    const auto pixels = [scale](float size) { return std::round(size * scale); };
     HudStyle hud{.scale = scale};
     hud.text = load_font("DejaVuSans.ttf", pixels(14));
     hud.numbers = load_font("DejaVuSansMono.ttf", pixels(13));

@@ -77,6 +77,7 @@ void Inspector::reset() {
     collapsed_.clear();
     dragging_.clear();
     material_ = 0;
+    material_of_ = {};
     storage_.reset();
 }
 
@@ -97,8 +98,11 @@ void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedu
     ImGui::SetNextWindowSize(
         {std::min(390.0f * style.scale, 0.5f * display.x), display.y - 2 * margin},
         ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("Inspector", &open, ImGuiWindowFlags_NoCollapse)
-        && ImGui::BeginTabBar("##tabs")) {
+    const bool is_drawn = ImGui::Begin("Inspector", &open, ImGuiWindowFlags_NoCollapse);
+    if (is_drawn) {
+        draw_edits(world);
+    }
+    if (is_drawn && ImGui::BeginTabBar("##tabs")) {
         if (ImGui::BeginTabItem("Entities")) {
             draw_entities(style, world);
             ImGui::EndTabItem();
@@ -118,6 +122,21 @@ void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedu
         ImGui::EndTabBar();
     }
     ImGui::End();
+}
+
+void Inspector::draw_edits(const World& world) {
+    const bool has_edits = edit_count() > 0;
+    ImGui::BeginDisabled(!has_edits);
+    if (ImGui::SmallButton("Copy the edits as JSON")) {
+        ImGui::SetClipboardText(edits_as_json(world).c_str());
+        copied_edits_ = undo_.revision();
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    const bool is_copied = has_edits && copied_edits_ == undo_.revision();
+    ImGui::TextColored(
+        kHudDim, has_edits ? "%zu, %s" : "none yet", edit_count(),
+        is_copied ? "copied" : "Ctrl Z undoes");
 }
 
 void Inspector::draw_entities(const HudStyle& style, World& world) {
@@ -219,6 +238,11 @@ void Inspector::draw_tree(const HudStyle& style, World& world) {
             if (ImGui::Selectable(label.c_str(), row.entity == selected_) && alive) {
                 selected_ = row.entity;
             }
+            const Entity parent = alive ? parent_of(world, row.entity) : Entity{};
+            if (!search_.empty() && !parent.is_null()) {
+                ImGui::SameLine();
+                ImGui::TextColored(kHudDim, "of %s", entity_label(world, parent).c_str());
+            }
             ImGui::Unindent(indent);
             ImGui::PopID();
         }
@@ -232,11 +256,11 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
     ImGui::PushFont(style.title);
     ImGui::TextUnformatted(entity_label(world, selected_).c_str());
     ImGui::PopFont();
-    if (ImGui::SmallButton("Focus (F)")) {
+    if (ImGui::Button("Focus (F)")) {
         focus_ = true;
     }
     ImGui::SameLine();
-    if (ImGui::SmallButton("Copy JSON")) {
+    if (ImGui::Button("Copy JSON")) {
         ImGui::SetClipboardText(entity_as_json(world, selected_).c_str());
         copied_ = selected_;
     }
@@ -246,7 +270,11 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
     }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * style.scale);
     draw_add_button(world);
-    for (const ComponentId id : world.components_of(selected_)) {
+    std::vector<ComponentId> components = world.components_of(selected_);
+    std::stable_partition(components.begin(), components.end(), [](ComponentId id) {
+        return !is_internal(component_info(id));
+    });
+    for (const ComponentId id : components) {
         if (!world.alive(selected_)) {
             return;
         }
@@ -283,8 +311,9 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
     bool keep = true;
     const bool editable = is_editable(info);
     bool* const removable = is_internal(info) ? nullptr : &keep;
-    const ImGuiTreeNodeFlags flags =
-        info.is_registered && editable ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
+    const ImGuiTreeNodeFlags flags = info.is_registered && editable && !is_internal(info)
+                                         ? ImGuiTreeNodeFlags_DefaultOpen
+                                         : ImGuiTreeNodeFlags_None;
     if (info.storage == Storage::Toggle) {
         bool enabled = world.is_enabled(selected_, info.id);
         if (ImGui::Checkbox("##enabled", &enabled)) {
@@ -404,6 +433,12 @@ void Inspector::draw_materials(const HudStyle& style, World& world) {
         return;
     }
     const std::uint32_t count = static_cast<std::uint32_t>(assets->materials.size());
+    const auto* const instance =
+        world.alive(selected_) ? std::as_const(world).find<MeshInstance>(selected_) : nullptr;
+    if (std::exchange(material_of_, selected_) != selected_ && instance != nullptr
+        && instance->material.index < count) {
+        material_ = instance->material.index;
+    }
     material_ = std::min(material_, count - 1);
     draw_search("search by name", material_search_);
     ImGui::BeginChild("##list", {0, 0.32f * ImGui::GetContentRegionAvail().y});

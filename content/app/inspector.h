@@ -58,6 +58,8 @@ class Inspector {
     void draw_entities(const HudStyle& style, World& world);
     void draw_tree(const HudStyle& style, World& world);
     void draw_selected(const HudStyle& style, World& world);
+    /// How many edits there are, and a button that copies them.
+    void draw_edits(const World& world);
     void draw_component(const HudStyle& style, World& world, const ComponentInfo& info);
     void draw_add_button(World& world);
     /// Buttons and counts above the fields of a selected particle emitter.
@@ -86,6 +88,8 @@ class Inspector {
     double rows_built_at_ = -1.0;  // [s]
     bool reveal_ = false;          // scroll to the selected entity
     std::uint32_t material_ = 0;
+    Entity material_of_;              // whose material was shown when it was selected
+    std::uint64_t copied_edits_ = 0;  // revision of the edits that were copied last
     StoragePanel storage_;
     std::string dragging_;  // label of the edit that a drag extends
 };

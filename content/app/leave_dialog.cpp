@@ -13,6 +13,7 @@ void LeaveDialog::ask(std::string question, std::string accept, std::function<vo
     question_ = std::move(question);
     accept_ = std::move(accept);
     action_ = std::move(action);
+    copied_ = false;
 }
 
 void LeaveDialog::accept() {
@@ -47,6 +48,11 @@ void LeaveDialog::draw(const HudStyle& style, const Inspector& inspector, const 
             ImGui::Text("%zu edit%s of this level will be lost.", edits, edits == 1 ? "" : "s");
             if (ImGui::Button("Copy the edits as JSON")) {
                 ImGui::SetClipboardText(inspector.edits_as_json(world).c_str());
+                copied_ = true;
+            }
+            if (copied_) {
+                ImGui::SameLine();
+                ImGui::TextColored(kHudDim, "copied");
             }
         }
         ImGui::Dummy({0, 4 * style.scale});

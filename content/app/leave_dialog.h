@@ -31,6 +31,7 @@ class LeaveDialog {
     std::string accept_;
     std::function<void()> action_;    // empty: nothing is asked
     std::function<void()> accepted_;  // to be taken
+    bool copied_ = false;             // the edits, since it asks
 };
 
 }  // namespace limn

@@ -149,7 +149,9 @@ void Player::follow_level_files() {
     }
     level_times_ = level_file_times();  // it may include others now
     hud_->toast(
-        fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s"),
+        updated == 0
+            ? "the file was saved; what it says of the entities is as before"
+            : fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s"),
         ToastKind::Good);
 }
 

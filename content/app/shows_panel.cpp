@@ -11,7 +11,6 @@
 namespace limn {
 namespace {
 
-constexpr float kTextColumn = 230.0f;  // of the list, in units of the layout
 constexpr std::array kSides = {ShowSide::On, ShowSide::Off, ShowSide::Both};
 
 }  // namespace
@@ -128,6 +127,12 @@ void ShowsPanel::draw_shown(const HudStyle& style, const std::string& shown) {
 
 void ShowsPanel::draw_list(const HudStyle& style, const std::string& shown) {
     const std::string* level = nullptr;
+    float column = 0;  // where the texts begin
+    ImGui::PushFont(style.numbers);
+    for (const FoundShow& found : shows_) {
+        column = std::max(column, ImGui::CalcTextSize(found.show.technique.c_str()).x);
+    }
+    ImGui::PopFont();
     for (const FoundShow& found : shows_) {
         if (level == nullptr || *level != found.level.name) {
             level = &found.level.name;
@@ -141,7 +146,7 @@ void ShowsPanel::draw_list(const HudStyle& style, const std::string& shown) {
         }
         ImGui::PopFont();
         const bool hovered = ImGui::IsItemHovered();
-        ImGui::SameLine(kTextColumn * style.scale);
+        ImGui::SameLine(column + 16 * style.scale);
         ImGui::TextColored(kHudDim, "%s", found.show.text.c_str());
         if (hovered) {
             ImGui::SetTooltip("%s", found.show.text.c_str());

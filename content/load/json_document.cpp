@@ -640,6 +640,15 @@ std::string did_you_mean(std::string_view name, std::span<const std::string_view
     std::copy_if(
         candidates.begin(), candidates.end(), std::back_inserter(short_ones),
         [](std::string_view c) { return c.size() <= kLongestName; });
+    // Of equally near ones the first is taken: that which begins alike for longest.
+    std::stable_sort(
+        short_ones.begin(), short_ones.end(), [name](std::string_view a, std::string_view b) {
+            const auto alike = [name](std::string_view other) {
+                return std::mismatch(name.begin(), name.end(), other.begin(), other.end()).first
+                       - name.begin();
+            };
+            return alike(a) > alike(b);
+        });
     const std::string nearest =
         name.size() <= kLongestName ? nearest_name(name, short_ones) : std::string();
     return nearest.empty() ? "" : fmt::format(" (did you mean {}?)", nearest);

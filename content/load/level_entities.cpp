@@ -139,7 +139,69 @@ Status LevelEntities::try_add_node(
     }
     LIMN_TRY(read_own_keys(node));
     LIMN_TRY(find_layers(node));
+    LIMN_TRY(add_changes(node, context.changes));
     return add_copies(list, node, context);
+}
+
+/// Adds what ancestors change of the node, the outermost last.
+Status LevelEntities::add_changes(Node& node, Changes* changes) const {
+    for (; changes != nullptr && !node.name.empty(); changes = changes->outer) {
+        changes->seen.insert(node.name);
+        for (const JsonValue* const layer : changes->layers) {
+            const JsonValue* const change = layer->find(node.name);
+            if (change == nullptr) {
+                continue;
+            }
+            const JsonPlace place{file_, "nodes." + node.name};
+            LIMN_TRY(expect(*change, JsonKind::Object, place, "an object: components by name"));
+            for (const JsonMember& member : change->members) {
+                if (is_node_key(member.key)) {
+                    return refuse(
+                        place.path, member.at, "the key " + in_quotes(member.key), "components");
+                }
+            }
+            node.layers.push_back(change);
+        }
+    }
+    return Done{};
+}
+
+/// The "nodes" of a node that has children; those of one with a glTF file are of that.
+Result<LevelEntities::Changes> LevelEntities::read_changes(const Node& node, Changes* outer) const {
+    Changes changes{{}, outer, {}};
+    if (find_in_layers(node.layers, "gltf") != nullptr) {
+        return changes;
+    }
+    for (const JsonValue* const layer : node.layers) {
+        const JsonValue* const nodes = layer->find("nodes");
+        if (nodes == nullptr) {
+            continue;
+        }
+        if (!node.has_children) {
+            return refuse(
+                node.path, nodes->at, "nodes without a glTF file or children",
+                "\"gltf\", \"prefab\" or \"children\" as well");
+        }
+        LIMN_TRY(expect(
+            *nodes, JsonKind::Object, {file_, node.path + ".nodes"},
+            "an object: descendants by name"));
+        changes.layers.push_back(nodes);
+    }
+    return changes;
+}
+
+Status LevelEntities::check_changes(const Node& node, const Changes& changes) const {
+    const std::vector<std::string_view> names(changes.seen.begin(), changes.seen.end());
+    for (const JsonValue* const layer : changes.layers) {
+        for (const JsonMember& change : layer->members) {
+            if (!changes.seen.contains(change.key) && !has_failed(change.key)) {
+                return refuse(
+                    node.path + ".nodes", change.at, "the node " + in_quotes(change.key),
+                    "the name of a child or of its children" + did_you_mean(change.key, names));
+            }
+        }
+    }
+    return Done{};
 }
 
 /// Notes the names that `node` and its descendants would have had.
@@ -312,6 +374,11 @@ void LevelEntities::add_copy(
     list.scope_of.push_back(scope);
 
     errors_.keep(add_gltf(list, node, index));
+    Result<Changes> changes = read_changes(node, context.changes);
+    if (!changes) {
+        errors_.keep(changes.error());
+        return;
+    }
     for (const JsonValue* const layer : node.layers) {
         const JsonValue* const children = layer->find("children");
         if (children == nullptr) {
@@ -321,10 +388,11 @@ void LevelEntities::add_copy(
             expect(*children, JsonKind::Array, {file_, node.path}, "an array of entities"));
         for (std::size_t i = 0; i < children->items.size() && !is_full_; ++i) {
             add_node(
-                list, children->items[i], {index, scope, context.depth + 1},
+                list, children->items[i], {index, scope, context.depth + 1, &*changes},
                 fmt::format("{}.children[{}]", node.path, i));
         }
     }
+    errors_.keep(check_changes(node, *changes));
 }
 
 /// The file of an entity, and the changes of its nodes.
@@ -344,10 +412,7 @@ Status LevelEntities::add_gltf(List& list, const Node& node, std::uint32_t index
     }
     for (const JsonValue* const layer : node.layers) {
         const JsonValue* const nodes = layer->find("nodes");
-        if (nodes != nullptr && gltf == nullptr) {
-            return refuse(node.path, nodes->at, "nodes without a glTF file", "\"gltf\" as well");
-        }
-        if (nodes != nullptr) {
+        if (nodes != nullptr && gltf != nullptr) {
             LIMN_TRY(read_node_changes(
                 *nodes, index, place_in(place, "nodes"), names_, list.node_changes));
         }

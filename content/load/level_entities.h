@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -96,11 +97,18 @@ class LevelEntities {
         std::vector<GltfUse> gltfs;
         std::vector<NodeChange> node_changes;
     };
+    /// The "nodes" of an entity without a glTF file: what it changes of its descendants.
+    struct Changes {
+        std::vector<const JsonValue*> layers;  // the innermost prefab's first
+        Changes* outer = nullptr;              // those of an ancestor
+        std::set<std::string> seen;            // names of descendants
+    };
     /// Where a node is added.
     struct Context {
         std::int64_t parent = -1;
         std::uint32_t scope = 0;
         std::size_t depth = 0;
+        Changes* changes = nullptr;  // of the nearest ancestor
     };
     struct Node {
         const JsonValue* json = nullptr;
@@ -117,6 +125,9 @@ class LevelEntities {
         List& list, const JsonValue& json, const Context& context, const std::string& path);
     void note_missing(const JsonValue& node);
     [[nodiscard]] Status find_layers(Node& node);
+    [[nodiscard]] Status add_changes(Node& node, Changes* changes) const;
+    [[nodiscard]] Result<Changes> read_changes(const Node& node, Changes* outer) const;
+    [[nodiscard]] Status check_changes(const Node& node, const Changes& changes) const;
     [[nodiscard]] Status read_own_keys(Node& node) const;
     [[nodiscard]] Status add_copies(List& list, Node& node, const Context& context);
     void add_copy(

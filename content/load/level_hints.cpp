@@ -40,7 +40,8 @@ bool is_internal(const ComponentInfo& info) {
         "sibling_order",
         "thrown_stone",
         "gltf_source",
-        "from_gltf"};
+        "from_gltf",
+        "particle_pool"};
     return info.name.ends_with("_state")
            || std::find(std::begin(kInternal), std::end(kInternal), info.name)
                   != std::end(kInternal);

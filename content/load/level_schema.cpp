@@ -38,6 +38,12 @@ JsonValue number(double x) {
     return json_of(x);
 }
 
+/// A limit of a field: 0.1 where it is the float nearest to that.
+JsonValue limit(double x) {
+    const float as_float = static_cast<float>(x);
+    return as_float == x ? json_of(as_float) : json_of(x);
+}
+
 JsonValue count(std::size_t n) {
     return json_of(std::uint64_t{n});
 }
@@ -114,12 +120,12 @@ JsonValue schema_of_number(const FieldInfo& field) {
                           || field.type == FieldType::IVec2 || field.type == FieldType::IVec3;
     JsonValue schema = of_type(is_whole ? "integer" : "number");
     if (std::isfinite(field.meta.min)) {
-        schema.members.push_back(member("minimum", number(field.meta.min)));
+        schema.members.push_back(member("minimum", limit(field.meta.min)));
     } else if (field.type == FieldType::UInt) {
         schema.members.push_back(member("minimum", number(0)));
     }
     if (std::isfinite(field.meta.max)) {
-        schema.members.push_back(member("maximum", number(field.meta.max)));
+        schema.members.push_back(member("maximum", limit(field.meta.max)));
     }
     const std::vector<std::string_view> units = written_units(field.meta.unit);
     if (!is_whole && !units.empty()) {
@@ -319,9 +325,10 @@ JsonValue schema_of_node() {
          member(
              "gltf", described(of_type("string"), "a .gltf or .glb beside the level, placed here")),
          member(
-             "nodes", described(
-                          map_of(reference("components")),
-                          "changes of the nodes of \"gltf\", by name; null removes a component")),
+             "nodes",
+             described(
+                 map_of(reference("components")), "changes of the nodes of \"gltf\", or of "
+                                                  "children, by name; null removes a component")),
          member(
              "repeat", described(
                            any_of({reference("repeat of a node"), of_type("null")}),

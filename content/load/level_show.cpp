@@ -283,8 +283,9 @@ Result<FoundShow> find_show(std::string_view technique) {
         names.emplace_back(found.show.technique);
     }
     return fail(
-        "--show {}: found no level with it, expected one of `limn shows`{}", technique,
-        did_you_mean(technique, names));
+        "found no level that shows {}, expected one of `limn shows`{}; of a level of your own, "
+        "`limn play FILE --show {}`",
+        technique, did_you_mean(technique, names), technique);
 }
 
 }  // namespace limn

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <utility>
+
 namespace limn {
 namespace {
 
@@ -46,6 +48,22 @@ TEST_CASE("bench_report: the table names the slowest pass first") {
     const std::string table = bench_table(small_report());
     CHECK(table.find("lights") < table.find("sky"));
     CHECK(table.find("640 x 360") != std::string::npos);
+}
+
+TEST_CASE("bench_report: the table counts the systems that do nothing, the JSON has them") {
+    BenchReport report = small_report();
+    for (const auto& [name, ms] :
+         {std::pair{"update_water", 0.4}, {"update_sails", 0.001}, {"update_stones", 0.0}}) {
+        find_series(report, BenchKind::System, BenchClock::Cpu, name).samples.push_back(ms);
+    }
+    // Rare, but not nothing.
+    find_series(report, BenchKind::System, BenchClock::Cpu, "run_events").samples = {0, 0, 0.4};
+    const std::string table = bench_table(report);
+    CHECK(table.find("update_water") != std::string::npos);
+    CHECK(table.find("run_events") != std::string::npos);
+    CHECK(table.find("update_sails") == std::string::npos);
+    CHECK(table.find("system 2 more, below 0.005 each") != std::string::npos);
+    CHECK(nlohmann::json::parse(bench_json(report))["systems"].size() == 4);
 }
 
 }  // namespace limn

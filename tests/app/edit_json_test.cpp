@@ -11,6 +11,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -167,6 +168,63 @@ TEST_CASE("edit_json: an edit of a node of a glTF file is a change of nodes") {
     CHECK(
         write_json(*parse_json(edits_as_json(world, edits), ""))
         == R"({"entities": [{"name": "left", "nodes": {"Bulb.001": {"point_light": {"intensity": 30}}}}]})");
+}
+
+TEST_CASE("edit_json: edits of children and of copies, pasted into the level, are there") {
+    const std::string prefabs = R"("prefabs": {"lamp": {"children": [
+        {"name": "bulb", "point_light": {"intensity": 5, "radius": 7}}]}})";
+    const auto level_text = [&](const std::string& nodes, const std::string& events) {
+        return "{" + prefabs + R"(, "entities": [{"name": "left", "prefab": "lamp")" + nodes
+               + R"(}, {"name": "post", "transform": {},
+                    "repeat": {"count": [3, 1, 1], "spacing": [2, 0, 0]}},
+                   {"name": "row", "prefab": "lamp", "repeat": {"count": [2, 1, 1]}},
+                   {"name": "eye", "camera": {}}], "events": )"
+               + events + "}";
+    };
+    OpenLevel level(level_text("", "[]"));
+    World& world = level.world();
+    std::vector<Edit> edits;
+    const auto edit = [&](Entity entity, const ComponentInfo& info, auto change) {
+        Edit one;
+        one.entity = entity;
+        one.before = AnyComponent::read(world, entity, info);
+        one.after = one.before;
+        change(one.after);
+        REQUIRE(apply_edit_value(world, one, one.after));
+        edits.push_back(std::move(one));
+    };
+    const auto brighten = [](AnyComponent& light) { light.as<PointLight>().intensity = 30; };
+    Entity bulb;
+    Entity other;
+    world.query<const Name, const Parent>().each(
+        [&](Entity entity, const Name& name, const Parent& parent) {
+            if (name.text == "bulb") {
+                (parent.entity == level.find("left") ? bulb : other) = entity;
+            }
+        });
+    edit(bulb, component_info<PointLight>(), brighten);
+    edit(level.find("post[2]"), component_info<Transform>(), [](AnyComponent& transform) {
+        transform.as<Transform>().position = {1, 2, 3};
+    });
+    const Result<JsonValue> patch = parse_json(edits_as_json(world, edits), "patch");
+    REQUIRE(patch.ok());
+    const JsonValue& left = (*patch)["entities"].items.at(0);
+    CHECK(left["name"].text == "left");
+    OpenLevel pasted(
+        level_text(R"(, "nodes": )" + write_json(left["nodes"]), write_json((*patch)["events"])));
+    advance_stage(*pasted.stage, 0.1);
+    CHECK(pasted.world().get<const Transform>(pasted.find("post[2]")).position == Vec3(1, 2, 3));
+    std::vector<float> lights;
+    pasted.world().query<const PointLight>().each([&](const PointLight& light) {
+        CHECK(light.radius == 7);
+        lights.push_back(light.intensity);
+    });
+    std::sort(lights.begin(), lights.end());
+    CHECK(lights == std::vector<float>{5, 5, 30});  // that of `left`, not those of the copies
+
+    // Of a child of a copy it says that it has no place.
+    edit(other, component_info<PointLight>(), brighten);
+    CHECK(edits_as_json(world, edits).find("// without edits of children") != std::string::npos);
 }
 
 TEST_CASE("edit_json: edits are a patch with the present values; removed components are null") {

@@ -200,11 +200,11 @@ TEST_CASE("inspector: entities are found by their name, a component or a field")
             hud.frame(draw);
         }
         // Into the search field, near the top.
-        hud.frame(draw, {1100, 80});
-        hud.frame(draw, {1100, 80}, true);
-        hud.frame(draw, {1100, 80});
+        hud.frame(draw, {1100, 104});
+        hud.frame(draw, {1100, 104}, true);
+        hud.frame(draw, {1100, 104});
         ImGui::GetIO().AddInputCharactersUTF8(one.words);
-        hud.frame(draw, {1100, 80});
+        hud.frame(draw, {1100, 104});
         const std::string text = hud.text(draw);
         CAPTURE(text);
         CHECK((text.find("lamp") != std::string::npos) == one.lamp);

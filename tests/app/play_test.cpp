@@ -1,3 +1,4 @@
+#include "tests/app/close_window.h"
 #include "tests/app/virtual_display.h"
 #include "tests/content/gltf_samples.h"
 
@@ -172,10 +173,20 @@ TEST_CASE("play: Esc closes panel after panel, then asks; leaving with edits ask
     xdotool("key Escape");
     CHECK(count_different(session.wait_until_still(), level) == 0);
 
+    // Esc takes the menu of a heading away, then the panel.
+    xdotool("key F2 mousemove 260 190 sleep 0.3 click 1 mousemove 20 20");
+    const Pixels inspected = session.wait_until_still();
+    xdotool("mousemove 380 237 sleep 0.3 click 3 mousemove 20 20");
+    CHECK(session.changes_from(inspected, 500));
+    xdotool("key Escape");
+    CHECK(count_different(session.wait_until_still(), inspected) == 0);
+    xdotool("key Escape");
+    CHECK(count_different(session.wait_until_still(), level) == 0);
+
     // Select the box and drag the last number of its scale.
     xdotool("key F2 mousemove 260 190 sleep 0.3 click 1");
     const Pixels selected = session.wait_until_still();
-    xdotool("mousemove 560 330 sleep 0.3 mousedown 1 sleep 0.3 mousemove_relative 30 0 sleep 0.3 "
+    xdotool("mousemove 581 291 sleep 0.3 mousedown 1 sleep 0.3 mousemove_relative 30 0 sleep 0.3 "
             "mouseup 1");
     CHECK(session.changes_from(selected, 50));
     xdotool("mousemove 20 20 key F2");
@@ -188,18 +199,31 @@ TEST_CASE("play: Esc closes panel after panel, then asks; leaving with edits ask
         xdotool("key Escape");
         CHECK(count_different(session.wait_until_still(), edited) == 0);
     }
+    // A show of another level, in the list.
+    xdotool("key F6");
+    const Pixels list = session.wait_until_still();
+    xdotool("mousemove 360 90 sleep 0.3 click 1");
+    CHECK(session.changes_from(list, 20000));
+    xdotool("key Escape sleep 0.3 mousemove 20 20 key Escape");
+    CHECK(count_different(session.wait_until_still(), edited) == 0);
+    // The button of the window.
+    REQUIRE(test::close_window(session.display.name()));
+    CHECK(session.changes_from(edited, 20000));
+    xdotool("key Escape");
+    CHECK(count_different(session.wait_until_still(), edited) == 0);
+
     xdotool("key ctrl+z");
     CHECK(wait_for([&] { return count_different(session.display.grab(), level) == 0; }));
 
     // Typed within a frame or two: what is wrong is taken back, and Enter counts. GLFW drops a
     // second press of a key within the same millisecond.
-    xdotool("key F2 mousemove 560 330 sleep 0.5 keydown ctrl click 1 keyup ctrl sleep 0.5 "
+    xdotool("key F2 mousemove 581 291 sleep 0.5 keydown ctrl click 1 keyup ctrl sleep 0.5 "
             "key --delay 3 ctrl+a 9 9 BackSpace BackSpace 3 Return sleep 0.5");
     xdotool("mousemove 20 20 key F2");
     const Pixels typed = session.wait_until_still();
     CHECK(count_different(typed, level) > 500);
     // The same, typed slowly.
-    xdotool("key ctrl+z key F2 mousemove 560 330 sleep 0.5 keydown ctrl click 1 keyup ctrl sleep "
+    xdotool("key ctrl+z key F2 mousemove 581 291 sleep 0.5 keydown ctrl click 1 keyup ctrl sleep "
             "0.5 key ctrl+a sleep 0.3 key 3 sleep 0.3 key Return sleep 0.5");
     xdotool("mousemove 20 20 key F2");
     CHECK(wait_for([&] { return count_different(session.display.grab(), typed) == 0; }));

@@ -186,4 +186,6 @@ TEST_CASE("json: the nearest name is a likely typo, and nothing when none is nea
     CHECK(did_you_mean(std::string(1'000'000, 'x'), names).empty());
     CHECK(did_you_mean("xyz", names).empty());
     CHECK(did_you_mean("colr", names) == " (did you mean color?)");
+    const std::vector<std::string_view> as_near = {"seed", "shape", "speed"};
+    CHECK(did_you_mean("sped", as_near) == " (did you mean speed?)");
 }

@@ -13,9 +13,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 using namespace limn;
 
@@ -48,9 +51,10 @@ struct Scene {
     LevelFields fields;
     std::string error;
 
-    explicit Scene(const std::string& entities) {
+    /// `sections`: others of the level, each with a comma after it.
+    explicit Scene(const std::string& entities, const std::string& sections = "") {
         std::ofstream(folder.file("lamp.gltf")) << kLamp;
-        write(entities);
+        write(entities, sections);
         Result<LoadedScene> scene = load_scene(world, folder.file("t.level.json"));
         if (scene) {
             fields = std::move(scene->fields);
@@ -58,9 +62,10 @@ struct Scene {
             error = scene.error().message.substr(folder.path().size() + 1);
         }
     }
-    void write(const std::string& entities) const {
+    void write(const std::string& entities, const std::string& sections = "") const {
         std::ofstream(folder.file("t.level.json"))
-            << R"({"materials": {"amber": {}}, "entities": [)" << entities << "]}";
+            << '{' << sections << R"("materials": {"amber": {}}, "entities": [)" << entities
+            << "]}";
     }
     Entity find(std::string_view name, std::string_view owner) {
         Entity found;
@@ -147,6 +152,36 @@ TEST_CASE("level nodes: a prefab's changes come first, and each copy has them") 
     CHECK(lamps == 3);
 }
 
+TEST_CASE("level nodes: children of a prefab change by name, others and their fields stay") {
+    const Scene scene(
+        R"({"name": "a", "prefab": "pair", "nodes": {
+        "left": {"point_light": {"intensity": 3}}, "low": {"point_light": null}}},
+      {"name": "b", "prefab": "pair"})",
+        R"("prefabs": {"pair": {"children": [
+        {"name": "left", "point_light": {"intensity": 1, "radius": 5}, "children": [
+          {"name": "low", "point_light": {"intensity": 2, "radius": 5}}]}]}},)");
+    REQUIRE_MESSAGE(scene.error.empty(), scene.error);
+    std::vector<float> lights;
+    scene.world.query<const PointLight>().each([&](const PointLight& light) {
+        CHECK(light.radius == 5);
+        lights.push_back(light.intensity);
+    });
+    std::sort(lights.begin(), lights.end());
+    CHECK(lights == std::vector<float>{1, 2, 3});
+
+    for (const auto& [nodes, message] :
+         {std::pair{
+              R"({"lef": {"spin": {}}})",
+              "expected the name of a child or of its children (did you mean left?)"},
+          {R"({"left": {"children": []}})", "found the key \"children\", expected components"},
+          {R"({"left": 3})", "expected an object: components by name"}}) {
+        const Scene wrong(
+            std::string(R"({"children": [{"name": "left"}], "nodes": )") + nodes + "}");
+        CHECK_MESSAGE(has(wrong.error, message), wrong.error);
+        CHECK(wrong.error.starts_with("t.level.json:1:"));
+    }
+}
+
 TEST_CASE("level nodes: what a file does not have is refused with its place and the nearest name") {
     const struct {
         const char* entity;
@@ -157,7 +192,8 @@ TEST_CASE("level nodes: what a file does not have is refused with its place and 
          "mean "
          "Bulb?)"},
         {R"({"name": "a", "nodes": {"Bulb": {}}})",
-         "entity \"a\": found nodes without a glTF file, expected \"gltf\" as well"},
+         "entity \"a\": found nodes without a glTF file or children, expected \"gltf\", "
+         "\"prefab\" or \"children\" as well"},
         {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"point_ligt": {}}}})",
          "entity \"a\".nodes.Bulb: found the component \"point_ligt\", expected one of `limn "
          "components` (did you mean point_light?)"},

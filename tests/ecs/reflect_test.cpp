@@ -387,6 +387,7 @@ TEST_CASE("reflect: values and types read well") {
     CHECK(type_text(field("path")) == "list of object");
     CHECK(type_text(field("mesh")) == "name of a mesh");
     CHECK(range_text(field("small").meta) == "-10 .. 10");
+    CHECK(range_text({.min = 0, .max = 0.1f}) == "0 .. 0.1");
     const PointLight light{.intensity = 0.1f};
     CHECK(value_text(component_info<PointLight>().fields[1], &light.intensity) == "0.1");
 }

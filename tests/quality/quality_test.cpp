@@ -159,7 +159,7 @@ TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none i
 
     const ProgramRun wrong = run_limn(folder, {"quality", "surfacs"});
     CHECK(wrong.exit_code == 1);
-    CHECK(wrong.err.find("perhaps surfaces") != std::string::npos);
+    CHECK(wrong.err.find("(did you mean surfaces?)") != std::string::npos);
 }
 
 TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep their law") {
