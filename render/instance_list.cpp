@@ -324,6 +324,9 @@ void InstanceCollector::add_command(
     if (!state.deformed || !items.shapes()[state.index].wrinkled || !mesh.tangents) {
         run.features.maps.remove(layout::kWrinkleSlot);
     }
+    if (run.features.maps.has(layout::kWrinkleSlot)) {
+        run.features.bits |= items.shapes()[state.index].wrinkle_features;
+    }
     run.textures = batch.textures;
     run.mirrored = state.mirrored;
     run.first_command = static_cast<std::uint32_t>(commands_.size());

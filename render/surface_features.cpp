@@ -20,6 +20,9 @@ constexpr FeatureName kNames[] = {
     {kInflate, "INFLATE"},
     {kDeformed, "DEFORMED"},
     {kVelocity, "VELOCITY"},
+    {kWrinkleBlend, "WRINKLE_BLEND"},
+    {kWrinkleFade, "WRINKLE_FADE"},
+    {kWrinkleFlat, "WRINKLE_FLAT"},
 };
 
 }  // namespace

@@ -23,6 +23,7 @@ enum class WrinkleMethod : std::uint8_t {
     Bump,         ///< slopes times I: wrinkles as high as I (wrinkle.compression.interp-bump)
     Sphere,       ///< x and y of the normal times I, lifted to the unit sphere (.normal-fit)
     Isometric,    ///< slopes as steep as keep the length of the skin
+    Blend,  ///< wrinkles in full, whose light is blended with that of smooth skin (.bump-blend)
 };
 
 /// Shares of the triangles at a vertex in its compression (wrinkle.compression.vertex-weight).
@@ -36,6 +37,8 @@ struct WrinkleSurface {
     WrinkleMethod method = WrinkleMethod::Isometric;
     std::vector<std::string> regions{};
     WrinkleWeight weight = WrinkleWeight::Angle;
+    bool interpolate = true;
+    bool fade = false;
     float lambda = 1.05f;
     float beta = 4;
     float slack = 0.03f;
@@ -45,11 +48,19 @@ struct WrinkleSurface {
 LIMN_FIELDS(WrinkleSurface) {
     LIMN_FIELD(
         method, .doc = "how wrinkles are drawn",
-        .values = "none alpha directional bump sphere isometric");
+        .values = "none alpha directional bump sphere isometric blend");
     LIMN_FIELD(regions, "of the mesh, by name, that wrinkle; none: all that it has");
     LIMN_FIELD(
         weight, .doc = "by what triangles count at a vertex: their angle there, area, or alike",
         .values = "angle area uniform");
+    LIMN_FIELD(
+        interpolate,
+        "strengths between vertices; otherwise each triangle has that of one of them, for "
+        "comparison");
+    LIMN_FIELD(
+        fade,
+        "light fades where it grazes the skin without its wrinkles, and none reaches its back; "
+        "such skin emits nothing");
     LIMN_FIELD(
         lambda,
         "by what the square of the length is multiplied: wrinkles begin where that is 1; above 1 "

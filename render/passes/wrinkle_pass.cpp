@@ -24,6 +24,7 @@ constexpr std::uint32_t kInitialTexels = 1 << 14;
 
 static_assert(kFoldSteps == layout::kFoldSteps);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Isometric) == layout::kWrinkleIsometric);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::Blend) == layout::kWrinkleBlend);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Bump) == layout::kWrinkleBump);
 

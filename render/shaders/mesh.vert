@@ -3,7 +3,7 @@
 //   VELOCITY  also the position in the previous frame
 //   DEFORMED  with VELOCITY: vertices also move in mesh space
 //   OBJECT_LIGHTS  also the index of the instance
-//   WRINKLE_MAP  also the strengths of its wrinkles
+//   WRINKLE_MAP  also the strengths of its wrinkles; WRINKLE_FLAT: without interpolation
 //   CLIPPED  only on one side of view.clip_plane
 #version 450
 #include "lib/material_record.glsl"
@@ -26,6 +26,9 @@ layout(location = 5) out vec3 previous_clip;  // clip x, y, w
 layout(location = 6) flat out uint object;
 #endif
 #ifdef WRINKLE_MAP
+#ifdef WRINKLE_FLAT
+flat
+#endif
 layout(location = 8) out vec4 wrinkle_strength;
 #endif
 #ifdef CLIPPED

@@ -66,7 +66,7 @@ void main() {
         ? fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), uintBitsToFloat(texelFetch(jobs, job + 2).x)))
         : max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
     strength *= uintBitsToFloat(vertex.y);
-    bool steep = method == kWrinkleBump || method == kWrinkleIsometric;
+    bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
     vec4 by_method = strength * vec4(
         steep ? 1.0 : 0.0,
         method == kWrinkleSphere ? 1.0 : 0.0,

@@ -35,6 +35,7 @@ const uint kWrinkleDirectional = 2u;
 const uint kWrinkleBump = 3u;
 const uint kWrinkleSphere = 4u;
 const uint kWrinkleIsometric = 5u;
+const uint kWrinkleBlend = 6u;
 
 const uint kFoldSteps = 16u;
 

@@ -9,6 +9,9 @@
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
 //   LIT_AT_VERTICES  no normals, only colors
+//   WRINKLE_BLEND  light of wrinkles in full and of smooth skin is blended
+//   WRINKLE_FADE   light that grazes smooth skin fades
+//   WRINKLE_FLAT   strengths are those of one vertex of each triangle
 
 #include "lib/gbuffer.glsl"
 #include "lib/material_maps.glsl"
@@ -23,6 +26,9 @@ layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in vec4 tangent_ws;
 #endif
 #ifdef WRINKLES
+#ifdef WRINKLE_FLAT
+flat
+#endif
 layout(location = 8) in vec4 wrinkle_strength;  // x, y: of slopes, as they are and lifted; z, w: of shade
 #endif
 layout(location = 2) in vec4 uv;
@@ -98,27 +104,34 @@ vec3 surface_emission() {
 }
 
 #ifndef LIT_AT_VERTICES
-vec3 surface_normal(float strength) {
+// The normal of the skin, and without its wrinkles.
+vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n = normal_ws;
+    smooth_normal = n;
 #if defined(NORMAL_MAP) || defined(WRINKLES)
     vec3 n_ts = vec3(0.0, 0.0, 1.0);
+    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
 #ifdef NORMAL_MAP
     n_ts = texture(material_maps[NORMAL_MAP], map_place(kNormalSlot)).xyz * 2.0 - 1.0;
     n_ts.xy *= strength;
 #endif
 #ifdef WRINKLES
+    smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
     vec2 slope = wrinkle_slope_here();
+#ifndef WRINKLE_BLEND
     slope = wrinkle_strength.x * slope + lifted_slope(slope, wrinkle_strength.y);
+#endif
     n_ts.xy -= n_ts.z * slope;  // slopes of both heights add up
 #endif
-    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
     n = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
 #endif
     n *= inversesqrt(max(dot(n, n), 1e-20));
+    smooth_normal *= inversesqrt(max(dot(smooth_normal, smooth_normal), 1e-20));
 #ifdef DOUBLE_SIDED
     // gl_FrontFacing is by winding on screen, which a mirrored instance flips.
     if (gl_FrontFacing == ((material_and_flags.y & 1u) != 0u)) {
         n = -n;
+        smooth_normal = -smooth_normal;
     }
 #endif
     return n;
@@ -141,7 +154,8 @@ float widen_roughness(float roughness, vec3 normal) {
 SurfaceSample surface_sample(vec3 albedo) {
     vec4 factors = material_texel(2);
     SurfaceSample s;
-    s.normal_ws = surface_normal(material_texel(1).w);
+    vec3 smooth_normal;
+    s.normal_ws = surface_normal(material_texel(1).w, smooth_normal);
     s.albedo = albedo;
     s.emission = surface_emission();
     s.metalness = factors.x;
@@ -161,6 +175,19 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.occlusion = 1.0 + factors.z * (texture(material_maps[OCCLUSION_MAP], map_place(kOcclusionSlot)).r - 1.0);
 #endif
     s.roughness = widen_roughness(s.roughness, s.normal_ws);
+    set_no_smooth_normal(s);
+#if defined(WRINKLES) && defined(SMOOTH_NORMALS)
+    s.smooth_normal_ws = smooth_normal;
+#ifdef WRINKLE_BLEND
+    s.raised = clamp(wrinkle_strength.x, 0.0, 1.0);
+    s.smooth_is_stored = s.model != kModelUnlit && s.raised > 0.0;
+    s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
+#endif
+#ifdef WRINKLE_FADE
+    s.fades = true;
+    s.smooth_is_stored = s.model != kModelUnlit;
+#endif
+#endif
     split_unlit(s);
     return s;
 }
