@@ -23,6 +23,8 @@ constexpr unsigned kWrinklesBinding = 1;
 constexpr std::uint32_t kInitialTexels = 1 << 14;
 
 static_assert(kFoldSteps == layout::kFoldSteps);
+static_assert(static_cast<std::uint32_t>(WrinkleDriver::Strain) == layout::kWrinkleByStrain);
+static_assert(static_cast<std::uint32_t>(WrinkleDriver::Radial) == layout::kWrinkleByRadius);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Isometric) == layout::kWrinkleIsometric);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Blend) == layout::kWrinkleBlend);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
@@ -45,24 +47,40 @@ void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector
     const float share[3] = {-across.x - across.y, across.x, across.y};  // of each corner's position
     const std::uint32_t next = (corner + 1) % 3;
     const std::uint32_t last = (corner + 2) % 3;
-    const float root = std::sqrt(at.weight);
+    const float factor = rest.mean_length ? at.weight : std::sqrt(at.weight);
     texels.push_back({rest.corners[3 * triangle + next], rest.corners[3 * triangle + last]});
-    texels.push_back({bits(root * share[next]), bits(root * share[last])});
+    texels.push_back({bits(factor * share[next]), bits(factor * share[last])});
 }
 
-std::vector<Texel> rest_texels(const WrinkleState& state) {
-    const WrinkleRest& rest = state.rest;
-    std::vector<Texel> texels;
-    texels.reserve(rest.first.size() + 2 * rest.around.size());
+void append_rest(const WrinkleRest& rest, std::span<const float> mask, std::vector<Texel>& texels) {
+    const std::size_t begin = texels.size();
     for (std::size_t v = 0; v < rest.first.size(); ++v) {
-        const float mask = v < state.mask.size() ? state.mask[v] : 0.0f;
-        const auto first = static_cast<std::uint32_t>(rest.first.size() + 2 * rest.first[v]);
-        texels.push_back({first, bits(mask)});
+        const auto first =
+            static_cast<std::uint32_t>(begin + rest.first.size() + 2 * rest.first[v]);
+        texels.push_back({first, bits(v < mask.size() ? mask[v] : 0.0f)});
     }
     for (const WrinkleCorner& corner : rest.around) {
         append_corner(rest, corner, texels);
     }
+}
+
+/// All blocks; without any, one of vertices without triangles.
+std::vector<Texel> rest_texels(const WrinkleState& state) {
+    std::vector<Texel> texels;
+    for (const WrinkleRest& rest : state.rests) {
+        append_rest(rest, state.mask, texels);
+    }
+    if (state.rests.empty()) {
+        WrinkleRest none;
+        none.first.resize(state.mask.size() + 1);
+        append_rest(none, state.mask, texels);
+    }
     return texels;
+}
+
+/// Texels of a block.
+std::uint32_t block_texels(const WrinkleRest& rest) {
+    return static_cast<std::uint32_t>(rest.first.size() + 2 * rest.around.size());
 }
 
 /// The texels of a state, uploaded on first use.
@@ -106,7 +124,14 @@ layout::WrinkleJob make_job(
     job.lambda = surface.lambda;
     job.beta = surface.beta;
     job.slack = surface.slack;
-    job.share = Vec4(surface.share, 0, 0, 0);
+    job.share = surface.share;
+    job.driver = static_cast<std::uint32_t>(surface.driver);
+    job.mean_length = !state.rests.empty() && state.rests[0].mean_length ? 1u : 0u;
+    job.activation = surface.activation;
+    if (state.rests.size() == 3) {
+        job.second = block_texels(state.rests[0]);
+        job.third = job.second + block_texels(state.rests[1]);
+    }
     for (int i = 0; i < kFoldSteps; ++i) {
         job.folds[i / 4][i % 4] = state.folds[static_cast<std::size_t>(i)];
     }

@@ -23,21 +23,35 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
     REQUIRE(readback);
     Random random(5, 0, 0, 0);
+    const WrinkleSurface base = {.lambda = 1.1f, .beta = 3, .slack = 0.01f};
+    std::vector<WrinkleSurface> surfaces;
     for (const WrinkleMethod method :
          {WrinkleMethod::Bump, WrinkleMethod::Sphere, WrinkleMethod::Alpha,
           WrinkleMethod::Directional, WrinkleMethod::Isometric}) {
+        surfaces.push_back(base);
+        surfaces.back().method = method;
+    }
+    for (const WrinkleDriver driver :
+         {WrinkleDriver::Chord, WrinkleDriver::Edge, WrinkleDriver::Strain,
+          WrinkleDriver::Radial}) {
+        surfaces.push_back(base);
+        surfaces.back().method = WrinkleMethod::Bump;
+        surfaces.back().driver = driver;
+        surfaces.back().mean_length = true;
+        surfaces.back().center = {1, 0.2f, 0};
+        surfaces.back().radius = 1.3f;
+        surfaces.back().activation = 0.7f;
+    }
+    for (const WrinkleSurface& asked : surfaces) {
+        const WrinkleMethod method = asked.method;
         MeshData tube = make_tube(24, 12, 1);
         add_morphs(tube, 1, 1, 0.03f, random);
-        const Entity entity =
-            skin(std::move(tube), {.method = method, .lambda = 1.1f, .beta = 3, .slack = 0.01f}, 1);
+        const Entity entity = skin(std::move(tube), asked, 1);
         const oracle::SkinReadbackVertices found =
             readback->run(world, std::vector<Entity>{entity})[0];
         const WrinkleState& state = world.get<WrinkleState>(entity);
         const WrinkleSurface& surface = world.get<WrinkleSurface>(entity);
-        std::vector<float> triangles(state.rest.across.size());
-        std::vector<float> ratio(found.positions.size());
-        find_compression(state.rest, found.positions, triangles);
-        average_compression(state.rest, triangles, ratio);
+        const std::vector<float> ratio = vertex_compression(state.rests, found.positions);
         const int component = method == WrinkleMethod::Sphere        ? 1
                               : method == WrinkleMethod::Alpha       ? 2
                               : method == WrinkleMethod::Directional ? 3
@@ -46,14 +60,15 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
         int strong = 0;
         for (std::size_t v = 0; v < ratio.size(); ++v) {
             const float strength =
-                method == WrinkleMethod::Isometric
-                    ? fold_strength(
-                        state.folds, fold_excess(ratio[v], surface.slack, surface.share))
+                method == WrinkleMethod::Isometric ? fold_strength(
+                    state.folds, fold_excess(ratio[v], surface.slack, surface.share))
+                : surface.driver == WrinkleDriver::Radial
+                    ? surface.activation
                     : std::max(wrinkle_intensity(ratio[v], surface.lambda, surface.beta), 0.0f);
             Vec4 expected = {0, 0, 0, 0};
-            expected[component] = strength;
+            expected[component] = state.mask[v] * strength;
             CHECK(glm::length(found.wrinkles[v] - expected) <= 1e-3f * std::max(strength, 1.0f));
-            strong += strength > 0.1f ? 1 : 0;
+            strong += expected[component] > 0.1f ? 1 : 0;
         }
         CHECK(strong > 3);
         readback->forget();

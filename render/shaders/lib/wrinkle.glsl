@@ -7,6 +7,14 @@ float wrinkle_intensity(float ratio, float lambda, float beta) {
     return -tanh(clamp(0.5 * beta * log(max(lambda * ratio, 1e-30)), -20.0, 20.0));
 }
 
+// The lower eigenvalue of the tensor with these squares of lengths along u, v and (u + v) / sqrt(2).
+float shortest_ratio(float along_u, float along_v, float between) {
+    float mean = 0.5 * (along_u + along_v);
+    float half_difference = 0.5 * (along_u - along_v);
+    float uv = between - mean;
+    return max(mean - sqrt(half_difference * half_difference + uv * uv), 0.0);
+}
+
 // The excess of length that becomes folds, 1 at most.
 float fold_excess(float ratio, float slack, float share) {
     float shortening = max(1.0 - sqrt(ratio) - slack, 0.0);
