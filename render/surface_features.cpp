@@ -23,6 +23,7 @@ constexpr FeatureName kNames[] = {
     {kWrinkleBlend, "WRINKLE_BLEND"},
     {kWrinkleFade, "WRINKLE_FADE"},
     {kWrinkleFlat, "WRINKLE_FLAT"},
+    {kWrinkleView, "WRINKLE_VIEW"},
 };
 
 }  // namespace

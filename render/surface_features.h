@@ -24,6 +24,7 @@ enum SurfaceFeature : std::uint32_t {
     kWrinkleBlend = 1u << 10,    // added by the instance, of wrinkles
     kWrinkleFade = 1u << 11,
     kWrinkleFlat = 1u << 12,
+    kWrinkleView = 1u << 13,  // needs no wrinkle map
 };
 
 struct SurfaceFeatures {

@@ -24,6 +24,7 @@ enum class WrinkleMethod : std::uint8_t {
     Sphere,       ///< x and y of the normal times I, lifted to the unit sphere (.normal-fit)
     Isometric,    ///< slopes as steep as keep the length of the skin
     Blend,  ///< wrinkles in full, whose light is blended with that of smooth skin (.bump-blend)
+    StrainView,  ///< colors and crosses of the strain, to look at it (face.strain)
 };
 
 /// Shares of the triangles at a vertex in its compression (wrinkle.compression.vertex-weight).
@@ -58,10 +59,19 @@ struct WrinkleSurface {
     float activation = 1;
 };
 
+/// The driver that is used: the strain where that is drawn.
+inline WrinkleDriver used_driver(const WrinkleSurface& surface) {
+    return surface.method == WrinkleMethod::StrainView ? WrinkleDriver::Strain : surface.driver;
+}
+
 LIMN_FIELDS(WrinkleSurface) {
     LIMN_FIELD(
-        method, .doc = "how wrinkles are drawn",
-        .values = "none alpha directional bump sphere isometric blend");
+        method,
+        .doc =
+            "how wrinkles are drawn; strain_view: in their place the skin's strain, red where "
+            "it is compressed by 0.3 in some direction, blue where stretched, with a cross along "
+            "the principal directions, on all of any deformed mesh",
+        .values = "none alpha directional bump sphere isometric blend strain_view");
     LIMN_FIELD(
         regions,
         "of the mesh, by name, that wrinkle; none: all that it has, or all of a mesh that has "
@@ -131,6 +141,9 @@ struct WrinkleState {
     std::vector<WrinkleRest> rests;
     std::vector<float> mask;  ///< per vertex: 0 .. 1 of the wrinkles
     FoldTable folds = {};
+    /// Strain of a mesh with tangents, per vertex: the angle from the axis u to the tangent [rad],
+    /// and the side of the bitangent, 1 or -1. Or empty.
+    std::vector<Vec2> frames;
     std::uint64_t source = 0;  ///< hash of the mesh, its version, the map and the regions
 };
 

@@ -27,6 +27,7 @@ static_assert(static_cast<std::uint32_t>(WrinkleDriver::Strain) == layout::kWrin
 static_assert(static_cast<std::uint32_t>(WrinkleDriver::Radial) == layout::kWrinkleByRadius);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Isometric) == layout::kWrinkleIsometric);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Blend) == layout::kWrinkleBlend);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::StrainView) == layout::kWrinkleStrainView);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Bump) == layout::kWrinkleBump);
 
@@ -52,12 +53,14 @@ void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector
     texels.push_back({bits(factor * share[next]), bits(factor * share[last])});
 }
 
-void append_rest(const WrinkleRest& rest, std::span<const float> mask, std::vector<Texel>& texels) {
+/// `number(v)` goes with each vertex.
+template <typename Number>
+void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number number) {
     const std::size_t begin = texels.size();
     for (std::size_t v = 0; v < rest.first.size(); ++v) {
         const auto first =
             static_cast<std::uint32_t>(begin + rest.first.size() + 2 * rest.first[v]);
-        texels.push_back({first, bits(v < mask.size() ? mask[v] : 0.0f)});
+        texels.push_back({first, bits(number(v))});
     }
     for (const WrinkleCorner& corner : rest.around) {
         append_corner(rest, corner, texels);
@@ -67,13 +70,22 @@ void append_rest(const WrinkleRest& rest, std::span<const float> mask, std::vect
 /// All blocks; without any, one of vertices without triangles.
 std::vector<Texel> rest_texels(const WrinkleState& state) {
     std::vector<Texel> texels;
-    for (const WrinkleRest& rest : state.rests) {
-        append_rest(rest, state.mask, texels);
+    const auto number = [&state](std::size_t block) {
+        return [&state, block](std::size_t v) {
+            if (block > 0) {
+                return v < state.frames.size() ? state.frames[v][static_cast<int>(block) - 1]
+                                               : 0.0f;
+            }
+            return v < state.mask.size() ? state.mask[v] : 0.0f;
+        };
+    };
+    for (std::size_t block = 0; block < state.rests.size(); ++block) {
+        append_rest(state.rests[block], texels, number(block));
     }
     if (state.rests.empty()) {
         WrinkleRest none;
         none.first.resize(state.mask.size() + 1);
-        append_rest(none, state.mask, texels);
+        append_rest(none, texels, number(0));
     }
     return texels;
 }
@@ -125,7 +137,7 @@ layout::WrinkleJob make_job(
     job.beta = surface.beta;
     job.slack = surface.slack;
     job.share = surface.share;
-    job.driver = static_cast<std::uint32_t>(surface.driver);
+    job.driver = static_cast<std::uint32_t>(used_driver(surface));
     job.mean_length = !state.rests.empty() && state.rests[0].mean_length ? 1u : 0u;
     job.activation = surface.activation;
     if (state.rests.size() == 3) {

@@ -74,6 +74,13 @@ void main() {
     if (job2.y == kWrinkleByStrain) {
         float along_v = block_compression(job0.x, job3.x, number, first, mean_length);
         float between = block_compression(job0.x, job3.y, number, first, mean_length);
+        if (job1.x == kWrinkleStrainView) {
+            float angle = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.x + number)).y);
+            float side = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.y + number)).y);
+            vec3 strain = strain_of_tensor(ratio, along_v, between, angle, side);
+            wrinkles[first + number] = uvec2(packHalf2x16(strain.xy), packHalf2x16(vec2(strain.z, abs(side))));
+            return;
+        }
         ratio = shortest_ratio(ratio, along_v, between);
     }
 

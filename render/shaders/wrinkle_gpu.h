@@ -1,7 +1,8 @@
 // Input of wrinkle.comp. Shared by C++ and GLSL.
 //
 // A mesh at rest is a block of texels of two 32-bit numbers; three, one after the other, for strain. One per vertex and one more, which ends the last: its
-// first triangle as a texel of the first block, and its mask as a float. Then two per triangle at a vertex, whose third corner
+// first triangle as a texel of the first block, and its mask as a float; in the second and third block the
+// angle and the side of its tangent instead (WrinkleState::frames; 0: none). Then two per triangle at a vertex, whose third corner
 // is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
 // root of the triangle's weight at the vertex (the weight itself where means are of lengths).
 
@@ -43,6 +44,7 @@ const uint kWrinkleBump = 3u;
 const uint kWrinkleSphere = 4u;
 const uint kWrinkleIsometric = 5u;
 const uint kWrinkleBlend = 6u;
+const uint kWrinkleStrainView = 7u;
 
 // WrinkleDriver
 const uint kWrinkleByStrain = 2u;

@@ -24,6 +24,9 @@ constexpr std::size_t kEvaluateGrain = 16;
 
 /// What its program must do, beside adding its wrinkles to the normals.
 std::uint32_t wrinkle_features(const WrinkleSurface& surface) {
+    if (surface.method == WrinkleMethod::StrainView) {
+        return kWrinkleView;
+    }
     return (surface.method == WrinkleMethod::Blend ? kWrinkleBlend : 0u)
            | (surface.fade ? kWrinkleFade : 0u) | (surface.interpolate ? 0u : kWrinkleFlat);
 }

@@ -222,6 +222,21 @@ SkinStrain tensor_of_ratios(float along_u, float along_v, float between) {
     return {.uu = along_u, .vv = along_v, .uv = between - 0.5f * (along_u + along_v)};
 }
 
+SkinStrain strain_of_tensor(const SkinStrain& tensor, float angle, float side) {
+    // sqrt(C) = (C + r I) / sqrt(trace C + 2 r) with r = sqrt(det C), as in find_strain().
+    const float root = std::sqrt(std::max(tensor.uu * tensor.vv - tensor.uv * tensor.uv, 0.0f));
+    const float sum = std::sqrt(std::max(tensor.uu + tensor.vv + 2 * root, 1e-20f));
+    const float mean = 0.5f * (tensor.uu + tensor.vv);
+    const float half = 0.5f * (tensor.uu - tensor.vv);
+    const float c = std::cos(2 * angle);
+    const float s = std::sin(2 * angle);
+    const float turned = half * c + tensor.uv * s;
+    return {
+        .uu = (mean + turned + root) / sum - 1,
+        .vv = (mean - turned + root) / sum - 1,
+        .uv = side * (tensor.uv * c - half * s) / sum};
+}
+
 float shortest_ratio(float along_u, float along_v, float between) {
     return std::max(principal_strain(tensor_of_ratios(along_u, along_v, between)).lower, 0.0f);
 }

@@ -46,6 +46,10 @@ namespace limn {
 /// C of lengths along u, v and (u + v) / sqrt(2), squared.
 [[nodiscard]] SkinStrain tensor_of_ratios(float along_u, float along_v, float between);
 
+/// Strain of C, sqrt(C) - I, in axes turned by `angle` [rad] from u towards v; with `side` -1 the
+/// second one is opposite.
+[[nodiscard]] SkinStrain strain_of_tensor(const SkinStrain& tensor, float angle, float side);
+
 /// The square of the length in the shortest direction: the lower eigenvalue of C, >= 0.
 [[nodiscard]] float shortest_ratio(float along_u, float along_v, float between);
 

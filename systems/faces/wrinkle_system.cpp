@@ -6,7 +6,9 @@
 #include "systems/faces/wrinkle_measure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -33,43 +35,55 @@ bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::siz
     const bool named = surface.regions.empty()
                        || std::ranges::find(surface.regions, region.name) != surface.regions.end();
     return named && region.weights.size() == vertices
-           && (region.across.size() == vertices || surface.driver != WrinkleDriver::Chord);
+           && (region.across.size() == vertices || used_driver(surface) != WrinkleDriver::Chord);
 }
 
 /// A mesh without regions wrinkles anywhere by drivers that need no direction.
 bool wrinkles_everywhere(const WrinkleSurface& surface, const MeshData& mesh) {
-    return mesh.regions.empty() && surface.regions.empty()
-           && surface.driver != WrinkleDriver::Chord;
+    return surface.method == WrinkleMethod::StrainView
+           || (mesh.regions.empty() && surface.regions.empty()
+               && surface.driver != WrinkleDriver::Chord);
+}
+
+std::vector<WrinkleRest>
+make_strain_rests(const MeshData& mesh, WrinkleWeight weight, std::vector<Vec2>& frames) {
+    const SkinTriangles skin = make_skin_triangles(mesh.positions, mesh.indices, 0);
+    std::vector<Vec3> normals;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        normals.push_back(glm::cross(skin.vertex_u[v], skin.vertex_v[v]));
+    }
+    if (mesh.tangents.size() == mesh.positions.size()) {
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            const Vec3 tangent = mesh.tangents[v];
+            const float along_u = glm::dot(tangent, skin.vertex_u[v]);
+            const float along_v = glm::dot(tangent, skin.vertex_v[v]);
+            frames.emplace_back(std::atan2(along_v, along_u), mesh.tangents[v].w < 0 ? -1 : 1);
+        }
+    }
+    std::array<WrinkleRest, 3> rests =
+        make_strain_rest(mesh.positions, mesh.indices, skin.vertex_u, normals, weight);
+    return {std::make_move_iterator(rests.begin()), std::make_move_iterator(rests.end())};
 }
 
 /// What is measured; `across` is per vertex.
-std::vector<WrinkleRest>
-make_rests(const WrinkleSurface& surface, const MeshData& mesh, std::span<const Vec3> across) {
+std::vector<WrinkleRest> make_rests(
+    const WrinkleSurface& surface, const MeshData& mesh, std::span<const Vec3> across,
+    std::vector<Vec2>& frames) {
     std::vector<WrinkleRest> rests;
-    switch (surface.driver) {
+    switch (used_driver(surface)) {
     case WrinkleDriver::Chord:
         rests.push_back(make_wrinkle_rest(mesh.positions, mesh.indices, across, surface.weight));
         break;
     case WrinkleDriver::Edge:
         rests.push_back(make_edge_rest(mesh.positions, mesh.indices, surface.weight));
         break;
-    case WrinkleDriver::Strain: {
-        const SkinTriangles skin = make_skin_triangles(mesh.positions, mesh.indices, 0);
-        std::vector<Vec3> normals;
-        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-            normals.push_back(glm::cross(skin.vertex_u[v], skin.vertex_v[v]));
-        }
-        for (WrinkleRest& rest : make_strain_rest(
-                 mesh.positions, mesh.indices, skin.vertex_u, normals, surface.weight)) {
-            rests.push_back(std::move(rest));
-        }
-        break;
-    }
+    case WrinkleDriver::Strain:
+        return make_strain_rests(mesh, surface.weight, frames);
     case WrinkleDriver::Radial:
         break;
     }
     for (WrinkleRest& rest : rests) {
-        rest.mean_length = surface.mean_length && surface.driver != WrinkleDriver::Strain;
+        rest.mean_length = surface.mean_length;
     }
     return rests;
 }
@@ -89,9 +103,10 @@ wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, cons
     }
     std::uint64_t hash = hash_combine(instance.mesh.index, mesh->version);
     hash = hash_combine(hash, static_cast<std::uint64_t>(surface.weight));
-    hash = hash_combine(hash, static_cast<std::uint64_t>(surface.driver));
+    hash = hash_combine(hash, static_cast<std::uint64_t>(used_driver(surface)));
     hash = hash_combine(hash, surface.mean_length ? 1 : 0);
-    if (surface.driver == WrinkleDriver::Radial) {
+    hash = hash_combine(hash, surface.method == WrinkleMethod::StrainView ? 1 : 0);
+    if (used_driver(surface) == WrinkleDriver::Radial) {
         hash = hash_bytes(&surface.center, sizeof surface.center, hash);
         hash = hash_bytes(&surface.radius, sizeof surface.radius, hash);
     }
@@ -132,8 +147,8 @@ WrinkleState make_wrinkle_state(
             }
         }
     }
-    state.rests = make_rests(surface, mesh, across);
-    if (surface.driver == WrinkleDriver::Radial) {
+    state.rests = make_rests(surface, mesh, across, state.frames);
+    if (used_driver(surface) == WrinkleDriver::Radial) {
         for (std::size_t v = 0; v < vertices; ++v) {
             state.mask[v] *= radial_share(mesh.positions[v], surface.center, surface.radius);
         }

@@ -76,6 +76,54 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
     }
 }
 
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strains in the tangent frame are those of the CPU") {
+    Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
+    REQUIRE(readback);
+    Random random(6, 0, 0, 0);
+    MeshData tube = make_tube(24, 12, 1);
+    add_morphs(tube, 1, 1, 0.03f, random);
+    for (std::size_t v = 0; v < tube.tangents.size(); v += 2) {
+        tube.tangents[v].w = -tube.tangents[v].w;
+    }
+    const Entity entity = skin(std::move(tube), {.method = WrinkleMethod::StrainView}, 1);
+    const oracle::SkinReadbackVertices found = readback->run(world, std::vector<Entity>{entity})[0];
+    const WrinkleState& state = world.get<WrinkleState>(entity);
+    REQUIRE(state.rests.size() == 3);
+    REQUIRE(state.frames.size() == found.positions.size());
+    std::vector<std::vector<float>> lengths;
+    for (const WrinkleRest& rest : state.rests) {
+        lengths.push_back(vertex_compression({&rest, 1}, found.positions));
+    }
+    float strongest = 0;
+    for (std::size_t v = 0; v < found.positions.size(); ++v) {
+        const SkinStrain strain = strain_of_tensor(
+            tensor_of_ratios(lengths[0][v], lengths[1][v], lengths[2][v]), state.frames[v].x,
+            state.frames[v].y);
+        const Vec4 expected = {strain.uu, strain.vv, strain.uv, 1};
+        CHECK(glm::length(found.wrinkles[v] - expected) <= 2e-3f);
+        strongest = std::max(strongest, std::abs(strain.uv));
+    }
+    CHECK(strongest > 0.05f);
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle pass: compressed skin is shown red, stretched skin blue, any other gray") {
+    material.wrinkle_texture = {};  // not needed
+    const auto color = [&](float weight) {
+        const Entity entity = square({.method = WrinkleMethod::StrainView}, weight);
+        const gpu::FloatImage albedo = aov(view, "albedo");
+        world.destroy(entity);
+        return rgb_at(albedo, 2, 16);  // between two crosses
+    };
+    const Vec3 rest = color(0);
+    CHECK(rest.x == near(rest.z).epsilon(1e-2));
+    const Vec3 compressed = color(0.3f);
+    CHECK(compressed.x > 5 * compressed.z);
+    const Vec3 stretched = color(-0.3f);
+    CHECK(stretched.z > 5 * stretched.x);
+}
+
 TEST_CASE_FIXTURE(
     WrinkleScene, "wrinkle pass: slopes are scaled, lifted, or keep the length of skin") {
     const float ratio = 0.8f * 0.8f;

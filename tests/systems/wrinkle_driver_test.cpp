@@ -137,6 +137,28 @@ TEST_CASE("wrinkle driver: strain at vertices is that of skin_strain where it is
     CHECK(largest < 0.03f * strongest);
 }
 
+TEST_CASE("wrinkle driver: the strain of a tensor is its root less 1, in any axes") {
+    // Shorter by 0.8 along u, longer by 1.05 along v; Green's strain would be -0.18 and 0.05125.
+    const SkinStrain tensor = tensor_of_ratios(0.64f, 1.1025f, 0.5f * (0.64f + 1.1025f));
+    const SkinStrain along = strain_of_tensor(tensor, 0, 1);
+    CHECK(along.uu == near(-0.2));
+    CHECK(along.vv == near(0.05));
+    CHECK(along.uv == near(0).scale(1));
+    const SkinStrain across = strain_of_tensor(tensor, radians(90.0f), 1);
+    CHECK(across.uu == near(0.05));
+    CHECK(across.vv == near(-0.2));
+    for (const float side : {1.0f, -1.0f}) {
+        for (float angle = -3; angle < 3; angle += 0.4f) {
+            const SkinStrain turned = strain_of_tensor(tensor, angle, side);
+            const PrincipalStrain principal = principal_strain(turned);
+            CHECK(principal.lower == near(-0.2));
+            CHECK(principal.higher == near(0.05));
+            // The direction of compression is still the axis u.
+            CHECK(std::abs(std::cos(side * principal.angle + angle)) == near(1));
+        }
+    }
+}
+
 TEST_CASE("wrinkle driver: means of squares exceed squares of means by the variance") {
     // Four right triangles about a vertex, shorter by 0.8, 0.9, 1 and 0.7.
     const Sheet fan = {

@@ -11,6 +11,8 @@
 //   LIT_AT_VERTICES  no normals, only colors
 //   WRINKLE_BLEND  light of wrinkles in full and of smooth skin is blended
 //   WRINKLE_FADE   light that grazes smooth skin fades
+//   WRINKLE_VIEW   in place of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and w
+//                  1 where that frame is known. After lib/view.glsl
 //   WRINKLE_FLAT   strengths are those of one vertex of each triangle
 
 #include "lib/gbuffer.glsl"
@@ -25,7 +27,7 @@
 layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in vec4 tangent_ws;
 #endif
-#ifdef WRINKLES
+#if defined(WRINKLES) || (defined(WRINKLE_VIEW) && !defined(LIT_AT_VERTICES))
 #ifdef WRINKLE_FLAT
 flat
 #endif
@@ -151,7 +153,37 @@ float widen_roughness(float roughness, vec3 normal) {
     return roughness;
 }
 
+#ifdef WRINKLE_VIEW
+const float kCrossCell = 22.0;  // [px]
+
+// A direction on the surface, as seen [px]; a unit vector that faces the viewer has half the size of a cell.
+vec2 seen_direction(vec3 direction_ws) {
+    vec4 moved = view.clip_from_world * vec4(direction_ws, 0.0);
+    vec2 ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0;
+    vec2 seen = (moved.xy - ndc * moved.w) * view.size.xy;
+    float scale = view.size.x * length(vec3(view.clip_from_world[0].x, view.clip_from_world[1].x, view.clip_from_world[2].x));
+    return seen * (0.5 * kCrossCell / scale);
+}
+
+vec3 strain_view() {
+    vec4 principal = principal_strain(wrinkle_strength.xyz);
+    vec3 color = strain_color(principal);
+    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
+    vec2 cover = strain_cross(
+        mod(gl_FragCoord.xy, kCrossCell) - 0.5 * kCrossCell, principal,
+        seen_direction(principal.z * tangent_ws.xyz + principal.w * bitangent),
+        seen_direction(-principal.w * tangent_ws.xyz + principal.z * bitangent));
+    cover *= wrinkle_strength.w;
+    vec2 stretched = step(vec2(0.0), principal.xy);
+    color = mix(color, mix(vec3(0.12, 0.0, 0.0), vec3(0.0, 0.0, 0.15), stretched.x), cover.x);
+    return mix(color, mix(vec3(0.12, 0.0, 0.0), vec3(0.0, 0.0, 0.15), stretched.y), cover.y);
+}
+#endif
+
 SurfaceSample surface_sample(vec3 albedo) {
+#ifdef WRINKLE_VIEW
+    albedo = strain_view();
+#endif
     vec4 factors = material_texel(2);
     SurfaceSample s;
     vec3 smooth_normal;
