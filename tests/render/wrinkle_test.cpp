@@ -85,6 +85,11 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strains in the tangent frame are 
     for (std::size_t v = 0; v < tube.tangents.size(); v += 2) {
         tube.tangents[v].w = -tube.tangents[v].w;
     }
+    for (std::size_t v = 0; v < tube.tangents.size(); ++v) {  // slanted
+        const Vec3 t = tube.tangents[v];
+        const Vec3 slanted = 0.8f * t + 0.6f * glm::cross(tube.normals[v], t);
+        tube.tangents[v] = Vec4(slanted, tube.tangents[v].w);
+    }
     const Entity entity = skin(std::move(tube), {.method = WrinkleMethod::StrainView}, 1);
     const oracle::SkinReadbackVertices found = readback->run(world, std::vector<Entity>{entity})[0];
     const WrinkleState& state = world.get<WrinkleState>(entity);

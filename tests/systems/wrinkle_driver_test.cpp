@@ -155,6 +155,14 @@ TEST_CASE("wrinkle driver: the strain of a tensor is its root less 1, in any axe
             CHECK(principal.higher == near(0.05));
             // The direction of compression is still the axis u.
             CHECK(std::abs(std::cos(side * principal.angle + angle)) == near(1));
+            // Turned back, its own tensor gives what there was.
+            const SkinStrain squared = {
+                .uu = square(1 + turned.uu) + square(turned.uv),
+                .vv = square(1 + turned.vv) + square(turned.uv),
+                .uv = turned.uv * (2 + turned.uu + turned.vv)};
+            const SkinStrain back = strain_of_tensor(squared, -side * angle, side);
+            CHECK(back.uu == near(-0.2));
+            CHECK(back.vv == near(0.05));
         }
     }
 }
