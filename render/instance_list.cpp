@@ -364,8 +364,14 @@ void InstanceCollector::add_command(
         run.features.maps.remove(layout::kNormalSlot);
         list.without_tangents.push_back(mesh_index(items, state));
     }
-    if (!state.deformed || !items.shapes()[state.index].wrinkled || !mesh.tangents) {
+    const std::uint32_t wrinkles =
+        state.deformed ? items.shapes()[state.index].wrinkle_features : 0u;
+    if (!state.deformed || !items.shapes()[state.index].wrinkled || !mesh.tangents
+        || (wrinkles & kWrinkleView) != 0) {
         run.features.maps.remove(layout::kWrinkleSlot);
+    }
+    if (run.features.maps.has(layout::kWrinkleSlot) || (wrinkles & kWrinkleView) != 0) {
+        run.features.bits |= wrinkles;
     }
     run.textures = batch.textures;
     run.mirrored = state.mirrored;

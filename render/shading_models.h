@@ -32,7 +32,7 @@ inline constexpr ShadingModelRow kShadingModels[] = {
     {ShadingModel::Unlit, "unlit", "kModelUnlit", "SHADE_UNLIT"},
     {ShadingModel::Skin, "skin", "kModelSkin", "SHADE_SKIN", "classic", true},
 };
-static_assert(std::size(kShadingModels) < 32, "five bits in the G-buffer, and 0 is no surface");
+static_assert(std::size(kShadingModels) < 16, "four bits in the G-buffer, and 0 is no surface");
 
 /// The number in the G-buffer; 0 is no surface.
 [[nodiscard]] constexpr std::uint32_t stored_number(ShadingModel model) {

@@ -20,6 +20,10 @@ constexpr FeatureName kNames[] = {
     {kInflate, "INFLATE"},
     {kDeformed, "DEFORMED"},
     {kVelocity, "VELOCITY"},
+    {kWrinkleBlend, "WRINKLE_BLEND"},
+    {kWrinkleFade, "WRINKLE_FADE"},
+    {kWrinkleFlat, "WRINKLE_FLAT"},
+    {kWrinkleView, "WRINKLE_VIEW"},
 };
 
 }  // namespace

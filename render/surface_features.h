@@ -21,6 +21,10 @@ enum SurfaceFeature : std::uint32_t {
     kInflate = 1u << 7,          // added by the instance
     kDeformed = 1u << 8,         // added by the instance: its vertices are its own (skinning/)
     kVelocity = 1u << 9,         // added by the view
+    kWrinkleBlend = 1u << 10,    // added by the instance, of wrinkles
+    kWrinkleFade = 1u << 11,
+    kWrinkleFlat = 1u << 12,
+    kWrinkleView = 1u << 13,  // needs no wrinkle map
 };
 
 struct SurfaceFeatures {

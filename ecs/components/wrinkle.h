@@ -23,6 +23,8 @@ enum class WrinkleMethod : std::uint8_t {
     Bump,         ///< slopes times I: wrinkles as high as I (wrinkle.compression.interp-bump)
     Sphere,       ///< x and y of the normal times I, lifted to the unit sphere (.normal-fit)
     Isometric,    ///< slopes as steep as keep the length of the skin
+    Blend,  ///< wrinkles in full, whose light is blended with that of smooth skin (.bump-blend)
+    StrainView,  ///< colors and crosses of the strain, to look at it (face.strain)
 };
 
 /// Shares of the triangles at a vertex in its compression (wrinkle.compression.vertex-weight).
@@ -32,24 +34,68 @@ enum class WrinkleWeight : std::uint8_t {
     Uniform,  ///< depends on the division; for comparison
 };
 
+/// What is measured to say how compressed skin is.
+enum class WrinkleDriver : std::uint8_t {
+    Chord,   ///< the length of triangles across the wrinkles
+    Edge,    ///< the lengths of edges, whatever their direction (Volino and Magnenat-Thalmann)
+    Strain,  ///< the shortest direction in the tangent plane (face.strain)
+    Radial,  ///< nothing: strongest at `center`, none beyond `radius` (Pelachaud et al.)
+};
+
 struct WrinkleSurface {
     WrinkleMethod method = WrinkleMethod::Isometric;
     std::vector<std::string> regions{};
+    WrinkleDriver driver = WrinkleDriver::Chord;
     WrinkleWeight weight = WrinkleWeight::Angle;
+    bool mean_length = false;
+    bool interpolate = true;
+    bool fade = false;
     float lambda = 1.05f;
     float beta = 4;
     float slack = 0.03f;
     float share = 0.3f;
+    Vec3 center = {0, 0, 0};
+    float radius = 0.1f;
+    float activation = 1;
 };
+
+/// The driver that is used: the strain where that is drawn.
+inline WrinkleDriver used_driver(const WrinkleSurface& surface) {
+    return surface.method == WrinkleMethod::StrainView ? WrinkleDriver::Strain : surface.driver;
+}
 
 LIMN_FIELDS(WrinkleSurface) {
     LIMN_FIELD(
-        method, .doc = "how wrinkles are drawn",
-        .values = "none alpha directional bump sphere isometric");
-    LIMN_FIELD(regions, "of the mesh, by name, that wrinkle; none: all that it has");
+        method,
+        .doc =
+            "how wrinkles are drawn; strain_view: in their place the skin's strain, red where "
+            "it is compressed by 0.3 in some direction, blue where stretched, with a cross along "
+            "the principal directions, on all of any deformed mesh",
+        .values = "none alpha directional bump sphere isometric blend strain_view");
+    LIMN_FIELD(
+        regions,
+        "of the mesh, by name, that wrinkle; none: all that it has, or all of a mesh that has "
+        "none where the driver is not chord");
+    LIMN_FIELD(
+        driver,
+        .doc = "what raises wrinkles: shortening of triangles across them, of edges, along the "
+               "shortest direction, or none: an activation around a center",
+        .values = "chord edge strain radial");
     LIMN_FIELD(
         weight, .doc = "by what triangles count at a vertex: their angle there, area, or alike",
         .values = "angle area uniform");
+    LIMN_FIELD(
+        mean_length,
+        "means at a vertex are of lengths and squared then; otherwise of their squares, which need "
+        "no roots; not for strain");
+    LIMN_FIELD(
+        interpolate,
+        "strengths between vertices; otherwise each triangle has that of one of them, for "
+        "comparison");
+    LIMN_FIELD(
+        fade,
+        "light fades where it grazes the skin without its wrinkles, and none reaches its back; "
+        "such skin emits nothing");
     LIMN_FIELD(
         lambda,
         "by what the square of the length is multiplied: wrinkles begin where that is 1; above 1 "
@@ -59,6 +105,9 @@ LIMN_FIELDS(WrinkleSurface) {
     LIMN_FIELD(slack, "isometric: shortening that skin takes without folding", "", 0, 1);
     LIMN_FIELD(
         share, "isometric: of the shortening beyond that becomes folds; 1: all of it", "", 0, 1);
+    LIMN_FIELD(center, "radial: where wrinkles are strongest, in mesh space at rest", "m");
+    LIMN_FIELD(radius, "radial: where none are left", "m", 1e-6, 1e6);
+    LIMN_FIELD(activation, "radial: strength at the center", "", 0, 1);
 }
 
 /// A triangle at a vertex, and its share of the vertex's compression.
@@ -68,13 +117,15 @@ struct WrinkleCorner {
 };
 
 /// A mesh at rest with one direction across its wrinkles, prepared for measuring how much shorter
-/// its skin has become in that direction.
+/// its skin has become in that direction. An edge counts as a triangle whose second and third
+/// vertex are the same.
 struct WrinkleRest {
     std::vector<std::uint32_t> corners;  ///< three vertices per triangle
     std::vector<Vec2> across;  ///< per triangle the unit direction in its plane as x e1 + y e2, e1
                                ///< and e2 the edges from its first vertex [1/m]; (0, 0): none
     std::vector<WrinkleCorner> around;  ///< triangles that have a direction, vertex after vertex
     std::vector<std::uint32_t> first;   ///< per vertex and one more: index of its first in `around`
+    bool mean_length = false;           ///< of means at vertices, see WrinkleSurface
 };
 
 inline constexpr int kFoldSteps = 16;
@@ -85,9 +136,14 @@ using FoldTable = std::array<float, kFoldSteps>;
 
 /// What the wrinkle system prepares for each WrinkleSurface on a mesh that has such regions.
 struct WrinkleState {
-    WrinkleRest rest;
+    /// None for a radial driver; for strain three, along u, v and (u + v) / sqrt(2) of axes u and v
+    /// in the tangent plane of each vertex; otherwise one.
+    std::vector<WrinkleRest> rests;
     std::vector<float> mask;  ///< per vertex: 0 .. 1 of the wrinkles
     FoldTable folds = {};
+    /// Strain of a mesh with tangents, per vertex: the angle from the axis u to the tangent [rad],
+    /// and the side of the bitangent, 1 or -1. Or empty.
+    std::vector<Vec2> frames;
     std::uint64_t source = 0;  ///< hash of the mesh, its version, the map and the regions
 };
 

@@ -6,6 +6,8 @@
 #include "render/gpu/shader_library.h"
 #include "render/instance_list.h"
 #include "render/render_frame.h"
+#include "render/shading_models.h"
+#include "render/skinning/deformed_list.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -173,6 +175,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(lights.linear_fade, "LINEAR_FADE");
     variant.add_if(!lights.reach.empty(), "LOCAL_LIGHTS");
     add_shading_models(variant, frame.materials->shading_models());
+    variant.add_if(frame.shapes->lights_smooth_skin(), "SMOOTH_NORMALS");
     return true;
 }
 

@@ -23,7 +23,11 @@ constexpr unsigned kWrinklesBinding = 1;
 constexpr std::uint32_t kInitialTexels = 1 << 14;
 
 static_assert(kFoldSteps == layout::kFoldSteps);
+static_assert(static_cast<std::uint32_t>(WrinkleDriver::Strain) == layout::kWrinkleByStrain);
+static_assert(static_cast<std::uint32_t>(WrinkleDriver::Radial) == layout::kWrinkleByRadius);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Isometric) == layout::kWrinkleIsometric);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::Blend) == layout::kWrinkleBlend);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::StrainView) == layout::kWrinkleStrainView);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Bump) == layout::kWrinkleBump);
 
@@ -44,24 +48,51 @@ void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector
     const float share[3] = {-across.x - across.y, across.x, across.y};  // of each corner's position
     const std::uint32_t next = (corner + 1) % 3;
     const std::uint32_t last = (corner + 2) % 3;
-    const float root = std::sqrt(at.weight);
+    const float factor = rest.mean_length ? at.weight : std::sqrt(at.weight);
     texels.push_back({rest.corners[3 * triangle + next], rest.corners[3 * triangle + last]});
-    texels.push_back({bits(root * share[next]), bits(root * share[last])});
+    texels.push_back({bits(factor * share[next]), bits(factor * share[last])});
 }
 
-std::vector<Texel> rest_texels(const WrinkleState& state) {
-    const WrinkleRest& rest = state.rest;
-    std::vector<Texel> texels;
-    texels.reserve(rest.first.size() + 2 * rest.around.size());
+/// `number(v)` goes with each vertex.
+template <typename Number>
+void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number number) {
+    const std::size_t begin = texels.size();
     for (std::size_t v = 0; v < rest.first.size(); ++v) {
-        const float mask = v < state.mask.size() ? state.mask[v] : 0.0f;
-        const auto first = static_cast<std::uint32_t>(rest.first.size() + 2 * rest.first[v]);
-        texels.push_back({first, bits(mask)});
+        const auto first =
+            static_cast<std::uint32_t>(begin + rest.first.size() + 2 * rest.first[v]);
+        texels.push_back({first, bits(number(v))});
     }
     for (const WrinkleCorner& corner : rest.around) {
         append_corner(rest, corner, texels);
     }
+}
+
+/// All blocks; without any, one of vertices without triangles.
+std::vector<Texel> rest_texels(const WrinkleState& state) {
+    std::vector<Texel> texels;
+    const auto number = [&state](std::size_t block) {
+        return [&state, block](std::size_t v) {
+            if (block > 0) {
+                return v < state.frames.size() ? state.frames[v][static_cast<int>(block) - 1]
+                                               : 0.0f;
+            }
+            return v < state.mask.size() ? state.mask[v] : 0.0f;
+        };
+    };
+    for (std::size_t block = 0; block < state.rests.size(); ++block) {
+        append_rest(state.rests[block], texels, number(block));
+    }
+    if (state.rests.empty()) {
+        WrinkleRest none;
+        none.first.resize(state.mask.size() + 1);
+        append_rest(none, texels, number(0));
+    }
     return texels;
+}
+
+/// Texels of a block.
+std::uint32_t block_texels(const WrinkleRest& rest) {
+    return static_cast<std::uint32_t>(rest.first.size() + 2 * rest.around.size());
 }
 
 /// The texels of a state, uploaded on first use.
@@ -105,7 +136,14 @@ layout::WrinkleJob make_job(
     job.lambda = surface.lambda;
     job.beta = surface.beta;
     job.slack = surface.slack;
-    job.share = Vec4(surface.share, 0, 0, 0);
+    job.share = surface.share;
+    job.driver = static_cast<std::uint32_t>(used_driver(surface));
+    job.mean_length = !state.rests.empty() && state.rests[0].mean_length ? 1u : 0u;
+    job.activation = surface.activation;
+    if (state.rests.size() == 3) {
+        job.second = block_texels(state.rests[0]);
+        job.third = job.second + block_texels(state.rests[1]);
+    }
     for (int i = 0; i < kFoldSteps; ++i) {
         job.folds[i / 4][i % 4] = state.folds[static_cast<std::size_t>(i)];
     }

@@ -56,6 +56,7 @@ void main() {
     list = texelFetch(light_cells, int(instance.z)).xy;
 #endif
     split_unlit(s);
+    set_no_smooth_normal(s);
     Reflected light = reflect_all(s, position_ws, pixel, list);
     diffuse = light.diffuse + s.emission;
     specular = light.specular;

@@ -9,7 +9,6 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     SurfaceSample s = stored_surface(pixel);
     vec3 position_ws = world_position(gl_FragCoord.xy, texelFetch(scene_depth, pixel, 0).r);
-    Reflector r = make_reflector(s, to_viewer(position_ws));
-    Reflected around = reflect_surroundings(r, s, position_ws);
+    Reflected around = reflect_around(s, position_ws);
     radiance = vec4(storable(s.emission + around.diffuse + around.specular), 1.0);
 }

@@ -3,7 +3,7 @@
 //   VELOCITY  also the position in the previous frame
 //   DEFORMED  with VELOCITY: vertices also move in mesh space
 //   OBJECT_LIGHTS  also the index of the instance
-//   WRINKLE_MAP  also the strengths of its wrinkles
+//   WRINKLE_MAP, WRINKLE_VIEW  also the strengths of its wrinkles, or its strain; WRINKLE_FLAT: without interpolation
 //   CLIPPED  only on one side of view.clip_plane
 #version 450
 #include "lib/material_record.glsl"
@@ -25,7 +25,10 @@ layout(location = 5) out vec3 previous_clip;  // clip x, y, w
 #ifdef OBJECT_LIGHTS
 layout(location = 6) flat out uint object;
 #endif
-#ifdef WRINKLE_MAP
+#ifdef WRINKLE_STREAM
+#ifdef WRINKLE_FLAT
+flat
+#endif
 layout(location = 8) out vec4 wrinkle_strength;
 #endif
 #ifdef CLIPPED
@@ -43,7 +46,7 @@ void main() {
     tangent_ws = vec4(t * inversesqrt(max(dot(t, t), 1e-30)), tangent_ms.w * vertex_side());
     uv = vec4(first_uv, second_uv);
     vertex_color = color;
-#ifdef WRINKLE_MAP
+#ifdef WRINKLE_STREAM
     wrinkle_strength = wrinkle;
 #endif
     material_and_flags = instance.xy;

@@ -67,7 +67,16 @@ void main() {
     float share = water_share(water, above, cosine);
 
     // Light on the water, to be scattered in it or reflected as glints.
-    SurfaceSample s = SurfaceSample(normal, vec3(0.0), vec3(0.0), 1.0, roughness, 0.0, 0u, kModelPbr);
+    SurfaceSample s;
+    s.normal_ws = normal;
+    s.albedo = vec3(0.0);
+    s.emission = vec3(0.0);
+    s.occlusion = 1.0;
+    s.roughness = roughness;
+    s.metalness = 0.0;
+    s.material = 0u;
+    s.model = kModelPbr;
+    set_no_smooth_normal(s);
     Reflector r = make_reflector(s, to_camera);
     float head_on = (water.shape.w - 1.0) / (water.shape.w + 1.0);
     r.specular_0 = vec3(head_on * head_on);

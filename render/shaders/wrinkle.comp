@@ -22,24 +22,34 @@ vec3 position_of(uint vertex) {
 }
 
 // Square of the length across wrinkles by that at rest; 1 without a triangle, or where it is NaN or infinite.
-float compression(int triangle, int end, uint vertex, uint first) {
+float compression(int triangle, int end, uint vertex, uint first, bool mean_length) {
     vec3 at = position_of(vertex);
     float ratio = triangle == end ? 1.0 : 0.0;
     for (; triangle < end; triangle += 2) {
         uvec2 corners = texelFetch(rest, triangle).xy;
         vec2 across = uintBitsToFloat(texelFetch(rest, triangle + 1).xy);
         vec3 chord = across.x * (position_of(first + corners.x) - at) + across.y * (position_of(first + corners.y) - at);
-        ratio += dot(chord, chord);
+        float along = dot(chord, chord);
+        ratio += mean_length ? sqrt(along) : along;
     }
+    ratio = mean_length ? ratio * ratio : ratio;
     return ratio >= 0.0 && ratio < 1e30 ? ratio : 1.0;
+}
+
+// The same of a vertex in a block of the mesh at `rest_first`.
+float block_compression(uint rest_first, uint block, uint number, uint first, bool mean_length) {
+    int at = int(rest_first + block + number);
+    int begin = int(rest_first + texelFetch(rest, at).x);
+    int end = int(rest_first + texelFetch(rest, at + 1).x);
+    return compression(begin, end, first + number, first, mean_length);
 }
 
 // FoldTable of a job, straight between its steps.
 float fold_strength(int job, float e) {
     float place = clamp(e, 0.0, 1.0) * float(kFoldSteps - 1u);
     int i = min(int(place), int(kFoldSteps) - 2);
-    float low = uintBitsToFloat(texelFetch(jobs, job + 3 + i / 4)[i % 4]);
-    float high = uintBitsToFloat(texelFetch(jobs, job + 3 + (i + 1) / 4)[(i + 1) % 4]);
+    float low = uintBitsToFloat(texelFetch(jobs, job + 4 + i / 4)[i % 4]);
+    float high = uintBitsToFloat(texelFetch(jobs, job + 4 + (i + 1) / 4)[(i + 1) % 4]);
     return mix(low, high, place - float(i)) * sqrt(clamp(e, 0.0, 1.0));
 }
 
@@ -55,18 +65,31 @@ void main() {
     if (number >= job0.y) {
         return;
     }
+    uvec4 job2 = texelFetch(jobs, job + 2);  // share, driver, mean_length, activation
+    uvec4 job3 = texelFetch(jobs, job + 3);  // second, third
     uint first = job0.z - first_vertex;
-    uvec2 vertex = texelFetch(rest, int(job0.x + number)).xy;
-    int begin = int(job0.x + vertex.x);
-    int end = int(job0.x + texelFetch(rest, int(job0.x + number) + 1).x);
-    float ratio = compression(begin, end, first + number, first);
+    float mask = uintBitsToFloat(texelFetch(rest, int(job0.x + number)).y);
+    bool mean_length = job2.z != 0u;
+    float ratio = block_compression(job0.x, 0u, number, first, mean_length);
+    if (job2.y == kWrinkleByStrain) {
+        float along_v = block_compression(job0.x, job3.x, number, first, mean_length);
+        float between = block_compression(job0.x, job3.y, number, first, mean_length);
+        if (job1.x == kWrinkleStrainView) {
+            float angle = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.x + number)).y);
+            float side = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.y + number)).y);
+            vec3 strain = strain_of_tensor(ratio, along_v, between, angle, side);
+            wrinkles[first + number] = uvec2(packHalf2x16(strain.xy), packHalf2x16(vec2(strain.z, abs(side))));
+            return;
+        }
+        ratio = shortest_ratio(ratio, along_v, between);
+    }
 
     uint method = job1.x;
     float strength = method == kWrinkleIsometric
-        ? fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), uintBitsToFloat(texelFetch(jobs, job + 2).x)))
+        ? fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), uintBitsToFloat(job2.x)))
         : max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
-    strength *= uintBitsToFloat(vertex.y);
-    bool steep = method == kWrinkleBump || method == kWrinkleIsometric;
+    strength = mask * (job2.y == kWrinkleByRadius ? uintBitsToFloat(job2.w) : strength);
+    bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
     vec4 by_method = strength * vec4(
         steep ? 1.0 : 0.0,
         method == kWrinkleSphere ? 1.0 : 0.0,

@@ -1,9 +1,10 @@
 // Input of wrinkle.comp. Shared by C++ and GLSL.
 //
-// A mesh at rest is a block of texels of two 32-bit numbers. One per vertex and one more, which ends the last: its
-// first triangle as a texel of the block, and its mask as a float. Then two per triangle at a vertex, whose third corner
+// A mesh at rest is a block of texels of two 32-bit numbers; three, one after the other, for strain. One per vertex and one more, which ends the last: its
+// first triangle as a texel of the first block, and its mask as a float; in the second and third block the
+// angle and the side of its tangent instead (WrinkleState::frames; 0: none). Then two per triangle at a vertex, whose third corner
 // is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
-// root of the triangle's weight at the vertex.
+// root of the triangle's weight at the vertex (the weight itself where means are of lengths).
 
 #ifdef __cplusplus
 #pragma once
@@ -11,7 +12,7 @@
 namespace limn::layout {
 #endif
 
-// One instance: seven texels of four 32-bit numbers.
+// One instance: eight texels of four 32-bit numbers.
 struct WrinkleJob {
     uint rest;         // first texel of the mesh
     uint vertex_count;
@@ -21,11 +22,18 @@ struct WrinkleJob {
     float lambda;
     float beta;
     float slack;
-    vec4 share;        // x
+    float share;
+    uint driver;       // kWrinkleBy*
+    uint mean_length;  // 1: means are of lengths
+    float activation;
+    uint second;       // of strain: where its second and third block begin, from the first
+    uint third;
+    uint unused_0;
+    uint unused_1;
     vec4 folds[4];     // FoldTable
 };
 
-const uint kWrinkleJobTexels = 7u;
+const uint kWrinkleJobTexels = 8u;
 const uint kWrinkleGroup = 64u;        // vertices
 const uint kWrinkleGroupsWide = 1024u; // groups of a dispatch along x
 
@@ -35,6 +43,12 @@ const uint kWrinkleDirectional = 2u;
 const uint kWrinkleBump = 3u;
 const uint kWrinkleSphere = 4u;
 const uint kWrinkleIsometric = 5u;
+const uint kWrinkleBlend = 6u;
+const uint kWrinkleStrainView = 7u;
+
+// WrinkleDriver
+const uint kWrinkleByStrain = 2u;
+const uint kWrinkleByRadius = 3u;
 
 const uint kFoldSteps = 16u;
 

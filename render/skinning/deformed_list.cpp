@@ -10,6 +10,7 @@
 #include "render/mesh_pool.h"
 #include "render/skinning/deform_source.h"
 #include "render/skinning/skin_palette.h"
+#include "render/surface_features.h"
 
 #include <fmt/format.h>
 
@@ -20,6 +21,15 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kEvaluateGrain = 16;
+
+/// What its program must do, beside adding its wrinkles to the normals.
+std::uint32_t wrinkle_features(const WrinkleSurface& surface) {
+    if (surface.method == WrinkleMethod::StrainView) {
+        return kWrinkleView;
+    }
+    return (surface.method == WrinkleMethod::Blend ? kWrinkleBlend : 0u)
+           | (surface.fade ? kWrinkleFade : 0u) | (surface.interpolate ? 0u : kWrinkleFlat);
+}
 
 /// Hash of the state between `before` and `now` at time `alpha`; equal bytes give equal hashes.
 template <typename T>
@@ -188,6 +198,7 @@ void DeformedList::update(
         entry.wrinkled = wrinkles != nullptr && surface != nullptr
                          && surface->method != WrinkleMethod::None
                          && wrinkles->mask.size() == entry.rest->vertex_count;
+        entry.wrinkle_features = entry.wrinkled ? wrinkle_features(*surface) : 0;
     }
     for (std::uint32_t i = 0; i < entries_.size(); ++i) {
         Entry& entry = entries_[i];
@@ -215,6 +226,12 @@ void DeformedList::update(
                 assets->meshes[entry.mesh.index].name));
         }
     }
+}
+
+bool DeformedList::lights_smooth_skin() const {
+    return std::ranges::any_of(active_, [this](std::uint32_t i) {
+        return (entries_[i].wrinkle_features & (kWrinkleBlend | kWrinkleFade)) != 0;
+    });
 }
 
 std::int32_t DeformedList::request(std::uint32_t index, bool before) {

@@ -35,7 +35,8 @@ struct DeformedInstance {
     Bounds bounds;            ///< of the shape, in mesh space; conservative
     std::uint64_t shape = 0;  ///< hash: equal for equal shapes; never 0
     MeshId mesh;
-    bool wrinkled = false;  ///< has a WrinkleState, and draws it
+    bool wrinkled = false;               ///< has a WrinkleState, and draws it
+    std::uint32_t wrinkle_features = 0;  ///< of SurfaceFeature, if it is wrinkled
 };
 
 /// Jobs that share one dispatch: of the same kind, with their vertices within the range that a
@@ -80,6 +81,9 @@ class DeformedList {
     [[nodiscard]] const DeformedInstance& operator[](std::uint32_t index) const {
         return entries_[index];
     }
+
+    /// Whether some wrinkled skin is lit by its normal without wrinkles, too.
+    [[nodiscard]] bool lights_smooth_skin() const;
 
     /// Requests an instance's vertices, with `before` also its previous positions. Returns its base
     /// vertex.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -73,47 +74,17 @@ std::array<float, 3> corner_weights(const RestTriangle& triangle, WrinkleWeight 
     return {1, 1, 1};
 }
 
-}  // namespace
+struct VertexCorner {
+    std::uint32_t vertex;  ///< the first one at its position
+    WrinkleCorner at;      ///< weight not yet normalized
+};
 
-WrinkleRest make_wrinkle_rest(
-    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
-    std::span<const Vec3> across, WrinkleWeight weight) {
-    LIMN_CHECK(across.size() == positions.size());
-    struct Corner {
-        std::uint32_t vertex;
-        WrinkleCorner at;
-    };
-    WrinkleRest rest;
-    std::vector<Corner> corners;
-    const std::vector<std::uint32_t> welded = weld_positions(positions);
-    for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
-        const std::array<std::uint32_t, 3> v = {indices[i], indices[i + 1], indices[i + 2]};
-        if (std::ranges::max(v) >= positions.size()) {
-            continue;
-        }
-        const auto first = static_cast<std::uint32_t>(rest.corners.size());
-        rest.corners.insert(rest.corners.end(), v.begin(), v.end());
-        rest.across.push_back({0, 0});
-        const RestTriangle triangle =
-            rest_triangle(positions[v[0]], positions[v[1]], positions[v[2]]);
-        if (!(triangle.twice_area > 0) || !std::isfinite(triangle.twice_area)) {
-            continue;
-        }
-        const Vec3 direction =
-            mean_direction({across[v[0]], across[v[1]], across[v[2]]}, triangle.normal);
-        const Vec2 coefficients = in_edges(triangle, direction);
-        if (coefficients == Vec2{0, 0} || !is_finite(coefficients)) {
-            continue;
-        }
-        rest.across.back() = coefficients;
-        const std::array<float, 3> weights = corner_weights(triangle, weight);
-        for (std::uint32_t k = 0; k < 3; ++k) {
-            corners.push_back({welded[v[k]], {first + k, weights[k]}});
-        }
-    }
-    std::ranges::stable_sort(corners, {}, &Corner::vertex);
-    std::vector<std::size_t> begin(positions.size() + 1, 0);  // of each vertex's corners
-    for (const Corner& corner : corners) {
+/// Fills `around` and `first` from the corners of all vertices.
+void collect_corners(
+    WrinkleRest& rest, std::vector<VertexCorner>& corners, std::span<const std::uint32_t> welded) {
+    std::ranges::stable_sort(corners, {}, &VertexCorner::vertex);
+    std::vector<std::size_t> begin(welded.size() + 1, 0);  // of each vertex's corners
+    for (const VertexCorner& corner : corners) {
         ++begin[corner.vertex + 1];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -130,7 +101,144 @@ WrinkleRest make_wrinkle_rest(
         }
     }
     rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
+}
+
+/// Calls f(vertices, triangle) for each triangle that has an area.
+template <typename F>
+void each_triangle(std::span<const Vec3> positions, std::span<const std::uint32_t> indices, F&& f) {
+    for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
+        const std::array<std::uint32_t, 3> v = {indices[i], indices[i + 1], indices[i + 2]};
+        if (std::ranges::max(v) >= positions.size()) {
+            continue;
+        }
+        const RestTriangle triangle =
+            rest_triangle(positions[v[0]], positions[v[1]], positions[v[2]]);
+        f(v, triangle, triangle.twice_area > 0 && std::isfinite(triangle.twice_area));
+    }
+}
+
+/// `direction`, perpendicular to the unit vector `from`, turned by the rotation from there to `to`.
+Vec3 turn_with(const Vec3& direction, const Vec3& from, const Vec3& to) {
+    const Vec3 axis = glm::cross(from, to);
+    const float cosine =
+        std::max(glm::dot(from, to), -0.999f);  // any axis will do for the opposite
+    return cosine * direction + glm::cross(axis, direction)
+           + axis * (glm::dot(axis, direction) / (1 + cosine));
+}
+
+}  // namespace
+
+WrinkleRest make_wrinkle_rest(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+    std::span<const Vec3> across, WrinkleWeight weight) {
+    LIMN_CHECK(across.size() == positions.size());
+    WrinkleRest rest;
+    std::vector<VertexCorner> corners;
+    const std::vector<std::uint32_t> welded = weld_positions(positions);
+    each_triangle(
+        positions, indices,
+        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area) {
+            const auto first = static_cast<std::uint32_t>(rest.corners.size());
+            rest.corners.insert(rest.corners.end(), v.begin(), v.end());
+            rest.across.push_back({0, 0});
+            if (!has_area) {
+                return;
+            }
+            const Vec3 direction =
+                mean_direction({across[v[0]], across[v[1]], across[v[2]]}, triangle.normal);
+            const Vec2 coefficients = in_edges(triangle, direction);
+            if (coefficients == Vec2{0, 0} || !is_finite(coefficients)) {
+                return;
+            }
+            rest.across.back() = coefficients;
+            const std::array<float, 3> weights = corner_weights(triangle, weight);
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                corners.push_back({welded[v[k]], {first + k, weights[k]}});
+            }
+        });
+    collect_corners(rest, corners, welded);
     return rest;
+}
+
+WrinkleRest make_edge_rest(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices, WrinkleWeight weight) {
+    WrinkleRest rest;
+    std::vector<VertexCorner> corners;
+    const std::vector<std::uint32_t> welded = weld_positions(positions);
+    each_triangle(
+        positions, indices,
+        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area) {
+            if (!has_area) {
+                return;
+            }
+            const std::array<float, 3> weights = corner_weights(triangle, weight);
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t next = (k + 1) % 3;
+                const auto first = static_cast<std::uint32_t>(rest.corners.size());
+                rest.corners.insert(rest.corners.end(), {v[k], v[next], v[next]});
+                rest.across.emplace_back(1 / glm::distance(positions[v[k]], positions[v[next]]), 0);
+                corners.push_back({welded[v[k]], {first, weights[k]}});
+                corners.push_back({welded[v[next]], {first + 1, weights[next]}});
+            }
+        });
+    collect_corners(rest, corners, welded);
+    return rest;
+}
+
+std::array<WrinkleRest, 3> make_strain_rest(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+    std::span<const Vec3> u, std::span<const Vec3> normals, WrinkleWeight weight) {
+    LIMN_CHECK(u.size() == positions.size());
+    LIMN_CHECK(normals.size() == positions.size());
+    std::array<WrinkleRest, 3> rests;
+    std::array<std::vector<VertexCorner>, 3> corners;
+    const std::vector<std::uint32_t> welded = weld_positions(positions);
+    each_triangle(
+        positions, indices,
+        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area) {
+            const std::array<float, 3> weights = corner_weights(triangle, weight);
+            for (std::uint32_t k = 0; k < 3 && has_area; ++k) {
+                const std::uint32_t vertex = welded[v[k]];
+                const Vec3 along_u = turn_with(u[vertex], normals[vertex], triangle.normal);
+                const Vec3 along_v = glm::cross(triangle.normal, along_u);
+                const Vec3 directions[] = {
+                    along_u, along_v, (along_u + along_v) * std::numbers::sqrt2_v<float> * 0.5f};
+                for (std::size_t i = 0; i < 3; ++i) {
+                    WrinkleRest& rest = rests[i];
+                    const auto first = static_cast<std::uint32_t>(rest.corners.size());
+                    rest.corners.insert(rest.corners.end(), v.begin(), v.end());
+                    rest.across.push_back(in_edges(triangle, directions[i]));
+                    corners[i].push_back({vertex, {first + k, weights[k]}});
+                }
+            }
+        });
+    for (std::size_t i = 0; i < 3; ++i) {
+        collect_corners(rests[i], corners[i], welded);
+    }
+    return rests;
+}
+
+SkinStrain tensor_of_ratios(float along_u, float along_v, float between) {
+    return {.uu = along_u, .vv = along_v, .uv = between - 0.5f * (along_u + along_v)};
+}
+
+SkinStrain strain_of_tensor(const SkinStrain& tensor, float angle, float side) {
+    // sqrt(C) = (C + r I) / sqrt(trace C + 2 r) with r = sqrt(det C), as in find_strain().
+    const float root = std::sqrt(std::max(tensor.uu * tensor.vv - tensor.uv * tensor.uv, 0.0f));
+    const float sum = std::sqrt(std::max(tensor.uu + tensor.vv + 2 * root, 1e-20f));
+    const float mean = 0.5f * (tensor.uu + tensor.vv);
+    const float half = 0.5f * (tensor.uu - tensor.vv);
+    const float c = std::cos(2 * angle);
+    const float s = std::sin(2 * angle);
+    const float turned = half * c + tensor.uv * s;
+    return {
+        .uu = (mean + turned + root) / sum - 1,
+        .vv = (mean - turned + root) / sum - 1,
+        .uv = side * (tensor.uv * c - half * s) / sum};
+}
+
+float shortest_ratio(float along_u, float along_v, float between) {
+    return std::max(principal_strain(tensor_of_ratios(along_u, along_v, between)).lower, 0.0f);
 }
 
 void find_compression(
@@ -155,10 +263,31 @@ void average_compression(
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         float sum = 0;
         for (std::uint32_t i = rest.first[v]; i < rest.first[v + 1]; ++i) {
-            sum += rest.around[i].weight * ratio[rest.around[i].corner / 3];
+            const float of_triangle = ratio[rest.around[i].corner / 3];
+            sum +=
+                rest.around[i].weight * (rest.mean_length ? std::sqrt(of_triangle) : of_triangle);
         }
-        vertices[v] = rest.first[v] == rest.first[v + 1] ? 1.0f : sum;
+        const float mean = rest.mean_length ? sum * sum : sum;
+        vertices[v] = rest.first[v] == rest.first[v + 1] ? 1.0f : mean;
     }
+}
+
+std::vector<float>
+vertex_compression(std::span<const WrinkleRest> rests, std::span<const Vec3> deformed) {
+    std::array<std::vector<float>, 3> found;
+    for (std::size_t i = 0; i < rests.size(); ++i) {
+        std::vector<float> triangles(rests[i].across.size());
+        find_compression(rests[i], deformed, triangles);
+        found[i].resize(deformed.size());
+        average_compression(rests[i], triangles, found[i]);
+    }
+    if (rests.empty()) {
+        return std::vector<float>(deformed.size(), 1.0f);
+    }
+    for (std::size_t v = 0; rests.size() == 3 && v < deformed.size(); ++v) {
+        found[0][v] = shortest_ratio(found[0][v], found[1][v], found[2][v]);
+    }
+    return std::move(found[0]);
 }
 
 float wrinkle_intensity(float ratio, float lambda, float beta) {

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "ecs/components/wrinkle.h"
+#include "systems/faces/skin_strain.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace limn {
 
@@ -26,14 +29,45 @@ namespace limn {
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
     std::span<const Vec3> across, WrinkleWeight weight = WrinkleWeight::Angle);
 
+/// Edges from each vertex, instead of triangles: of each triangle's share half goes to each of its
+/// two edges there (wrinkle.compression.prior-models).
+[[nodiscard]] WrinkleRest make_edge_rest(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+    WrinkleWeight weight = WrinkleWeight::Angle);
+
+/// The right Cauchy-Green tensor at each vertex, C = mean of F^T F, as the squares of lengths along
+/// u, v and (u + v) / sqrt(2): axes `u` (unit, tangent) and v = normal x u of the vertex, turned
+/// into the plane of each triangle with the normal.
+[[nodiscard]] std::array<WrinkleRest, 3> make_strain_rest(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+    std::span<const Vec3> u, std::span<const Vec3> normals,
+    WrinkleWeight weight = WrinkleWeight::Angle);
+
+/// C of lengths along u, v and (u + v) / sqrt(2), squared.
+[[nodiscard]] SkinStrain tensor_of_ratios(float along_u, float along_v, float between);
+
+/// Strain of C, sqrt(C) - I, in axes turned by `angle` [rad] from u towards v; with `side` -1 the
+/// second one is opposite.
+[[nodiscard]] SkinStrain strain_of_tensor(const SkinStrain& tensor, float angle, float side);
+
+/// The square of the length in the shortest direction: the lower eigenvalue of C, >= 0.
+[[nodiscard]] float shortest_ratio(float along_u, float along_v, float between);
+
 /// Square of the length of each triangle across its wrinkles, 1 at rest: `ratio` has one element
 /// per triangle. 1 where it has no direction or a position is not finite.
 void find_compression(
     const WrinkleRest& rest, std::span<const Vec3> deformed, std::span<float> ratio);
 
-/// Weighted means of the triangles at each vertex; 1 at a vertex without any.
+/// Weighted means of the triangles at each vertex; 1 at a vertex without any. With `mean_length` of
+/// the rest they are of lengths, squared: less than the mean of squares by their variance
+/// (wrinkle.compression.square-length).
 void average_compression(
     const WrinkleRest& rest, std::span<const float> ratio, std::span<float> vertices);
+
+/// Square of the length at each vertex by all rests of a WrinkleState: in the shortest direction of
+/// three, 1 without any.
+[[nodiscard]] std::vector<float>
+vertex_compression(std::span<const WrinkleRest> rests, std::span<const Vec3> deformed);
 
 /// How strong wrinkles are, -1 .. 1, falling with `ratio` >= 0; negative: stretched. 0 at 1 /
 /// lambda; the slope there is -beta lambda / 2. lambda > 1 lets some compression pass before

@@ -1,10 +1,15 @@
 #include "systems/faces/wrinkle_system.h"
 
 #include "ecs/base/hash.h"
+#include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_fold.h"
 #include "systems/faces/wrinkle_measure.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <span>
 #include <utility>
 
 namespace limn {
@@ -25,14 +30,70 @@ const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
     return image < assets.images.size() ? &assets.images[image] : nullptr;
 }
 
-/// Whether it says where and across which direction a vertex wrinkles.
+/// Whether it says where and, if that is measured, across which direction a vertex wrinkles.
 bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::size_t vertices) {
     const bool named = surface.regions.empty()
                        || std::ranges::find(surface.regions, region.name) != surface.regions.end();
-    return named && region.weights.size() == vertices && region.across.size() == vertices;
+    return named && region.weights.size() == vertices
+           && (region.across.size() == vertices || used_driver(surface) != WrinkleDriver::Chord);
+}
+
+/// A mesh without regions wrinkles anywhere by drivers that need no direction.
+bool wrinkles_everywhere(const WrinkleSurface& surface, const MeshData& mesh) {
+    return surface.method == WrinkleMethod::StrainView
+           || (mesh.regions.empty() && surface.regions.empty()
+               && surface.driver != WrinkleDriver::Chord);
+}
+
+std::vector<WrinkleRest>
+make_strain_rests(const MeshData& mesh, WrinkleWeight weight, std::vector<Vec2>& frames) {
+    const SkinTriangles skin = make_skin_triangles(mesh.positions, mesh.indices, 0);
+    std::vector<Vec3> normals;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        normals.push_back(glm::cross(skin.vertex_u[v], skin.vertex_v[v]));
+    }
+    if (mesh.tangents.size() == mesh.positions.size()) {
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            const Vec3 tangent = mesh.tangents[v];
+            const float along_u = glm::dot(tangent, skin.vertex_u[v]);
+            const float along_v = glm::dot(tangent, skin.vertex_v[v]);
+            frames.emplace_back(std::atan2(along_v, along_u), mesh.tangents[v].w < 0 ? -1 : 1);
+        }
+    }
+    std::array<WrinkleRest, 3> rests =
+        make_strain_rest(mesh.positions, mesh.indices, skin.vertex_u, normals, weight);
+    return {std::make_move_iterator(rests.begin()), std::make_move_iterator(rests.end())};
+}
+
+/// What is measured; `across` is per vertex.
+std::vector<WrinkleRest> make_rests(
+    const WrinkleSurface& surface, const MeshData& mesh, std::span<const Vec3> across,
+    std::vector<Vec2>& frames) {
+    std::vector<WrinkleRest> rests;
+    switch (used_driver(surface)) {
+    case WrinkleDriver::Chord:
+        rests.push_back(make_wrinkle_rest(mesh.positions, mesh.indices, across, surface.weight));
+        break;
+    case WrinkleDriver::Edge:
+        rests.push_back(make_edge_rest(mesh.positions, mesh.indices, surface.weight));
+        break;
+    case WrinkleDriver::Strain:
+        return make_strain_rests(mesh, surface.weight, frames);
+    case WrinkleDriver::Radial:
+        break;
+    }
+    for (WrinkleRest& rest : rests) {
+        rest.mean_length = surface.mean_length;
+    }
+    return rests;
 }
 
 }  // namespace
+
+float radial_share(const Vec3& position, const Vec3& center, float radius) {
+    const float share = glm::distance(position, center) / radius;
+    return share < 1 ? 0.5f + 0.5f * std::cos(kPi * share) : 0.0f;
+}
 
 std::uint64_t
 wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets) {
@@ -42,9 +103,16 @@ wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, cons
     }
     std::uint64_t hash = hash_combine(instance.mesh.index, mesh->version);
     hash = hash_combine(hash, static_cast<std::uint64_t>(surface.weight));
+    hash = hash_combine(hash, static_cast<std::uint64_t>(used_driver(surface)));
+    hash = hash_combine(hash, surface.mean_length ? 1 : 0);
+    hash = hash_combine(hash, surface.method == WrinkleMethod::StrainView ? 1 : 0);
+    if (used_driver(surface) == WrinkleDriver::Radial) {
+        hash = hash_bytes(&surface.center, sizeof surface.center, hash);
+        hash = hash_bytes(&surface.radius, sizeof surface.radius, hash);
+    }
     const ImageData* const map = map_of(instance, assets);
     hash = hash_combine(hash, map == nullptr ? kNoAsset : map - assets.images.data());
-    bool any = false;
+    bool any = wrinkles_everywhere(surface, *mesh);
     for (std::size_t i = 0; i < mesh->regions.size(); ++i) {
         if (is_used(mesh->regions[i], surface, mesh->positions.size())) {
             hash = hash_combine(hash, i);
@@ -65,7 +133,7 @@ WrinkleState make_wrinkle_state(
     const std::size_t vertices = mesh.positions.size();
     std::vector<Vec3> across(vertices, Vec3{0, 0, 0});
     std::vector<float> strongest(vertices, 0.0f);
-    state.mask.assign(vertices, 0.0f);
+    state.mask.assign(vertices, wrinkles_everywhere(surface, mesh) ? 1.0f : 0.0f);
     for (const VertexRegion& region : mesh.regions) {
         if (!is_used(region, surface, vertices)) {
             continue;
@@ -73,13 +141,18 @@ WrinkleState make_wrinkle_state(
         for (std::size_t v = 0; v < vertices; ++v) {
             const float weight = region.weights[v];
             state.mask[v] = std::min(state.mask[v] + std::max(finite_or(weight, 0), 0.0f), 1.0f);
-            if (weight > strongest[v]) {
+            if (weight > strongest[v] && region.across.size() == vertices) {
                 strongest[v] = weight;
                 across[v] = region.across[v];
             }
         }
     }
-    state.rest = make_wrinkle_rest(mesh.positions, mesh.indices, across, surface.weight);
+    state.rests = make_rests(surface, mesh, across, state.frames);
+    if (used_driver(surface) == WrinkleDriver::Radial) {
+        for (std::size_t v = 0; v < vertices; ++v) {
+            state.mask[v] *= radial_share(mesh.positions[v], surface.center, surface.radius);
+        }
+    }
     if (const ImageData* const map = map_of(instance, assets)) {
         state.folds = make_fold_table(wrinkle_slopes(*map));
     }

@@ -13,12 +13,16 @@ namespace limn {
 // wrinkle_pass.h.
 
 /// Adds a WrinkleState to each WrinkleSurface whose mesh has one of its regions, and makes it anew
-/// where it is out of date. Removes it where the mesh has none.
+/// where it is out of date. Removes it where the mesh has none. A mesh that has no regions at all
+/// wrinkles everywhere, unless the driver is a chord.
 void prepare_wrinkles(
     Query<const WrinkleSurface, const MeshInstance> surfaces, Query<const WrinkleState> states,
     Res<const Assets> assets, Commands commands);
 
 // ---- parts of the above ----
+
+/// Of a radial driver: 1 at the center, falling to 0 at `radius` [m] and beyond, by a cosine.
+[[nodiscard]] float radial_share(const Vec3& position, const Vec3& center, float radius);
 
 /// Hash of all that a state is made from; 0: the mesh has no such region.
 [[nodiscard]] std::uint64_t

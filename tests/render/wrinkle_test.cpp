@@ -1,11 +1,7 @@
-// clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
-#include "tests/render/skin_fixture.h"
-// clang-format on
-#include "ecs/components/wrinkle.h"
 #include "systems/faces/wrinkle_fold.h"
 #include "systems/faces/wrinkle_measure.h"
-#include "systems/faces/wrinkle_system.h"
 #include "tests/near.h"
+#include "tests/render/wrinkle_fixture.h"
 
 #include <glm/geometric.hpp>
 
@@ -14,46 +10,6 @@
 
 namespace limn::test {
 namespace {
-
-constexpr std::uint8_t kSlopeByte = 128 + 60;  // of a wrinkle map: y of the normal is 60 / 127
-
-/// Skin that a morph target shortens.
-struct WrinkleScene : SkinScene {
-    /// One texel: a slope along v, up the map.
-    ImageId slope_map() {
-        return add(ImageData{
-            .name = "slope", .width = 1, .height = 1, .pixels = {128, kSlopeByte, 240, 255}});
-    }
-    static Vec2 map_slope() { return {0, -60.0f / 112.0f}; }
-
-    Entity skin(MeshData mesh, const WrinkleSurface& surface, float weight) {
-        mesh.regions = {
-            {.name = "all",
-             .weights = std::vector<float>(mesh.positions.size(), 1.0f),
-             .across = std::vector<Vec3>(mesh.positions.size(), Vec3{0, 1, 0})}};
-        const Entity entity = place(add(std::move(mesh)), add(material), {});
-        world.add(entity, Deformed{entity, {}});
-        world.add(entity, MorphWeights{.weights = {weight}, .previous = {weight}});
-        world.add(entity, surface);
-        world.run(prepare_wrinkles);
-        return entity;
-    }
-    /// The square, whose height becomes a share `1 - weight` of what it was.
-    Entity square(const WrinkleSurface& surface, float weight) {
-        MeshData mesh = make_square();
-        MorphTarget& flat = mesh.morphs.emplace_back();
-        flat.name = "flat";
-        for (std::uint32_t v = 0; v < 4; ++v) {
-            flat.vertices.push_back(v);
-            flat.positions.push_back(mesh.positions[v] * Vec3{0, -1, 0});
-        }
-        return skin(std::move(mesh), surface, weight);
-    }
-
-    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
-    Material material = {
-        .base_color = {0.5f, 0.4f, 0.3f, 1}, .wrinkle_texture = {.image = slope_map()}};
-};
 
 /// The factor on the slopes of the map that its normal was drawn with.
 float drawn_factor(const gpu::FloatImage& normal) {
@@ -67,21 +23,35 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
     REQUIRE(readback);
     Random random(5, 0, 0, 0);
+    const WrinkleSurface base = {.lambda = 1.1f, .beta = 3, .slack = 0.01f};
+    std::vector<WrinkleSurface> surfaces;
     for (const WrinkleMethod method :
          {WrinkleMethod::Bump, WrinkleMethod::Sphere, WrinkleMethod::Alpha,
           WrinkleMethod::Directional, WrinkleMethod::Isometric}) {
+        surfaces.push_back(base);
+        surfaces.back().method = method;
+    }
+    for (const WrinkleDriver driver :
+         {WrinkleDriver::Chord, WrinkleDriver::Edge, WrinkleDriver::Strain,
+          WrinkleDriver::Radial}) {
+        surfaces.push_back(base);
+        surfaces.back().method = WrinkleMethod::Bump;
+        surfaces.back().driver = driver;
+        surfaces.back().mean_length = true;
+        surfaces.back().center = {1, 0.2f, 0};
+        surfaces.back().radius = 1.3f;
+        surfaces.back().activation = 0.7f;
+    }
+    for (const WrinkleSurface& asked : surfaces) {
+        const WrinkleMethod method = asked.method;
         MeshData tube = make_tube(24, 12, 1);
         add_morphs(tube, 1, 1, 0.03f, random);
-        const Entity entity =
-            skin(std::move(tube), {.method = method, .lambda = 1.1f, .beta = 3, .slack = 0.01f}, 1);
+        const Entity entity = skin(std::move(tube), asked, 1);
         const oracle::SkinReadbackVertices found =
             readback->run(world, std::vector<Entity>{entity})[0];
         const WrinkleState& state = world.get<WrinkleState>(entity);
         const WrinkleSurface& surface = world.get<WrinkleSurface>(entity);
-        std::vector<float> triangles(state.rest.across.size());
-        std::vector<float> ratio(found.positions.size());
-        find_compression(state.rest, found.positions, triangles);
-        average_compression(state.rest, triangles, ratio);
+        const std::vector<float> ratio = vertex_compression(state.rests, found.positions);
         const int component = method == WrinkleMethod::Sphere        ? 1
                               : method == WrinkleMethod::Alpha       ? 2
                               : method == WrinkleMethod::Directional ? 3
@@ -90,19 +60,73 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
         int strong = 0;
         for (std::size_t v = 0; v < ratio.size(); ++v) {
             const float strength =
-                method == WrinkleMethod::Isometric
-                    ? fold_strength(
-                        state.folds, fold_excess(ratio[v], surface.slack, surface.share))
+                method == WrinkleMethod::Isometric ? fold_strength(
+                    state.folds, fold_excess(ratio[v], surface.slack, surface.share))
+                : surface.driver == WrinkleDriver::Radial
+                    ? surface.activation
                     : std::max(wrinkle_intensity(ratio[v], surface.lambda, surface.beta), 0.0f);
             Vec4 expected = {0, 0, 0, 0};
-            expected[component] = strength;
+            expected[component] = state.mask[v] * strength;
             CHECK(glm::length(found.wrinkles[v] - expected) <= 1e-3f * std::max(strength, 1.0f));
-            strong += strength > 0.1f ? 1 : 0;
+            strong += expected[component] > 0.1f ? 1 : 0;
         }
         CHECK(strong > 3);
         readback->forget();
         world.destroy(entity);
     }
+}
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strains in the tangent frame are those of the CPU") {
+    Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
+    REQUIRE(readback);
+    Random random(6, 0, 0, 0);
+    MeshData tube = make_tube(24, 12, 1);
+    add_morphs(tube, 1, 1, 0.03f, random);
+    for (std::size_t v = 0; v < tube.tangents.size(); v += 2) {
+        tube.tangents[v].w = -tube.tangents[v].w;
+    }
+    for (std::size_t v = 0; v < tube.tangents.size(); ++v) {  // slanted
+        const Vec3 t = tube.tangents[v];
+        const Vec3 slanted = 0.8f * t + 0.6f * glm::cross(tube.normals[v], t);
+        tube.tangents[v] = Vec4(slanted, tube.tangents[v].w);
+    }
+    const Entity entity = skin(std::move(tube), {.method = WrinkleMethod::StrainView}, 1);
+    const oracle::SkinReadbackVertices found = readback->run(world, std::vector<Entity>{entity})[0];
+    const WrinkleState& state = world.get<WrinkleState>(entity);
+    REQUIRE(state.rests.size() == 3);
+    REQUIRE(state.frames.size() == found.positions.size());
+    std::vector<std::vector<float>> lengths;
+    for (const WrinkleRest& rest : state.rests) {
+        lengths.push_back(vertex_compression({&rest, 1}, found.positions));
+    }
+    float strongest = 0;
+    for (std::size_t v = 0; v < found.positions.size(); ++v) {
+        const SkinStrain strain = strain_of_tensor(
+            tensor_of_ratios(lengths[0][v], lengths[1][v], lengths[2][v]), state.frames[v].x,
+            state.frames[v].y);
+        const Vec4 expected = {strain.uu, strain.vv, strain.uv, 1};
+        CHECK(glm::length(found.wrinkles[v] - expected) <= 2e-3f);
+        strongest = std::max(strongest, std::abs(strain.uv));
+    }
+    CHECK(strongest > 0.05f);
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle pass: compressed skin is shown red, stretched skin blue, any other gray") {
+    material.wrinkle_texture = {};  // not needed
+    const auto color = [&](float weight) {
+        const Entity entity = square({.method = WrinkleMethod::StrainView}, weight);
+        const gpu::FloatImage albedo = aov(view, "albedo");
+        world.destroy(entity);
+        return rgb_at(albedo, 2, 16);  // between two crosses
+    };
+    const Vec3 rest = color(0);
+    CHECK(rest.x == near(rest.z).epsilon(1e-2));
+    const Vec3 compressed = color(0.3f);
+    CHECK(compressed.x > 5 * compressed.z);
+    const Vec3 stretched = color(-0.3f);
+    CHECK(stretched.z > 5 * stretched.x);
 }
 
 TEST_CASE_FIXTURE(

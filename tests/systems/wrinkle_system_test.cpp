@@ -38,9 +38,9 @@ TEST_CASE(
     CHECK(all.mask == std::vector<float>{1, 1, 1, 0.6f});
     const WrinkleState brow = make_wrinkle_state({.regions = {"brow"}}, kInstance, assets);
     CHECK(brow.mask == std::vector<float>{1, 0.8f, 0.7f, 0});
-    CHECK(brow.rest.across[0] == Vec2{1, 0});
+    CHECK(brow.rests[0].across[0] == Vec2{1, 0});
     const WrinkleState cheek = make_wrinkle_state({.regions = {"cheek"}}, kInstance, assets);
-    CHECK(cheek.rest.across[0] == Vec2{0, 1});
+    CHECK(cheek.rests[0].across[0] == Vec2{0, 1});
 }
 
 TEST_CASE("wrinkle system: a state follows its mesh, its regions and what is asked for") {
@@ -75,5 +75,45 @@ TEST_CASE(
     assets.meshes[0].regions[0].weights.pop_back();
     assets.meshes[0].regions[1].across.clear();
     CHECK(wrinkle_source({}, kInstance, assets) == 0);
-    CHECK(make_wrinkle_state({}, kInstance, assets).rest.first.empty());
+    CHECK(make_wrinkle_state({}, kInstance, assets).rests.empty());
+}
+
+TEST_CASE("wrinkle system: each driver measures what it is named after") {
+    Assets assets = two_regions();
+    const auto state = [&](WrinkleDriver driver) {
+        return make_wrinkle_state({.driver = driver, .radius = 1}, kInstance, assets);
+    };
+    CHECK(state(WrinkleDriver::Chord).rests.size() == 1);
+    CHECK(state(WrinkleDriver::Edge).rests[0].across.size() == 6);
+    CHECK(state(WrinkleDriver::Strain).rests.size() == 3);
+    CHECK(state(WrinkleDriver::Radial).rests.empty());
+    CHECK(state(WrinkleDriver::Chord).source != state(WrinkleDriver::Edge).source);
+    // Only a chord has a direction.
+    for (VertexRegion& region : assets.meshes[0].regions) {
+        region.across.clear();
+    }
+    CHECK(state(WrinkleDriver::Chord).source == 0);
+    CHECK(state(WrinkleDriver::Edge).mask == std::vector<float>{1, 1, 1, 0.6f});
+    assets.meshes[0].regions.clear();
+    CHECK(state(WrinkleDriver::Chord).source == 0);
+    CHECK(state(WrinkleDriver::Strain).mask == std::vector<float>(4, 1.0f));
+}
+
+TEST_CASE("wrinkle system: a radial driver is strongest at its center and none at its radius") {
+    const Assets assets = two_regions();
+    const WrinkleState state =
+        make_wrinkle_state({.driver = WrinkleDriver::Radial, .radius = 1}, kInstance, assets);
+    CHECK(state.mask[0] == 1);
+    CHECK(state.mask[1] == 0);  // at 1 m
+    CHECK(state.mask[3] == 0);
+    // The same in all directions, and falling.
+    float before = 1;
+    for (int i = 1; i < 12; ++i) {
+        const float r = 0.1f * static_cast<float>(i);
+        const float share = radial_share({1 + r, 2, 3}, {1, 2, 3}, 1);
+        CHECK(share == near(radial_share({1, 2 - 0.6f * r, 3 + 0.8f * r}, {1, 2, 3}, 1)));
+        CHECK((share < before || share == 0));
+        CHECK((share == 0) == (i >= 10));
+        before = share;
+    }
 }

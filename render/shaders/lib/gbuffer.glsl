@@ -7,12 +7,21 @@
 //     z   occlusion 8, roughness 10, metalness 7, shading model 5,  high bits of albedo b 2
 //     w   emission, shared exponent       9 + 9 + 9 + 5
 //
-// For Unlit, albedo is the mirrored share and its color is in emission. All zero: no surface here. The index of the
+// For Unlit, albedo is the mirrored share and its color is in emission. Wrinkled skin that needs its smooth normal when
+// lit (SMOOTH_NORMALS) emits nothing: w is
+//
+//     w   smooth normal, octahedral 11 + 11,  share of the wrinkles 9,  fades 1
+//
+// and the shading model has its highest bit set. All zero: no surface here. The index of the
 // material is in a target of its own, which exists only where shading models read their material's record when lit
 // (lib/stored_surface.glsl).
 
 #include "generated/model_numbers.glsl"
 #include "lib/octahedral.glsl"
+
+#if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE)) && !defined(SMOOTH_NORMALS)
+#define SMOOTH_NORMALS
+#endif
 
 struct SurfaceSample {
     vec3 normal_ws;   // unit
@@ -23,7 +32,25 @@ struct SurfaceSample {
     float metalness;  // 0 .. 1
     uint material;    // index; not in pack_surface()
     uint model;       // kModel*
+#ifdef SMOOTH_NORMALS
+    vec3 smooth_normal_ws;  // unit, of skin without its wrinkles
+    float raised;           // how much of the light is that of normal_ws, the rest that of smooth_normal_ws
+    bool fades;             // light that grazes smooth_normal_ws
+    bool smooth_is_stored;  // otherwise raised is 1
+#endif
 };
+
+const uint kSmoothNormalBit = 16u;  // of the stored shading model
+
+// Sets what only wrinkled skin has otherwise.
+void set_no_smooth_normal(inout SurfaceSample s) {
+#ifdef SMOOTH_NORMALS
+    s.smooth_normal_ws = s.normal_ws;
+    s.raised = 1.0;
+    s.fades = false;
+    s.smooth_is_stored = false;
+#endif
+}
 
 // Splits the color of an unlit surface into emission and mirrored share.
 void split_unlit(inout SurfaceSample s) {
@@ -53,15 +80,35 @@ vec3 unpack_rgb9e5(uint bits) {
 const vec3 kAlbedoRange = vec3(2047.0, 2047.0, 4095.0);
 const vec3 kFactorRange = vec3(255.0, 1023.0, 127.0);  // occlusion, roughness, metalness
 
+#ifdef SMOOTH_NORMALS
+uint pack_smooth_normal(SurfaceSample s) {
+    uvec2 n = uvec2(clamp(octahedral_encode(s.smooth_normal_ws) * 1023.0 + 1024.5, 1.0, 2047.0));
+    uint raised = uint(clamp(s.raised, 0.0, 1.0) * 511.0 + 0.5);
+    return n.x | n.y << 11 | raised << 22 | (s.fades ? 1u : 0u) << 31;
+}
+
+void unpack_smooth_normal(inout SurfaceSample s, uint bits) {
+    s.smooth_normal_ws = octahedral_decode((vec2(bits & 2047u, bits >> 11 & 2047u) - 1024.0) / 1023.0);
+    s.raised = s.smooth_is_stored ? float(bits >> 22 & 511u) / 511.0 : 1.0;
+    s.fades = s.smooth_is_stored && bits >> 31 != 0u;
+}
+#endif
+
 uvec4 pack_surface(SurfaceSample s) {
     uvec2 n = uvec2(clamp(octahedral_encode(s.normal_ws) * 32767.0 + 32768.5, 1.0, 65535.0));
     uvec3 a = uvec3(sqrt(clamp(s.albedo, 0.0, 1.0)) * kAlbedoRange + 0.5);
     uvec3 factors = uvec3(clamp(vec3(s.occlusion, s.roughness, s.metalness), 0.0, 1.0) * kFactorRange + 0.5);
+    uint emission = pack_rgb9e5(s.emission);
+    uint model = s.model;
+#ifdef SMOOTH_NORMALS
+    emission = s.smooth_is_stored ? pack_smooth_normal(s) : emission;
+    model |= s.smooth_is_stored ? kSmoothNormalBit : 0u;
+#endif
     return uvec4(
         n.x | n.y << 16,
         a.r | a.g << 11 | a.b << 22,
-        factors.x | factors.y << 8 | factors.z << 18 | s.model << 25 | a.b >> 10 << 30,
-        pack_rgb9e5(s.emission));
+        factors.x | factors.y << 8 | factors.z << 18 | model << 25 | a.b >> 10 << 30,
+        emission);
 }
 
 SurfaceSample unpack_surface(uvec4 g) {
@@ -74,7 +121,12 @@ SurfaceSample unpack_surface(uvec4 g) {
     s.roughness = factors.y;
     s.metalness = factors.z;
     s.material = 0u;
-    s.model = g.z >> 25 & 31u;
-    s.emission = unpack_rgb9e5(g.w);
+    s.model = g.z >> 25 & 15u;
+    bool is_smooth_normal = (g.z >> 25 & kSmoothNormalBit) != 0u;
+    s.emission = is_smooth_normal ? vec3(0.0) : unpack_rgb9e5(g.w);
+#ifdef SMOOTH_NORMALS
+    s.smooth_is_stored = is_smooth_normal;
+    unpack_smooth_normal(s, g.w);
+#endif
     return s;
 }

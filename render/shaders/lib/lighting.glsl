@@ -227,15 +227,52 @@ Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
     return result;
 }
 
-// Radiance toward the camera of a surface at `position_ws` in `pixel`, without its emission; `list` as in add_listed.
-Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
+Reflected add_reflected(Reflected a, Reflected b) {
+    return Reflected(a.diffuse + b.diffuse, a.specular + b.specular);
+}
+
+#ifdef SMOOTH_NORMALS
+// Skin without its wrinkles.
+SurfaceSample smooth_skin(SurfaceSample s) {
+    s.normal_ws = s.smooth_normal_ws;
+    return s;
+}
+
+// Light of wrinkled skin as far as it is raised, the rest of smooth skin (wrinkle.compression.bump-blend).
+Reflected blend_skin(SurfaceSample s, Reflected wrinkled, Reflected smooth_light) {
+    return Reflected(
+        mix(smooth_light.diffuse, wrinkled.diffuse, s.raised), mix(smooth_light.specular, wrinkled.specular, s.raised));
+}
+#endif
+
+// Of lights and surroundings, by the normal of `s` alone.
+Reflected reflect_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
     add_directional(sum, r, position_ws, pixel);
     add_listed(sum, r, list, position_ws, pixel);
-    Reflected lights = reflect_lights(r, sum);
-    Reflected around = reflect_surroundings(r, s, position_ws);
-    return Reflected(lights.diffuse + around.diffuse, lights.specular + around.specular);
+    return add_reflected(reflect_lights(r, sum), reflect_surroundings(r, s, position_ws));
+}
+
+// Radiance toward the camera of a surface at `position_ws` in `pixel`, without its emission; `list` as in add_listed.
+Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
+    Reflected light = reflect_by_normal(s, position_ws, pixel, list);
+#ifdef SMOOTH_NORMALS
+    if (s.raised < 1.0) {
+        light = blend_skin(s, light, reflect_by_normal(smooth_skin(s), position_ws, pixel, list));
+    }
+#endif
+    return light;
+}
+
+// The surroundings' part of reflect_all().
+Reflected reflect_around(SurfaceSample s, vec3 position_ws) {
+    Reflected light = reflect_surroundings(make_reflector(s, to_viewer(position_ws)), s, position_ws);
+#ifdef SMOOTH_NORMALS
+    SurfaceSample skin = smooth_skin(s);
+    light = blend_skin(s, light, reflect_surroundings(make_reflector(skin, to_viewer(position_ws)), skin, position_ws));
+#endif
+    return light;
 }
 
 // The light list of the cell of a pixel at a distance along the view axis.

@@ -9,6 +9,11 @@
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
 //   LIT_AT_VERTICES  no normals, only colors
+//   WRINKLE_BLEND  light of wrinkles in full and of smooth skin is blended
+//   WRINKLE_FADE   light that grazes smooth skin fades
+//   WRINKLE_VIEW   in place of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and w
+//                  1 where that frame is known. After lib/view.glsl
+//   WRINKLE_FLAT   strengths are those of one vertex of each triangle
 
 #include "lib/gbuffer.glsl"
 #include "lib/material_maps.glsl"
@@ -22,7 +27,10 @@
 layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in vec4 tangent_ws;
 #endif
-#ifdef WRINKLES
+#if defined(WRINKLES) || (defined(WRINKLE_VIEW) && !defined(LIT_AT_VERTICES))
+#ifdef WRINKLE_FLAT
+flat
+#endif
 layout(location = 8) in vec4 wrinkle_strength;  // x, y: of slopes, as they are and lifted; z, w: of shade
 #endif
 layout(location = 2) in vec4 uv;
@@ -98,27 +106,34 @@ vec3 surface_emission() {
 }
 
 #ifndef LIT_AT_VERTICES
-vec3 surface_normal(float strength) {
+// The normal of the skin, and without its wrinkles.
+vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n = normal_ws;
+    smooth_normal = n;
 #if defined(NORMAL_MAP) || defined(WRINKLES)
     vec3 n_ts = vec3(0.0, 0.0, 1.0);
+    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
 #ifdef NORMAL_MAP
     n_ts = texture(material_maps[NORMAL_MAP], map_place(kNormalSlot)).xyz * 2.0 - 1.0;
     n_ts.xy *= strength;
 #endif
 #ifdef WRINKLES
+    smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
     vec2 slope = wrinkle_slope_here();
+#ifndef WRINKLE_BLEND
     slope = wrinkle_strength.x * slope + lifted_slope(slope, wrinkle_strength.y);
+#endif
     n_ts.xy -= n_ts.z * slope;  // slopes of both heights add up
 #endif
-    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
     n = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
 #endif
     n *= inversesqrt(max(dot(n, n), 1e-20));
+    smooth_normal *= inversesqrt(max(dot(smooth_normal, smooth_normal), 1e-20));
 #ifdef DOUBLE_SIDED
     // gl_FrontFacing is by winding on screen, which a mirrored instance flips.
     if (gl_FrontFacing == ((material_and_flags.y & 1u) != 0u)) {
         n = -n;
+        smooth_normal = -smooth_normal;
     }
 #endif
     return n;
@@ -138,10 +153,41 @@ float widen_roughness(float roughness, vec3 normal) {
     return roughness;
 }
 
+#ifdef WRINKLE_VIEW
+const float kCrossCell = 22.0;  // [px]
+
+// A direction on the surface, as seen [px]; a unit vector that faces the viewer has half the size of a cell.
+vec2 seen_direction(vec3 direction_ws) {
+    vec4 moved = view.clip_from_world * vec4(direction_ws, 0.0);
+    vec2 ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0;
+    vec2 seen = (moved.xy - ndc * moved.w) * view.size.xy;
+    float scale = view.size.x * length(vec3(view.clip_from_world[0].x, view.clip_from_world[1].x, view.clip_from_world[2].x));
+    return seen * (0.5 * kCrossCell / scale);
+}
+
+vec3 strain_view() {
+    vec4 principal = principal_strain(wrinkle_strength.xyz);
+    vec3 color = strain_color(principal);
+    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
+    vec2 cover = strain_cross(
+        mod(gl_FragCoord.xy, kCrossCell) - 0.5 * kCrossCell, principal,
+        seen_direction(principal.z * tangent_ws.xyz + principal.w * bitangent),
+        seen_direction(-principal.w * tangent_ws.xyz + principal.z * bitangent));
+    cover *= wrinkle_strength.w;
+    vec2 stretched = step(vec2(0.0), principal.xy);
+    color = mix(color, mix(vec3(0.12, 0.0, 0.0), vec3(0.0, 0.0, 0.15), stretched.x), cover.x);
+    return mix(color, mix(vec3(0.12, 0.0, 0.0), vec3(0.0, 0.0, 0.15), stretched.y), cover.y);
+}
+#endif
+
 SurfaceSample surface_sample(vec3 albedo) {
+#ifdef WRINKLE_VIEW
+    albedo = strain_view();
+#endif
     vec4 factors = material_texel(2);
     SurfaceSample s;
-    s.normal_ws = surface_normal(material_texel(1).w);
+    vec3 smooth_normal;
+    s.normal_ws = surface_normal(material_texel(1).w, smooth_normal);
     s.albedo = albedo;
     s.emission = surface_emission();
     s.metalness = factors.x;
@@ -161,6 +207,19 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.occlusion = 1.0 + factors.z * (texture(material_maps[OCCLUSION_MAP], map_place(kOcclusionSlot)).r - 1.0);
 #endif
     s.roughness = widen_roughness(s.roughness, s.normal_ws);
+    set_no_smooth_normal(s);
+#if defined(WRINKLES) && defined(SMOOTH_NORMALS)
+    s.smooth_normal_ws = smooth_normal;
+#ifdef WRINKLE_BLEND
+    s.raised = clamp(wrinkle_strength.x, 0.0, 1.0);
+    s.smooth_is_stored = s.model != kModelUnlit && s.raised > 0.0;
+    s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
+#endif
+#ifdef WRINKLE_FADE
+    s.fades = true;
+    s.smooth_is_stored = s.model != kModelUnlit;
+#endif
+#endif
     split_unlit(s);
     return s;
 }

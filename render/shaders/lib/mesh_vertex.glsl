@@ -13,7 +13,8 @@ layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
 layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
 layout(location = 13) in vec2 second_uv;
-#ifdef WRINKLE_MAP
+#if defined(WRINKLE_MAP) || defined(WRINKLE_VIEW)
+#define WRINKLE_STREAM
 layout(location = 14) in vec4 wrinkle;    // strengths, see lib/material.glsl
 #endif
 

@@ -3,8 +3,8 @@
 
 uniform int light_index;
 
-// Radiance toward the camera due to the light.
-vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
+// By the normal of `s` alone.
+Reflected reflect_one_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
 #ifdef DIRECTIONAL_LIGHT
     Incoming light = incoming_directional(light_index, position_ws, r.normal, pixel);
@@ -14,6 +14,14 @@ vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
 #endif
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
     add_light(sum, r, light);
-    Reflected reflected = reflect_lights(r, sum);
+    return reflect_lights(r, sum);
+}
+
+// Radiance toward the camera due to the light.
+vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
+    Reflected reflected = reflect_one_by_normal(s, position_ws, pixel);
+#ifdef SMOOTH_NORMALS
+    reflected = blend_skin(s, reflected, reflect_one_by_normal(smooth_skin(s), position_ws, pixel));
+#endif
     return reflected.diffuse + reflected.specular;
 }

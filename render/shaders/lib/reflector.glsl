@@ -6,7 +6,8 @@
 //     Response lobe_<lobe>(Reflector r, Cosines c)              reflection of one light; models may share it
 //
 // prepare_pbr() has run before the prepare function of any other model. SHADE_<MODEL> is defined if some surface may
-// use the model; that only saves a software OpenGL needless work.
+// use the model; that only saves a software OpenGL needless work. SMOOTH_NORMALS is defined if some skin is lit by its
+// normal without wrinkles, too.
 
 #include "lib/brdf.glsl"
 #include "lib/gbuffer.glsl"
@@ -28,6 +29,9 @@ struct Reflector {
     vec3 specular_90;  // the same at grazing angles; factor of Response::fresnel
     vec3 mirror;       // specular reflectance for a uniform environment
     vec4 own;          // of the lobe: its file says what
+#ifdef SMOOTH_NORMALS
+    vec4 fading;       // normal without wrinkles; w: 1 = light that grazes it fades
+#endif
 };
 
 // Between normal, light, viewer and the half vector h.
@@ -55,6 +59,9 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     r.n_v = max(dot(s.normal_ws, to_camera), 1e-3);
     r.model = s.model;
     r.own = vec4(0.0);
+#ifdef SMOOTH_NORMALS
+    r.fading = vec4(s.smooth_normal_ws, s.fades ? 1.0 : 0.0);
+#endif
     prepare_model(r, s);
     return r;
 }
@@ -66,10 +73,21 @@ struct LightSum {
     vec3 fresnel;
 };
 
+#ifdef SMOOTH_NORMALS
+// Of light on wrinkled skin by the cosine at the skin without wrinkles: none reaches its back, and highlights of single
+// slopes do not pop up where it turns to the light (wrinkle.compression.lighting).
+float grazing_fade(float cosine) {
+    return clamp(8.0 * cosine, 0.0, 1.0);
+}
+#endif
+
 void add_light(inout LightSum sum, Reflector r, Incoming light) {
     float n_l = max(dot(r.normal, light.to_light), 0.0);
     float l_v = dot(light.to_light, r.to_camera);
     vec2 h = half_cosines(n_l, r.n_v, l_v);
+#ifdef SMOOTH_NORMALS
+    light.irradiance *= mix(1.0, grazing_fade(dot(r.fading.xyz, light.to_light)), r.fading.w);
+#endif
     Response response = model_response(r, Cosines(n_l, h.x, h.y, l_v));
     sum.diffuse += light.irradiance * response.diffuse;
     sum.specular += light.irradiance * response.specular;

@@ -7,6 +7,62 @@ float wrinkle_intensity(float ratio, float lambda, float beta) {
     return -tanh(clamp(0.5 * beta * log(max(lambda * ratio, 1e-30)), -20.0, 20.0));
 }
 
+// The lower eigenvalue of the tensor with these squares of lengths along u, v and (u + v) / sqrt(2).
+float shortest_ratio(float along_u, float along_v, float between) {
+    float mean = 0.5 * (along_u + along_v);
+    float half_difference = 0.5 * (along_u - along_v);
+    float uv = between - mean;
+    return max(mean - sqrt(half_difference * half_difference + uv * uv), 0.0);
+}
+
+// The strain sqrt(C) - I as (tt, bb, tb), in axes turned by `angle` from u towards v; `side` -1: the second is opposite.
+vec3 strain_of_tensor(float along_u, float along_v, float between, float angle, float side) {
+    float mean = 0.5 * (along_u + along_v);
+    float half_difference = 0.5 * (along_u - along_v);
+    float uv = between - mean;
+    float root = sqrt(max(along_u * along_v - uv * uv, 0.0));
+    float sum = sqrt(max(2.0 * mean + 2.0 * root, 1e-20));
+    float c = cos(2.0 * angle);
+    float s = sin(2.0 * angle);
+    float turned = half_difference * c + uv * s;
+    return vec3(vec2(mean + turned, mean - turned) + root, side * (uv * c - half_difference * s)) / sum - vec3(1.0, 1.0, 0.0);
+}
+
+// Principal values of a strain (tt, bb, tb), the lower one first, and the direction of that one.
+vec4 principal_strain(vec3 strain) {
+    float mean = 0.5 * (strain.x + strain.y);
+    float half_difference = 0.5 * (strain.x - strain.y);
+    float radius = sqrt(half_difference * half_difference + strain.z * strain.z);
+    float angle = radius > 1e-6 ? 0.5 * atan(-strain.z, -half_difference) : 0.0;
+    return vec4(mean - radius, mean + radius, cos(angle), sin(angle));
+}
+
+const float kFullStrain = 0.3;  // shown in full
+
+// Red as far as skin is compressed in some direction, blue as far as it is stretched.
+vec3 strain_color(vec4 principal) {
+    float compressed = clamp(-principal.x / kFullStrain, 0.0, 1.0);
+    float stretched = clamp(principal.y / kFullStrain, 0.0, 1.0);
+    vec3 color = mix(vec3(0.55), vec3(0.75, 0.06, 0.02), compressed);
+    return mix(color, vec3(0.03, 0.12, 0.75), stretched * (1.0 - 0.5 * compressed));
+}
+
+// How much a cross covers a pixel at `from_center` [px] of its cell: arms along `direction` (lengths by the lower
+// value) and `other` [px of a full strain].
+vec2 strain_cross(vec2 from_center, vec4 principal, vec2 direction, vec2 other) {
+    vec2 cover = vec2(0.0);
+    vec2 arms[2] = vec2[2](direction, other);
+    for (int i = 0; i < 2; ++i) {
+        float reach = length(arms[i]);
+        vec2 along = arms[i] / max(reach, 1e-3);
+        float place = abs(dot(from_center, along));
+        float beside = abs(dot(from_center, vec2(-along.y, along.x)));
+        float half_length = reach * min(abs(principal[i]) / kFullStrain, 1.0);
+        cover[i] = half_length < 1.0 ? 0.0 : clamp(1.5 - beside, 0.0, 1.0) * clamp(half_length - place + 0.5, 0.0, 1.0);
+    }
+    return cover;
+}
+
 // The excess of length that becomes folds, 1 at most.
 float fold_excess(float ratio, float slack, float share) {
     float shortening = max(1.0 - sqrt(ratio) - slack, 0.0);

@@ -1,0 +1,171 @@
+#include "ecs/components/rendering.h"
+#include "systems/faces/wrinkle_measure.h"
+#include "tests/near.h"
+#include "tests/render/shader_eval.h"
+#include "tests/render/wrinkle_fixture.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace limn::test {
+namespace {
+
+/// Wrinkled skin under one light, around which is nothing.
+struct WrinkleLightScene : WrinkleScene {
+    WrinkleLightScene() {
+        light = shine(DirectionalLight{.illuminance = 3}, look_at({1, 2, 3}, {0, 0, 0}));
+    }
+    /// Of the square that is shortened by `weight`.
+    std::vector<float> pixels(const WrinkleSurface& surface, float weight = 0.2f) {
+        const Entity entity = square(surface, weight);
+        std::vector<float> result = radiance(view).pixels;
+        world.destroy(entity);
+        return result;
+    }
+    Vec3 middle(const WrinkleSurface& surface, float weight = 0.2f) {
+        const Entity entity = square(surface, weight);
+        const Vec3 result = rgb_at(radiance(view), 16, 16);
+        world.destroy(entity);
+        return result;
+    }
+    void turn_light(const Vec3& to_light) {
+        world.add(light, WorldTransform{look_at(to_light, {0, 0, 0})});
+    }
+    Entity light;
+};
+
+/// Wrinkles are raised in full, even at rest.
+constexpr WrinkleSurface in_full(WrinkleMethod method) {
+    return {.method = method, .lambda = 0.1f, .beta = 50};
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(
+    WrinkleLightScene,
+    "wrinkle light: blended light is that of both normals, weighted by the intensity") {
+    material.specular = {0.3f, 0.3f, 0.3f};
+    for (const ShadingModel model : {ShadingModel::Pbr, ShadingModel::Blinn, ShadingModel::Skin}) {
+        material.shading = model;
+        for (const float weight : {0.05f, 0.1f, 0.3f}) {
+            const Vec3 wrinkled = middle(in_full(WrinkleMethod::Bump), weight);
+            const Vec3 smooth = middle({.method = WrinkleMethod::None}, weight);
+            const Vec3 blended = middle({.method = WrinkleMethod::Blend, .lambda = 1}, weight);
+            const float share = wrinkle_intensity(limn::square(1 - weight), 1, 4);
+            CHECK(glm::length(wrinkled - smooth) > 0.01f);
+            CHECK(
+                glm::length(blended - glm::mix(smooth, wrinkled, share))
+                <= 2e-3f * glm::length(wrinkled - smooth));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleLightScene, "wrinkle light: blended light is exact at both ends, with either order of "
+                       "lights and surfaces") {
+    for (const LightMethod method :
+         {LightMethod::Clustered, LightMethod::FullScreen, LightMethod::ObjectMajor,
+          LightMethod::LightMajor}) {
+        world.insert_resource(Rendering{.lights = method});
+        CHECK(
+            pixels({.method = WrinkleMethod::Blend}, 0)
+            == pixels({.method = WrinkleMethod::None}, 0));
+        const std::vector<float> in_full_blended = pixels(in_full(WrinkleMethod::Blend));
+        const std::vector<float> bumped = pixels(in_full(WrinkleMethod::Bump));
+        float difference = 0;
+        for (std::size_t i = 0; i < bumped.size(); ++i) {
+            difference = std::max(difference, std::abs(in_full_blended[i] - bumped[i]));
+        }
+        CHECK(difference <= 1e-6f);
+        CHECK(pixels({.method = WrinkleMethod::Blend}) != pixels({.method = WrinkleMethod::None}));
+        CHECK(pixels({.method = WrinkleMethod::Blend}) != pixels({.method = WrinkleMethod::Bump}));
+    }
+}
+
+TEST_CASE("wrinkle light: the factor that fades grazing light is that of Equation 9") {
+    const std::vector<Vec4> found = evaluate_shader(
+        "#define SMOOTH_NORMALS\n#include \"lib/reflector.glsl\"", "y.x = grazing_fade(x.x);",
+        {{-0.1f, 0, 0, 0}, {0, 0, 0, 0}, {0.0625f, 0, 0, 0}, {0.125f, 0, 0, 0}, {0.5f, 0, 0, 0}});
+    const float expected[] = {0, 0, 0.5f, 1, 1};
+    for (std::size_t i = 0; i < 5; ++i) {
+        CHECK(found[i].x == expected[i]);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleLightScene,
+    "wrinkle light: light behind the smooth skin lights no slope of its wrinkles") {
+    WrinkleSurface bump = in_full(WrinkleMethod::Bump);
+    // The slope faces up and to the viewer: light from above the plane's edge reaches it.
+    turn_light(glm::normalize(Vec3{0, 1, -0.05f}));
+    const Vec3 to_slope = glm::normalize(Vec3(0, -map_slope().y, 1));
+    REQUIRE(glm::dot(to_slope, Vec3{0, 1, -0.05f}) > 0.1f);
+    CHECK(middle(bump).x > 0.05f);
+    bump.fade = true;
+    CHECK(middle(bump) == Vec3(0));
+    CHECK(middle({.method = WrinkleMethod::Blend, .fade = true}) == Vec3(0));
+
+    // Halfway to a cosine of 1/8 half of it is left.
+    turn_light(Vec3{0, std::sqrt(1 - limn::square(0.0625f)), 0.0625f});
+    const float faded = middle(bump).x;
+    bump.fade = false;
+    CHECK(faded == near(0.5f * middle(bump).x).epsilon(4e-3));
+    turn_light(Vec3{0, std::sqrt(1 - limn::square(0.2f)), 0.2f});
+    const float full = middle(bump).x;
+    bump.fade = true;
+    CHECK(middle(bump).x == near(full).epsilon(1e-4));
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleLightScene,
+    "wrinkle light: with a shininess of 4 it is the Blinn model of the wrinkles") {
+    material.shading = ShadingModel::Blinn;
+    material.shininess = 4;
+    material.specular = {1, 1, 1};
+    material.base_color = {1, 1, 1, 1};
+    world.get<DirectionalLight>(light).illuminance = kPi;
+    turn_light({0, 0, 1});
+    const WrinkleSurface none = {.method = WrinkleMethod::None};
+    CHECK(middle(none).x == near(2).epsilon(2e-3));       // N = L = H
+    const Vec3 to_eye = glm::normalize(Vec3{-1, 1, 32});  // from the middle of the pixel
+    const Vec3 half = glm::normalize(to_eye + Vec3{0, 0, 1});
+    const Vec3 n = glm::normalize(Vec3(0, -map_slope().y, 1));
+    const float highlight = std::pow(glm::dot(n, half), 4.0f);
+    WrinkleSurface bump = in_full(WrinkleMethod::Bump);
+    bump.fade = true;
+    CHECK(middle(bump).x == near(n.z + highlight).epsilon(5e-3));
+    material.base_color = {0, 0, 0, 1};
+    CHECK(middle(bump).x == near(highlight).epsilon(5e-3));
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleLightScene, "wrinkle light: skin without interpolation has one strength per triangle") {
+    // Wide at the top: its triangles are compressed differently.
+    const auto strengths = [&](bool interpolate) {
+        MeshData mesh = make_square();
+        MorphTarget& flat = mesh.morphs.emplace_back();
+        flat.name = "flat";
+        flat.vertices = {0, 2};
+        flat.positions = {
+            mesh.positions[0] * Vec3{0, -1, 0}, mesh.positions[2] * Vec3{0, -0.2f, 0}};
+        const Entity entity = skin(
+            std::move(mesh), {.method = WrinkleMethod::Bump, .interpolate = interpolate}, 0.5f);
+        const gpu::FloatImage normal = aov(view, "normal");
+        world.destroy(entity);
+        std::vector<float> found;
+        for (int y = 10; y < 22; ++y) {
+            const Vec3 n = rgb_at(normal, 16 - (y - 16) / 2 + 4, y);  // right of the diagonal
+            found.push_back(n.y / n.z);
+        }
+        return found;
+    };
+    const std::vector<float> flat = strengths(false);
+    CHECK(std::ranges::max(flat) - std::ranges::min(flat) < 1e-3f);
+    const std::vector<float> smooth = strengths(true);
+    CHECK(std::ranges::max(smooth) - std::ranges::min(smooth) > 0.02f);
+}
+
+}  // namespace limn::test
