@@ -65,6 +65,17 @@ float risen(const TerrainShape& shape, float x, float z) {
     return glm::smoothstep(0.0f, whole, inland);
 }
 
+/// Depth below the seabed [m] toward the edges of the rectangle, so that the sea hides them; by
+/// eye.
+float drop(const TerrainShape& shape, float x, float z) {
+    constexpr float kBegin = 0.9f;
+    constexpr float kDepth = 0.3f;  // of half the smaller side
+    const Vec2 half = 0.5f * shape.size;
+    const float outward = glm::length(Vec2(x, z) / half);
+    const float t = std::clamp((outward - kBegin) / (1 - kBegin), 0.0f, 1.0f);
+    return kDepth * std::min(half.x, half.y) * square(t);
+}
+
 /// `level` is clearing_height(); ignored without a clearing.
 float height_at(const TerrainShape& shape, float level, float x, float z) {
     const float wild =
@@ -72,7 +83,11 @@ float height_at(const TerrainShape& shape, float level, float x, float z) {
             ? glm::smoothstep(shape.clearing, 2.0f * shape.clearing, std::sqrt(x * x + z * z))
             : 1.0f;
     const float land = wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level;
-    return shape.shore > 0 ? glm::mix(-kSeabed * shape.height, land, risen(shape, x, z)) : land;
+    if (shape.shore <= 0) {
+        return land;
+    }
+    const float dry = risen(shape, x, z);
+    return glm::mix(-kSeabed * shape.height - drop(shape, x, z), land, dry);
 }
 
 /// Ground color at a position; `level` is the y of the normal, 1 = flat.

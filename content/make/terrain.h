@@ -44,7 +44,10 @@ LIMN_FIELDS(TerrainShape) {
     LIMN_FIELD(
         clearing, "radius of a flat area in the center, whose height limn check prints; 0 = none",
         "m", 0, 1e5);
-    LIMN_FIELD(shore, "island: width of the slope to the seabed around it; 0 = none", "m", 0, 1e5);
+    LIMN_FIELD(
+        shore,
+        "island: width of the slope to the seabed around it, which falls to the edges; 0 = none",
+        "m", 0, 1e5);
     LIMN_FIELD(colors, "vertex colors of rock, scrub and sand");
     LIMN_FIELD(seed, "random seed", "", 0, 2147483647);
 }

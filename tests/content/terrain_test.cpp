@@ -72,10 +72,17 @@ TEST_CASE("terrain: an island rises from its coast, and is the land it was far f
     for (int i = 0; i < 64; ++i) {
         const float angle = 0.0981748f * static_cast<float>(i);
         const Vec2 coast(100 * std::cos(angle), 50 * std::sin(angle));
-        // Around it lies the seabed, and it reaches the rim of the mesh without a step.
-        const float seabed = -0.05f * island.height;
-        CHECK(terrain_height(island, 0.9999f * coast.x, 0.9999f * coast.y) == near(seabed));
+        // Around it lies the seabed, so deep that the sea hides where the mesh ends, and it gets
+        // there without a step.
+        const float seabed = -0.05f * island.height - 0.3f * 50;
+        CHECK(terrain_height(island, 1.0001f * coast.x, 1.0001f * coast.y) == near(seabed));
         CHECK(terrain_height(island, 1.2f * coast.x, 1.2f * coast.y) == seabed);
+        float last = terrain_height(island, 0.8f * coast.x, 0.8f * coast.y);
+        for (float t = 0.8f; t < 1; t += 0.0025f) {
+            const float height = terrain_height(island, t * coast.x, t * coast.y);
+            CHECK(std::abs(height - last) < 1.5f);
+            last = height;
+        }
         CHECK(
             terrain_height(island, 0.55f * coast.x, 0.55f * coast.y)
             == terrain_height(land, 0.55f * coast.x, 0.55f * coast.y));
