@@ -101,13 +101,16 @@ bool is_copy(const Name& name) {
     return open != std::string::npos && open > 0 && name.text.ends_with(']');
 }
 
-/// The named entity that a level has by itself: the one that placed a node, or the outermost
-/// parent.
+/// The entity in whose "nodes" a level changes this one: the one that placed a node of a file, or
+/// the outermost parent below one that placed a file.
 Entity owner_of(const World& world, Entity entity) {
     for (Entity parent = parent_of(world, entity); !parent.is_null();
          parent = parent_of(world, entity)) {
         if (world.has<FromGltf>(entity) && !world.has<FromGltf>(parent)) {
             return parent;
+        }
+        if (!world.has<FromGltf>(entity) && world.has<GltfSource>(parent)) {
+            return entity;
         }
         entity = parent;
     }

@@ -227,6 +227,23 @@ TEST_CASE("edit_json: edits of children and of copies, pasted into the level, ar
     CHECK(edits_as_json(world, edits).find("// without edits of children") != std::string::npos);
 }
 
+TEST_CASE("edit_json: a child beside the nodes of a glTF file is changed where it is written") {
+    OpenLevel level(R"({"prefabs": {"torch": {"children": [{"name": "flame", "point_light": {}}]}},
+      "entities": [{"name": "house", "gltf": "lamp.gltf",
+        "children": [{"name": "door torch", "prefab": "torch"}]}, {"name": "eye", "camera": {}}]})");
+    World& world = level.world();
+    Edit dark;
+    dark.entity = level.find("flame");
+    dark.before = AnyComponent::read(world, dark.entity, component_info<PointLight>());
+    dark.after = dark.before;
+    dark.after.as<PointLight>().intensity = 0;
+    REQUIRE(apply_edit_value(world, dark, dark.after));
+    const std::vector<Edit> edits = {dark};
+    CHECK(
+        write_json(*parse_json(edits_as_json(world, edits), ""))
+        == R"({"entities": [{"name": "door torch", "nodes": {"flame": {"point_light": {"intensity": 0}}}}]})");
+}
+
 TEST_CASE("edit_json: edits are a patch with the present values; removed components are null") {
     OpenLevel level;
     World& world = level.world();
