@@ -366,7 +366,7 @@ void InstanceCollector::add_command(
     }
     const std::uint32_t wrinkles =
         state.deformed ? items.shapes()[state.index].wrinkle_features : 0u;
-    if (!state.deformed || !items.shapes()[state.index].wrinkled || !mesh.tangents
+    if (!state.deformed || !items.shapes()[state.index].wrinkled
         || (wrinkles & kWrinkleView) != 0) {
         run.features.maps.remove(layout::kWrinkleSlot);
     }

@@ -93,6 +93,7 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
     FrameData frame;
     frame.world = &world;
     frame.shapes = &m.shapes;
+    frame.meshes = &m.meshes;
     frame.ring = &m.ring;
     m.wrinkles.draw_shared(m.graph, frame);
     m.graph.execute();

@@ -270,13 +270,11 @@ struct SceneCheck {
                 {"target", maps.target}};
             for (const auto& [field, id] : fields) {
                 const ImageData* const image = find(id);
-                if (base != nullptr && image != nullptr
-                    && std::int64_t{image->width} * base->height
-                           != std::int64_t{image->height} * base->width) {
+                if (base != nullptr && image != nullptr && !have_one_aspect(*image, *base)) {
                     warn(
                         entity, fmt::format(
                                     "wrinkle_maps.{} \"{}\" is {} x {} px; expected the aspect "
-                                    "ratio of base \"{}\", {} x {} px",
+                                    "ratio of base \"{}\", {} x {} px: its wrinkles are not drawn",
                                     field, image->name, image->width, image->height, base->name,
                                     base->width, base->height));
                 }

@@ -1,7 +1,9 @@
 #include "content/make/fold_pattern.h"
 
+#include "content/bake/wrinkle_map.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
+#include "ecs/base/log.h"
 
 #include <glm/common.hpp>
 
@@ -13,7 +15,7 @@ namespace limn {
 PatternMaps make_folds(const FoldsPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     const auto count = static_cast<float>(pattern.count);
-    return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
+    PatternMaps maps = make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
         const float bend = fbm(uv, 3, seed) + 0.35f * fbm(uv, 9, seed + 1);
         const float fold = uv.y * count + pattern.wander * 2 * bend;
         const float wave = 0.5f - 0.5f * std::cos(2 * kPi * fold);         // 0 in the valley
@@ -29,6 +31,11 @@ PatternMaps make_folds(const FoldsPattern& pattern) {
         t.occlusion = 0.75f + 0.25f * height;
         return t;
     });
+    const int beyond = limit_wrinkle_map(maps.normal, pattern.steepest);
+    if (beyond > 0) {
+        log_info("folds: {} normals were steeper than x^2 + y^2 = {}", beyond, pattern.steepest);
+    }
+    return maps;
 }
 
 }  // namespace limn

@@ -57,6 +57,8 @@ struct WrinkleSurface {
     Vec3 center = {0, 0, 0};
     float radius = 0.1f;
     float activation = 1;
+    float shade_from = 0;
+    float none_from = 0;
 };
 
 /// The driver that is used: the strain where that is drawn.
@@ -108,6 +110,13 @@ LIMN_FIELDS(WrinkleSurface) {
     LIMN_FIELD(center, "radial: where wrinkles are strongest, in mesh space at rest", "m");
     LIMN_FIELD(radius, "radial: where none are left", "m", 1e-6, 1e6);
     LIMN_FIELD(activation, "radial: strength at the center", "", 0, 1);
+    LIMN_FIELD(
+        shade_from,
+        "distance from the camera beyond which slopes are only darkened, as by alpha, which a mesh "
+        "without tangents always is; fades in over the last fifth; 0: never",
+        "m", 0, 1e6);
+    LIMN_FIELD(
+        none_from, "distance beyond which there are no wrinkles; the same; 0: never", "m", 0, 1e6);
 }
 
 /// A triangle at a vertex, and its share of the vertex's compression.

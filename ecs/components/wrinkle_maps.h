@@ -52,8 +52,13 @@ enum class WrinkleBlend : std::uint8_t {
     Slopes,  ///< slopes of all three add up: wrinkles as high as their influence, in any order
 };
 
+/// Whether images can lie over each other on a face.
+inline bool have_one_aspect(const ImageData& a, const ImageData& b) {
+    return std::int64_t{a.width} * b.height == std::int64_t{a.height} * b.width;
+}
+
 /// Composes a normal map before each frame, for materials that use `target`. All images have one
-/// uv set and one aspect ratio.
+/// uv set and one aspect ratio: with any other, nothing is composed.
 struct WrinkleMaps {
     ImageId base = {};
     ImageId stretched = {};

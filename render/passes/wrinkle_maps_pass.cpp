@@ -58,9 +58,12 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
             maps.base, maps.stretched, maps.compressed, maps.first_masks,
             more ? maps.second_masks : maps.first_masks};
         const ImageLayer target = images.find(maps.target);
-        if (target.array == 0 || std::ranges::any_of(sources, [&](ImageId source) {
-                return images.find_texture(source) == nullptr || source == maps.target;
-            })) {
+        const auto is_unfit = [&](ImageId source) {
+            return images.find_texture(source) == nullptr || source == maps.target
+                   || !have_one_aspect(
+                       frame.assets->images[source.index], frame.assets->images[maps.target.index]);
+        };
+        if (target.array == 0 || std::ranges::any_of(sources, is_unfit)) {
             return;
         }
         const auto read = [&](unsigned i) {

@@ -1,9 +1,11 @@
 #include "render/passes/wrinkle_pass.h"
 
+#include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/grown_buffer.h"
 #include "render/gpu/shader_library.h"
+#include "render/mesh_pool.h"
 #include "render/shaders/wrinkle_gpu.h"
 #include "render/skinning/deformed_list.h"
 
@@ -128,8 +130,43 @@ void forget_unused(WrinkleRestPool& pool) {
     }
 }
 
+/// Shares of a method of drawing and of what replaces it, alpha.
+struct TierShares {
+    float own = 1;
+    float shade = 0;
+};
+
+/// 1 until the last fifth before `end`, 0 beyond it; 1 if `end` is 0.
+float share_until(float end, float distance) {
+    const float t = end > 0 ? std::clamp((distance / end - 0.8f) / 0.2f, 0.0f, 1.0f) : 0.0f;
+    return 1 - t * t * (3 - 2 * t);
+}
+
+/// Whether it can be drawn without tangents.
+bool is_shade(WrinkleMethod method) {
+    return method == WrinkleMethod::Alpha || method == WrinkleMethod::Directional;
+}
+
+TierShares tier_shares(const WrinkleSurface& surface, float distance, bool tangents) {
+    const float any = share_until(surface.none_from, distance);
+    const float own = is_shade(surface.method) ? 1.0f
+                      : tangents               ? share_until(surface.shade_from, distance)
+                                               : 0.0f;
+    return {.own = any * own, .shade = any * (1 - own)};
+}
+
+/// From the camera to the middle of an instance [m].
+float distance_to(const FrameData& frame, Entity entity, const DeformedInstance& shape) {
+    const auto* const place = frame.world->find<WorldTransform>(entity);
+    const Vec3 middle = 0.5f * (shape.bounds.min + shape.bounds.max);
+    const Vec3 at = place != nullptr ? transform_point(place->world, middle) : middle;
+    const Affine& eye = frame.camera.world_from_camera;
+    return glm::distance(at, Vec3(eye.row[0].w, eye.row[1].w, eye.row[2].w));
+}
+
 layout::WrinkleJob make_job(
-    const WrinkleSurface& surface, const WrinkleState& state, const WrinkleRestPool::Range& rest) {
+    const WrinkleSurface& surface, const WrinkleState& state, const WrinkleRestPool::Range& rest,
+    const TierShares& shares) {
     layout::WrinkleJob job{};
     job.rest = rest.first_texel;
     job.method = static_cast<std::uint32_t>(surface.method);
@@ -140,6 +177,8 @@ layout::WrinkleJob make_job(
     job.driver = static_cast<std::uint32_t>(used_driver(surface));
     job.mean_length = !state.rests.empty() && state.rests[0].mean_length ? 1u : 0u;
     job.activation = surface.activation;
+    job.own_share = shares.own;
+    job.shade_share = shares.shade;
     if (state.rests.size() == 3) {
         job.second = block_texels(state.rests[0]);
         job.third = job.second + block_texels(state.rests[1]);
@@ -173,8 +212,11 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
             return;
         }
         const auto& state = *frame.world->find<WrinkleState>(entity);
-        layout::WrinkleJob job =
-            make_job(*frame.world->find<WrinkleSurface>(entity), state, find_rest(pool, state));
+        const auto& surface = *frame.world->find<WrinkleSurface>(entity);
+        const TierShares shares = tier_shares(
+            surface, distance_to(frame, entity, shape),
+            frame.meshes->meshes()[shape.mesh.index].tangents);
+        layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), shares);
         job.vertex_count = count;
         job.slot = slot;
         job.first_group = static_cast<std::uint32_t>(group_list.size());

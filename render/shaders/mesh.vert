@@ -43,6 +43,10 @@ void main() {
 #endif
     normal_ws = vertex_normal_ws();
     vec3 t = vec3(dot(world_row0.xyz, tangent_ms.xyz), dot(world_row1.xyz, tangent_ms.xyz), dot(world_row2.xyz, tangent_ms.xyz));
+#ifdef WRINKLE_STREAM
+    // Texture space of wrinkles: perpendicular to the normal, whatever skinning did (wrinkle.compression.tangent-frame).
+    t -= normal_ws * dot(normal_ws, t);
+#endif
     tangent_ws = vec4(t * inversesqrt(max(dot(t, t), 1e-30)), tangent_ms.w * vertex_side());
     uv = vec4(first_uv, second_uv);
     vertex_color = color;

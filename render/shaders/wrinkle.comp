@@ -66,7 +66,7 @@ void main() {
         return;
     }
     uvec4 job2 = texelFetch(jobs, job + 2);  // share, driver, mean_length, activation
-    uvec4 job3 = texelFetch(jobs, job + 3);  // second, third
+    uvec4 job3 = texelFetch(jobs, job + 3);  // second, third, own_share, shade_share
     uint first = job0.z - first_vertex;
     float mask = uintBitsToFloat(texelFetch(rest, int(job0.x + number)).y);
     bool mean_length = job2.z != 0u;
@@ -90,10 +90,13 @@ void main() {
         : max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
     strength = mask * (job2.y == kWrinkleByRadius ? uintBitsToFloat(job2.w) : strength);
     bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
-    vec4 by_method = strength * vec4(
+    float own = strength * uintBitsToFloat(job3.z);
+    float shade = min(strength, 1.0) * uintBitsToFloat(job3.w);
+    vec4 by_method = own * vec4(
         steep ? 1.0 : 0.0,
         method == kWrinkleSphere ? 1.0 : 0.0,
         method == kWrinkleAlpha ? 1.0 : 0.0,
         method == kWrinkleDirectional ? 1.0 : 0.0);
+    by_method.z += shade;
     wrinkles[first + number] = uvec2(packHalf2x16(by_method.xy), packHalf2x16(by_method.zw));
 }

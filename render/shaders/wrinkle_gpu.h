@@ -28,8 +28,8 @@ struct WrinkleJob {
     float activation;
     uint second;       // of strain: where its second and third block begin, from the first
     uint third;
-    uint unused_0;
-    uint unused_1;
+    float own_share;   // of the method, and of alpha in its place
+    float shade_share;
     vec4 folds[4];     // FoldTable
 };
 

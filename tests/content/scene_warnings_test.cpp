@@ -336,5 +336,5 @@ TEST_CASE("scene warnings: wrinkle maps and masks of another aspect ratio than t
     CHECK(
         found[0].text
         == "entity \"face\": wrinkle_maps.first_masks \"masks\" is 64 x 64 px; expected the "
-           "aspect ratio of base \"skin\", 512 x 256 px");
+           "aspect ratio of base \"skin\", 512 x 256 px: its wrinkles are not drawn");
 }

@@ -281,6 +281,36 @@ TEST_CASE_FIXTURE(
     CHECK(rgb_at(seen(kGrimace), 5, 5) != Vec3(0));
 }
 
+TEST_CASE_FIXTURE(
+    WrinkledFace,
+    "wrinkle maps: an image of another aspect ratio is refused, of another size not") {
+    const WrinkleMaps good = maps;
+    const auto flat = [&](int width, int height) {
+        const auto texels = static_cast<std::size_t>(width * height);
+        return add(ImageData{
+            .name = "flat",
+            .width = width,
+            .height = height,
+            .pixels = std::vector<std::uint8_t>(4 * texels, 128)});
+    };
+    ImageId WrinkleMaps::*const all[] = {
+        &WrinkleMaps::base, &WrinkleMaps::stretched, &WrinkleMaps::compressed,
+        &WrinkleMaps::first_masks, &WrinkleMaps::second_masks};
+    const ImageData& target = world.resource<Assets>().images[good.target.index];
+    const int width = target.width;
+    const int height = target.height;
+    for (ImageId WrinkleMaps::*const image : all) {
+        WrinkleMaps changed = good;
+        changed.*image = flat(2 * width, height);
+        world.get<WrinkleMaps>(face) = changed;
+        CHECK(rgb_at(seen(kGrimace), 5, 5) == Vec3(0));
+    }
+    WrinkleMaps larger = good;
+    larger.stretched = flat(2 * width, 2 * height);
+    world.get<WrinkleMaps>(face) = larger;
+    CHECK(rgb_at(seen(kGrimace), 5, 5) != Vec3(0));
+}
+
 TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: examples of normals that are added") {
     // A face whose normals are the same everywhere.
     const auto flat = [&](const Vec3& n) {

@@ -199,6 +199,24 @@ TEST_CASE_FIXTURE(
         == pixels({.method = WrinkleMethod::None}, 0.3f, false));
 }
 
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: a flat map raises nothing, however compressed") {
+    shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0}));
+    material.wrinkle_texture.image =
+        add(ImageData{.name = "flat", .width = 1, .height = 1, .pixels = {128, 128, 255, 255}});
+    const auto pixels = [&](WrinkleMethod method) {
+        const Entity entity = square({.method = method, .lambda = 0.5f}, 0.6f);
+        std::vector<float> result = radiance(view).pixels;
+        world.destroy(entity);
+        return result;
+    };
+    const std::vector<float> none = pixels(WrinkleMethod::None);
+    for (const WrinkleMethod method :
+         {WrinkleMethod::Alpha, WrinkleMethod::Directional, WrinkleMethod::Bump,
+          WrinkleMethod::Sphere, WrinkleMethod::Isometric, WrinkleMethod::Blend}) {
+        CHECK(pixels(method) == none);
+    }
+}
+
 TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: across the fold only; along it nothing happens") {
     MeshData mesh = make_square();
     MorphTarget& narrow = mesh.morphs.emplace_back();

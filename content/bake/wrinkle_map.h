@@ -1,0 +1,16 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+
+namespace limn {
+
+/// x^2 + y^2 of normals up to which the source's fit to the unit sphere (WrinkleMethod::Sphere) is
+/// wrong by less than 8.76 degrees at any strength.
+inline constexpr float kSteepestWrinkle = 0.6f;
+
+/// Brings the normals of an 8-bit wrinkle map, flat at 128, back to x^2 + y^2 <= `most` (0 .. 1),
+/// with their direction along the skin. Returns how many were beyond; 0 for other formats
+/// (wrinkle.compression.map).
+int limit_wrinkle_map(ImageData& map, float most = kSteepestWrinkle);
+
+}  // namespace limn
