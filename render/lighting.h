@@ -27,8 +27,8 @@ inline constexpr unsigned kShadowMasksUnit = 17;
 /// How surfaces meet lights in a view; published in prepare() before all that depends on it.
 struct LightingMethod {
     LightMethod method = LightMethod::Clustered;
-    bool per_vertex = false;       ///< with LightMethod::ObjectMajor: lit at vertices
-    bool infinite_viewer = false;  ///< specular light as seen from infinitely far away
+    ShadingRate shading = ShadingRate::Pixel;  ///< the others with LightMethod::ObjectMajor
+    bool infinite_viewer = false;              ///< specular light as seen from infinitely far away
 
     /// Whether surfaces are lit while they are drawn.
     [[nodiscard]] bool is_forward() const {

@@ -20,8 +20,12 @@ inline constexpr int kLightMethods = 5;
 
 /// Frequency at which shading is evaluated.
 enum class ShadingRate : std::uint8_t {
-    Pixel,   ///< per pixel, with interpolated normals (light.phong-pixel)
-    Vertex,  ///< per vertex, with interpolated colors (light.gouraud); ObjectMajor order
+    Pixel,  ///< per pixel, with interpolated normals (light.phong-pixel)
+    // The others light points of triangles and interpolate the colors, in ObjectMajor order.
+    Vertex,      ///< linear through the vertices (light.gouraud)
+    Subdivided,  ///< linear in quarters, through vertices and midpoints of edges
+    Quadratic,   ///< quadratic through the same six points (fakephong.quadratic)
+    Cubic,       ///< cubic through ten points (fakephong.cubic)
 };
 
 /// Antialiasing method.
@@ -45,7 +49,11 @@ LIMN_FIELDS(Rendering) {
     LIMN_FIELD(
         lights, .doc = "lighting algorithm; all give the same image",
         .values = "clustered full_screen volumes object_major light_major");
-    LIMN_FIELD(shading, .doc = "shading per pixel or per vertex", .values = "pixel vertex");
+    LIMN_FIELD(
+        shading,
+        .doc = "shading per pixel, or per vertex, or interpolated between 6 (subdivided: in "
+               "quarters; quadratic) or 10 (cubic) points of each triangle",
+        .values = "pixel vertex subdivided quadratic cubic");
     LIMN_FIELD(
         antialiasing,
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",

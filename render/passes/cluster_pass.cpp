@@ -147,8 +147,9 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     const auto* found = frame.world->find_resource<Rendering>();
     const Rendering rendering = found != nullptr && view.is(kMainViews) ? *found : Rendering{};
     auto& method = view.data.publish<LightingMethod>();
-    method.per_vertex = rendering.shading == ShadingRate::Vertex;
-    method.method = method.per_vertex ? LightMethod::ObjectMajor : rendering.lights;
+    method.shading = rendering.shading;
+    method.method =
+        method.shading == ShadingRate::Pixel ? rendering.lights : LightMethod::ObjectMajor;
     method.infinite_viewer = rendering.infinite_viewer;
 
     auto& lights = view.data.publish<LightList>();

@@ -9,7 +9,8 @@
 namespace limn {
 namespace {
 
-constexpr int kTurns = 255;  ///< distinct stencil references
+constexpr int kTurns = 255;               ///< distinct stencil references
+constexpr float kGeometryDepthBias = 16;  ///< [smallest steps of depth]; by eye, 0 leaves holes
 
 /// Shades the nearest surface, and only one of several at equal depth, once per turn; the stencil
 /// must be cleared after every kTurns turns.
@@ -32,6 +33,25 @@ void clear_stencil(gpu::Device& device, const gpu::Program& nothing) {
     device.draw_fullscreen();
 }
 
+ProgramVariants& programs_of(ForwardPass& pass, ShadingRate rate) {
+    switch (rate) {
+    case ShadingRate::Vertex:
+        return pass.gouraud;
+    case ShadingRate::Subdivided:
+        return pass.subdivided;
+    case ShadingRate::Quadratic:
+        return pass.quadratic;
+    case ShadingRate::Cubic:
+        return pass.cubic;
+    default:
+        return pass.list;
+    }
+}
+
+ProgramVariants sampled(gpu::Device& device, const char* geometry, const char* fragment) {
+    return {device, {.vertex = "sampled.vert", .geometry = geometry, .fragment = fragment}, true};
+}
+
 void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& view) {
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
@@ -40,10 +60,16 @@ void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& 
     records.object_lists.bind(context.device(), kLightCellsUnit);
     Variant variant = view.lighting.variant;
     variant.add("OBJECT_LIGHTS");
-    const bool per_vertex = view.data.get<LightingMethod>().per_vertex;
+    const ShadingRate rate = view.data.get<LightingMethod>().shading;
+    gpu::PipelineState state = nearest_once(0);
+    if (rate != ShadingRate::Pixel && rate != ShadingRate::Vertex) {
+        // A software OpenGL rounds depths otherwise after a geometry shader.
+        state.depth.func = GL_GEQUAL;
+        state.depth_bias = kGeometryDepthBias;
+    }
     draw_runs(
-        context, view, view.data.get<InstanceList>().opaque, per_vertex ? pass.gouraud : pass.list,
-        {.variant = &variant, .state = nearest_once(0)});
+        context, view, view.data.get<InstanceList>().opaque, programs_of(pass, rate),
+        {.variant = &variant, .state = state});
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -83,6 +109,9 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
     return ForwardPass{
         .list = ProgramVariants::of_meshes(device, "forward_list.frag"),
         .gouraud = ProgramVariants::of_meshes(device, "gouraud.frag", "gouraud.vert"),
+        .subdivided = sampled(device, "six_samples.geom", "subdivided.frag"),
+        .quadratic = sampled(device, "six_samples.geom", "quadratic.frag"),
+        .cubic = sampled(device, "ten_samples.geom", "cubic.frag"),
         .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
         .nothing = LIMN_TRY(

@@ -13,7 +13,9 @@ namespace limn {
 // Writes   depth, radiance: linear; alpha 1 where there is a surface
 // Order    in place of the G-buffer and draw_lights()
 // Shaders  mesh.vert, depth_first.frag, forward_list.frag, forward_base.frag, forward_one.frag;
-//          gouraud.vert, gouraud.frag in place of forward_list.frag with ShadingRate::Vertex
+//          gouraud.vert, gouraud.frag in place of forward_list.frag with ShadingRate::Vertex;
+//          sampled.vert, six_samples.geom or ten_samples.geom, and subdivided.frag, quadratic.frag
+//          or cubic.frag with the rates of the same names
 //
 // The first pass draws depth only; the others draw with depth EQUAL, so that each visible fragment
 // is lit once (engine.depth-first). Where surfaces of two objects have exactly the same depth, as
@@ -22,6 +24,9 @@ namespace limn {
 struct ForwardPass {
     ProgramVariants list;
     ProgramVariants gouraud;
+    ProgramVariants subdivided;
+    ProgramVariants quadratic;
+    ProgramVariants cubic;
     ProgramVariants base;
     ProgramVariants one;
     const gpu::Program* nothing = nullptr;

@@ -158,7 +158,7 @@ TEST_CASE("fakephong: appendix B shrinks the coordinates and brightens the verte
     CHECK(blinn_texture_value(32, exact.x.value, exact.y.value) == near(0.000738).epsilon(1e-3));
 }
 
-TEST_CASE("fakephong: a Phong map holds |N.L| whatever the eye, and 0 behind") {
+TEST_CASE("fakephong: a Phong map holds N.L whatever the eye, and 0 behind") {
     PhongScene scene = {.lights = {{.directional = true, .at = {0.3, 0.4, 1}}}};
     const SurfacePoint point = at_origin({0.2, -0.3, 1});
     const Vec2r at = phong_map_coordinates(scene, scene.lights[0], point);

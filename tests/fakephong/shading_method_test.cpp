@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -179,6 +180,22 @@ TEST_CASE("fakephong: highlights on the triangle have the derived peaks and size
     CHECK(smooth.y == near(-0.170).epsilon(0.05));
 }
 
+TEST_CASE("fakephong: a Phong map has the diffuse light of the corners") {
+    PhongScene scene = bent_triangle();
+    scene.channels = Channels::Diffuse;
+    const ShadingContext context = make_shading_context(scene);
+    const ShadingMethod& method = *find_method("phong-map");
+    const Facet facet = facet_of(scene);
+    FacetSetup setup;
+    method.prepare(context, facet, setup);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double s = i == 1 ? 1 : 0;
+        const double t = i == 2 ? 1 : 0;
+        const double wanted = illuminate(scene, facet.corners[i]).tinted.x.value;
+        CHECK(method.shade(context, setup, s, t).tinted.x.value == near(wanted).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("fakephong: a quadratic goes through its samples and reproduces quadratic fields") {
     const auto field = [](double s, double t) {
         return 1 + 2 * s - 3 * t + 4 * s * s - s * t + t * t;
@@ -220,7 +237,7 @@ TEST_CASE("fakephong: a cubic is exact at its ten nodes") {
     CHECK(shade_cubic(context, setup, 0.37, 0.21).highlight.x.value == near(1));
 }
 
-TEST_CASE("fakephong: the Taylor series has the derivatives of N.L / |N|") {
+TEST_CASE("fakephong: the Taylor series has the derivatives of N.L of a unit N") {
     const dvec3 l = glm::normalize(dvec3(0.3, 0.2, 1));
     const dvec3 a = {0.2, 0.1, -0.05};
     const dvec3 b = {-0.1, 0.3, 0.02};

@@ -40,7 +40,7 @@ const std::vector<KnownDefine>& known_defines() {
     return known;
 }
 
-/// Only gouraud.frag has no normals; it defines this itself.
+/// Shaders that interpolate light have no normals; they define this themselves.
 constexpr const char* kAtVertices = "LIT_AT_VERTICES";
 
 std::string text_of(const std::string& path, const std::vector<gpu::ShaderDefine>& defines) {

@@ -237,6 +237,7 @@ TEST_CASE("shader: no definition gives a unit two types of texture") {
         {"water_veil.frag"},
         {"shadow_classify.frag"},
         {"gouraud.vert", "gouraud.frag"},
+        {"sampled.vert", "six_samples.geom", "quadratic.frag"},
         {"caustics_rays.comp"}};
     for (const std::vector<std::string>& stages : programs) {
         std::map<int, std::string> types;

@@ -1,0 +1,20 @@
+// Vertices of triangles that lib/facet_samples.glsl lights.
+#version 450
+#include "lib/mesh_vertex.glsl"
+#include "lib/view.glsl"
+
+layout(location = 0) out vec3 corner_ws;
+layout(location = 1) out vec3 corner_normal_ws;
+layout(location = 2) out vec4 corner_uv;
+layout(location = 3) out vec4 corner_color;
+layout(location = 4) out uvec3 corner_instance;  // material, flags, object
+invariant gl_Position;  // the depth must equal that of depth_first.frag
+
+void main() {
+    corner_ws = vertex_ws();
+    gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
+    corner_normal_ws = vertex_normal_ws();
+    corner_uv = vec4(first_uv, second_uv);
+    corner_color = color;
+    corner_instance = instance.xyz;
+}
