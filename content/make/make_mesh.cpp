@@ -6,6 +6,7 @@
 #include "content/make/head.h"
 #include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
+#include "content/make/plants.h"
 #include "content/make/shapes.h"
 #include "content/make/sweep.h"
 #include "content/make/teapot.h"
@@ -62,6 +63,8 @@ std::span<const MeshKind> mesh_kinds() {
             "hovercraft", "a racing craft that hovers, facing z"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
+        mesh_kind<PlantShape, make_plants>(
+            "plants", "grass, bushes or trees of blades that branch, standing on y = 0"),
         mesh_kind<SphereShape, make_sphere>("sphere", "a sphere with longitude and latitude as uv"),
         mesh_kind<SweepShape, make_sweep>("sweep", "a profile swept along a path of the level"),
         mesh_kind<TeapotShape, make_teapot>(

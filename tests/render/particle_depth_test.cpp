@@ -224,6 +224,22 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(SeenScene, "particle depth: balls deeper than the thickness fall freely") {
+    see({{0, 1, 0}, 0});
+    ParticleEmitter balls = handful();
+    balls.size = Vec3(0.02f);
+    balls.speed = balls.speed_spread = 0;
+    emit(balls, {.radius = 0.1f, .collide_depth = 0.1f}, {0, -0.3f, 0});
+    std::vector<Vec4> found;
+    for (int i = 0; i < 30; ++i) {
+        found = step();
+    }
+    REQUIRE(found.size() == 400);
+    for (std::size_t k = 0; k < found.size(); k += 2) {
+        CHECK(found[k].y < -1);
+    }
+}
+
 TEST_CASE_FIXTURE(SeenScene, "particle depth: at 60 m/s none gets through what was seen") {
     const SeenWall wall = {glm::normalize(Vec3(0, 0.5f, 1)), -1};
     see(wall);

@@ -601,4 +601,25 @@ TEST_CASE(
     CHECK(Vec3(list.records[0].color) == Vec3(0));
 }
 
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: 1, 10 and 1,000 emitters of a look are as many draw calls") {
+    const auto draws = [&] {
+        device().reset_stats();
+        draw(view());
+        return device().stats().draws;
+    };
+    draws();  // the first image makes maps
+    const int none = draws();
+    emit({{0, 0, 0}}, disc({1, 1, 1}, 0.5f, 1));
+    const int one = draws();
+    CHECK(none < one);
+    for (int emitters = 1; emitters < 1000; ++emitters) {
+        if (emitters == 10) {
+            CHECK(draws() == one);
+        }
+        emit({{0, 0, -0.001f * static_cast<float>(emitters)}}, disc({1, 1, 1}, 0.5f, 1));
+    }
+    CHECK(draws() == one);
+}
+
 }  // namespace limn::test
