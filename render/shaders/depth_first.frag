@@ -2,6 +2,7 @@
 //   ALPHA_MASK  holes where the opacity is below the cutoff
 #version 450
 #ifdef ALPHA_MASK
+#include "lib/view.glsl"
 #include "lib/material.glsl"
 #endif
 
