@@ -130,6 +130,14 @@ void forget_unused(WrinkleRestPool& pool) {
     }
 }
 
+/// A source names a mesh by its index, which is another one among other assets.
+void forget_others(WrinkleRestPool& pool, std::uint64_t assets) {
+    if (pool.assets != assets) {
+        forget_unused(pool);
+        pool.assets = assets;
+    }
+}
+
 /// Shares of a method of drawing and of what replaces it, alpha.
 struct TierShares {
     float own = 1;
@@ -202,6 +210,7 @@ Result<WrinkleEffect> WrinkleEffect::create(gpu::Device& device, const RenderSet
 }
 
 void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
+    forget_others(pool, frame.assets_identity);
     std::vector<layout::WrinkleJob> job_list;
     std::vector<std::uint32_t> group_list;
     std::uint32_t first = ~0u;

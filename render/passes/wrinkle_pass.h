@@ -26,6 +26,7 @@ struct WrinkleRestPool {
         std::uint32_t texel_count = 0;
         bool used = false;  ///< in this frame
     };
+    std::uint64_t assets = 0;  ///< FrameData::assets_identity of those that the sources are of
     std::map<std::uint64_t, Range> ranges;
     SlotAllocator slots;  ///< texels
     gpu::Buffer texels;
