@@ -64,8 +64,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleLightScene, "wrinkle light: blended light is exact at both ends, with either order of "
-                       "lights and surfaces") {
+    WrinkleLightScene, "wrinkle light: blended light is exact at both ends, by any method") {
     for (const LightMethod method :
          {LightMethod::Clustered, LightMethod::FullScreen, LightMethod::ObjectMajor,
           LightMethod::LightMajor}) {
