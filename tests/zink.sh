@@ -20,9 +20,9 @@ levels=("$@")
 failed=0
 for level in "${levels[@]}"; do
     size=(--size 320x180 --time 1)
-    "$limn" render "$level" -o "$folder/llvmpipe.png" "${size[@]}"
+    "$limn" render "$level" --quiet -o "$folder/llvmpipe.png" "${size[@]}"
     psnr=failed
-    if on_zink "$limn" render "$level" -o "$folder/zink.png" "${size[@]}"; then
+    if on_zink "$limn" render "$level" --quiet -o "$folder/zink.png" "${size[@]}"; then
         psnr=$("$limn" compare "$folder/llvmpipe.png" "$folder/zink.png" | awk '/^psnr/ { print $2 }')
     fi
     printf '%-20s %s dB\n' "$level" "$psnr"
