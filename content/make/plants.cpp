@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-constexpr float kLeastShare = 0.05f;  // of a length, however wide the spread
+constexpr float kMinShare = 0.05f;  // of a length, however wide the spread
 
 /// Length of a chain of mean branches from the root to the tip of the last level [m].
 float reach_of(const PlantShape& shape) {
@@ -42,7 +42,7 @@ PlantParticle grow_one(
     const PlantShape& shape, const Vec3& root, const Vec3& axis, float scale, float share,
     Random& random) {
     const float vary = shape.length_spread * random.uniform(-1.0f, 1.0f);
-    const float length = scale * std::max(shape.length + vary, kLeastShare * shape.length);
+    const float length = scale * std::max(shape.length + vary, kMinShare * shape.length);
     return {
         .root = root,
         .along = length * direction_about(axis, shape.spread, random),

@@ -126,18 +126,35 @@ Vec3 turn_with(const Vec3& direction, const Vec3& from, const Vec3& to) {
            + axis * (glm::dot(axis, direction) / (1 + cosine));
 }
 
-}  // namespace
-
-WrinkleRest make_wrinkle_rest(
-    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
-    std::span<const Vec3> across, WrinkleWeight weight) {
-    LIMN_CHECK(across.size() == positions.size());
+/// Of all triangles. `visit(v, triangle, has_area, rest, add)` appends its corners to `rest`, and
+/// calls add(k, corner) with those that count at its vertex v[k].
+template <typename Visit>
+WrinkleRest rest_of_triangles(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices, const Visit& visit) {
     WrinkleRest rest;
     std::vector<VertexCorner> corners;
     const std::vector<std::uint32_t> welded = weld_positions(positions);
     each_triangle(
         positions, indices,
         [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area) {
+            visit(v, triangle, has_area, rest, [&](std::uint32_t k, const WrinkleCorner& corner) {
+                corners.push_back({welded[v[k]], corner});
+            });
+        });
+    collect_corners(rest, corners, welded);
+    return rest;
+}
+
+}  // namespace
+
+WrinkleRest make_wrinkle_rest(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+    std::span<const Vec3> across, WrinkleWeight weight) {
+    LIMN_CHECK(across.size() == positions.size());
+    return rest_of_triangles(
+        positions, indices,
+        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area,
+            WrinkleRest& rest, const auto& add) {
             const auto first = static_cast<std::uint32_t>(rest.corners.size());
             rest.corners.insert(rest.corners.end(), v.begin(), v.end());
             rest.across.push_back({0, 0});
@@ -153,21 +170,17 @@ WrinkleRest make_wrinkle_rest(
             rest.across.back() = coefficients;
             const std::array<float, 3> weights = corner_weights(triangle, weight);
             for (std::uint32_t k = 0; k < 3; ++k) {
-                corners.push_back({welded[v[k]], {first + k, weights[k]}});
+                add(k, {first + k, weights[k]});
             }
         });
-    collect_corners(rest, corners, welded);
-    return rest;
 }
 
 WrinkleRest make_edge_rest(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices, WrinkleWeight weight) {
-    WrinkleRest rest;
-    std::vector<VertexCorner> corners;
-    const std::vector<std::uint32_t> welded = weld_positions(positions);
-    each_triangle(
+    return rest_of_triangles(
         positions, indices,
-        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area) {
+        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area,
+            WrinkleRest& rest, const auto& add) {
             if (!has_area) {
                 return;
             }
@@ -177,12 +190,10 @@ WrinkleRest make_edge_rest(
                 const auto first = static_cast<std::uint32_t>(rest.corners.size());
                 rest.corners.insert(rest.corners.end(), {v[k], v[next], v[next]});
                 rest.across.emplace_back(1 / glm::distance(positions[v[k]], positions[v[next]]), 0);
-                corners.push_back({welded[v[k]], {first, weights[k]}});
-                corners.push_back({welded[v[next]], {first + 1, weights[next]}});
+                add(k, {first, weights[k]});
+                add(next, {first + 1, weights[next]});
             }
         });
-    collect_corners(rest, corners, welded);
-    return rest;
 }
 
 std::array<WrinkleRest, 3> make_strain_rest(

@@ -25,6 +25,15 @@ float nearest_of_all(const Vec3& p, const MeshData& mesh, std::span<const std::u
     return nearest;
 }
 
+SpotLight narrow_spot() {
+    return {
+        .intensity = 10,
+        .radius = 0,
+        .attenuation = {.falloff = Falloff::None},
+        .inner_angle = radians(20.0f),
+        .outer_angle = radians(20.0f)};
+}
+
 MeshData ball() {
     return make_sphere({.radius = 0.5f, .segments = 48, .rings = 24});
 }
@@ -122,14 +131,7 @@ TEST_CASE_FIXTURE(
     "coarse triangles: a ball's shadow differs at its edge alone, by the detail and a texel") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     put(make_sphere({.radius = 0.5f, .segments = 96, .rings = 48}), {0, 1, 0});
-    const Entity lamp = shine(
-        SpotLight{
-            .intensity = 10,
-            .radius = 0,
-            .attenuation = {.falloff = Falloff::None},
-            .inner_angle = radians(20.0f),
-            .outer_angle = radians(20.0f)},
-        look_at({0, 6, 0.01f}, {0, 0, 0}));
+    const Entity lamp = shine(narrow_spot(), look_at({0, 6, 0.01f}, {0, 0, 0}));
     const RenderView view = look({1, 2, 1}, {0, 0, 0}, 160, 160);
     world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 128, .detail = 0});
     const std::vector<Receiver> exact = receivers(lamp, view);
@@ -164,14 +166,7 @@ TEST_CASE_FIXTURE(
     ShadowTest, "coarse triangles: a plate that loses no shape shadows the floor close below it") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     put(make_plane({.size = {1, 1}, .divisions = 32}), {0, 0.2f, 0});
-    const Entity lamp = shine(
-        SpotLight{
-            .intensity = 10,
-            .radius = 0,
-            .attenuation = {.falloff = Falloff::None},
-            .inner_angle = radians(20.0f),
-            .outer_angle = radians(20.0f)},
-        look_at({0, 6, 0.01f}, {0, 0, 0}));
+    const Entity lamp = shine(narrow_spot(), look_at({0, 6, 0.01f}, {0, 0, 0}));
     const RenderView view = look({1.2f, 0.15f, 0}, {0, 0.05f, 0}, 160, 160);
     world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 128, .detail = 0});
     const std::vector<Receiver> exact = receivers(lamp, view);
