@@ -4,6 +4,7 @@
 #include "render/material_maps.h"
 #include "render/shaders/material_blocks_gpu.h"
 #include "render/shaders/material_classic_gpu.h"
+#include "render/shaders/material_clear_gpu.h"
 #include "render/shaders/material_skin_gpu.h"
 
 #include <algorithm>
@@ -26,6 +27,17 @@ std::optional<layout::SkinBlock> make_skin_block(const Material& m) {
     return m.shading == ShadingModel::Skin ? std::optional(
                layout::SkinBlock{.rim = Vec4(m.skin_color, m.wide_rim ? 1.0f : 0.0f)})
                                            : std::nullopt;
+}
+
+/// Beer-Lambert: of light, exp(-absorption * distance) is left.
+std::optional<layout::ClearBlock> make_clear_block(const Material& m) {
+    if (m.transmission <= 0) {
+        return std::nullopt;
+    }
+    const Vec3 left = glm::max(m.attenuation_color, Vec3(1e-6f));
+    return layout::ClearBlock{
+        .medium = {m.transmission, m.refractive_index, m.thickness, 0},
+        .absorption = Vec4(-glm::log(left) / std::max(m.attenuation_distance, 1e-6f), 0)};
 }
 
 struct BlockKind {
@@ -56,6 +68,7 @@ constexpr BlockKind kKinds[] = {
     {layout::kUvBlock, 2 * layout::kMaxMapSlots, append_uv_block},
     block_kind<make_classic_block>(layout::kClassicBlock),
     block_kind<make_skin_block>(layout::kSkinBlock),
+    block_kind<make_clear_block>(layout::kClearBlock),
 };
 
 /// What a material with all blocks needs fits the offsets, and each kind has its number.

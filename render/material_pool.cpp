@@ -126,10 +126,13 @@ void MaterialPool::add_maps(
 void MaterialPool::add_material(const Material& material) {
     layout::MaterialRecord record = make_record(material, blocks_);
     SurfaceBatch batch;
-    batch.blend = material.alpha_mode == AlphaMode::Blend;
+    batch.blend = is_see_through(material);
     batch.features.bits = uv_feature(material);
     batch.features.bits |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
     batch.features.bits |= material.double_sided ? kDoubleSided : 0u;
+    if (material.transmission > 0) {
+        batch.features.bits |= kTransmission | (material.thickness > 0 ? kRefraction : 0u);
+    }
     add_maps(material, batch, record);
 
     const auto same = [&](const SurfaceBatch& b) {

@@ -153,10 +153,12 @@ void draw_light_runs(
     }
 }
 
-void draw_depths(PassContext& context, const ViewData& view, ProgramVariants& programs) {
+void draw_depths(
+    PassContext& context, const ViewData& view, std::span<const DrawRun> runs,
+    ProgramVariants& programs) {
     const auto& list = view.data.get<InstanceList>();
     bind_instances(context.device(), *view.frame, list);
-    for (const DrawRun& run : list.opaque) {
+    for (const DrawRun& run : runs) {
         draw_depth(context, view, list, run, programs, visible_sides({}, run));
     }
 }

@@ -32,8 +32,10 @@ void draw_light_runs(
     PassContext& context, const ViewData& view, std::span<const LightRun> runs,
     const gpu::RingSlice& commands, ProgramVariants& programs, const SurfaceDraw& draw);
 
-/// Draws the opaque instances for their depth alone, visible sides only.
-void draw_depths(PassContext& context, const ViewData& view, ProgramVariants& programs);
+/// Draws runs of the view's instances for their depth alone, visible sides only.
+void draw_depths(
+    PassContext& context, const ViewData& view, std::span<const DrawRun> runs,
+    ProgramVariants& programs);
 
 /// Draws shadow casters for their depth alone, both sides: `programs` get no more features than
 /// decide where a surface has holes.

@@ -24,6 +24,8 @@ constexpr FeatureName kNames[] = {
     {kWrinkleFade, "WRINKLE_FADE"},
     {kWrinkleFlat, "WRINKLE_FLAT"},
     {kWrinkleView, "WRINKLE_VIEW"},
+    {kTransmission, "TRANSMISSION"},
+    {kRefraction, "REFRACTION"},
 };
 
 }  // namespace

@@ -25,6 +25,8 @@ enum SurfaceFeature : std::uint32_t {
     kWrinkleFade = 1u << 11,
     kWrinkleFlat = 1u << 12,
     kWrinkleView = 1u << 13,  // needs no wrinkle map
+    kTransmission = 1u << 14,
+    kRefraction = 1u << 15,  // with kTransmission: the medium has a thickness
 };
 
 struct SurfaceFeatures {

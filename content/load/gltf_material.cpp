@@ -26,8 +26,9 @@ constexpr std::int32_t kNearest = 9728;
 constexpr std::int32_t kClampToEdge = 33071;
 constexpr std::int32_t kMirroredRepeat = 33648;
 
-constexpr float kIndex = 1.5f;  ///< of refraction, of every material
-constexpr float kHaze = 0.5f;   ///< share that a rough surface hides of what is behind; by eye
+constexpr float kIndex = 1.5f;  ///< of refraction, by default; of every opaque material
+constexpr float kMaxIndex = 3;
+constexpr float kMaxThickness = 1000;  // [m]
 
 Wrap to_wrap(std::int32_t mode) {
     switch (mode) {
@@ -85,15 +86,14 @@ class MaterialBuilder {
     [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
 
   private:
-    /// Clear media become blended: what is behind is seen as much as they transmit, not refracted.
     void transmit(const JsonValue& extensions, Material& material) {
         const JsonValue& transmission = extensions["KHR_materials_transmission"];
         const float factor = number_of(transmission["transmissionFactor"], 0);
         const float index = number_of(extensions["KHR_materials_ior"]["ior"], kIndex);
-        if (std::abs(index - kIndex) > 0.01f) {
-            warn(fmt::format("ior {:.3g} is drawn as {}", index, kIndex));
-        }
         if (factor <= 0 || material.alpha_mode == AlphaMode::Mask) {
+            if (std::abs(index - kIndex) > 0.01f) {
+                warn(fmt::format("ior {:.3g} of an opaque material is drawn as {}", index, kIndex));
+            }
             return;
         }
         if (transmission.find("transmissionTexture") != nullptr) {
@@ -101,16 +101,14 @@ class MaterialBuilder {
             return;
         }
         const JsonValue& volume = extensions["KHR_materials_volume"];
+        material.transmission = factor;
+        material.refractive_index = std::clamp(index, 1.0f, kMaxIndex);
+        material.thickness = std::min(number_of(volume["thicknessFactor"], 0), kMaxThickness);
         const float distance = number_of(volume["attenuationDistance"], 0);
-        const float path = distance > 0 ? number_of(volume["thicknessFactor"], 0) / distance : 0;
-        Vec3 color = Vec3(material.base_color);
-        if (path > 0) {
-            color *= glm::pow(vector_of(volume["attenuationColor"], Vec3(1)), Vec3(path));
+        if (distance > 0) {
+            material.attenuation_distance = distance;
+            material.attenuation_color = vector_of(volume["attenuationColor"], Vec3(1));
         }
-        const float seen = factor * (1 - material.metalness) * (1 - kHaze * material.roughness)
-                           * glm::dot(color, Vec3(0.2126f, 0.7152f, 0.0722f));
-        material.alpha_mode = AlphaMode::Blend;
-        material.base_color = Vec4(color, material.base_color.w * (1 - seen));
     }
 
     TextureSlot slot(const JsonValue& info, bool srgb) {

@@ -185,7 +185,8 @@ void fade_grounds(World& world, std::span<const Entity> scenery, ModelView& view
         if (half.y > kFlat * std::max(half.x, half.z)
             || std::max(half.x, half.z) < kFadeRadius * radius || radius <= 0
             || world.has<Deformed>(entity) || instance.material.index >= assets.materials.size()
-            || assets.materials[instance.material.index].alpha_mode != AlphaMode::Opaque) {
+            || assets.materials[instance.material.index].alpha_mode != AlphaMode::Opaque
+            || is_see_through(assets.materials[instance.material.index])) {
             continue;
         }
         Material material = assets.materials[instance.material.index];

@@ -121,7 +121,8 @@ bool contains(const Bounds& box, const Vec3& point) {
 bool is_solid(const Assets& assets, const MeshInstance& instance) {
     return instance.mesh.index < assets.meshes.size()
            && (instance.material.index >= assets.materials.size()
-               || (assets.materials[instance.material.index].alpha_mode == AlphaMode::Opaque
+               || (!is_see_through(assets.materials[instance.material.index])
+                   && assets.materials[instance.material.index].alpha_mode == AlphaMode::Opaque
                    && !assets.materials[instance.material.index].double_sided));
 }
 

@@ -144,6 +144,11 @@ struct Material {
     bool wide_rim = false;
     float normal_scale = 1.0f;
     float occlusion_strength = 1.0f;
+    float transmission = 0.0f;
+    float refractive_index = 1.5f;
+    float thickness = 0.0f;
+    Vec3 attenuation_color = {1, 1, 1};
+    float attenuation_distance = 1.0f;
     TextureSlot base_color_texture = {};
     TextureSlot metal_rough_texture = {};
     TextureSlot normal_texture = {};
@@ -173,6 +178,22 @@ LIMN_FIELDS(Material) {
     LIMN_FIELD(wide_rim, "skin: wide rim, 1 - (n.v)^2 instead of (1 - n.v)^2");
     LIMN_FIELD(normal_scale, "strength of the normal map", "", 0, 10);
     LIMN_FIELD(occlusion_strength, "strength of the occlusion map", "", 0, 1);
+    LIMN_FIELD(
+        transmission,
+        "share of light that passes through instead of being scattered; what is behind is seen "
+        "refracted, in the base color, and blurred by the roughness",
+        "", 0, 1);
+    LIMN_FIELD(
+        refractive_index, "of the medium, with transmission; glass 1.5, water 1.33", "", 1, 3);
+    LIMN_FIELD(
+        thickness,
+        "with transmission: of the medium behind the surface, scaled with the mesh; 0: a thin "
+        "sheet, which does not refract",
+        "m", 0, 1000);
+    LIMN_FIELD(
+        attenuation_color, .doc = "color of white light after attenuation_distance in the medium",
+        .min = 0, .max = 1, .color = true);
+    LIMN_FIELD(attenuation_distance, "see attenuation_color", "m", 1e-6, 1e6);
     LIMN_FIELD(base_color_texture, "sRGB base color, alpha = opacity");
     LIMN_FIELD(metal_rough_texture, "green = roughness, blue = metalness");
     LIMN_FIELD(normal_texture, "tangent-space normals, green up");
@@ -182,6 +203,11 @@ LIMN_FIELDS(Material) {
         wrinkle_texture,
         "tangent-space normals, green up, 128 flat, of wrinkles in full: drawn where a "
         "wrinkle_surface is compressed");
+}
+
+/// Whether what is behind the surface is seen through it.
+[[nodiscard]] inline bool is_see_through(const Material& material) {
+    return material.alpha_mode == AlphaMode::Blend || material.transmission > 0;
 }
 
 /// Unique ID of an Assets object within this run, even if another one reuses its address: the

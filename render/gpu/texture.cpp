@@ -288,7 +288,7 @@ void Texture::upload(std::span<const std::byte> pixels, int level, int layer) {
 void Texture::copy_to(const Texture& target, int layer) const {
     LIMN_CHECK(
         target.desc_.format == desc_.format && target.width() == width()
-        && target.height() == height() && target.desc_.levels == desc_.levels);
+        && target.height() == height() && target.desc_.levels >= desc_.levels);
     LIMN_CHECK(layer < 0 ? target.layers() == layers() : layer < target.layers() && layers() == 1);
     for (int level = 0; level < desc_.levels; ++level) {
         glCopyImageSubData(

@@ -74,8 +74,8 @@ class Texture {
         upload(std::as_bytes(pixels), format, type, level, layer);
     }
 
-    /// Copies all levels into a texture of the same size, format and layers; a 2D texture may
-    /// become one `layer` of an array.
+    /// Copies all levels into a texture of the same size, format and layers, which may have more
+    /// levels; a 2D texture may become one `layer` of an array.
     void copy_to(const Texture& target, int layer = -1) const;
 
     /// Sets every texel of a level, converted as a shader would write it; not for integer formats.

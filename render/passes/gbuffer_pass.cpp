@@ -91,7 +91,7 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
             "depth", mesh_reads(graph, frame), std::array{cleared(view.gbuffer.depth)},
             [this, &view](PassContext& context) {
                 bind_view(context, view);
-                draw_depths(context, view, depth_first);
+                draw_depths(context, view, view.data.get<InstanceList>().opaque, depth_first);
             });
         return;
     }

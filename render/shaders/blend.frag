@@ -1,9 +1,13 @@
 // Alpha-blended surfaces, forward shaded from back to front. Opacity scales diffuse but not specular light: nearly
-// clear glass still reflects the lamps. Premultiplied.
+// clear glass still reflects the lamps. Premultiplied. Definition TRANSMISSION: of clear media, which replace what is
+// behind them by the same refracted.
 #version 450
 #define UNMASKED  // shadow masks are of the opaque surfaces behind
 #include "lib/lighting.glsl"
 #include "lib/material.glsl"
+#ifdef TRANSMISSION
+#include "lib/transmission.glsl"
+#endif
 
 layout(location = 0) out vec4 radiance;
 
@@ -18,6 +22,12 @@ void main() {
     // The share that is reflected does not transmit the background.
     Reflector r = make_reflector(s, to_viewer(position_ws));
     float mirror = dot(r.mirror, vec3(1.0 / 3.0));
+#ifdef TRANSMISSION
+    ClearMedium medium = clear_medium(s.material);
+    float clear = medium.transmission * (1.0 - s.metalness);
+    vec3 seen = transmitted_radiance(medium, position_ws, s.normal_ws, r.to_camera, s.roughness);
+    light.diffuse = mix(light.diffuse, s.albedo * seen * (1.0 - mirror), clear);
+#endif
     radiance = vec4(
         storable(opacity * (light.diffuse + s.emission) + light.specular), opacity + (1.0 - opacity) * mirror);
 }

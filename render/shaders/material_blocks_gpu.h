@@ -12,6 +12,7 @@ namespace limn::layout {
 const uint kUvBlock = 0u;       // material_maps_gpu.h
 const uint kClassicBlock = 1u;  // material_classic_gpu.h
 const uint kSkinBlock = 2u;     // material_skin_gpu.h
+const uint kClearBlock = 3u;    // material_clear_gpu.h
 
 const uint kBlockOffsetBits = 6u;
 const uint kBlocksPerFloat = 4u;

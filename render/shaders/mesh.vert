@@ -4,6 +4,7 @@
 //   DEFORMED  with VELOCITY: vertices also move in mesh space
 //   OBJECT_LIGHTS  also the index of the instance
 //   WRINKLE_MAP, WRINKLE_VIEW  also the strengths of its wrinkles, or its strain; WRINKLE_FLAT: without interpolation
+//   TRANSMISSION  also the scale of the instance
 //   CLIPPED  only on one side of view.clip_plane
 #version 450
 #include "lib/material_record.glsl"
@@ -30,6 +31,9 @@ layout(location = 6) flat out uint object;
 flat
 #endif
 layout(location = 8) out vec4 wrinkle_strength;
+#endif
+#ifdef TRANSMISSION
+layout(location = 9) flat out float scale;  // mean of the axes
 #endif
 #ifdef CLIPPED
 out float gl_ClipDistance[1];
@@ -59,6 +63,9 @@ void main() {
 #endif
 #ifdef OBJECT_LIGHTS
     object = instance.z;
+#endif
+#ifdef TRANSMISSION
+    scale = pow(abs(dot(world_row0.xyz, cross(world_row1.xyz, world_row2.xyz))), 1.0 / 3.0);
 #endif
 
 #ifdef VELOCITY

@@ -2,10 +2,20 @@
 // multiple scattering, over Lambert. The base of all models: those that follow override what differs.
 
 #include "lib/brdf.glsl"
+#include "lib/material_record.glsl"
 
 layout(binding = 8) uniform sampler2D specular_albedo;  // (scale, bias) of f0 by n.v and roughness
 
 const float kDielectric = 0.04;  // reflectance head on, index of refraction 1.5
+
+float dielectric_reflectance(SurfaceSample s) {
+#ifdef TRANSMISSION
+    float index = block_texel(s.material, kClearBlock, 0).y;
+    return (index - 1.0) * (index - 1.0) / ((index + 1.0) * (index + 1.0));
+#else
+    return kDielectric;
+#endif
+}
 
 // Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Both compensate the
 // energy lost by single scattering: Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019.
@@ -15,10 +25,11 @@ void prepare_pbr(inout Reflector r, SurfaceSample s) {
     vec2 size = vec2(textureSize(specular_albedo, 0));
     vec2 fit = texture(specular_albedo, (vec2(min(r.n_v, 1.0), s.roughness) * (size - 1.0) + 0.5) / size).rg;
     float lost = 1.0 / (fit.x + fit.y) - 1.0;
-    float dielectric_90 = 1.0 + kDielectric * lost;
-    float dielectric_mirror = dielectric_90 * (kDielectric * fit.x + fit.y);
+    float head_on = dielectric_reflectance(s);
+    float dielectric_90 = 1.0 + head_on * lost;
+    float dielectric_mirror = dielectric_90 * (head_on * fit.x + fit.y);
     vec3 metal_90 = 1.0 + s.albedo * lost;
-    r.specular_0 = mix(vec3(kDielectric * dielectric_90), s.albedo * metal_90, s.metalness);
+    r.specular_0 = mix(vec3(head_on * dielectric_90), s.albedo * metal_90, s.metalness);
     r.specular_90 = mix(vec3(dielectric_90), metal_90, s.metalness);
     r.mirror = r.specular_0 * fit.x + r.specular_90 * fit.y;
     r.diffuse = s.albedo * ((1.0 - s.metalness) * (1.0 - dielectric_mirror));

@@ -1,0 +1,70 @@
+// What is seen through a clear medium: the image behind it, displaced as by a slab of its thickness, blurred by its
+// roughness, in the color that absorption leaves (M. McGuire and M. Mara, "Phenomenological Transparency", 2017; thickness
+// as in KHR_materials_volume). What is off screen is taken from the surroundings. Definition REFRACTION: it has a
+// thickness. Include after lib/lighting.glsl.
+
+#include "lib/optics.glsl"
+
+layout(binding = 22) uniform sampler2D behind_radiance;  // with mip levels
+layout(binding = 23) uniform sampler2D behind_depth;
+
+layout(location = 9) flat in float scale;
+
+const float kBorder = 0.04;  // share of the image over which it fades into the surroundings
+
+struct ClearMedium {
+    float transmission;
+    float index;      // of refraction
+    float thickness;  // [m]
+    vec3 absorption;  // [1/m]
+};
+ClearMedium clear_medium(uint material) {
+    vec4 medium = block_texel(material, kClearBlock, 0);
+    vec3 absorption = block_texel(material, kClearBlock, 1).rgb;
+    return ClearMedium(medium.x, medium.y, medium.z * scale, absorption);
+}
+
+// The image behind at `uv`, averaged over `diameter` pixels: four bilinear samples, which hide the texels of a mip level.
+vec3 blurred_behind(vec2 uv, float diameter) {
+    float level = log2(max(diameter, 1.0));
+    if (level <= 0.0) {
+        return textureLod(behind_radiance, uv, 0.0).rgb;
+    }
+    vec2 half_texel = 0.5 * min(exp2(level), diameter) * view.size.zw;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec2 corner = vec2(i & 1, i >> 1) * 2.0 - 1.0;
+        sum += textureLod(behind_radiance, uv + corner * half_texel, max(level - 0.5, 0.0)).rgb;
+    }
+    return 0.25 * sum;
+}
+
+// Radiance through the medium, before the Fresnel reflection at its front. `normal` faces the viewer.
+vec3 transmitted_radiance(ClearMedium medium, vec3 position, vec3 normal, vec3 to_camera, float roughness) {
+    vec2 here_uv = gl_FragCoord.xy * view.size.zw;
+    float here = view_distance(gl_FragCoord.z);
+#ifdef REFRACTION
+    vec3 inside = refract_ray(normal, to_camera, 1.0 / medium.index);
+    vec3 clip = (view.clip_from_world * vec4(position + medium.thickness * inside, 1.0)).xyw;
+    vec2 uv = clip.xy / max(clip.z, 1e-6) * 0.5 + 0.5;
+    float depth = textureLod(behind_depth, uv, 0.0).r;
+    bool in_front = depth > 0.0 && view_distance(depth) < here;  // what is in front of the medium is not behind it
+    uv = in_front ? here_uv : uv;
+    float turn = medium.index - 1.0;  // of a refracted ray, by a slope of 1
+#else
+    vec2 uv = here_uv;
+    const float turn = 0.5;  // as glass
+#endif
+    float seen_depth = textureLod(behind_depth, uv, 0.0).r;
+    float travelled = seen_depth > 0.0 ? max(1.0 - here * seen_depth / view.camera_ws.w, 0.0) : 1.0;
+    float pixel = 2.0 * length(view.ray_up.xyz) * view.size.w;  // at 1 m
+    vec3 seen = blurred_behind(uv, 2.0 * roughness * roughness * turn * travelled / pixel);
+#ifdef REFRACTION
+    vec2 inward = min(uv, 1.0 - uv) / kBorder;
+    float shown = in_front ? 1.0 : clip.z > 0.0 ? clamp(min(inward.x, inward.y), 0.0, 1.0) : 0.0;
+    if (shown < 1.0) {
+        seen = mix(environment_light(position, normal, inside, roughness).mirrored, seen, shown);
+    }
+#endif
+    return seen * exp(-medium.absorption * medium.thickness);
+}

@@ -1,0 +1,16 @@
+// Of materials that transmit light.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+struct ClearBlock {
+    vec4 medium;      // transmission, refractive index, thickness [m] before scaling; w unused
+    vec4 absorption;  // [1/m]; w unused
+};
+
+#ifdef __cplusplus
+}  // namespace limn::layout
+#endif

@@ -1,0 +1,203 @@
+#include "ecs/base/optics.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+
+namespace limn::test {
+namespace {
+
+/// Clear glass that scatters and, unless said otherwise, absorbs nothing.
+Material glass(float thickness, float roughness = 0) {
+    return {
+        .base_color = {1, 1, 1, 1},
+        .roughness = roughness,
+        .transmission = 1,
+        .thickness = thickness};
+}
+
+Material unlit(const Vec3& color) {
+    return {.shading = ShadingModel::Unlit, .base_color = Vec4(color, 1)};
+}
+
+struct GlassScene : Scene {
+    GlassScene() : square(add(make_square())) {}
+
+    /// A white wall left of x = `edge` at depth `z`, black right of it.
+    void add_edge(float z, float edge) {
+        place(square, add(unlit({1, 1, 1})), affine_from({edge - 5, 0, z}, {1, 0, 0, 0}, Vec3(5)));
+        place(square, add(unlit({0, 0, 0})), affine_from({edge + 5, 0, z}, {1, 0, 0, 0}, Vec3(5)));
+    }
+    Entity add_pane(const Material& material, float scale = 3) {
+        return place(square, add(material), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(scale)));
+    }
+    [[nodiscard]] RenderView front(int size = 64) const {
+        return look({0, 0, 2}, {0, 0, 0}, size, size);
+    }
+
+    MeshId square;
+};
+
+/// Share of what is transmitted where glass of index 1.5 is seen head on.
+constexpr float kLetIn = 0.96f;
+
+/// Pixels of a row, from the left, whose mean is what the row has: where an edge is.
+float edge_of(const gpu::FloatImage& image, int row, float white) {
+    float sum = 0;
+    for (int x = 0; x < image.width; ++x) {
+        sum += image.at(x, row, 0) / white;
+    }
+    return sum;
+}
+
+/// Pixels of a row between a tenth and nine tenths of `white`.
+int width_of_edge(const gpu::FloatImage& image, int row, float white) {
+    int count = 0;
+    for (int x = 0; x < image.width; ++x) {
+        const float share = image.at(x, row, 0) / white;
+        count += share > 0.1f && share < 0.9f ? 1 : 0;
+    }
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(
+    GlassScene, "transmission: in a furnace clear glass is not to be seen, rough or not") {
+    world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}});
+    const MeshId ball = add(make_ball(64));
+    for (const float roughness : {0.0f, 0.3f, 0.7f}) {
+        for (const float thickness : {0.0f, 1.0f}) {
+            const Entity entity = place(ball, add(glass(thickness, roughness)), at({0, 0, -1.2f}));
+            for (const float value : radiance(look({0, 0, 1}, {0, 0, 0}, 48, 48)).pixels) {
+                CHECK(value == near(1).epsilon(0.02));
+            }
+            world.destroy(entity);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    GlassScene,
+    "transmission: what is behind is seen where the ray leaves that Snell's law bends") {
+    constexpr float kThickness = 0.5f;
+    constexpr float kWall = -0.6f;
+    constexpr int kSize = 128;
+    const Vec3 eye = {1.2f, 0, 0.9f};
+    const RenderView view = look(eye, {0, 0, 0}, kSize, kSize);
+    constexpr float kScale = 40;
+    Material slab = glass(kThickness / kScale);
+    for (const float index : {1.1f, 1.5f, 2.4f}) {
+        slab.refractive_index = index;
+        world.clear();
+        add_edge(kWall, -0.4f);
+        add_pane(slab, kScale);
+        const gpu::FloatImage image = radiance(view);
+        int want = -1;  // the last pixel of the middle row that shows the white part
+        for (int x = 0; x < kSize; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / kSize * 2 - 1;
+            const Vec3 ray = glm::normalize(
+                transform_vector(view.world_from_camera, Vec3(u * view.tangent.x, 0, -1)));
+            const Vec3 hit = eye - ray * (eye.z / ray.z);
+            const Vec3 leaves = hit + kThickness * refract_ray({0, 0, 1}, -ray, 1 / index);
+            const Vec3 seen = leaves - eye;
+            if (ray.z < 0 && (eye + seen * ((kWall - eye.z) / seen.z)).x < -0.4f) {
+                want = std::max(want, x);
+            }
+        }
+        REQUIRE(want > 4);
+        int got = -1;
+        for (int x = 0; x < kSize; ++x) {
+            if (image.at(x, kSize / 2, 0) > 0.3f) {
+                got = std::max(got, x);
+            }
+        }
+        CAPTURE(index);
+        CHECK(std::abs(got - want) <= 1);
+    }
+}
+
+TEST_CASE_FIXTURE(GlassScene, "transmission: a thin sheet moves nothing and tints by its color") {
+    add_edge(-1, 0.3f);
+    const gpu::FloatImage bare = radiance(front());
+    Material sheet = glass(0);
+    sheet.base_color = {0.5f, 0.25f, 1, 1};
+    add_pane(sheet);
+    const gpu::FloatImage tinted = radiance(front());
+    CHECK(edge_of(tinted, 32, 0.5f * kLetIn) == near(edge_of(bare, 32, 1)).epsilon(0.02));
+    CHECK(tinted.at(20, 32, 0) == near(0.5f * kLetIn).epsilon(0.01));
+    CHECK(tinted.at(20, 32, 1) == near(0.25f * kLetIn).epsilon(0.01));
+}
+
+TEST_CASE_FIXTURE(
+    GlassScene, "transmission: twice the depth squares what is left, and scale is depth") {
+    add_edge(-3, 5);
+    const auto seen = [&](float thickness, float scale) {
+        Material amber = glass(thickness);
+        amber.attenuation_color = {0.5f, 0.8f, 1};
+        amber.attenuation_distance = 2;
+        const Entity pane = add_pane(amber, scale);
+        const Vec3 color = rgb_at(radiance(front()), 32, 32) / kLetIn;
+        world.destroy(pane);
+        return color;
+    };
+    CHECK(seen(2, 1).x == near(0.5).epsilon(0.01));
+    CHECK(seen(4, 1).x == near(0.25).epsilon(0.01));
+    CHECK(seen(2, 2).y == near(0.64).epsilon(0.01));
+    CHECK(seen(2, 2).z == near(1).epsilon(0.01));
+}
+
+TEST_CASE_FIXTURE(
+    GlassScene, "transmission: rough glass blurs more what is farther, and keeps its mean") {
+    int before = 0;
+    for (const float distance : {0.1f, 0.5f, 2.0f}) {
+        world.clear();
+        add_edge(-distance, 0);
+        add_pane(glass(0, 0.5f));
+        const gpu::FloatImage image = radiance(front(256));
+        const int width = width_of_edge(image, 128, kLetIn);
+        CAPTURE(distance);
+        CHECK(width > before);
+        CHECK(edge_of(image, 128, kLetIn) == near(128).epsilon(0.03));
+        before = width;
+    }
+}
+
+TEST_CASE_FIXTURE(GlassScene, "transmission: what is in front of glass is not seen in it") {
+    add_edge(-1, 3);
+    const RenderView view = look({1.5f, 0, 1.5f}, {0, 0, 0});
+    const auto add_bar = [&] {  // which the slab would show displaced
+        return place(
+            square, add(unlit({0, 0, 0})),
+            affine_from({0, 0, 0.2f}, {1, 0, 0, 0}, Vec3(0.3f, 2, 1)));
+    };
+    const Entity bar = add_bar();
+    const gpu::FloatImage clear = radiance(view);
+    world.destroy(bar);
+    add_pane(glass(0.02f), 40);
+    const gpu::FloatImage bare = radiance(view);
+    add_bar();
+    const gpu::FloatImage barred = radiance(view);
+    int hidden = 0;
+    int darkened = 0;
+    for (int x = 0; x < 64; ++x) {
+        const bool is_bar = clear.at(x, 32, 0) == 0 && bare.at(x, 32, 0) > 0.5f;
+        hidden += is_bar ? 1 : 0;
+        darkened += !is_bar && barred.at(x, 32, 0) < 0.9f * bare.at(x, 32, 0) ? 1 : 0;
+    }
+    CHECK(hidden > 5);
+    CHECK(darkened <= 1);  // beside its edge
+}
+
+TEST_CASE_FIXTURE(GlassScene, "transmission: of a ball with two sides the near one is seen") {
+    add_edge(-3, 0.2f);
+    const MeshId ball = add(make_ball());
+    Material one = glass(1);
+    Material two = one;
+    two.double_sided = true;
+    const Entity first = place(ball, add(one), at({0, 0, 0}));
+    const gpu::FloatImage want = radiance(front());
+    world.destroy(first);
+    place(ball, add(two), at({0, 0, 0}));
+    CHECK(largest_difference(radiance(front()), want) < 0.01f);
+}
+
+}  // namespace limn::test
