@@ -148,7 +148,9 @@ void Player::follow_level_files() {
         updated += *result;
     }
     level_times_ = level_file_times();  // it may include others now
-    hud_->toast(
+    files_changed_ = files_changed_ || updated > 0;
+    const std::size_t saved = edits - inspector_.edit_count();
+    std::string message =
         updated == 0
             ? "the file was saved; what it says of the entities is as before"
             : fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s"),

@@ -190,6 +190,22 @@ TEST_CASE_FIXTURE(Temporal, "temporal: a cut, another size and another setting b
     CHECK(picture().at(32, 32, 0) == 0.0f);
 }
 
+TEST_CASE_FIXTURE(Temporal, "temporal: an edit after a cut shows at once, and smooth in the end") {
+    place_objects();
+    const MaterialId color = unlit({0.9f, 0.1f, 0.1f});
+    bar(color, 20, 44, 0, 0.1f);
+    smooth(true);
+    static_cast<void>(after(40));
+    const Vec3 edited = {0.1f, 0.2f, 0.9f};
+    auto& assets = world.resource<Assets>();
+    assets.materials[color.index].base_color = {edited, 1};
+    ++assets.material_version;
+    cut(shared_renderer());
+    CHECK(glm::distance(rgb_at(picture(), 32, 32), edited) < 1e-3f);
+    const gpu::FloatImage found = after(64);
+    CHECK(psnr_of(found, mean()) > 40);
+}
+
 TEST_CASE_FIXTURE(
     Temporal, "temporal: an image of one color keeps it, light that is none is black") {
     bar(unlit({0.25f, 0.5f, 0.75f}), -100, 200, 7);
