@@ -12,6 +12,8 @@
 #include "ecs/components/surface.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
+#include "render/shading_fields.h"
+#include "render/shading_models.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -381,10 +383,10 @@ void Inspector::draw_emitter(World& world) {
 
 void Inspector::edit_copy(
     const HudStyle& style, World& world, Edit edit, const ComponentInfo& info, const void* value,
-    const std::string& place) {
+    const std::string& place, const FoldedFields& folded) {
     edit.before = AnyComponent(info, value);
     AnyComponent after = edit.before;
-    const FieldChange change = edit_fields(style, world, info, after.data());
+    const FieldChange change = edit_fields(style, world, info, after.data(), folded);
     if (!change.clicked.is_null()) {
         select(change.clicked);
     }
@@ -469,7 +471,14 @@ void Inspector::draw_materials(const HudStyle& style, World& world) {
     edit.material = material_;
     const Material& material = assets->materials[material_];
     ImGui::PushID(static_cast<int>(material_));
-    edit_copy(style, world, std::move(edit), component_info<Material>(), &material, material.name);
+    const ShadingModel model = material.shading;
+    const FoldedFields unused = {
+        .heading = fmt::format(
+            "not used by {}##unused", kShadingModels[static_cast<std::size_t>(model)].name),
+        .is_one = [model](std::string_view field) { return !reads_field(model, field); }};
+    edit_copy(
+        style, world, std::move(edit), component_info<Material>(), &material, material.name,
+        unused);
     ImGui::PopID();
     ImGui::EndChild();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/app/field_widgets.h"
 #include "content/app/storage_panel.h"
 #include "content/app/undo.h"
 #include "ecs/any_component.h"
@@ -73,7 +74,7 @@ class Inspector {
     /// the world.
     void edit_copy(
         const HudStyle& style, World& world, Edit edit, const ComponentInfo& info,
-        const void* value, const std::string& place);
+        const void* value, const std::string& place, const FoldedFields& folded = {});
 
     UndoStack undo_;
     Entity selected_;
