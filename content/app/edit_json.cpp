@@ -140,7 +140,7 @@ const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
         const auto info = [](const Edit& e) {
             return &(e.before.is_empty() ? e.after.info() : e.before.info());
         };
-        return other.kind == edit.kind && other.entity == edit.entity
+        return other.part == edit.part && other.entity == edit.entity
                && other.material == edit.material && info(other) == info(edit);
     };
     return *std::find_if(edits.begin(), edits.end(), same);
@@ -194,8 +194,8 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
         const auto edited = [&](const void* now) {
             return without_equal(write_component(info, now, names), before);
         };
-        switch (edit.kind) {
-        case EditKind::Component:
+        switch (edit.part) {
+        case LevelPart::Component:
             if (const Name* const name = name_of(world, edit.entity)) {
                 JsonValue value;
                 if (world.has(edit.entity, info.id)) {
@@ -208,12 +208,12 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
                 }
             }
             break;
-        case EditKind::Resource:
+        case LevelPart::Resource:
             if (const void* const now = world.find_resource(info.id)) {
                 set_member(member(patch, "resources"), info.name, edited(now));
             }
             break;
-        case EditKind::Material: {
+        case LevelPart::Material: {
             const auto* const assets = world.find_resource<Assets>();
             if (assets != nullptr && edit.material < assets->materials.size()) {
                 const Material& now = assets->materials[edit.material];

@@ -418,7 +418,7 @@ void Inspector::draw_resources(const HudStyle& style, World& world) {
         } else if (ImGui::CollapsingHeader(info.name.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
             draw_copy_menu(world, info, std::as_const(world).find_resource(id));
             Edit edit;
-            edit.kind = EditKind::Resource;
+            edit.part = LevelPart::Resource;
             edit_copy(
                 style, world, std::move(edit), info, std::as_const(world).find_resource(id),
                 info.name);
@@ -467,7 +467,7 @@ void Inspector::draw_materials(const HudStyle& style, World& world) {
     ImGui::Separator();
     ImGui::BeginChild("##material");
     Edit edit;
-    edit.kind = EditKind::Material;
+    edit.part = LevelPart::Material;
     edit.material = material_;
     const Material& material = assets->materials[material_];
     ImGui::PushID(static_cast<int>(material_));

@@ -156,7 +156,7 @@ TEST_CASE("edit_json: an edit of a node of a glTF file is a change of nodes") {
                                      {"name": "eye", "camera": {}}]})");
     World& world = level.world();
     Edit change;
-    change.kind = EditKind::Component;
+    change.part = LevelPart::Component;
     change.entity = level.find("Bulb.001");
     const ComponentInfo& light = component_info<PointLight>();
     change.before = AnyComponent::read(world, change.entity, light);
@@ -249,7 +249,7 @@ TEST_CASE("edit_json: edits are a patch with the present values; removed compone
     World& world = level.world();
     const Entity lamp = level.find("lamp");
     UndoStack undo;
-    const auto edit = [&](EditKind kind, Entity entity, AnyComponent before, AnyComponent after) {
+    const auto edit = [&](LevelPart kind, Entity entity, AnyComponent before, AnyComponent after) {
         Edit change;
         change.kind = kind;
         change.entity = entity;
@@ -263,14 +263,14 @@ TEST_CASE("edit_json: edits are a patch with the present values; removed compone
     for (const float intensity : {20.0f, 30.0f}) {
         const AnyComponent before = AnyComponent::read(world, lamp, light);
         brighter.intensity = intensity;
-        edit(EditKind::Component, lamp, before, AnyComponent(light, &brighter));
+        edit(LevelPart::Component, lamp, before, AnyComponent(light, &brighter));
     }
     Exposure exposure = world.resource<Exposure>();
     const AnyComponent before(component_info<Exposure>(), &exposure);
     exposure.ev = -2;
-    edit(EditKind::Resource, {}, before, AnyComponent(component_info<Exposure>(), &exposure));
+    edit(LevelPart::Resource, {}, before, AnyComponent(component_info<Exposure>(), &exposure));
     edit(
-        EditKind::Component, level.find("box"),
+        LevelPart::Component, level.find("box"),
         AnyComponent::read(world, level.find("box"), component_info<MeshInstance>()), {});
     const Result<JsonValue> patch = parse_json(edits_as_json(world, undo.done()), "patch");
     REQUIRE(patch.ok());
