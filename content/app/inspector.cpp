@@ -73,7 +73,7 @@ bool is_editable(const ComponentInfo& info) {
 
 void Inspector::reset() {
     undo_.clear();
-    selected_ = {};
+    selected_ = noted_ = {};
     rows_.clear();
     rows_built_at_ = -1.0;
     collapsed_.clear();
@@ -258,6 +258,14 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
     ImGui::PushFont(style.title);
     ImGui::TextUnformatted(entity_label(world, selected_).c_str());
     ImGui::PopFont();
+    if (std::exchange(noted_, selected_) != selected_) {
+        note_ = edit_note(world, selected_);
+    }
+    if (!note_.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, kHudAccent);
+        ImGui::TextWrapped("%s", note_.c_str());
+        ImGui::PopStyleColor();
+    }
     if (ImGui::Button("Focus (F)")) {
         focus_ = true;
     }

@@ -78,7 +78,9 @@ class Inspector {
 
     UndoStack undo_;
     Entity selected_;
-    Entity copied_;  ///< whose JSON was copied last
+    Entity copied_;     ///< whose JSON was copied last
+    Entity noted_;      ///< of note_
+    std::string note_;  ///< what to know before editing the selected entity (edit_json.h)
     std::string search_;
     std::string resource_search_;
     std::string material_search_;
