@@ -161,6 +161,8 @@ class Renderer {
     FrameGraph graph;
     Accumulation accumulation;
 
+    void cut() { clock_ = {}; }
+
   private:
     void destroy_effects();
     /// Drops all that earlier frames left, except for uploaded assets.
@@ -475,6 +477,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
 FrameOutput render_frame(
     Renderer& renderer, const World& world, const RenderView& view, const FrameRequest& request) {
     return renderer.draw(kCameraView, world, view, request);
+}
+
+void cut(Renderer& renderer) {
+    renderer.cut();
 }
 
 int warm_up(

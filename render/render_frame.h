@@ -110,6 +110,9 @@ FrameOutput render_frame(
     Renderer& renderer, const World& world, const RenderView& view,
     const FrameRequest& request = {});
 
+/// The next frame follows a cut: no earlier one is blended into it, as after an edit of the world.
+void cut(Renderer& renderer);
+
 /// Told of a warm-up: views drawn, and views in all.
 using WarmUpProgress = std::function<void(int done, int total)>;
 

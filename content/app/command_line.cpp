@@ -169,60 +169,43 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option("--svg", options.svg, "of `particles`: draw the cost over their number")
         ->type_name("FILE");
     app->footer(
-        "Every frame simulates one step and renders off screen. Times are in milliseconds; \"all "
-        "threads\"\n"
-        "is processor time, which depends less on other programs. Shaders are\n"
-        "compiled before the first frame (\"compile_ms\"); \"compiled\" counts those that a "
-        "measured "
-        "frame\n"
-        "had to compile.\n\n"
-        "JSON: {\"scene\", \"size\": [w, h], \"frames\", \"warmup\", \"threads\", \"gl\": "
-        "{\"renderer\",\n"
-        "\"version\"}, \"memory\": {\"resident_begin_mib\", \"resident_mib\", "
-        "\"heap_begin_mib\", \"heap_mib\", \"gpu_mib\"}, "
-        "\"counts\": {\"entities\", "
-        "\"draws\",\n"
-        "\"triangles\", \"programs\", \"compiled\"}, \"compile_ms\", and arrays \"frame\", "
-        "\"systems\", \"passes\" of {\"name\", \"clock\": "
-        "\"cpu\" or\n"
-        "\"gpu\", \"median_ms\", \"p95_ms\", \"max_ms\"}}\n"
-        "CSV: kind,name,clock,median_ms,p95_ms,max_ms\n\n"
-        "The scene `lights` is measured with 16, 64 ... 4096 lights, with every method of "
-        "rendering.lights,\n"
-        "each for at most --frames frames or a few seconds; a method stops where a frame would "
-        "take longer\n"
-        "than 12 s. JSON: {\"scene\", \"size\", \"threads\", \"gl\", \"methods\": [{\"name\", "
-        "\"points\":\n"
-        "[{\"lights\", \"frames\", \"median_ms\", \"p95_ms\", \"max_ms\", \"passes\"} or "
-        "{\"lights\",\n"
-        "\"left_out\"}]}], \"full_screen_over_clustered\": [{\"lights\", \"ratio\"}]}\n"
-        "CSV: method,lights,frames,median_ms,p95_ms,max_ms\n\n"
-        "`limn bench lens` measures the level `stilllife` without lens effects, with each\n"
-        "alone, and with ripple, motion blur, depth of field and glow together. \"added\" is the "
-        "increase\n"
-        "over a frame without effects, \"passes\" the sum of the passes that such a frame lacks.\n"
-        "JSON: {\"scene\", \"size\", \"frames\",\n"
-        "\"warmup\", \"threads\", \"gl\", \"points\": [{\"effects\", \"median_ms\", "
-        "\"p95_ms\", \"added_ms\",\n"
-        "\"passes_ms\", \"passes\"}]}\n"
-        "CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms\n\n"
-        "`limn bench particles` holds particles to their gates, ratios to loops that people write "
-        "by\n"
-        "hand, and shows what a particle costs among a thousand to ten million. It draws nothing;\n"
-        "--frames is how often each is run at most, and the best counts.\n"
-        "JSON: {\"threads\", \"gates\": [{\"gate\", \"name\", \"ours\", \"other\", \"against\", "
-        "\"unit\",\n"
-        "\"ratio\", \"limit\", \"met\"}], \"growth\": [{\"curve\", \"points\": [{\"count\", "
-        "\"ns\"}]}], "
-        "\"notes\"}\n"
-        "CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, "
-        "curve,count,ns\n\n"
-        "Examples:\n"
-        "  limn bench lights --size 640x360\n"
-        "  limn bench lens --size 640x360 --frames 100\n"
-        "  limn bench gallery --size 640x360 --set glow.strength=0.1\n"
-        "  limn bench stress-instances --frames 600 --json numbers.json\n"
-        "  limn bench particles --csv particles.csv --svg particles.svg");
+        R"(Every frame simulates one step and renders off screen. Times are in milliseconds; "all threads" is
+processor time, which depends less on other programs. Shaders are compiled before the first frame
+("compile_ms"); "compiled" counts those that a measured frame had to compile.
+
+JSON: {"scene", "size": [w, h], "frames", "warmup", "threads", "gl": {"renderer", "version"},
+"memory": {"resident_begin_mib", "resident_mib", "heap_begin_mib", "heap_mib", "gpu_mib"},
+"counts": {"entities", "draws", "triangles", "programs", "compiled"}, "compile_ms", and arrays
+"frame", "systems", "passes" of {"name", "clock": "cpu" or "gpu", "median_ms", "p95_ms", "max_ms"}}
+CSV: kind,name,clock,median_ms,p95_ms,max_ms
+
+The scene `lights` is measured with 16, 64 ... 4096 lights, with every method of rendering.lights,
+each for at most --frames frames or a few seconds; a method stops where a frame would take longer
+than 12 s. JSON: {"scene", "size", "threads", "gl", "methods": [{"name", "points": [{"lights",
+"frames", "median_ms", "p95_ms", "max_ms", "passes"} or {"lights", "left_out"}]}],
+"full_screen_over_clustered": [{"lights", "ratio"}]}
+CSV: method,lights,frames,median_ms,p95_ms,max_ms
+
+`limn bench lens` measures the level `stilllife` without lens effects, with each alone, and with
+ripple, motion blur, depth of field and glow together. "added" is the increase over a frame without
+effects, "passes" the sum of the passes that such a frame lacks.
+JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"effects", "median_ms",
+"p95_ms", "added_ms", "passes_ms", "passes"}]}
+CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms
+
+`limn bench particles` holds particles to their gates, ratios to loops that people write by hand,
+and shows what a particle costs among a thousand to ten million. It draws nothing; --frames is how
+often each is run at most, and the best counts.
+JSON: {"threads", "gates": [{"gate", "name", "ours", "other", "against", "unit", "ratio", "limit",
+"met"}], "growth": [{"curve", "points": [{"count", "ns"}]}], "notes"}
+CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, curve,count,ns
+
+Examples:
+  limn bench lights --size 640x360
+  limn bench lens --size 640x360 --frames 100
+  limn bench gallery --size 640x360 --set glow.strength=0.1
+  limn bench stress-instances --frames 600 --json numbers.json
+  limn bench particles --csv particles.csv --svg particles.svg)");
     return {app, [&options] { return run_bench(options); }};
 }
 

@@ -9,8 +9,13 @@
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstddef>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -101,6 +106,22 @@ bool is_copy(const Name& name) {
     return open != std::string::npos && open > 0 && name.text.ends_with(']');
 }
 
+/// "post" of its copy "post[2]".
+std::string_view repeated_name(const Name& copy) {
+    return std::string_view(copy.text).substr(0, copy.text.rfind('['));
+}
+
+/// The entity itself or the nearest ancestor that `repeat` made; null where there is none.
+Entity nearest_copy(const World& world, Entity entity) {
+    for (; !entity.is_null(); entity = parent_of(world, entity)) {
+        const Name* const name = name_of(world, entity);
+        if (name != nullptr && is_copy(*name)) {
+            break;
+        }
+    }
+    return entity;
+}
+
 /// The entity in whose "nodes" a level changes this one: the one that placed a node of a file, or
 /// the outermost parent below one that placed a file.
 Entity owner_of(const World& world, Entity entity) {
@@ -121,6 +142,9 @@ Entity owner_of(const World& world, Entity entity) {
 /// it. A copy is changed when it begins to play.
 JsonValue* patched(
     const World& world, JsonValue& entities, JsonValue& copies, Entity entity, const Name& name) {
+    if (!nearest_copy(world, parent_of(world, entity)).is_null()) {
+        return nullptr;
+    }
     const Entity owner = owner_of(world, entity);
     const Name* const outer = name_of(world, owner);
     if (owner == entity) {
@@ -129,10 +153,94 @@ JsonValue* patched(
     if (outer == nullptr || world.has<FromGltf>(owner)) {
         return &named(entities, name.text);
     }
-    return is_copy(*outer) || is_copy(name)
-               ? nullptr
-               : &member(member(named(entities, outer->text), "nodes"), name.text);
+    return is_copy(name) ? nullptr
+                         : &member(member(named(entities, outer->text), "nodes"), name.text);
 }
+
+/// An entity and its children, as a level has them.
+class CopiedTree {
+  public:
+    CopiedTree(const World& world, const Hierarchy& tree, Entity root)
+        : world_(world), tree_(tree), provider_(make_name_provider(world)) {
+        add_names(root);
+        provider_.entity = [this, others = provider_.entity](Entity entity) {
+            const auto own = names_.find(entity);
+            return own != names_.end() ? own->second : others(entity);
+        };
+    }
+    CopiedTree(const CopiedTree&) = delete;
+    CopiedTree& operator=(const CopiedTree&) = delete;
+
+    /// Of a node of a glTF file, only its components.
+    [[nodiscard]] JsonValue object_of(Entity entity) const {
+        JsonValue object = json_object();
+        const bool is_node = world_.has<FromGltf>(entity);
+        if (const auto name = names_.find(entity); name != names_.end()) {
+            set_member(object, "name", json_of(std::string_view(name->second)));
+        }
+        if (const auto* const source = world_.find<GltfSource>(entity);
+            source != nullptr && !is_node) {
+            set_member(object, "gltf", json_of(std::string_view(source->file)));
+        }
+        for (const ComponentId id : world_.components_of(entity)) {
+            const ComponentInfo& info = component_info(id);
+            if (!info.is_registered || !info.saved || is_internal(info)
+                || info.id
+                       == component_id<
+                           Name> || info.id == component_id<Parent> || (is_node && names_others(info.fields))) {
+                continue;
+            }
+            const AnyComponent value = AnyComponent::read(world_, entity, info);
+            JsonValue json = write_component(info, value.data(), provider_);
+            if (info.defaults != nullptr && !is_node) {  // a file may have others than the defaults
+                json = without_equal(std::move(json), write_component(info, info.defaults, {}));
+            }
+            set_member(object, info.name, std::move(json));
+        }
+        JsonValue children = json_array();
+        for (const Entity child : children_of(entity)) {
+            children.items.push_back(object_of(child));
+        }
+        if (!children.items.empty()) {
+            set_member(object, "children", std::move(children));
+        }
+        return object;
+    }
+
+  private:
+    /// Those that a level has to say, in order: what a glTF file brings is in that.
+    [[nodiscard]] std::vector<Entity> children_of(Entity entity) const {
+        std::vector<Entity> children;
+        for (const Entity child : tree_.children_of(entity)) {
+            if (!world_.has<FromGltf>(entity) && !world_.has<FromGltf>(child)) {
+                children.push_back(child);
+            }
+        }
+        return children;
+    }
+
+    /// Two instances of a prefab have children of the same names, which one level cannot: "glow"
+    /// and "glow 2".
+    void add_names(Entity entity) {
+        const Name* const name = name_of(world_, entity);
+        if (name != nullptr && !world_.has<FromGltf>(entity)) {
+            std::string own = name->text;
+            for (int i = 2; !used_.insert(own).second; ++i) {
+                own = fmt::format("{} {}", name->text, i);
+            }
+            names_[entity] = std::move(own);
+        }
+        for (const Entity child : children_of(entity)) {
+            add_names(child);
+        }
+    }
+
+    const World& world_;
+    const Hierarchy& tree_;
+    NameProvider provider_;
+    std::unordered_map<Entity, std::string> names_;
+    std::unordered_set<std::string> used_;
+};
 
 /// What the value was before the first of its edits.
 const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
@@ -140,7 +248,7 @@ const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
         const auto info = [](const Edit& e) {
             return &(e.before.is_empty() ? e.after.info() : e.before.info());
         };
-        return other.kind == edit.kind && other.entity == edit.entity
+        return other.part == edit.part && other.entity == edit.entity
                && other.material == edit.material && info(other) == info(edit);
     };
     return *std::find_if(edits.begin(), edits.end(), same);
@@ -153,31 +261,35 @@ std::string component_as_json(const World& world, const ComponentInfo& info, con
            + "\": " + write_json(write_component(info, value, make_name_provider(world)));
 }
 
-std::string entity_as_json(const World& world, Entity entity) {
-    JsonValue object = json_object();
-    const bool is_node = world.has<FromGltf>(entity);
-    if (const Name* const name = name_of(world, entity); name != nullptr && !is_node) {
-        set_member(object, "name", json_of(std::string_view(name->text)));
+std::string entity_as_json(World& world, Entity entity) {
+    JsonValue object = CopiedTree(world, hierarchy(world), entity).object_of(entity);
+    return world.has<FromGltf>(entity) ? node_as_json(world, entity, std::move(object))
+                                       : write_json(object);
+}
+
+std::string edit_note(const World& world, Entity entity) {
+    const Entity copy = nearest_copy(world, entity);
+    const Name* const name = name_of(world, copy);
+    if (name == nullptr) {
+        return name_of(world, entity) == nullptr
+                   ? "has no name: its edits cannot be saved, name it in its file"
+                   : "";
     }
-    if (const auto* const source = world.find<GltfSource>(entity); source != nullptr && !is_node) {
-        set_member(object, "gltf", json_of(std::string_view(source->file)));
-    }
-    for (const ComponentId id : world.components_of(entity)) {
-        const ComponentInfo& info = component_info(id);
-        if (!info.is_registered || !info.saved || is_internal(info)
-            || id
-                   == component_id<
-                       Name> || id == component_id<Parent> || (is_node && names_others(info.fields))) {
-            continue;
-        }
-        const AnyComponent value = AnyComponent::read(world, entity, info);
-        JsonValue json = write_component(info, value.data(), make_name_provider(world));
-        if (info.defaults != nullptr && !is_node) {  // a file may have others than the defaults
-            json = without_equal(std::move(json), write_component(info, info.defaults, {}));
-        }
-        set_member(object, info.name, std::move(json));
-    }
-    return is_node ? node_as_json(world, entity, std::move(object)) : write_json(object);
+    const std::string_view repeated = repeated_name(*name);
+    std::size_t copies = 0;
+    world.query<const Name>().each([&](Entity one, const Name& other) {
+        copies += is_copy(other) && repeated_name(other) == repeated
+                          && parent_of(world, one) == parent_of(world, copy)
+                      ? 1
+                      : 0;
+    });
+    const bool is_saved = copy == entity && nearest_copy(world, parent_of(world, copy)).is_null()
+                          && owner_of(world, copy) == copy;
+    return fmt::format(
+        "{} of {} copies of {} by repeat: {}", copy == entity ? "one" : "part of one", copies,
+        repeated,
+        is_saved ? "its edits are saved as an event, to edit all copies edit the level's file"
+                 : "its edits cannot be saved, edit the prefab or the repeat in the level's file");
 }
 
 std::string edits_as_json(const World& world, std::span<const Edit> edits) {
@@ -194,8 +306,8 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
         const auto edited = [&](const void* now) {
             return without_equal(write_component(info, now, names), before);
         };
-        switch (edit.kind) {
-        case EditKind::Component:
+        switch (edit.part) {
+        case LevelPart::Component:
             if (const Name* const name = name_of(world, edit.entity)) {
                 JsonValue value;
                 if (world.has(edit.entity, info.id)) {
@@ -208,12 +320,12 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
                 }
             }
             break;
-        case EditKind::Resource:
+        case LevelPart::Resource:
             if (const void* const now = world.find_resource(info.id)) {
                 set_member(member(patch, "resources"), info.name, edited(now));
             }
             break;
-        case EditKind::Material: {
+        case LevelPart::Material: {
             const auto* const assets = world.find_resource<Assets>();
             if (assets != nullptr && edit.material < assets->materials.size()) {
                 const Material& now = assets->materials[edit.material];

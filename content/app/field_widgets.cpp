@@ -418,24 +418,45 @@ void edit_elements(Context& context, FieldTable& table, const FieldInfo& field, 
     ImGui::TreePop();
 }
 
+void edit_field_row(Context& context, FieldTable& table, const FieldInfo& field, void* around) {
+    void* const data = field_ptr(around, field);
+    if (field.shape == FieldShape::One) {
+        edit_one(context, table, field, field.name, data);
+    } else {
+        edit_elements(context, table, field, data);
+    }
+}
+
 void edit_field_rows(Context& context, const std::vector<FieldInfo>& fields, void* around) {
     FieldTable table;
     for (const FieldInfo& field : fields) {
-        void* const data = field_ptr(around, field);
-        if (field.shape == FieldShape::One) {
-            edit_one(context, table, field, field.name, data);
-        } else {
-            edit_elements(context, table, field, data);
-        }
+        edit_field_row(context, table, field, around);
     }
 }
 
 }  // namespace
 
-FieldChange
-edit_fields(const HudStyle& style, const World& world, const ComponentInfo& info, void* object) {
+FieldChange edit_fields(
+    const HudStyle& style, const World& world, const ComponentInfo& info, void* object,
+    const FoldedFields& folded) {
     Context context{.style = style, .world = world, .change = {}};
-    edit_field_rows(context, info.fields, object);
+    if (folded.heading.empty()) {
+        edit_field_rows(context, info.fields, object);
+        return context.change;
+    }
+    const auto edit_some = [&](bool are_folded) {
+        FieldTable table;
+        for (const FieldInfo& field : info.fields) {
+            if (folded.is_one(field.name) == are_folded) {
+                edit_field_row(context, table, field, object);
+            }
+        }
+    };
+    edit_some(false);
+    if (ImGui::TreeNodeEx(folded.heading.c_str(), ImGuiTreeNodeFlags_SpanFullWidth)) {
+        edit_some(true);
+        ImGui::TreePop();
+    }
     return context.change;
 }
 

@@ -3,7 +3,9 @@
 #include "ecs/entity.h"
 #include "ecs/reflect.h"
 
+#include <functional>
 #include <string>
+#include <string_view>
 
 namespace limn {
 
@@ -22,10 +24,17 @@ struct FieldChange {
     Entity clicked;          ///< the entity whose link was clicked, or null
 };
 
+/// Fields that are drawn last, under a heading that is folded at first.
+struct FoldedFields {
+    std::string heading;                                ///< empty: there are none
+    std::function<bool(std::string_view name)> is_one;  ///< of the outermost fields
+};
+
 /// Draws the fields of `object` as rows of name and widget, and edits it in place. `world` gives
 /// names to entities and assets.
-FieldChange
-edit_fields(const HudStyle& style, const World& world, const ComponentInfo& info, void* object);
+FieldChange edit_fields(
+    const HudStyle& style, const World& world, const ComponentInfo& info, void* object,
+    const FoldedFields& folded = {});
 
 /// Its name, or its mesh or kind with its index: "teapot 12", "point light 3", "entity 7".
 [[nodiscard]] std::string entity_label(const World& world, Entity entity);

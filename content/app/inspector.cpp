@@ -12,6 +12,8 @@
 #include "ecs/components/surface.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
+#include "render/shading_fields.h"
+#include "render/shading_models.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -71,7 +73,7 @@ bool is_editable(const ComponentInfo& info) {
 
 void Inspector::reset() {
     undo_.clear();
-    selected_ = {};
+    selected_ = noted_ = {};
     rows_.clear();
     rows_built_at_ = -1.0;
     collapsed_.clear();
@@ -256,6 +258,14 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
     ImGui::PushFont(style.title);
     ImGui::TextUnformatted(entity_label(world, selected_).c_str());
     ImGui::PopFont();
+    if (std::exchange(noted_, selected_) != selected_) {
+        note_ = edit_note(world, selected_);
+    }
+    if (!note_.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, kHudAccent);
+        ImGui::TextWrapped("%s", note_.c_str());
+        ImGui::PopStyleColor();
+    }
     if (ImGui::Button("Focus (F)")) {
         focus_ = true;
     }
@@ -381,10 +391,10 @@ void Inspector::draw_emitter(World& world) {
 
 void Inspector::edit_copy(
     const HudStyle& style, World& world, Edit edit, const ComponentInfo& info, const void* value,
-    const std::string& place) {
+    const std::string& place, const FoldedFields& folded) {
     edit.before = AnyComponent(info, value);
     AnyComponent after = edit.before;
-    const FieldChange change = edit_fields(style, world, info, after.data());
+    const FieldChange change = edit_fields(style, world, info, after.data(), folded);
     if (!change.clicked.is_null()) {
         select(change.clicked);
     }
@@ -416,7 +426,7 @@ void Inspector::draw_resources(const HudStyle& style, World& world) {
         } else if (ImGui::CollapsingHeader(info.name.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
             draw_copy_menu(world, info, std::as_const(world).find_resource(id));
             Edit edit;
-            edit.kind = EditKind::Resource;
+            edit.part = LevelPart::Resource;
             edit_copy(
                 style, world, std::move(edit), info, std::as_const(world).find_resource(id),
                 info.name);
@@ -465,11 +475,18 @@ void Inspector::draw_materials(const HudStyle& style, World& world) {
     ImGui::Separator();
     ImGui::BeginChild("##material");
     Edit edit;
-    edit.kind = EditKind::Material;
+    edit.part = LevelPart::Material;
     edit.material = material_;
     const Material& material = assets->materials[material_];
     ImGui::PushID(static_cast<int>(material_));
-    edit_copy(style, world, std::move(edit), component_info<Material>(), &material, material.name);
+    const ShadingModel model = material.shading;
+    const FoldedFields unused = {
+        .heading = fmt::format(
+            "not used by {}##unused", kShadingModels[static_cast<std::size_t>(model)].name),
+        .is_one = [model](std::string_view field) { return !reads_field(model, field); }};
+    edit_copy(
+        style, world, std::move(edit), component_info<Material>(), &material, material.name,
+        unused);
     ImGui::PopID();
     ImGui::EndChild();
 }

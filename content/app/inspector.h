@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/app/field_widgets.h"
 #include "content/app/storage_panel.h"
 #include "content/app/undo.h"
 #include "ecs/any_component.h"
@@ -73,11 +74,13 @@ class Inspector {
     /// the world.
     void edit_copy(
         const HudStyle& style, World& world, Edit edit, const ComponentInfo& info,
-        const void* value, const std::string& place);
+        const void* value, const std::string& place, const FoldedFields& folded = {});
 
     UndoStack undo_;
     Entity selected_;
-    Entity copied_;  ///< whose JSON was copied last
+    Entity copied_;     ///< whose JSON was copied last
+    Entity noted_;      ///< of note_
+    std::string note_;  ///< what to know before editing the selected entity (edit_json.h)
     std::string search_;
     std::string resource_search_;
     std::string material_search_;

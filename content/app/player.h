@@ -101,6 +101,7 @@ class Player {
     void set_input(World& world, const Input& input) const;
     [[nodiscard]] RenderView move_camera(float dt, const Input& input, const IVec2& size);
     void draw_frame(float dt, const Input& input);
+    void show_edits();
     void draw_stages(const IVec2& window_size);
     void draw_off_stage(const IVec2& window_size, int columns);
     void draw_hud(const RenderView& view, const IVec2& window_size, float dt);
@@ -165,6 +166,7 @@ class Player {
     bool step_once_ = false;
     bool paths_shown_ = false;
     std::uint64_t shown_revision_ = 0;  ///< of the edits (UndoStack::revision)
+    bool files_changed_ = false;        ///< of the level or the shaders, since the last frame
     bool screenshot_wanted_ = false;
     bool screenshot_with_hud_ = false;
     bool exr_wanted_ = false;

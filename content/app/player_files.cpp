@@ -44,6 +44,7 @@ void Player::reload_shaders(bool all) {
     if (report.reloaded == 0 && report.errors.empty()) {
         return;
     }
+    files_changed_ = files_changed_ || report.reloaded > 0;
     shader_error_ = report.errors.empty() ? "" : report.errors.front();
     for (const std::string& error : report.errors) {
         log_error("{}", error);

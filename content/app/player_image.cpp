@@ -63,6 +63,7 @@ void Player::draw_frame(float dt, const Input& input) {
         }
     }
     const Clock::time_point begin = Clock::now();
+    show_edits();
     const IVec2 size = render_size(scale_, window_size);
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
         if (played != nullptr) {
@@ -81,6 +82,27 @@ void Player::draw_frame(float dt, const Input& input) {
         save_screenshot(window_size);
     }
     draw_hud(view_, window_size, dt);
+}
+
+/// What was edited since the last frame shows at once, also while time stands.
+void Player::show_edits() {
+    const std::uint64_t revision = inspector_.undo_stack().revision();
+    const bool inspected = std::exchange(shown_revision_, revision) != revision;
+    if (!std::exchange(files_changed_, false) && !inspected) {
+        return;
+    }
+    for (Stage* const played : {stage_.get(), off_stage_.get()}) {
+        if (played != nullptr && paused_) {
+            // Twice: what was moved has not moved since the last frame.
+            played->world.run(update_transforms);
+            played->world.run(update_transforms);
+        }
+    }
+    for (Renderer* const renderer : {renderer_.get(), off_renderer_.get()}) {
+        if (renderer != nullptr) {
+            cut(*renderer);
+        }
+    }
 }
 
 /// The level, or of a show what is chosen of it.
@@ -165,12 +187,6 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     shows_.draw(hud_->style(), options_.show);
     model_panel_.draw(hud_->style(), stage_->world, level_cameras(), stage_->scene.camera);
     inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
-    const std::uint64_t revision = inspector_.undo_stack().revision();
-    if (std::exchange(shown_revision_, revision) != revision && paused_) {
-        // What was moved is shown where it is now. Twice: it has not moved since the last frame.
-        stage_->world.run(update_transforms);
-        stage_->world.run(update_transforms);
-    }
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
     buffers_->draw(hud_->style(), graph);
     leave_.draw(hud_->style(), inspector_, stage_->world);

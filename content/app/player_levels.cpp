@@ -132,27 +132,36 @@ void Player::follow_level_files() {
     level_times_ = std::move(times);
     level_error_.clear();
     std::size_t updated = 0;
+    const std::size_t edits = inspector_.edit_count();
     for (Stage* const stage : {stage_.get(), off_stage_.get()}) {
         if (stage == nullptr) {
             continue;
         }
-        const Result<std::size_t> result = update_level(
+        const Result<std::vector<LevelChange>> changes = update_level(
             stage->world, stage->scene.fields,
             {.technique = options_.show, .off = stage == off_stage_.get()}, &made_);
-        if (!result) {
-            level_error_ = result.error().message;
+        if (!changes) {
+            level_error_ = changes.error().message;
             level_error_ = level_error_.substr(0, level_error_.find('\n'));
             log_error("{}", level_error_);
             return;
         }
-        updated += *result;
+        updated += changes->size();
+        if (stage == stage_.get()) {
+            inspector_.undo_stack().adopt(*changes);
+        }
     }
     level_times_ = level_file_times();  // it may include others now
-    hud_->toast(
+    files_changed_ = files_changed_ || updated > 0;
+    const std::size_t saved = edits - inspector_.edit_count();
+    std::string message =
         updated == 0
-            ? "the file was saved; what it says of the entities is as before"
-            : fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s"),
-        ToastKind::Good);
+            ? "the file was saved; what it says is as before"
+            : fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s");
+    if (saved > 0) {
+        message += fmt::format("; {} edit{} in the file now", saved, saved == 1 ? " is" : "s are");
+    }
+    hud_->toast(message, ToastKind::Good);
 }
 
 }  // namespace limn

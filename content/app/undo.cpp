@@ -51,15 +51,21 @@ bool apply_to_material(World& world, std::uint32_t index, const AnyComponent& va
     return true;
 }
 
+bool is_target(const Edit& edit, const LevelChange& change) {
+    const AnyComponent& value = edit.before.is_empty() ? edit.after : edit.before;
+    return edit.part == change.part && edit.entity == change.entity
+           && edit.material == change.material && &value.info() == &change.now.info();
+}
+
 }  // namespace
 
 bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value) {
-    switch (edit.kind) {
-    case EditKind::Component:
+    switch (edit.part) {
+    case LevelPart::Component:
         return apply_to_component(world, edit, value);
-    case EditKind::Resource:
+    case LevelPart::Resource:
         return apply_to_resource(world, value);
-    case EditKind::Material:
+    case LevelPart::Material:
         return apply_to_material(world, edit.material, value);
     }
     return false;
@@ -106,6 +112,32 @@ std::string UndoStack::redo(World& world) {
         edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(done_));
     }
     return {};
+}
+
+void UndoStack::adopt(std::span<const LevelChange> changes) {
+    ++revision_;
+    std::vector<Edit> kept;
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < edits_.size(); ++i) {
+        Edit& edit = edits_[i];
+        for (const LevelChange& change : changes) {
+            if (is_target(edit, change)) {
+                for (AnyComponent* const value : {&edit.before, &edit.after}) {
+                    if (!value->is_empty()) {
+                        adopt_change(change, *value);
+                    }
+                }
+            }
+        }
+        const bool has_effect =
+            edit.before.is_empty() || edit.after.is_empty() || !same_value(edit.before, edit.after);
+        if (has_effect) {
+            kept.push_back(std::move(edit));
+            done += i < done_ ? 1 : 0;
+        }
+    }
+    edits_ = std::move(kept);
+    done_ = done;
 }
 
 void UndoStack::clear() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/load/level_update.h"
 #include "ecs/any_component.h"
 #include "ecs/entity.h"
 
@@ -17,10 +18,8 @@ class World;
 // or a material of Assets) before and after; these are small, so whole values are kept. Dragging a
 // slider is one edit, however many frames it takes.
 
-enum class EditKind : std::uint8_t { Component, Resource, Material };
-
 struct Edit {
-    EditKind kind = EditKind::Component;
+    LevelPart part = LevelPart::Component;
     Entity entity;               ///< of a Component
     std::uint32_t material = 0;  ///< index into Assets
     AnyComponent before;         ///< empty: the entity did not have it
@@ -50,6 +49,9 @@ class UndoStack {
     /// Changes whenever the world may have been edited.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     void clear();
+    /// After the level's files have changed: undo and redo keep what they say now. Drops the edits
+    /// that change nothing then, as those whose values were written into the files.
+    void adopt(std::span<const LevelChange> changes);
 
   private:
     std::vector<Edit> edits_;  // the first done_ are done, the others undone

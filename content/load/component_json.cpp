@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -64,8 +65,14 @@ constexpr WrittenUnit kWrittenUnits[] = {
     {"cd", "cd", 1},
     {"EV", "EV", 1}};
 
-/// "45deg" or "2 m" in the field's unit; nullopt for other strings.
-std::optional<double> number_with_unit(std::string_view text, std::string_view field_unit) {
+/// The unit in which "45deg" or "2 m" is written, and the number in the field's own.
+struct WrittenNumber {
+    double number;
+    const WrittenUnit* unit;
+};
+
+/// nullopt for other strings.
+std::optional<WrittenNumber> number_with_unit(std::string_view text, std::string_view field_unit) {
     double number = 0.0;
     const char* const end = text.data() + text.size();
     const std::from_chars_result parsed = std::from_chars(text.data(), end, number);
@@ -76,7 +83,7 @@ std::optional<double> number_with_unit(std::string_view text, std::string_view f
     unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
     for (const WrittenUnit& known : kWrittenUnits) {
         if (known.field == field_unit && known.written == unit) {
-            return number * known.factor;
+            return WrittenNumber{number * known.factor, &known};
         }
     }
     return std::nullopt;
@@ -91,6 +98,20 @@ std::string or_with_unit(std::string_view field_unit) {
         }
     }
     return "";
+}
+
+/// The range of a field as "a number -180 .. 180 deg", in the unit of what was found.
+std::string expected_in_unit(FieldMeta meta, const WrittenUnit& unit) {
+    for (double* const limit : {&meta.min, &meta.max}) {
+        if (*limit != 0 && std::isfinite(*limit)) {  // five digits: pi has many in radians
+            *limit /= unit.factor;
+            const double digits = std::pow(10, 4 - std::floor(std::log10(std::abs(*limit))));
+            *limit = std::round(*limit * digits) / digits;
+        }
+    }
+    const std::string name(unit.written);
+    meta.unit = name.c_str();
+    return "a number " + range_text(meta);
 }
 
 struct Reader {
@@ -192,16 +213,19 @@ struct Reader {
     Status read_scalar(
         const JsonValue& json, const FieldInfo& info, const JsonPlace& at, double& number) const {
         const std::string_view unit = info.meta.unit;
-        const std::optional<double> with_unit =
+        const std::optional<WrittenNumber> with_unit =
             json.kind == JsonKind::String ? number_with_unit(json.text, unit) : std::nullopt;
         if (json.kind != JsonKind::Number && !with_unit) {
             return unexpected(json, at, expected_number(info, "a number") + or_with_unit(unit));
         }
-        const double read = with_unit.value_or(json.number);
+        const double read = with_unit ? with_unit->number : json.number;
         if (!(read >= info.meta.min && read <= info.meta.max)) {
+            if (with_unit) {
+                return unexpected(json, at, expected_in_unit(info.meta, *with_unit->unit));
+            }
             const double as_degrees = read * kDegree;
-            const bool seems_degrees = !with_unit && unit == "rad" && as_degrees >= info.meta.min
-                                       && as_degrees <= info.meta.max;
+            const bool seems_degrees =
+                unit == "rad" && as_degrees >= info.meta.min && as_degrees <= info.meta.max;
             const bool seems_byte = info.meta.color && read > info.meta.max && read <= 255.0;
             return unexpected(
                 json, at,
@@ -548,17 +572,20 @@ Status expect_keys(
 
 Result<double> expect_number(
     const JsonValue& json, double min, double max, const JsonPlace& place, std::string_view unit) {
-    const std::optional<double> number = json.kind == JsonKind::Number ? json.number
-                                         : json.kind == JsonKind::String
-                                             ? number_with_unit(json.text, unit)
-                                             : std::nullopt;
-    if (!number || *number < min || *number > max) {
+    const std::optional<WrittenNumber> written =
+        json.kind == JsonKind::String ? number_with_unit(json.text, unit) : std::nullopt;
+    const double number = written ? written->number : json.number;
+    const bool is_number = written || json.kind == JsonKind::Number;
+    if (written && (number < min || number > max)) {
+        return unexpected(json, place, expected_in_unit({.min = min, .max = max}, *written->unit));
+    }
+    if (!is_number || number < min || number > max) {
         return unexpected(
             json, place,
             fmt::format("a number {} .. {}{}{}", min, max, unit.empty() ? "" : " ", unit)
                 + or_with_unit(unit));
     }
-    return *number;
+    return number;
 }
 
 Status read_component(

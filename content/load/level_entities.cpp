@@ -138,9 +138,27 @@ Status LevelEntities::try_add_node(
             path, json.at, fmt::format("more than {} nested entities", limits_.max_depth), "fewer");
     }
     LIMN_TRY(read_own_keys(node));
-    LIMN_TRY(find_layers(node));
+    if (const Status found = find_layers(node); !found) {
+        check_without_prefab(list, node);
+        return found;
+    }
     LIMN_TRY(add_changes(node, context.changes));
     return add_copies(list, node, context);
+}
+
+/// What can be told of a node whose prefab cannot be used: its glTF file and its number of copies.
+void LevelEntities::check_without_prefab(List& list, Node& node) {
+    node.layers = {node.json};
+    errors_.keep(add_gltf(list, node, 0));
+    JsonValue json = merged_repeat(node.layers);
+    std::erase_if(json.members, [](const JsonMember& member) {
+        return member.key == "vary";  // of components that the prefab may bring
+    });
+    if (json.kind != JsonKind::Null) {
+        const Result<Repeat> repeat =
+            read_repeat(json, {}, {file_, node.path + ".repeat"}, names_in(list));
+        errors_.keep(repeat ? Status(Done{}) : repeat.error());
+    }
 }
 
 /// Adds what ancestors change of the node, the outermost last.

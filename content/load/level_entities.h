@@ -123,6 +123,7 @@ class LevelEntities {
     add_node(List& list, const JsonValue& json, const Context& context, const std::string& path);
     [[nodiscard]] Status try_add_node(
         List& list, const JsonValue& json, const Context& context, const std::string& path);
+    void check_without_prefab(List& list, Node& node);
     void note_missing(const JsonValue& node);
     [[nodiscard]] Status find_layers(Node& node);
     [[nodiscard]] Status add_changes(Node& node, Changes* changes) const;

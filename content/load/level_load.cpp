@@ -87,6 +87,10 @@ JsonValue without(const JsonValue& json, std::initializer_list<std::string_view>
     return rest;
 }
 
+std::string place_of(const Level& level, SourcePosition at, std::string_view path) {
+    return place_text(level.file, at) + ": " + std::string(path);
+}
+
 /// JSON to Level; sections are read in an order in which names are defined before their use.
 class LevelParser {
   public:
@@ -97,7 +101,8 @@ class LevelParser {
         level_.name = name.substr(0, name.find('.'));
     }
 
-    Result<Level> parse() {
+    /// Where it has errors, also those of the files that it names under `folder`.
+    Result<Level> parse(const std::string& folder) {
         LIMN_TRY(expect(json_, JsonKind::Object, place(""), "a level (an object)"));
         check_keys();
         level_.title = json_["title"].text;
@@ -109,6 +114,9 @@ class LevelParser {
         read_section("bindings", &LevelParser::read_binding);
         read_entities();
         level_.shows = read_shows(json_, level_.file, errors_);
+        if (!errors_.empty() && !folder.empty()) {
+            check_files(folder);
+        }
         LIMN_TRY(errors_.status());
         place_cameras();
         return std::move(level_);
@@ -155,7 +163,29 @@ class LevelParser {
     /// Whether `name` is in the section, or may be in one that could not be read, but what it names
     /// had an error: no further one then.
     [[nodiscard]] bool has_failed(const char* section, std::string_view name) const {
-        return has_bad_keys_ || (!errors_.empty() && json_[section].find(name) != nullptr);
+        const std::string made(name.substr(0, name.rfind('.')));  // "stone" of "stone.normal"
+        const JsonValue& names = json_[section];
+        return has_bad_keys_
+               || (!errors_.empty()
+                   && (names.find(name) != nullptr
+                       || (names.find(made) != nullptr && !patterns_.contains(made))));
+    }
+
+    /// Of a level that is not loaded any further.
+    void check_files(const std::string& folder) {
+        const auto check = [&](const std::string& file, SourcePosition at, std::string_view path) {
+            const Result<std::vector<std::byte>> bytes =
+                fetch_uri(file, folder, place_of(level_, at, path), limits_.gltf.max_bytes);
+            errors_.keep(bytes ? Status(Done{}) : bytes.error());
+        };
+        for (const LevelImage& image : level_.images) {
+            if (!image.file.empty()) {
+                check(image.file, image.at, "images." + image.name);
+            }
+        }
+        for (const GltfUse& use : level_.gltfs) {
+            check(use.file, use.at, "gltf");
+        }
     }
 
     Status read_resource(const JsonMember& member, const JsonPlace& at) {
@@ -474,9 +504,18 @@ class LevelParser {
             }
             return has_failed(section_of(kind), name) ? std::optional(0u) : std::nullopt;
         };
-        names.all = [names_of_kind](std::string_view kind) {
+        names.all = [this, names_of_kind](std::string_view kind) {
             const Names* const all = names_of_kind(kind);
-            return all == nullptr ? std::vector<std::string_view>() : sorted_names(*all);
+            if (all == nullptr) {
+                return std::vector<std::string_view>();
+            }
+            std::vector<std::string_view> known = sorted_names(*all);
+            for (const JsonMember& member : json_[section_of(kind)].members) {
+                if (!all->contains(member.key) && !patterns_.contains(member.key)) {
+                    known.emplace_back(member.key);  // it exists, though it has an error
+                }
+            }
+            return known;
         };
         return names;
     }
@@ -494,10 +533,6 @@ class LevelParser {
 };
 
 // ---- assets -------------------------------------------------------------------------------------
-
-std::string place_of(const Level& level, SourcePosition at, std::string_view path) {
-    return place_text(level.file, at) + ": " + std::string(path);
-}
 
 Status
 make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint64_t& pixels_left) {
@@ -590,7 +625,7 @@ Result<GltfScene> load_scene_file(
 Result<Level>
 parse_level(std::string_view text, const std::string& file, const LevelLimits& limits) {
     const JsonValue json = LIMN_TRY(parse_json(text, file, limits.json));
-    return LevelParser(json, file, limits).parse();
+    return LevelParser(json, file, limits).parse("");
 }
 
 Status load_level_assets(
@@ -628,11 +663,12 @@ Result<Level> load_level(
     JsonValue json = LIMN_TRY(load_json(path, limits.json));
     SourceFiles included = LIMN_TRY(include_files(json, path, limits.json));
     std::optional<LevelShow> show = LIMN_TRY(choose_show(choice, path, json));
-    Level level = LIMN_TRY(LevelParser(json, path, limits).parse());
+    const std::string parent = std::filesystem::path(path).parent_path().string();
+    const std::string folder = parent.empty() ? "." : parent;
+    Level level = LIMN_TRY(LevelParser(json, path, limits).parse(folder));
     level.show = std::move(show);
     level.included = std::move(included);
-    const std::string parent = std::filesystem::path(path).parent_path().string();
-    LIMN_TRY(load_level_assets(level, parent.empty() ? "." : parent, limits, made));
+    LIMN_TRY(load_level_assets(level, folder, limits, made));
     return level;
 }
 

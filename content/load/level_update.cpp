@@ -3,6 +3,7 @@
 #include "content/load/level_load.h"
 #include "ecs/base/text.h"
 #include "ecs/component_bytes.h"
+#include "ecs/field_access.h"
 #include "ecs/world.h"
 
 #include <algorithm>
@@ -13,10 +14,100 @@ namespace {
 
 constexpr std::size_t kMaxFollowed = 20000;
 
-bool same_value(const AnyComponent& a, const AnyComponent& b) {
-    const ComponentInfo& info = a.info();
-    return !is_serializable(info)
-           || hash_values(info, a.data(), 1, 0) == hash_values(info, b.data(), 1, 0);
+bool same_field(const FieldInfo& field, const void* a, const void* b) {
+    const std::size_t count = element_count(field, a);
+    bool same = count == element_count(field, b);
+    for (std::size_t i = 0; same && i < count; ++i) {
+        same = equal_elements(field, element_ptr(field, a, i), element_ptr(field, b, i));
+    }
+    return same;
+}
+
+/// The fields of `a` that are others in `b`.
+std::vector<const FieldInfo*> changed_fields(const AnyComponent& a, const AnyComponent& b) {
+    std::vector<const FieldInfo*> changed;
+    for (const FieldInfo& field : a.info().fields) {
+        if (!same_field(field, field_ptr(a.data(), field), field_ptr(b.data(), field))) {
+            changed.push_back(&field);
+        }
+    }
+    return changed;
+}
+
+void add_change(std::vector<LevelChange>& changes, const AnyComponent& before, LevelChange change) {
+    change.fields = changed_fields(before, change.now);
+    if (!change.fields.empty()) {
+        changes.push_back(std::move(change));
+    }
+}
+
+/// What the files say of a resource; its defaults, where they say nothing.
+AnyComponent resource_in(const std::vector<AnyComponent>& resources, const ComponentInfo& info) {
+    const auto found = std::ranges::find_if(
+        resources, [&](const AnyComponent& one) { return &one.info() == &info; });
+    return found != resources.end() ? *found : AnyComponent(info);
+}
+
+std::vector<LevelChange>
+find_changes(const World& world, const LevelFields& before, const LevelFields& now) {
+    std::vector<LevelChange> changes;
+    for (std::size_t i = 0; i < now.components.size(); ++i) {
+        const Entity entity = before.entities[i];
+        for (std::size_t c = 0; c < now.components[i].size(); ++c) {
+            const AnyComponent& value = now.components[i][c];
+            if (world.alive(entity) && world.has(entity, value.info().id)) {
+                add_change(
+                    changes, before.components[i][c], {LevelPart::Component, entity, 0, value, {}});
+            }
+        }
+    }
+    std::vector<const ComponentInfo*> infos;
+    for (const auto* const resources : {&before.resources, &now.resources}) {
+        for (const AnyComponent& one : *resources) {
+            if (std::ranges::find(infos, &one.info()) == infos.end()) {
+                infos.push_back(&one.info());
+            }
+        }
+    }
+    for (const ComponentInfo* const info : infos) {
+        add_change(
+            changes, resource_in(before.resources, *info),
+            {LevelPart::Resource, {}, 0, resource_in(now.resources, *info), {}});
+    }
+    for (std::uint32_t i = 0; i < now.materials.size(); ++i) {
+        add_change(
+            changes, AnyComponent::of(before.materials[i]),
+            {LevelPart::Material, {}, i, AnyComponent::of(now.materials[i]), {}});
+    }
+    return changes;
+}
+
+void apply_change(World& world, const LevelChange& change) {
+    const ComponentInfo& info = change.now.info();
+    switch (change.part) {
+    case LevelPart::Component: {
+        AnyComponent value = AnyComponent::read(world, change.entity, info);
+        adopt_change(change, value);
+        world.write(change.entity, info.id, value.data());
+        break;
+    }
+    case LevelPart::Resource: {
+        void* resource = world.find_resource(info.id);
+        resource = resource != nullptr ? resource : world.insert_default_resource(info.id);
+        for (const FieldInfo* const field : change.fields) {
+            copy_field(*field, field_ptr(resource, *field), field_ptr(change.now.data(), *field));
+        }
+        break;
+    }
+    case LevelPart::Material: {
+        auto& assets = world.resource<Assets>();
+        AnyComponent value = AnyComponent::of(assets.materials[change.material]);
+        adopt_change(change, value);
+        assets.materials[change.material] = value.as<Material>();
+        ++assets.material_version;
+        break;
+    }
+    }
 }
 
 bool same_kinds(const std::vector<AnyComponent>& a, const std::vector<AnyComponent>& b) {
@@ -37,6 +128,16 @@ bool same_change(const NodeChange& a, const NodeChange& b) {
 
 }  // namespace
 
+bool same_value(const AnyComponent& a, const AnyComponent& b) {
+    return changed_fields(a, b).empty();
+}
+
+void adopt_change(const LevelChange& change, AnyComponent& value) {
+    for (const FieldInfo* const field : change.fields) {
+        copy_field(*field, field_ptr(value.data(), *field), field_ptr(change.now.data(), *field));
+    }
+}
+
 LevelFields remember_fields(const Level& level, const std::string& path) {
     LevelFields fields;
     if (level.entities.entities.size() > kMaxFollowed) {
@@ -50,6 +151,8 @@ LevelFields remember_fields(const Level& level, const std::string& path) {
         fields.components.push_back(entity.components);
     }
     fields.node_changes = level.node_changes;
+    fields.resources = level.resources;
+    fields.materials = level.assets.materials;
     const Assets& assets = level.assets;
     const auto add_names = [&](const auto& list) {
         for (const auto& asset : list) {
@@ -64,7 +167,7 @@ LevelFields remember_fields(const Level& level, const std::string& path) {
     return fields;
 }
 
-Result<std::size_t>
+Result<std::vector<LevelChange>>
 update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAssets* made) {
     const std::string path = fields.files.empty() ? "" : fields.files.front();
     Level level = LIMN_TRY(load_level(path, {}, choice, made));
@@ -80,25 +183,15 @@ update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAs
     if (!std::ranges::equal(now.node_changes, fields.node_changes, same_change)) {
         return fail("{}: nodes of a glTF file are changed otherwise: load it again", path);
     }
-    std::size_t updated = 0;
-    for (std::size_t i = 0; i < now.components.size(); ++i) {
-        const Entity entity = fields.entities[i];
-        for (std::size_t c = 0; c < now.components[i].size(); ++c) {
-            AnyComponent value = now.components[i][c];
-            const ComponentInfo& info = value.info();
-            if (same_value(value, fields.components[i][c]) || !world.alive(entity)
-                || !world.has(entity, info.id)) {
-                continue;
-            }
-            localize_component(value, fields.entities);
-            world.write(entity, info.id, value.data());
-            ++updated;
-        }
+    std::vector<LevelChange> changes = find_changes(world, fields, now);
+    for (LevelChange& change : changes) {
+        localize_component(change.now, fields.entities);
+        apply_change(world, change);
     }
     replace_events(world, std::move(level.events), fields.entities);
     now.entities = std::move(fields.entities);
     fields = std::move(now);
-    return updated;
+    return changes;
 }
 
 }  // namespace limn

@@ -5,9 +5,10 @@
 #include "content/load/level_show.h"
 #include "ecs/any_component.h"
 #include "ecs/base/result.h"
+#include "ecs/components/surface.h"
 #include "ecs/entity.h"
 
-#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,15 +27,34 @@ struct LevelFields {
     std::vector<Entity> entities;                       ///< in the level's order
     std::vector<std::vector<AnyComponent>> components;  ///< of each, before it was spawned
     std::vector<std::string> assets;                    ///< names of all, which indices refer to
-    std::vector<NodeChange> node_changes;               ///< of glTF files
+    std::vector<AnyComponent> resources;
+    std::vector<Material> materials;
+    std::vector<NodeChange> node_changes;  ///< of glTF files
 };
 
-/// Loads the level anew and sets the components whose values in the files are others than before,
-/// and the level's events. Returns how many components that were. Fails, and changes nothing, with
-/// the loader's error, or where the level has other entities, kinds of components, changes of glTF
-/// nodes or assets now, which only loading it again can bring. `world` held nothing else when the
-/// level was spawned.
-[[nodiscard]] Result<std::size_t> update_level(
+enum class LevelPart : std::uint8_t { Component, Resource, Material };
+
+/// Fields of a component, resource or material that the files have other values for than before.
+struct LevelChange {
+    LevelPart part = LevelPart::Component;
+    Entity entity;                         ///< of a Component
+    std::uint32_t material = 0;            ///< index into Assets
+    AnyComponent now;                      ///< what the files say
+    std::vector<const FieldInfo*> fields;  ///< those that are others, at least one
+};
+
+/// Loads the level anew and sets the fields of components, resources and materials whose values in
+/// the files are others than before, and the level's events. Returns what has changed. Fails, and
+/// changes nothing, with the loader's error, or where the level has other entities, kinds of
+/// components, changes of glTF nodes or assets now, which only loading it again can bring. `world`
+/// held nothing else when the level was spawned.
+[[nodiscard]] Result<std::vector<LevelChange>> update_level(
     World& world, LevelFields& fields, const ShowChoice& choice = {}, MadeAssets* made = nullptr);
+
+/// Copies the changed fields to `value`, of the same type.
+void adopt_change(const LevelChange& change, AnyComponent& value);
+
+/// Of one type.
+[[nodiscard]] bool same_value(const AnyComponent& a, const AnyComponent& b);
 
 }  // namespace limn

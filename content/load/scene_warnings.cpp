@@ -30,6 +30,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <string_view>
 #include <type_traits>
@@ -38,7 +39,8 @@
 namespace limn {
 namespace {
 
-/// `component` has no effect on an entity that has none of `needs`.
+/// `component` has no effect on an entity that has none of `needs`. Rows of one component are
+/// together.
 struct Need {
     std::string_view component;
     std::array<std::string_view, 4> needs;
@@ -135,18 +137,24 @@ struct SceneCheck {
     }
 
     void check_needs(Entity entity) {
-        for (const Need& need : kNeeds) {
-            if (!has_component(world, entity, need.component)
-                || std::any_of(need.needs.begin(), need.needs.end(), [&](std::string_view one) {
+        std::string missing;  // what the component still needs, over its rows
+        for (std::size_t i = 0; i < std::size(kNeeds); ++i) {
+            const auto& [component, needs] = kNeeds[i];
+            const bool lacks =
+                has_component(world, entity, component)
+                && std::none_of(needs.begin(), needs.end(), [&](std::string_view one) {
                        return has_component(world, entity, one);
-                   })) {
-                continue;
+                   });
+            if (lacks) {
+                const auto end = std::find(needs.begin(), needs.end(), "");
+                missing += fmt::format(
+                    "{}{}", missing.empty() ? "" : " and ", fmt::join(needs.begin(), end, " or "));
             }
-            const auto end = std::find(need.needs.begin(), need.needs.end(), "");
-            warn(
-                entity, fmt::format(
-                            "{} has no effect without {}", need.component,
-                            fmt::join(need.needs.begin(), end, " or ")));
+            const bool is_last = i + 1 == std::size(kNeeds) || kNeeds[i + 1].component != component;
+            if (is_last && !missing.empty()) {
+                warn(entity, fmt::format("{} has no effect without {}", component, missing));
+                missing.clear();
+            }
         }
     }
 

@@ -3,9 +3,11 @@
 #include "content/load/json_document.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/post.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
 #include "tests/app/run_program.h"
 #include "tests/content/gltf_samples.h"
 
@@ -86,6 +88,41 @@ TEST_CASE("edit_json: a copied entity, pasted into a level, is the same entity")
     CHECK(entity_as_json(other.world(), lamp) == text);
 }
 
+TEST_CASE("edit_json: a copied entity has its children, pasted into a level as well") {
+    OpenLevel level(R"({
+      "prefabs": {
+        "bulb": {"point_light": {"intensity": 7}, "children": [{"name": "glow"}]},
+        "pair": {"children": [
+          {"name": "glow", "particle_emitter": {}, "particle_look": {}},
+          {"particle_emitter": {}, "particle_look": {}, "particle_source": {"emitter": "glow"}}]}},
+      "meshes": {"box": {"make": "box"}},
+      "entities": [
+        {"name": "post", "transform": {"position": [1, 0, 0]}, "children": [
+          {"name": "arm", "mesh_instance": {"mesh": "box"}, "children": [
+            {"name": "first", "prefab": "bulb", "transform": {"position": [0, 2, 0]}},
+            {"name": "second", "prefab": "bulb"}, {"name": "last", "prefab": "pair"}]},
+          {"name": "lantern", "gltf": "lamp.gltf"}]},
+        {"name": "eye", "camera": {}}
+      ]
+    })");
+    const std::string text = entity_as_json(level.world(), level.find("post"));
+    OpenLevel other(
+        R"({"meshes": {"box": {"make": "box"}}, "entities": [)" + text
+        + R"(, {"name": "eye", "camera": {}}]})");
+    World& world = other.world();
+    CHECK(parent_of(world, other.find("second")) == other.find("arm"));
+    CHECK(parent_of(world, other.find("arm")) == other.find("post"));
+    CHECK(world.get<const PointLight>(other.find("second")).intensity == 7);
+    CHECK(world.get<const Transform>(other.find("first")).position == Vec3(0, 2, 0));
+    world.query<const ParticleSource>().each([&](const ParticleSource& source) {
+        CHECK(source.emitter == other.find("glow 3"));
+        CHECK(world.has<ParticleEmitter>(source.emitter));
+    });
+    CHECK(parent_of(world, other.find("Bulb.001")) == other.find("lantern"));
+    CHECK(world.entity_count() == level.world().entity_count());
+    CHECK(entity_as_json(world, other.find("post")) == text);
+}
+
 TEST_CASE("edit_json: a copy names its glTF file, and turns as people write it") {
     OpenLevel level(R"({
       "title": "A lantern",
@@ -156,7 +193,7 @@ TEST_CASE("edit_json: an edit of a node of a glTF file is a change of nodes") {
                                      {"name": "eye", "camera": {}}]})");
     World& world = level.world();
     Edit change;
-    change.kind = EditKind::Component;
+    change.part = LevelPart::Component;
     change.entity = level.find("Bulb.001");
     const ComponentInfo& light = component_info<PointLight>();
     change.before = AnyComponent::read(world, change.entity, light);
@@ -227,6 +264,51 @@ TEST_CASE("edit_json: edits of children and of copies, pasted into the level, ar
     CHECK(edits_as_json(world, edits).find("// without edits of children") != std::string::npos);
 }
 
+TEST_CASE(
+    "edit_json: a note tells of entities whose edits cannot be saved, before they are edited") {
+    OpenLevel level(R"({
+      "prefabs": {"lamp": {"children": [{"name": "bulb", "point_light": {}}, {"transform": {}}]}},
+      "entities": [
+        {"name": "single", "prefab": "lamp"},
+        {"name": "row", "prefab": "lamp", "repeat": {"count": [3, 1, 1]}},
+        {"name": "other", "repeat": {"count": [5, 1, 1]}},
+        {"name": "yard", "children": [{"name": "post", "repeat": {"count": [2, 1, 1]}}]},
+        {"name": "eye", "camera": {}}
+      ]
+    })");
+    World& world = level.world();
+    const auto child_of = [&](const char* name, std::size_t index) {
+        return children_of(world, level.find(name))[index];
+    };
+    const auto is_kept = [&](Entity entity) {
+        Edit edit;
+        edit.entity = entity;
+        edit.before = AnyComponent::read(world, entity, component_info<Transform>());
+        edit.after = edit.before;
+        edit.after.as<Transform>().scale = Vec3(2);
+        REQUIRE(apply_edit_value(world, edit, edit.after));
+        return edits_as_json(world, std::vector{edit}).find("scale") != std::string::npos;
+    };
+    const auto cannot = [](const std::string& note) {
+        return note.find("cannot be saved") != std::string::npos;
+    };
+    for (const Entity kept : {level.find("single"), child_of("single", 0)}) {
+        CHECK(edit_note(world, kept).empty());
+        CHECK(is_kept(kept));
+    }
+    CHECK(edit_note(world, child_of("single", 1)).starts_with("has no name"));
+    CHECK_FALSE(is_kept(child_of("single", 1)));
+    const std::string copy = edit_note(world, level.find("row[1]"));
+    CHECK(copy.starts_with("one of 3 copies of row by repeat: its edits are saved as an event"));
+    CHECK(is_kept(level.find("row[1]")));
+    const std::string part = edit_note(world, child_of("row[1]", 0));
+    CHECK(part.starts_with("part of one of 3 copies of row by repeat"));
+    for (const Entity lost : {child_of("row[1]", 0), child_of("row[1]", 1), child_of("yard", 0)}) {
+        CHECK(cannot(edit_note(world, lost)));
+        CHECK_FALSE(is_kept(lost));
+    }
+}
+
 TEST_CASE("edit_json: a child beside the nodes of a glTF file is changed where it is written") {
     OpenLevel level(R"({"prefabs": {"torch": {"children": [{"name": "flame", "point_light": {}}]}},
       "entities": [{"name": "house", "gltf": "lamp.gltf",
@@ -249,9 +331,9 @@ TEST_CASE("edit_json: edits are a patch with the present values; removed compone
     World& world = level.world();
     const Entity lamp = level.find("lamp");
     UndoStack undo;
-    const auto edit = [&](EditKind kind, Entity entity, AnyComponent before, AnyComponent after) {
+    const auto edit = [&](LevelPart kind, Entity entity, AnyComponent before, AnyComponent after) {
         Edit change;
-        change.kind = kind;
+        change.part = kind;
         change.entity = entity;
         change.before = std::move(before);
         change.after = std::move(after);
@@ -263,14 +345,14 @@ TEST_CASE("edit_json: edits are a patch with the present values; removed compone
     for (const float intensity : {20.0f, 30.0f}) {
         const AnyComponent before = AnyComponent::read(world, lamp, light);
         brighter.intensity = intensity;
-        edit(EditKind::Component, lamp, before, AnyComponent(light, &brighter));
+        edit(LevelPart::Component, lamp, before, AnyComponent(light, &brighter));
     }
     Exposure exposure = world.resource<Exposure>();
     const AnyComponent before(component_info<Exposure>(), &exposure);
     exposure.ev = -2;
-    edit(EditKind::Resource, {}, before, AnyComponent(component_info<Exposure>(), &exposure));
+    edit(LevelPart::Resource, {}, before, AnyComponent(component_info<Exposure>(), &exposure));
     edit(
-        EditKind::Component, level.find("box"),
+        LevelPart::Component, level.find("box"),
         AnyComponent::read(world, level.find("box"), component_info<MeshInstance>()), {});
     const Result<JsonValue> patch = parse_json(edits_as_json(world, undo.done()), "patch");
     REQUIRE(patch.ok());

@@ -176,6 +176,41 @@ TEST_CASE("inspector: a color has the numbers of the file, and its swatch says t
     CHECK(text.find("0.735") == std::string::npos);  // 0.5 in sRGB
 }
 
+TEST_CASE("inspector: fields that the material's shading model does not use are folded away") {
+    register_all_components();
+    for (const ShadingModel model : {ShadingModel::Pbr, ShadingModel::Skin}) {
+        const OffscreenHud hud;
+        World world;
+        world.insert_resource(Assets{}).materials.push_back({.name = "clay", .shading = model});
+        Inspector inspector;
+        inspector.open = true;
+        const auto draw = [&] { inspector.draw(hud.style, world, Schedule()); };
+        for (int i = 0; i < 3; ++i) {
+            hud.frame(draw);
+        }
+        const auto click = [&](const ImVec2& at) {
+            hud.frame(draw, at);
+            hud.frame(draw, at, true);
+            hud.frame(draw, at);
+        };
+        std::string text;
+        for (float x = 900; x < 1250 && text.find("clay") == std::string::npos; x += 10) {
+            click({x, 76});  // the tab "Materials"
+            hud.frame([&] {
+                ImGui::LogToClipboard(0);  // opens nothing that is folded
+                draw();
+            });
+            text = ImGui::GetClipboardText();
+        }
+        CAPTURE(text);
+        const bool is_skin = model == ShadingModel::Skin;
+        CHECK(text.find(is_skin ? "not used by skin" : "not used by pbr") != std::string::npos);
+        CHECK((text.find("skin_color") != std::string::npos) == is_skin);
+        CHECK((text.find("metalness") != std::string::npos) != is_skin);
+        CHECK(text.find("base_color") != std::string::npos);
+    }
+}
+
 TEST_CASE("inspector: entities are found by their name, a component or a field") {
     register_all_components();
     struct Case {

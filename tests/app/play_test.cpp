@@ -233,6 +233,48 @@ TEST_CASE("play: Esc closes panel after panel, then asks; leaving with edits ask
     CHECK(session.program->wait().exit_code == 0);
 }
 
+TEST_CASE("play: what is edited while time stands shows at once, without its former color") {
+    if (!can_play()) {
+        return;
+    }
+    PlaySession session;
+    const auto write_level = [&](const char* light) {
+        test::write_text(
+            session.folder.file("toy.level.json"), std::string(R"({
+              "resources": {"environment": {"sky": "uniform", "zenith": [0, 0, 0]}},
+              "images": {"squares": {"make": "checker", "size": 64, "cells": 64,
+                "color_a": [1, 1, 1], "color_b": [0, 0, 0], "roughness": 1}},
+              "materials": {"squares": {"pattern": "squares"}},
+              "meshes": {"wall": {"make": "box", "size": [4, 4, 0.1]}},
+              "entities": [
+                {"name": "wall", "mesh_instance": {"mesh": "wall", "material": "squares"}},
+                {"name": "sun", "directional_light": {"illuminance": 8, "color": )")
+                                                       + light + R"(}},
+                {"name": "eye", "transform": {"position": [0, 0, 5]}, "camera": {}}
+              ]
+            })");
+    };
+    write_level("[1, 0, 0]");
+    session.DisplaySession::start({"play", "toy.level.json", "--scale", "0.5"});
+    xdotool("key F8 key space");
+    sleep_ms(3000);  // until a frame has little weight in the mean of many
+    write_level("[0, 0, 1]");
+    int purple = 0;
+    int blue = 0;
+    CHECK(wait_for([&] {
+        for (int i = 0; i < 20; ++i) {
+            const Pixels image = session.display.grab();
+            const auto* const middle =
+                &image.bytes[static_cast<std::size_t>(3 * image.width * (image.height + 1) / 2)];
+            purple += middle[0] > 20 && middle[2] > 20 ? 1 : 0;
+            blue += middle[0] <= 20 && middle[2] > 100 ? 1 : 0;
+        }
+        return blue > 50;
+    }));
+    CHECK(purple == 0);
+    session.quit();
+}
+
 TEST_CASE("play: who drives does not fly: the keys move the car, and not the camera") {
     if (!can_play()) {
         return;

@@ -3,9 +3,13 @@
 #include "ecs/components/light.h"
 #include "ecs/components/post.h"
 #include "ecs/components/surface.h"
+#include "ecs/field_access.h"
 #include "ecs/world.h"
 
 #include <doctest/doctest.h>
+
+#include <utility>
+#include <vector>
 
 namespace limn {
 
@@ -137,7 +141,7 @@ TEST_CASE("undo: resources and materials are put back too") {
     world.insert_resource(Assets{}).materials.emplace_back();
 
     Edit exposure;
-    exposure.kind = EditKind::Resource;
+    exposure.part = LevelPart::Resource;
     exposure.before = AnyComponent::of(world.resource<Exposure>());
     world.resource<Exposure>().ev = 3;
     exposure.after = AnyComponent::of(world.resource<Exposure>());
@@ -145,7 +149,7 @@ TEST_CASE("undo: resources and materials are put back too") {
 
     Assets& assets = world.resource<Assets>();
     Edit material;
-    material.kind = EditKind::Material;
+    material.part = LevelPart::Material;
     material.before = AnyComponent::of(assets.materials[0]);
     assets.materials[0].roughness = 0.1f;
     material.after = AnyComponent::of(assets.materials[0]);
@@ -157,6 +161,42 @@ TEST_CASE("undo: resources and materials are put back too") {
     CHECK(assets.material_version > version);  // or the renderer would not see it
     stack.undo(world);
     CHECK(world.resource<Exposure>().ev == 0);
+}
+
+TEST_CASE("undo: edits that the level's file has now are no edits any more, others go on") {
+    World world;
+    UndoStack stack;
+    const Entity lamp = world.create(bright(1));
+    const Entity other = world.create(bright(1));
+    Edit color;
+    color.entity = lamp;
+    color.before = AnyComponent::of(bright(1));
+    color.after = color.before;
+    color.after.as<PointLight>().color = {1, 0, 0};
+    REQUIRE(apply_edit_value(world, color, color.after));
+    stack.record(std::move(color));
+    edit_intensity(world, stack, lamp, 2);
+    edit_intensity(world, stack, other, 2);
+    edit_intensity(world, stack, lamp, 3);
+    edit_intensity(world, stack, lamp, 4);
+    stack.undo(world);
+    REQUIRE(stack.undo_count() == 4);
+
+    LevelChange change;
+    change.entity = lamp;
+    change.now = AnyComponent::of(bright(3));
+    change.fields = {find_field(component_info<PointLight>().fields, "intensity")};
+    stack.adopt(std::vector{change});
+    CHECK(stack.undo_count() == 2);  // the color, and the other lamp
+    CHECK(stack.redo_count() == 0);
+    stack.undo(world);
+    CHECK(world.get<const PointLight>(other).intensity == 1);
+    stack.undo(world);
+    CHECK(world.get<const PointLight>(lamp).color == PointLight{}.color);
+    CHECK(world.get<const PointLight>(lamp).intensity == 3);  // as the file has it
+    stack.redo(world);
+    CHECK(world.get<const PointLight>(lamp).color == Vec3(1, 0, 0));
+    CHECK(world.get<const PointLight>(lamp).intensity == 3);
 }
 
 TEST_CASE("undo: remembers a thousand edits, not more") {

@@ -551,6 +551,29 @@ TEST_CASE("component_json: numbers with units as people write them, in the unit 
     }
 }
 
+TEST_CASE("component_json: a number out of range is told the range in the unit that was written") {
+    const auto expected = [](const std::string& error) {
+        return error.substr(std::min(error.find(", expected "), error.size()));
+    };
+    CHECK(
+        expected(error_of<Measures>(R"({"angle": "500deg"})"))
+        == ", expected a number -183.35 .. 183.35 deg");
+    CHECK(
+        expected(error_of<Measures>(R"({"angle": "4rad"})"))
+        == ", expected a number -3.2 .. 3.2 rad");
+    CHECK(
+        expected(error_of<Measures>(R"({"length": "-3cm"})"))
+        == ", expected a number 0 or more cm");
+    const auto minutes = [&](const char* text) {
+        const JsonValue json = json_of(std::string_view(text));
+        const Result<double> number = expect_number(json, -60, 3600, {"t.json", "at"}, "s");
+        return number ? "" : expected(number.error().message);
+    };
+    CHECK(minutes("59min").empty());
+    CHECK(minutes("61min") == ", expected a number -1 .. 60 min");
+    CHECK(minutes("-61000ms") == ", expected a number -60000 .. 3600000 ms");
+}
+
 TEST_CASE("component_json: degrees where radians are expected are told how to be written") {
     const std::string error = error_of<Measures>(R"({"angle": 45})");
     CHECK(error.ends_with("(for degrees write \"45deg\")"));

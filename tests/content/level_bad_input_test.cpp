@@ -127,6 +127,39 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
                 + " (did you mean Fox.glb?)"));
 }
 
+TEST_CASE("bad level: names beside one that has an error are told as names that exist") {
+    register_all_components();
+    const Result<Level> level = parse_level(
+        R"({"paths": {"way": {"knots": [{}]}},
+            "images": {"stone": {"make": "noise", "size": -1}},
+            "materials": {"wall": {"base_color_texture": {"image": "stone.base_color"}}},
+            "prefabs": {"car": {"path_follower": {"path": "waay"}}},
+            "entities": [{"name": "a", "prefab": "car"}]})",
+        "t.level.json");
+    REQUIRE_FALSE(level.ok());
+    const std::string& message = level.error().message;
+    CHECK(has(message, "found the path \"waay\", expected an existing name (did you mean way?)"));
+    CHECK_FALSE(has(message, "wall"));
+    CHECK(std::count(message.begin(), message.end(), '\n') == 2);
+}
+
+TEST_CASE("bad level: missing files and bad copies are told beside unknown prefabs") {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("t.level.json");
+    std::ofstream(path) << R"({"images": {"sky": {"file": "sky.exr"}}, "entities": [
+        {"name": "a", "prefab": "none", "gltf": "a.glb", "repeat": {"count": [0, 1, 1], "vary": {
+          "spin.speed": {"from": 0, "to": 1}}}}]})";
+    World world;
+    const Result<LoadedScene> scene = load_scene(world, path);
+    REQUIRE_FALSE(scene.ok());
+    const std::string& message = scene.error().message;
+    CHECK(has(message, "found the prefab \"none\""));
+    CHECK(has(message, "repeat.count[0]: found the number 0"));
+    CHECK(has(message, "\"a.glb\": no such file"));
+    CHECK(has(message, "\"sky.exr\": no such file"));
+    CHECK(std::count(message.begin(), message.end(), '\n') == 3);
+}
+
 TEST_CASE("bad level: all unknown clips, skins and skeletons are told in one run") {
     const test::TemporaryFolder folder;
     const std::string path = folder.file("t.level.json");

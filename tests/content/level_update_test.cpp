@@ -2,15 +2,20 @@
 #include "content/load/level_update.h"
 #include "ecs/components/all.h"
 #include "ecs/components/particles.h"
+#include "ecs/components/post.h"
 #include "ecs/components/script.h"
+#include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -38,8 +43,8 @@ struct Playing {
     }
     [[nodiscard]] std::string path() const { return folder.path() + "/t.level.json"; }
     [[nodiscard]] std::string update() {
-        const Result<std::size_t> updated = update_level(world, fields);
-        return updated ? std::to_string(*updated)
+        const Result<std::vector<LevelChange>> updated = update_level(world, fields);
+        return updated ? std::to_string(updated->size())
                        : updated.error().message.substr(folder.path().size() + 1);
     }
     [[nodiscard]] const ParticleEmitter& emitter(std::size_t i) const {
@@ -75,6 +80,47 @@ TEST_CASE("level update: what has changed in an included file comes to living en
     level.world.destroy(one);
     level.write_effect(R"({"prefabs": {"spark": {"particle_emitter": {"rate": 31, "speed": 4}}}})");
     CHECK(level.update() == "1");
+}
+
+TEST_CASE("level update: fields of resources, materials and components come each by itself") {
+    Playing level;
+    const auto write = [&](const char* ev, const char* color, const char* place) {
+        std::ofstream(level.path())
+            << R"({"resources": {"exposure": {)" << ev
+            << R"(}}, "materials": {"m": {"roughness": 0.3)" << color
+            << R"(}}, "entities": [{"name": "one", "transform": {)" << place << "}}]}";
+    };
+    write("", "", "");
+    World world;
+    Result<Level> loaded = load_level(level.path());
+    REQUIRE(loaded.ok());
+    LevelFields fields = remember_fields(*loaded, level.path());
+    fields.entities = spawn_level(world, *std::move(loaded));
+    const Entity one = fields.entities[0];
+    // Edits that the file does not have.
+    world.get<Transform>(one).scale = {2, 2, 2};
+    world.resource<Exposure>().key = 0.5f;
+    world.resource<Assets>().materials[0].metalness = 0.9f;
+    const std::uint64_t version = world.resource<Assets>().material_version;
+    CHECK(update_level(world, fields)->empty());
+    CHECK(world.resource<Assets>().material_version == version);
+    write(R"("ev": 2)", R"(, "base_color": [1, 0, 0])", R"("position": [1, 2, 3])");
+    const Result<std::vector<LevelChange>> changes = update_level(world, fields);
+    REQUIRE(changes.ok());
+    CHECK(changes->size() == 3);
+    CHECK(world.get<const Transform>(one).position == Vec3(1, 2, 3));
+    CHECK(world.get<const Transform>(one).scale == Vec3(2, 2, 2));
+    CHECK(world.resource<Exposure>().ev == 2);
+    CHECK(world.resource<Exposure>().key == 0.5f);
+    const Material& material = world.resource<Assets>().materials[0];
+    CHECK(material.base_color == Vec4(1, 0, 0, 1));
+    CHECK(material.metalness == 0.9f);
+    CHECK(world.resource<Assets>().material_version > version);
+    // What is taken out of the file is as by default.
+    write("", "", "");
+    CHECK(update_level(world, fields)->size() == 3);
+    CHECK(world.resource<Exposure>().ev == Exposure{}.ev);
+    CHECK(world.get<const Transform>(one).position == Vec3(0));
 }
 
 TEST_CASE("level update: names of entities become those that were spawned") {

@@ -66,6 +66,9 @@ TEST_CASE("scene warnings: components that do nothing without another") {
         warnings_of(R"({"entities": [{"name": "eye", "camera": {}, "autofocus": {}}]})")
         == Warnings{"entity \"eye\": autofocus has no effect without lens"});
     CHECK(
+        warnings_of(R"({"entities": [{"name": "eye", "autofocus": {}}]})")
+        == Warnings{"entity \"eye\": autofocus has no effect without camera and lens"});
+    CHECK(
         warnings_of(R"({"entities": [{"name": "eye", "camera_path": {"keys": [{}]}}]})")
         == Warnings{"entity \"eye\": camera_path has no effect without camera"});
 }

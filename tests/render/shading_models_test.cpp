@@ -1,14 +1,19 @@
 #include "ecs/components/rendering.h"
 #include "render/graph/frame_graph.h"
+#include "render/shading_fields.h"
 #include "render/shading_models.h"
 #include "render/variant.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace limn::test {
@@ -123,6 +128,57 @@ TEST_CASE("shading models: each is the same lit deferred, forward or one by one"
             worst = std::max(worst, std::abs(a - other.pixels[i]) / (0.05f + a));
         }
         CHECK(worst <= 1e-3f);
+    }
+}
+
+TEST_CASE("shading models: another value of a field changes just the models that read it") {
+    Balls balls(kAllModels);
+    auto& assets = balls.world.resource<Assets>();
+    const std::vector<Material> materials = assets.materials;
+    const ImageId half = balls.add(
+        ImageData{.name = "half", .width = 1, .height = 1, .pixels = {128, 128, 128, 255}});
+    const std::pair<const char*, std::function<void(Material&)>> changes[] = {
+        {"base_color", [](Material& m) { m.base_color.y = 0.2f; }},
+        {"emission",
+         [](Material& m) {
+             m.emission = {1, 0, 0};
+         }},
+        {"metalness", [](Material& m) { m.metalness = 0.8f; }},
+        {"roughness", [](Material& m) { m.roughness = 0.8f; }},
+        {"metal_rough_texture", [half](Material& m) { m.metal_rough_texture.image = half; }},
+        {"specular",
+         [](Material& m) {
+             m.specular = {0.9f, 0.1f, 0.1f};
+         }},
+        {"shininess", [](Material& m) { m.shininess = 60; }},
+        {"skin_color",
+         [](Material& m) {
+             m.skin_color = {0.1f, 0.6f, 0.2f};
+         }},
+        {"wide_rim", [](Material& m) { m.wide_rim = true; }},
+    };
+    // Something that a rough surface mirrors otherwise than a smooth one.
+    balls.world.insert_resource(Environment{.sky = SkyKind::Gradient});
+    const gpu::FloatImage plain = balls.picture(LightMethod::Clustered);
+    for (const auto& [field, change] : changes) {
+        assets.materials = materials;
+        std::for_each(assets.materials.begin(), assets.materials.end(), change);
+        ++assets.material_version;
+        const gpu::FloatImage changed = balls.picture(LightMethod::Clustered);
+        for (std::size_t i = 0; i < std::size(kShadingModels); ++i) {
+            float difference = 0;
+            const int middle = 136 + 12 * static_cast<int>(i);
+            for (int y = 0; y < plain.height; ++y) {
+                for (int x = middle - 6; x < middle + 6; ++x) {
+                    const Vec3 apart = rgb_at(plain, x, y) - rgb_at(changed, x, y);
+                    difference = std::max(difference, glm::length(apart));
+                }
+            }
+            CAPTURE(std::string(field));
+            CAPTURE(std::string(kShadingModels[i].name));
+            CAPTURE(difference);
+            CHECK((difference > 1e-3f) == reads_field(kShadingModels[i].model, field));
+        }
     }
 }
 

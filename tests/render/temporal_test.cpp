@@ -190,6 +190,30 @@ TEST_CASE_FIXTURE(Temporal, "temporal: a cut, another size and another setting b
     CHECK(picture().at(32, 32, 0) == 0.0f);
 }
 
+TEST_CASE_FIXTURE(Temporal, "temporal: an edit after a cut shows at once, and smooth in the end") {
+    place_objects();
+    smooth(true);
+    const auto paint = [&](const Vec4& color) {
+        auto& assets = world.resource<Assets>();
+        for (Material& material : assets.materials) {
+            material.base_color = color;
+        }
+        ++assets.material_version;
+    };
+    const Vec4 before = {0.9f, 0.1f, 0.1f, 1};
+    const Vec4 edited = {0.1f, 0.2f, 0.9f, 1};
+    paint(edited);
+    world.insert_resource(FrameTime{.step = 0.1f, .time = 9});  // a cut by itself
+    const gpu::FloatImage want = picture();
+    paint(before);
+    static_cast<void>(after(40));
+    paint(edited);
+    cut(shared_renderer());
+    CHECK(picture().pixels == want.pixels);
+    const gpu::FloatImage found = after(64);
+    CHECK(psnr_of(found, mean()) > 40);
+}
+
 TEST_CASE_FIXTURE(
     Temporal, "temporal: an image of one color keeps it, light that is none is black") {
     bar(unlit({0.25f, 0.5f, 0.75f}), -100, 200, 7);

@@ -1,0 +1,40 @@
+#include "render/shading_fields.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace limn {
+namespace {
+
+constexpr unsigned bit(ShadingModel model) {
+    return 1u << static_cast<unsigned>(model);
+}
+constexpr unsigned kRough = bit(ShadingModel::Pbr) | bit(ShadingModel::Unlit);
+constexpr unsigned kClassic =
+    bit(ShadingModel::Blinn) | bit(ShadingModel::Phong) | bit(ShadingModel::Skin);
+
+/// A field that some models do not read, and those that do.
+struct FieldReaders {
+    std::string_view field;
+    unsigned models;  ///< a bit each
+};
+constexpr FieldReaders kFieldReaders[] = {
+    {"metalness", kRough},
+    {"roughness", kRough},
+    {"metal_rough_texture", kRough},
+    {"specular", kClassic},
+    {"shininess", kClassic},
+    {"skin_color", bit(ShadingModel::Skin)},
+    {"wide_rim", bit(ShadingModel::Skin)},
+};
+
+}  // namespace
+
+bool reads_field(ShadingModel model, std::string_view field) {
+    const auto* const row = std::find_if(
+        std::begin(kFieldReaders), std::end(kFieldReaders),
+        [field](const FieldReaders& readers) { return readers.field == field; });
+    return row == std::end(kFieldReaders) || (row->models & bit(model)) != 0;
+}
+
+}  // namespace limn
