@@ -21,12 +21,17 @@ inline constexpr int kLightMethods = 5;
 /// Frequency at which shading is evaluated.
 enum class ShadingRate : std::uint8_t {
     Pixel,  ///< per pixel, with interpolated normals (light.phong-pixel)
-    // The others light points of triangles and interpolate the colors, in ObjectMajor order.
+    // The others are forward, in ObjectMajor order. These light points of triangles and interpolate
+    // the colors:
     Vertex,      ///< linear through the vertices (light.gouraud)
     Subdivided,  ///< linear in quarters, through vertices and midpoints of edges
     Quadratic,   ///< quadratic through the same six points (fakephong.quadratic)
     Cubic,       ///< cubic through ten points (fakephong.cubic)
+    // These light pixels by other interpolants of normals (fakephong.normal-interp-variants):
+    NormalsQuadratic,  ///< quadratic through vertices and midpoints, not renormalized
+    NormalsSpherical,  ///< along great circles
 };
+inline constexpr int kShadingRates = 7;
 
 /// Antialiasing method.
 enum class Antialiasing : std::uint8_t {
@@ -52,8 +57,9 @@ LIMN_FIELDS(Rendering) {
     LIMN_FIELD(
         shading,
         .doc = "shading per pixel, or per vertex, or interpolated between 6 (subdivided: in "
-               "quarters; quadratic) or 10 (cubic) points of each triangle",
-        .values = "pixel vertex subdivided quadratic cubic");
+               "quarters; quadratic) or 10 (cubic) points of each triangle; per pixel by normals "
+               "that are quadratic or spherical over it",
+        .values = "pixel vertex subdivided quadratic cubic normals_quadratic normals_spherical");
     LIMN_FIELD(
         antialiasing,
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",
