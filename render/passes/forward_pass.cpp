@@ -7,6 +7,7 @@
 #include "render/passes/highlight_map_pass.h"
 #include "render/shading_rates.h"
 #include "render/surface_draws.h"
+#include "render/view_block.h"
 
 #include <algorithm>
 #include <bit>
@@ -14,8 +15,7 @@
 namespace limn {
 namespace {
 
-constexpr int kTurns = 255;               ///< distinct stencil references
-constexpr float kGeometryDepthBias = 16;  ///< [smallest steps of depth]; by eye, 0 leaves holes
+constexpr int kTurns = 255;  ///< distinct stencil references
 
 /// Shades the nearest surface, and only one of several at equal depth, once per turn; the stencil
 /// must be cleared after every kTurns turns.
@@ -59,6 +59,11 @@ void add_definitions(
     variant.add_if(defects.lit_backs && blinn, "HW_BACKS");
 }
 
+ProgramVariants
+meshes(gpu::Device& device, const char* vertex, const char* geometry, const char* fragment) {
+    return {device, {.vertex = vertex, .geometry = geometry, .fragment = fragment}, true};
+}
+
 void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& view) {
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
@@ -76,15 +81,10 @@ void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& 
         context.bind_texture(kHighlightMapsUnit, maps.layers);
         maps.layer_of_material->bind(context.device(), kHighlightLayersUnit);
     }
-    gpu::PipelineState state = nearest_once(0);
-    if (*row.geometry != '\0') {
-        // A software OpenGL rounds depths otherwise after a geometry shader.
-        state.depth.func = GL_GEQUAL;
-        state.depth_bias = kGeometryDepthBias;
-    }
     draw_runs(
         context, view, view.data.get<InstanceList>().opaque,
-        pass.rates[static_cast<std::size_t>(row.rate)], {.variant = &variant, .state = state});
+        pass.rates[static_cast<std::size_t>(row.rate)],
+        {.variant = &variant, .state = nearest_once(0)});
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -124,14 +124,11 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
     ForwardPass pass{
         .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
+        .facet_depth = meshes(device, "sampled.vert", "facet_depth.geom", "depth_first.frag"),
         .nothing = LIMN_TRY(
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
     for (const ShadingRateRow& row : kShadingRateRows) {
-        pass.rates.emplace_back(
-            device,
-            gpu::ProgramDesc{
-                .vertex = row.vertex, .geometry = row.geometry, .fragment = row.fragment},
-            true);
+        pass.rates.push_back(meshes(device, row.vertex, row.geometry, row.fragment));
     }
     return pass;
 }
@@ -142,7 +139,17 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view) {
         reads.emplace_back(maps->layers);
     }
     const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
-    if (view.data.get<LightingMethod>().method == LightMethod::ObjectMajor) {
+    const auto& method = view.data.get<LightingMethod>();
+    if (method.method == LightMethod::ObjectMajor) {
+        if (*row_of(method.shading).geometry != '\0') {
+            const Use depth[] = {cleared(view.gbuffer.depth)};
+            graph.add_pass(
+                "objects.depth", mesh_reads(graph, *view.frame), depth,
+                [&pass, &view](PassContext& context) {
+                    bind_view(context, view);
+                    draw_depths(context, view, pass.facet_depth);
+                });
+        }
         graph.add_pass("objects", std::span(reads), first, [&pass, &view](PassContext& context) {
             draw_object_major(context, pass, view);
         });

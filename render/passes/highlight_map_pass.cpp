@@ -7,61 +7,56 @@
 #include "render/gpu/shader_library.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
+#include "render/material_pool.h"
 #include "render/render_items.h"
 #include "render/shading_rates.h"
 #include "render/view_block.h"
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace limn {
 namespace {
 
-constexpr unsigned kExponentsUnit = 7;
+constexpr unsigned kLayersUnit = 7;
 constexpr unsigned kLightsUnit = 9;
 constexpr unsigned kMapsImage = 0;
 constexpr unsigned kGroup = 8;
 
-/// The texture for `layers` layers, new if they were fewer or more.
-void fit(gpu::Texture& maps, const char* label, GLenum format, std::size_t layers) {
-    if (!maps || maps.layers() != static_cast<int>(layers)) {
-        maps = gpu::Texture(
-            label, {.format = format,
-                    .width = kHighlightMapSize,
-                    .height = kHighlightMapSize,
-                    .depth = static_cast<int>(layers),
-                    .target = GL_TEXTURE_2D_ARRAY});
-    }
+HighlightMap map_in_use(const World& world) {
+    const auto* rendering = world.find_resource<Rendering>();
+    return rendering != nullptr ? row_of(rendering->shading).map : HighlightMap::None;
 }
 
-void dispatch(gpu::Device& device, std::size_t layers) {
-    device.dispatch(
-        kHighlightMapSize / kGroup, kHighlightMapSize / kGroup, static_cast<unsigned>(layers));
-}
-
-/// The middle of the box around all objects.
-Vec3 center_of(const RenderItems& items) {
-    Bounds all;
-    for (std::size_t n = 0; n < items.block_count(); ++n) {
-        const RenderItemBlock& block = items.block(n);
+/// The middle of the boxes around the objects of each layer.
+std::vector<Vec3> layer_centers(const FrameData& frame, const HighlightLayers& layers) {
+    std::vector<Bounds> boxes(layers.exponents.size());
+    for (std::size_t n = 0; n < frame.items->block_count(); ++n) {
+        const RenderItemBlock& block = frame.items->block(n);
         for (std::size_t i = 0; i < block.size(); ++i) {
-            if (block.is_drawable(i)) {
-                grow(all, block.box(i));
+            const std::uint32_t record = frame.materials->record_of(block.surfaces[i].material);
+            if (block.is_drawable(i) && record < layers.of_record.size()) {
+                grow(boxes[layers.of_record[record]], block.box(i));
             }
         }
     }
-    return is_empty(all) ? Vec3(0) : center(all);
+    std::vector<Vec3> centers;
+    for (const Bounds& box : boxes) {
+        centers.push_back(is_empty(box) ? Vec3(0) : center(box));
+    }
+    return centers;
 }
 
-bool is_same(const HighlightMapEffect::Environment& a, const HighlightMapEffect::Environment& b) {
-    return a.lights.size() == b.lights.size()
+bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Source& b) {
+    return a.layers == b.layers && a.lights.size() == b.lights.size()
            && std::memcmp(
                   a.lights.data(), b.lights.data(), a.lights.size() * sizeof(layout::LightRecord))
                   == 0
-           && a.directional == b.directional && a.center == b.center
-           && std::equal(std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row))
-           && a.exponents == b.exponents;
+           && a.directional == b.directional
+           && std::equal(
+               std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row));
 }
 
 }  // namespace
@@ -74,67 +69,73 @@ Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const
 }
 
 bool HighlightMapEffect::is_used(const FrameData& frame) {
-    const auto* rendering = frame.world->find_resource<Rendering>();
-    return rendering != nullptr && row_of(rendering->shading).map != HighlightMap::None;
+    return map_in_use(*frame.world) != HighlightMap::None;
 }
 
 void HighlightMapEffect::collect(FrameData& frame) {
-    layers = assign_highlight_layers(frame.assets->materials);
-    exponents.upload(*frame.ring, layers.exponents);
+    const auto& materials = frame.assets->materials;
+    layers = map_in_use(*frame.world) == HighlightMap::Environment ? layers_by_material(materials)
+                                                                   : layers_by_exponent(materials);
     layer_of_material.upload(*frame.ring, layers.of_record);
 }
 
-bool HighlightMapEffect::prepare(const FrameData& frame, ViewData& view) {
-    const HighlightMap map = row_of(view.data.get<LightingMethod>().shading).map;
-    if (map == HighlightMap::None) {
-        return false;
-    }
-    if (map == HighlightMap::Environment) {
-        lights.upload(*frame.ring, view.data.get<LightList>().records);
-    }
-    return true;
+bool HighlightMapEffect::prepare(const FrameData&, ViewData& view) {
+    return row_of(view.data.get<LightingMethod>().shading).map != HighlightMap::None;
 }
 
 void HighlightMapEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    const std::size_t count = layers.exponents.size();
-    auto& published = view.data.publish<HighlightMaps>();
-    published.layer_of_material = &layer_of_material;
-    if (row_of(view.data.get<LightingMethod>().shading).map == HighlightMap::Blinn) {
-        fit(blinn, "Blinn maps", GL_R16F, count);
-        published.layers = graph.import("Blinn maps", blinn);
-        if (std::exchange(blinn_exponents, layers.exponents) != layers.exponents) {
-            graph.add_pass(
-                "Blinn maps", {}, {image(published.layers)},
-                [this, maps = published.layers, count](PassContext& context) {
-                    context.device().use(*bake_blinn);
-                    exponents.bind(context.device(), kExponentsUnit);
-                    context.bind_image(kMapsImage, maps, GL_WRITE_ONLY);
-                    dispatch(context.device(), count);
-                });
+    const bool by_view =
+        row_of(view.data.get<LightingMethod>().shading).map == HighlightMap::Environment;
+    Source wanted;
+    for (const float exponent : layers.exponents) {
+        wanted.layers.emplace_back(0, 0, 0, exponent);
+    }
+    if (by_view) {
+        const std::vector<Vec3> centers = layer_centers(frame, layers);
+        for (std::size_t i = 0; i < centers.size(); ++i) {
+            wanted.layers[i] = Vec4(centers[i], wanted.layers[i].w);
         }
+        const auto& list = view.data.get<LightList>();
+        wanted.lights = list.records;
+        wanted.directional = list.directional;
+        wanted.camera = view.camera.world_from_camera;
+    }
+
+    Maps& maps = by_view ? environment : blinn;
+    const std::size_t count = wanted.layers.size();
+    if (!maps.texture || maps.texture.layers() != static_cast<int>(count)) {
+        maps.texture = gpu::Texture(
+            "highlight maps", {.format = static_cast<GLenum>(by_view ? GL_RGBA16F : GL_R16F),
+                               .width = kHighlightMapSize,
+                               .height = kHighlightMapSize,
+                               .depth = static_cast<int>(count),
+                               .target = GL_TEXTURE_2D_ARRAY});
+        maps.source = {};
+    }
+    auto& published = view.data.publish<HighlightMaps>();
+    published.layers = graph.import("highlight maps", maps.texture);
+    published.layer_of_material = &layer_of_material;
+    if (is_same(maps.source, wanted)) {
         return;
     }
-    const auto& list = view.data.get<LightList>();
-    Environment wanted = {
-        list.records, list.directional, center_of(*frame.items), view.camera.world_from_camera,
-        layers.exponents};
-    fit(environment, "highlight environment", GL_RGBA16F, count);
-    published.layers = graph.import("highlight environment", environment);
-    if (is_same(baked, wanted)) {
-        return;
-    }
-    baked = std::move(wanted);
+    maps.source = std::move(wanted);
+    layer_records.upload(*frame.ring, maps.source.layers);
+    lights.upload(*frame.ring, maps.source.lights);
     graph.add_pass(
-        "highlight environment", {}, {image(published.layers)},
-        [this, maps = published.layers, count, &view](PassContext& context) {
-            context.device().use(*bake_environment);
-            bind_view(context, view);
-            exponents.bind(context.device(), kExponentsUnit);
-            lights.bind(context.device(), kLightsUnit);
-            bake_environment->set("center", baked.center);
-            bake_environment->set("light_count", static_cast<int>(baked.lights.size()));
-            context.bind_image(kMapsImage, maps, GL_WRITE_ONLY);
-            dispatch(context.device(), count);
+        "highlight maps", {}, {image(published.layers)},
+        [this, texture = published.layers, count, by_view, &view](PassContext& context) {
+            const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
+            context.device().use(program);
+            layer_records.bind(context.device(), kLayersUnit);
+            context.bind_image(kMapsImage, texture, GL_WRITE_ONLY);
+            if (by_view) {
+                bind_view(context, view);
+                lights.bind(context.device(), kLightsUnit);
+                program.set("light_count", static_cast<int>(environment.source.lights.size()));
+            }
+            context.device().dispatch(
+                kHighlightMapSize / kGroup, kHighlightMapSize / kGroup,
+                static_cast<unsigned>(count));
         });
 }
 

@@ -2,6 +2,7 @@
 #include "tests/render/laboratory_fixture.h"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace limn::test {
@@ -46,8 +47,8 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: eight lights are as the laboratory ha
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: of twelve lights the first eight have terms of their own, and the "
-                "others are lit per vertex") {
+    Laboratory,
+    "fake phong: eight of twelve lights have terms of their own, the rest is lit per vertex") {
     show(make_ball(5));
     std::vector<Entity> lights;
     for (const Vec3& to_light : kAround) {
@@ -220,15 +221,58 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: bad input leaves no NaN and no negati
     }
 }
 
+TEST_CASE_FIXTURE(
+    Laboratory,
+    "fake phong: no method leaves a hole, nor shows what lies a hair's breadth behind") {
+    const MeshId ball = add(make_ball(16));
+    const MaterialId behind = add(Material{
+        .shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}, .emission = {9, 0, 0}});
+    for (int i = 0; i < 6; ++i) {
+        const auto n = static_cast<float>(i);
+        const Vec3 middle = {0.7f * static_cast<float>(i % 3) - 0.7f, 0.3f * n - 0.6f, -1.7f * n};
+        for (const auto& [material, size] :
+             {std::pair(behind, 1 - 2e-6f), std::pair(shiny, 1.0f)}) {
+            place(ball, material, affine_from(middle, {1, 0, 0, 0}, Vec3(size)));
+        }
+    }
+    directional_light({0.2f, 0.4f, 1});
+    const gpu::FloatImage pixel = drawn(ShadingRate::Pixel);
+    for (const NamedRate& named : kRates) {
+        const gpu::FloatImage image = drawn(named.rate);
+        int holes = 0;
+        int leaks = 0;
+        for (int y = 0; y < kSide; ++y) {
+            for (int x = 0; x < kSide; ++x) {
+                holes += image.at(x, y, 3) != pixel.at(x, y, 3) ? 1 : 0;
+                leaks += image.at(x, y, 0) > 5 && pixel.at(x, y, 0) < 5 ? 1 : 0;
+            }
+        }
+        CHECK_MESSAGE(holes == 0, std::string(named.method));
+        CHECK_MESSAGE(leaks == 0, std::string(named.method));
+    }
+}
+
 TEST_CASE("highlight layers: one per exponent, whatever the number of materials") {
     const std::vector<Material> materials = {
         {.shading = ShadingModel::Blinn, .shininess = 80},
         {.shading = ShadingModel::Pbr, .shininess = 7},
         {.shading = ShadingModel::Phong, .shininess = 20},
         {.shading = ShadingModel::Blinn, .shininess = 5}};
-    const HighlightLayers layers = assign_highlight_layers(materials);
+    const HighlightLayers layers = layers_by_exponent(materials);
     CHECK(layers.exponents == std::vector<float>{1, 5, 80});
     CHECK(layers.of_record == std::vector<std::uint32_t>{0, 0, 2, 0, 2, 1});
+}
+
+TEST_CASE("highlight layers: sphere maps have one per material, as long as there is room") {
+    std::vector<Material> materials = {
+        {.shading = ShadingModel::Blinn, .shininess = 80},
+        {.shading = ShadingModel::Pbr, .shininess = 7},
+        {.shading = ShadingModel::Phong, .shininess = 20}};
+    const HighlightLayers layers = layers_by_material(materials);
+    CHECK(layers.exponents == std::vector<float>{1, 80, 80});
+    CHECK(layers.of_record == std::vector<std::uint32_t>{0, 0, 1, 0, 2});
+    materials.resize(materials.size() + kMaxHighlightLayers, materials[0]);
+    CHECK(layers_by_material(materials).exponents == std::vector<float>{1, 80});
 }
 
 TEST_CASE("highlight layers: a thousand exponents share those that there is room for") {
@@ -237,7 +281,7 @@ TEST_CASE("highlight layers: a thousand exponents share those that there is room
         materials.push_back(
             {.shading = ShadingModel::Blinn, .shininess = 1.5f + static_cast<float>(999 - i)});
     }
-    const HighlightLayers layers = assign_highlight_layers(materials);
+    const HighlightLayers layers = layers_by_exponent(materials);
     CHECK(layers.exponents.size() == kMaxHighlightLayers);
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const float given = layers.exponents.at(layers.of_record[i + 2]);
