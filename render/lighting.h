@@ -28,7 +28,9 @@ inline constexpr unsigned kShadowMasksUnit = 17;
 struct LightingMethod {
     LightMethod method = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;  ///< the others with LightMethod::ObjectMajor
-    bool infinite_viewer = false;              ///< specular light as seen from infinitely far away
+    BlinnAxis blinn_axis = BlinnAxis::CameraUp;
+    HardwareDefects hardware = {};
+    bool infinite_viewer = false;  ///< specular light as seen from infinitely far away
 
     /// Whether surfaces are lit while they are drawn.
     [[nodiscard]] bool is_forward() const {

@@ -148,6 +148,8 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     const Rendering rendering = found != nullptr && view.is(kMainViews) ? *found : Rendering{};
     auto& method = view.data.publish<LightingMethod>();
     method.shading = rendering.shading;
+    method.blinn_axis = rendering.blinn_axis;
+    method.hardware = rendering.hardware;
     method.method =
         method.shading == ShadingRate::Pixel ? rendering.lights : LightMethod::ObjectMajor;
     method.infinite_viewer = rendering.infinite_viewer;

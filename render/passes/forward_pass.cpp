@@ -4,13 +4,18 @@
 #include "render/gpu/shader_library.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
+#include "render/passes/highlight_map_pass.h"
+#include "render/shading_rates.h"
 #include "render/surface_draws.h"
+#include "render/view_block.h"
+
+#include <algorithm>
+#include <bit>
 
 namespace limn {
 namespace {
 
-constexpr int kTurns = 255;               ///< distinct stencil references
-constexpr float kGeometryDepthBias = 16;  ///< [smallest steps of depth]; by eye, 0 leaves holes
+constexpr int kTurns = 255;  ///< distinct stencil references
 
 /// Shades the nearest surface, and only one of several at equal depth, once per turn; the stencil
 /// must be cleared after every kTurns turns.
@@ -33,23 +38,30 @@ void clear_stencil(gpu::Device& device, const gpu::Program& nothing) {
     device.draw_fullscreen();
 }
 
-ProgramVariants& programs_of(ForwardPass& pass, ShadingRate rate) {
-    switch (rate) {
-    case ShadingRate::Vertex:
-        return pass.gouraud;
-    case ShadingRate::Subdivided:
-        return pass.subdivided;
-    case ShadingRate::Quadratic:
-        return pass.quadratic;
-    case ShadingRate::Cubic:
-        return pass.cubic;
-    default:
-        return pass.list;
+/// What the shaders of a ShadingRate are compiled with.
+void add_definitions(
+    Variant& variant, const ShadingRateRow& row, const LightingMethod& method, int lights) {
+    if (row.single_lights > 0) {
+        const auto kept = static_cast<unsigned>(std::clamp(lights, 1, row.single_lights));
+        variant.add("SINGLE_LIGHTS", static_cast<int>(std::bit_ceil(kept)));
     }
+    if (row.map != HighlightMap::None) {
+        variant.add("BLINN_AXIS", static_cast<int>(method.blinn_axis));
+    }
+    const HardwareDefects& defects = method.hardware;
+    const bool quadratic = row.rate == ShadingRate::HwQuadratic;
+    const bool blinn = row.rate == ShadingRate::HwBlinn;
+    variant.add_if(defects.first_light && (quadratic || blinn), "HW_FIRST_LIGHT");
+    variant.add_if(defects.color_register && quadratic, "HW_REGISTER");
+    variant.add_if(defects.midpoint_normals && quadratic, "HW_MIDPOINTS");
+    variant.add_if(defects.axis_length && blinn, "HW_AXIS");
+    variant.add_if(defects.world_up && blinn, "HW_UP");
+    variant.add_if(defects.lit_backs && blinn, "HW_BACKS");
 }
 
-ProgramVariants sampled(gpu::Device& device, const char* geometry, const char* fragment) {
-    return {device, {.vertex = "sampled.vert", .geometry = geometry, .fragment = fragment}, true};
+ProgramVariants
+meshes(gpu::Device& device, const char* vertex, const char* geometry, const char* fragment) {
+    return {device, {.vertex = vertex, .geometry = geometry, .fragment = fragment}, true};
 }
 
 void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -60,16 +72,19 @@ void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& 
     records.object_lists.bind(context.device(), kLightCellsUnit);
     Variant variant = view.lighting.variant;
     variant.add("OBJECT_LIGHTS");
-    const ShadingRate rate = view.data.get<LightingMethod>().shading;
-    gpu::PipelineState state = nearest_once(0);
-    if (rate != ShadingRate::Pixel && rate != ShadingRate::Vertex) {
-        // A software OpenGL rounds depths otherwise after a geometry shader.
-        state.depth.func = GL_GEQUAL;
-        state.depth_bias = kGeometryDepthBias;
+    const auto& method = view.data.get<LightingMethod>();
+    const ShadingRateRow& row = row_of(method.shading);
+    add_definitions(
+        variant, row, method, static_cast<int>(view.data.get<LightList>().records.size()));
+    if (row.map != HighlightMap::None) {
+        const auto& maps = view.data.get<HighlightMaps>();
+        context.bind_texture(kHighlightMapsUnit, maps.layers);
+        maps.layer_of_material->bind(context.device(), kHighlightLayersUnit);
     }
     draw_runs(
-        context, view, view.data.get<InstanceList>().opaque, programs_of(pass, rate),
-        {.variant = &variant, .state = state});
+        context, view, view.data.get<InstanceList>().opaque,
+        pass.rates[static_cast<std::size_t>(row.rate)],
+        {.variant = &variant, .state = nearest_once(0)});
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -106,22 +121,35 @@ void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
 }  // namespace
 
 Result<ForwardPass> create_forward_pass(gpu::Device& device) {
-    return ForwardPass{
-        .list = ProgramVariants::of_meshes(device, "forward_list.frag"),
-        .gouraud = ProgramVariants::of_meshes(device, "gouraud.frag", "gouraud.vert"),
-        .subdivided = sampled(device, "six_samples.geom", "subdivided.frag"),
-        .quadratic = sampled(device, "six_samples.geom", "quadratic.frag"),
-        .cubic = sampled(device, "ten_samples.geom", "cubic.frag"),
+    ForwardPass pass{
         .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
+        .facet_depth = meshes(device, "sampled.vert", "facet_depth.geom", "depth_first.frag"),
         .nothing = LIMN_TRY(
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
+    for (const ShadingRateRow& row : kShadingRateRows) {
+        pass.rates.push_back(meshes(device, row.vertex, row.geometry, row.fragment));
+    }
+    return pass;
 }
 
 void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view) {
-    const std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
+    std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
+    if (const auto* maps = view.data.find<HighlightMaps>()) {
+        reads.emplace_back(maps->layers);
+    }
     const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
-    if (view.data.get<LightingMethod>().method == LightMethod::ObjectMajor) {
+    const auto& method = view.data.get<LightingMethod>();
+    if (method.method == LightMethod::ObjectMajor) {
+        if (*row_of(method.shading).geometry != '\0') {
+            const Use depth[] = {cleared(view.gbuffer.depth)};
+            graph.add_pass(
+                "objects.depth", mesh_reads(graph, *view.frame), depth,
+                [&pass, &view](PassContext& context) {
+                    bind_view(context, view);
+                    draw_depths(context, view, pass.facet_depth);
+                });
+        }
         graph.add_pass("objects", std::span(reads), first, [&pass, &view](PassContext& context) {
             draw_object_major(context, pass, view);
         });
