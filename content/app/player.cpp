@@ -65,6 +65,13 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
     return player;
 }
 
+/// While time stands, the last state is shown, and no mixture with the one before: what is edited
+/// is that state, and all else stays where it is.
+void Player::set_paused(bool paused) {
+    paused_ = paused;
+    unsimulated_ = paused ? 0.0 : stage_step(*stage_);
+}
+
 void Player::simulate(float dt, const Input& input) {
     const Clock::time_point begin = Clock::now();
     set_input(stage_->world, input);

@@ -97,6 +97,7 @@ class Player {
     [[nodiscard]] Ray pointer_ray() const;
     void select_under_pointer();
 
+    void set_paused(bool paused);
     void simulate(float dt, const Input& input);
     void set_input(World& world, const Input& input) const;
     [[nodiscard]] RenderView move_camera(float dt, const Input& input, const IVec2& size);

@@ -51,7 +51,7 @@ std::span<const PlayerKey> Player::keys() {
          [](const HelpState& state) { return state.selected; }},
 
         {"Time and levels", "Space", "pause, resume", GLFW_KEY_SPACE, 0,
-         [](Player& p) { p.paused_ = !p.paused_; }},
+         [](Player& p) { p.set_paused(!p.paused_); }},
         {"Time and levels", ".", "one step", GLFW_KEY_PERIOD, 0,
          [](Player& p) { p.paused_ = p.step_once_ = true; }, nullptr, true},
         {"Time and levels", "R", "reload the level from its file", GLFW_KEY_R, 0,

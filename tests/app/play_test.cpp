@@ -159,7 +159,7 @@ TEST_CASE("play: Esc closes panel after panel, then asks; leaving with edits ask
     }
     PlaySession session;
     session.start();
-    xdotool("key F8 key space");
+    xdotool("sleep 1 key F8 key space");  // in the midst of a turn of the box
     const Pixels level = session.wait_until_still();
     xdotool("key F1");
     REQUIRE(session.changes_from(level, 20000));
