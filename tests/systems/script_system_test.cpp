@@ -162,6 +162,27 @@ TEST_CASE("script: an impulse adds within the range, and turns rotations further
     CHECK(world.get<const PointLight>(entity).intensity == 0.0f);  // not below its range
 }
 
+TEST_CASE("script: an impulse steps through enumerations, around both ends, and toggles bools") {
+    World world;
+    const Entity lamp = world.create(PointLight{.enabled = false});
+    world.insert_resource(Exposure{.metering = Metering::Auto});
+    const auto stepped = [&world, lamp](int steps) {
+        ScriptAction metering = change(EventAction::Impulse, Entity{}, Exposure{}, "metering");
+        metering.is_resource = true;
+        metering.edits[0].steps = steps;
+        ScriptAction enabled = change(EventAction::Impulse, lamp, PointLight{}, "enabled");
+        enabled.edits[0].steps = steps;
+        world.insert_resource(EventList{{event_at(0, metering), event_at(0, enabled)}});
+        run_step(world, 0);
+    };
+    stepped(1);
+    CHECK(world.resource<Exposure>().metering == Metering::Manual);  // the first after the last
+    CHECK(world.get<const PointLight>(lamp).enabled);
+    stepped(-2);
+    CHECK(world.resource<Exposure>().metering == Metering::Key);
+    CHECK(world.get<const PointLight>(lamp).enabled);
+}
+
 TEST_CASE("script: spawned prefabs are whole and new each time; destroy takes what is below") {
     World world;
     Prefab prefab;
