@@ -1,3 +1,4 @@
+#include "bench/fakephong/phong_models.h"
 #include "bench/fakephong/phong_raster.h"
 #include "ecs/components/rendering.h"
 #include "tests/render/scene_fixture.h"
@@ -46,15 +47,7 @@ class SampledShading : public Scene {
     Entity object = {};
 
     void show(const MeshData& mesh) {
-        laboratory.mesh = {};
-        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-            laboratory.mesh.positions.emplace_back(mesh.positions[i]);
-            laboratory.mesh.normals.emplace_back(mesh.normals[i]);
-        }
-        for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-            laboratory.mesh.triangles.push_back(
-                {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
-        }
+        laboratory.mesh = fakephong::phong_mesh(mesh);
         object = place(add(mesh), shiny, at({0, 0, 0}));
     }
     /// What arrives from each is 1, whatever the distance.
