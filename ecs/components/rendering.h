@@ -28,6 +28,9 @@ enum class ShadingRate : std::uint8_t {
     Cubic,       ///< cubic through ten points (fakephong.cubic)
 };
 
+/// Names of ShadingRate, for the fields that hold one.
+inline constexpr const char* kShadingRates = "pixel vertex subdivided quadratic cubic";
+
 /// Antialiasing method.
 enum class Antialiasing : std::uint8_t {
     Auto,  ///< temporal where it is played; `limn render` averages samples instead
@@ -53,7 +56,7 @@ LIMN_FIELDS(Rendering) {
         shading,
         .doc = "shading per pixel, or per vertex, or interpolated between 6 (subdivided: in "
                "quarters; quadratic) or 10 (cubic) points of each triangle",
-        .values = "pixel vertex subdivided quadratic cubic");
+        .values = kShadingRates);
     LIMN_FIELD(
         antialiasing,
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",

@@ -52,7 +52,8 @@ ProgramVariants sampled(gpu::Device& device, const char* geometry, const char* f
     return {device, {.vertex = "sampled.vert", .geometry = geometry, .fragment = fragment}, true};
 }
 
-void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& view) {
+void draw_object_major(
+    PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int turn) {
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
     bind_shadow_masks(context, view);
@@ -60,8 +61,7 @@ void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& 
     records.object_lists.bind(context.device(), kLightCellsUnit);
     Variant variant = view.lighting.variant;
     variant.add("OBJECT_LIGHTS");
-    const ShadingRate rate = view.data.get<LightingMethod>().shading;
-    gpu::PipelineState state = nearest_once(0);
+    gpu::PipelineState state = nearest_once(turn);
     if (rate != ShadingRate::Pixel && rate != ShadingRate::Vertex) {
         // A software OpenGL rounds depths otherwise after a geometry shader.
         state.depth.func = GL_GEQUAL;
@@ -118,13 +118,24 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
 }
 
-void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view) {
+void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared) {
     const std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
     const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
-    if (view.data.get<LightingMethod>().method == LightMethod::ObjectMajor) {
-        graph.add_pass("objects", std::span(reads), first, [&pass, &view](PassContext& context) {
-            draw_object_major(context, pass, view);
-        });
+    const auto& method = view.data.get<LightingMethod>();
+    if (method.method == LightMethod::ObjectMajor) {
+        graph.add_pass(
+            "objects", std::span(reads), first,
+            [&pass, &view, rate = method.shading](PassContext& context) {
+                draw_object_major(context, pass, view, rate, 0);
+            });
+        if (method.compared) {
+            const Use second[] = {cleared(compared), view.gbuffer.depth};
+            graph.add_pass(
+                "objects, compared", std::span(reads), second,
+                [&pass, &view, rate = *method.compared](PassContext& context) {
+                    draw_object_major(context, pass, view, rate, 1);
+                });
+        }
         return;
     }
     graph.add_pass("objects.base", std::span(reads), first, [&pass, &view](PassContext& context) {
