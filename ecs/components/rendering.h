@@ -21,15 +21,21 @@ inline constexpr int kLightMethods = 5;
 /// Frequency at which shading is evaluated.
 enum class ShadingRate : std::uint8_t {
     Pixel,  ///< per pixel, with interpolated normals (light.phong-pixel)
-    // The others light points of triangles and interpolate the colors, in ObjectMajor order.
+    // The others are forward, in ObjectMajor order. These light points of triangles and interpolate
+    // the colors:
     Vertex,      ///< linear through the vertices (light.gouraud)
     Subdivided,  ///< linear in quarters, through vertices and midpoints of edges
     Quadratic,   ///< quadratic through the same six points (fakephong.quadratic)
     Cubic,       ///< cubic through ten points (fakephong.cubic)
+    // These light pixels by other interpolants of normals (fakephong.normal-interp-variants):
+    NormalsQuadratic,  ///< quadratic through vertices and midpoints, not renormalized
+    NormalsSpherical,  ///< along great circles
 };
+inline constexpr int kShadingRates = 7;
 
-/// Names of ShadingRate, for the fields that hold one.
-inline constexpr const char* kShadingRates = "pixel vertex subdivided quadratic cubic";
+/// Their names, for fields that hold one.
+inline constexpr const char* kShadingRateNames =
+    "pixel vertex subdivided quadratic cubic normals_quadratic normals_spherical";
 
 /// Antialiasing method.
 enum class Antialiasing : std::uint8_t {
@@ -55,8 +61,9 @@ LIMN_FIELDS(Rendering) {
     LIMN_FIELD(
         shading,
         .doc = "shading per pixel, or per vertex, or interpolated between 6 (subdivided: in "
-               "quarters; quadratic) or 10 (cubic) points of each triangle",
-        .values = kShadingRates);
+               "quarters; quadratic) or 10 (cubic) points of each triangle; per pixel by normals "
+               "that are quadratic or spherical over it",
+        .values = kShadingRateNames);
     LIMN_FIELD(
         antialiasing,
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",

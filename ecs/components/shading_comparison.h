@@ -23,7 +23,7 @@ struct ShadingComparison {
 LIMN_FIELDS(ShadingComparison) {
     LIMN_FIELD(
         right, .doc = "shading right of the divider; left of it: rendering.shading",
-        .values = kShadingRates);
+        .values = kShadingRateNames);
     LIMN_FIELD(
         image, .doc = "both methods side by side, or their difference",
         .values = "split difference");

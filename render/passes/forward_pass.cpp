@@ -33,24 +33,20 @@ void clear_stencil(gpu::Device& device, const gpu::Program& nothing) {
     device.draw_fullscreen();
 }
 
-ProgramVariants& programs_of(ForwardPass& pass, ShadingRate rate) {
-    switch (rate) {
-    case ShadingRate::Vertex:
-        return pass.gouraud;
-    case ShadingRate::Subdivided:
-        return pass.subdivided;
-    case ShadingRate::Quadratic:
-        return pass.quadratic;
-    case ShadingRate::Cubic:
-        return pass.cubic;
-    default:
-        return pass.list;
-    }
-}
-
-ProgramVariants sampled(gpu::Device& device, const char* geometry, const char* fragment) {
-    return {device, {.vertex = "sampled.vert", .geometry = geometry, .fragment = fragment}, true};
-}
+/// The shaders of a rate; what they prepare per vertex, per triangle and per pixel is theirs.
+struct RateShaders {
+    const char* vertex;
+    const char* geometry;  ///< "": none
+    const char* fragment;
+};
+constexpr RateShaders kRates[kShadingRates] = {  // in the order of ShadingRate
+    {"mesh.vert", "", "forward_list.frag"},
+    {"gouraud.vert", "", "gouraud.frag"},
+    {"sampled.vert", "six_samples.geom", "subdivided.frag"},
+    {"sampled.vert", "six_samples.geom", "quadratic.frag"},
+    {"sampled.vert", "ten_samples.geom", "cubic.frag"},
+    {"sampled.vert", "facet_normals.geom", "normals_quadratic.frag"},
+    {"sampled.vert", "facet_normals.geom", "normals_spherical.frag"}};
 
 void draw_object_major(
     PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int turn) {
@@ -61,14 +57,15 @@ void draw_object_major(
     records.object_lists.bind(context.device(), kLightCellsUnit);
     Variant variant = view.lighting.variant;
     variant.add("OBJECT_LIGHTS");
+    const auto row = static_cast<std::size_t>(rate);
     gpu::PipelineState state = nearest_once(turn);
-    if (rate != ShadingRate::Pixel && rate != ShadingRate::Vertex) {
+    if (*kRates[row].geometry != '\0') {
         // A software OpenGL rounds depths otherwise after a geometry shader.
         state.depth.func = GL_GEQUAL;
         state.depth_bias = kGeometryDepthBias;
     }
     draw_runs(
-        context, view, view.data.get<InstanceList>().opaque, programs_of(pass, rate),
+        context, view, view.data.get<InstanceList>().opaque, pass.rates[row],
         {.variant = &variant, .state = state});
 }
 
@@ -106,16 +103,17 @@ void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
 }  // namespace
 
 Result<ForwardPass> create_forward_pass(gpu::Device& device) {
-    return ForwardPass{
-        .list = ProgramVariants::of_meshes(device, "forward_list.frag"),
-        .gouraud = ProgramVariants::of_meshes(device, "gouraud.frag", "gouraud.vert"),
-        .subdivided = sampled(device, "six_samples.geom", "subdivided.frag"),
-        .quadratic = sampled(device, "six_samples.geom", "quadratic.frag"),
-        .cubic = sampled(device, "ten_samples.geom", "cubic.frag"),
+    ForwardPass pass{
         .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
         .nothing = LIMN_TRY(
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
+    for (const auto& [vertex, geometry, fragment] : kRates) {
+        pass.rates.emplace_back(
+            device, gpu::ProgramDesc{.vertex = vertex, .geometry = geometry, .fragment = fragment},
+            true);
+    }
+    return pass;
 }
 
 void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared) {

@@ -3,6 +3,8 @@
 #include "render/frame_data.h"
 #include "render/gbuffer.h"
 
+#include <vector>
+
 namespace limn {
 
 // Forward lighting after a depth prepass, without a G-buffer: either a loop over objects, each with
@@ -12,21 +14,16 @@ namespace limn {
 // Reads    InstanceList, LightObjects, light records, environment
 // Writes   depth, radiance: linear; alpha 1 where there is a surface
 // Order    in place of the G-buffer and draw_lights()
-// Shaders  mesh.vert, depth_first.frag, forward_list.frag, forward_base.frag, forward_one.frag;
-//          gouraud.vert, gouraud.frag in place of forward_list.frag with ShadingRate::Vertex;
-//          sampled.vert, six_samples.geom or ten_samples.geom, and subdivided.frag, quadratic.frag
-//          or cubic.frag with the rates of the same names
+// Shaders  mesh.vert, depth_first.frag, forward_base.frag, forward_one.frag; with
+//          LightMethod::ObjectMajor those of the ShadingRate, a table in forward_pass.cpp: what is
+//          prepared once per vertex or triangle, and what a pixel makes of it
 //
 // The first pass draws depth only; the others draw with depth EQUAL, so that each visible fragment
 // is lit once (engine.depth-first). Where surfaces of two objects have exactly the same depth, as
 // the tops of overlapping boxes, the stencil lets only the first be lit.
 
 struct ForwardPass {
-    ProgramVariants list;
-    ProgramVariants gouraud;
-    ProgramVariants subdivided;
-    ProgramVariants quadratic;
-    ProgramVariants cubic;
+    std::vector<ProgramVariants> rates = {};  ///< by ShadingRate
     ProgramVariants base;
     ProgramVariants one;
     const gpu::Program* nothing = nullptr;

@@ -9,7 +9,7 @@ void main() {
     vec3 v = 3.0 * w - 1.0;
     vec3 corner = 0.5 * w * v * (v - 1.0);
     vec3 edge = 4.5 * w * w.yzx;  // ab, bc, ca
-    radiance = sampled_radiance(
+    radiance = facet_radiance(
         corner.x * light_sample(0) + corner.y * light_sample(1) + corner.z * light_sample(2)
         + edge.x * (v.x * light_sample(3) + v.y * light_sample(4))
         + edge.y * (v.y * light_sample(5) + v.z * light_sample(6))

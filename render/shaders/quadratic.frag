@@ -1,15 +1,13 @@
-// The quadratic through the light of the corners and midpoints of a triangle (fakephong.quadratic, equation 4.2), as
-// the sum of its Lagrange basis in barycentric coordinates: a corner's is a (2 a - 1), a midpoint's 4 a b.
+// The quadratic through the light of the corners and midpoints of a triangle (fakephong.quadratic, equation 4.2).
 #version 450
 #define FACET_SAMPLES 6
 #include "lib/sampled_light.glsl"
 
 void main() {
-    float a = 1.0 - st.x - st.y;
-    float b = st.x;
-    float c = st.y;
-    radiance = sampled_radiance(
-        a * (2.0 * a - 1.0) * light_sample(0) + b * (2.0 * b - 1.0) * light_sample(2)
-        + c * (2.0 * c - 1.0) * light_sample(4)
-        + 4.0 * (a * b * light_sample(1) + b * c * light_sample(3) + c * a * light_sample(5)));
+    float basis[6] = quadratic_basis(st);
+    mat2x3 light = basis[0] * light_sample(0);
+    for (int i = 1; i < 6; ++i) {
+        light += basis[i] * light_sample(i);
+    }
+    radiance = facet_radiance(light);
 }

@@ -20,5 +20,5 @@ void main() {
     } else {
         light = quarter(0, 1, 5, at);
     }
-    radiance = sampled_radiance(light);
+    radiance = facet_radiance(light);
 }

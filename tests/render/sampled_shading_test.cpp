@@ -23,7 +23,9 @@ constexpr NamedRate kRates[] = {
     {ShadingRate::Vertex, "gouraud"},
     {ShadingRate::Subdivided, "gouraud-subdivided"},
     {ShadingRate::Quadratic, "quadratic"},
-    {ShadingRate::Cubic, "cubic"}};
+    {ShadingRate::Cubic, "cubic"},
+    {ShadingRate::NormalsQuadratic, "normals-quadratic"},
+    {ShadingRate::NormalsSpherical, "normals-spherical"}};
 
 /// The same scene for the renderer and for the rasterizer of the laboratory.
 class SampledShading : public Scene {
