@@ -213,6 +213,27 @@ TEST_CASE("script: spawned prefabs are whole and new each time; destroy takes wh
     CHECK_FALSE(world.alive(below));
 }
 
+TEST_CASE("script: a key that is held over many frames of a window is pressed once") {
+    World world;
+    const Entity entity = world.create(Transform{});
+    ScriptEvent event;
+    event.key = "G";
+    event.actions.push_back(
+        change(EventAction::Impulse, entity, Transform{.position = {0, 1, 0}}, "position"));
+    world.insert_resource(EventList{{event}});
+    world.insert_resource(Input{});
+    Input held;
+    set_action(held, key_action("G"));
+    std::uint64_t step = 0;
+    for (const int steps : {2, 0, 1, 3}) {  // of a frame
+        take_input(world.resource<Input>(), held);
+        for (int i = 0; i < steps; ++i) {
+            run_step(world, step++);
+        }
+    }
+    CHECK(world.get<const Transform>(entity).position.y == 1.0f);
+}
+
 TEST_CASE(
     "script: an event of a key comes once for each press, or release, however long it is held") {
     World world;
