@@ -11,6 +11,7 @@
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/glare_pass.h"
 #include "render/passes/glow_pass.h"
+#include "render/passes/highlight_map_pass.h"
 #include "render/passes/lens_flare_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/mirror_caustic_pass.h"
@@ -48,6 +49,7 @@ constexpr EffectEntry kImage[] = {
     effect<LightListEffect>(kSceneViews),  // records and clusters
     effect<EnvironmentEffect>(kSceneViews),
     effect<GbufferEffect>(kSceneViews),
+    effect<HighlightMapEffect>(kMainViews),  // what stands in for highlights
     effect<WaterBodiesEffect>(kSceneViews),  // where water is, and what lies in it
     effect<ShadowEffect>(kSceneViews),       // maps and volumes; after water, which asks for maps
     effect<ParticleShadowEffect>(kSceneViews),  // maps of what particles leave of a light

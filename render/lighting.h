@@ -30,7 +30,9 @@ struct LightingMethod {
     LightMethod method = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;  ///< the others with LightMethod::ObjectMajor
     std::optional<ShadingRate> compared;  ///< lit a second time, ObjectMajor (ComparedRadiance)
-    bool infinite_viewer = false;         ///< specular light as seen from infinitely far away
+    BlinnAxis blinn_axis = BlinnAxis::CameraUp;
+    HardwareDefects hardware = {};
+    bool infinite_viewer = false;  ///< specular light as seen from infinitely far away
 
     /// Whether surfaces are lit while they are drawn.
     [[nodiscard]] bool is_forward() const {

@@ -16,8 +16,10 @@ LookupTexture bake_texture(int size, DiscFunction function) {
     texture.texels.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
+            const bool edge = std::min(x, y) == 0 || std::max(x, y) == size - 1;
             texture.texels.push_back(
-                texture.exact(2 * (x + 0.5) / size - 1, 2 * (y + 0.5) / size - 1));
+                edge ? dvec3(0)
+                     : texture.exact(2 * (x + 0.5) / size - 1, 2 * (y + 0.5) / size - 1));
         }
     }
     return texture;

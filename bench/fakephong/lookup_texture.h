@@ -21,7 +21,7 @@ struct LookupTexture {
     DiscFunction exact;
 };
 
-/// Samples `function` at the texel centers.
+/// Samples `function` at the texel centers; texels at the edge are 0, as what is addressed beyond.
 [[nodiscard]] LookupTexture bake_texture(int size, DiscFunction function);
 
 /// At `at`, in [-1, 1]^2: texture address (at + 1) / 2. Counts as one fetch.

@@ -18,24 +18,71 @@ enum class LightMethod : std::uint8_t {
 
 inline constexpr int kLightMethods = 5;
 
-/// Frequency at which shading is evaluated.
+/// How surfaces get from lit points to lit pixels: Phong shading and what stands in for it (the
+/// fakephong entries of the specification; render/shading_rates.h). All but Pixel are forward, in
+/// ObjectMajor order.
 enum class ShadingRate : std::uint8_t {
-    Pixel,  ///< per pixel, with interpolated normals (light.phong-pixel)
-    // The others are forward, in ObjectMajor order. These light points of triangles and interpolate
-    // the colors:
-    Vertex,      ///< linear through the vertices (light.gouraud)
-    Subdivided,  ///< linear in quarters, through vertices and midpoints of edges
-    Quadratic,   ///< quadratic through the same six points (fakephong.quadratic)
-    Cubic,       ///< cubic through ten points (fakephong.cubic)
-    // These light pixels by other interpolants of normals (fakephong.normal-interp-variants):
+    Pixel,  ///< lit per pixel, with interpolated normals (light.phong-pixel)
+
+    // Lit points of triangles, whose colors are interpolated:
+    Vertex,       ///< linear through the vertices (light.gouraud)
+    Subdivided,   ///< linear in quarters, through vertices and midpoints of edges
+    Quadratic,    ///< quadratic through the same six points
+    Cubic,        ///< cubic through ten points
+    HwQuadratic,  ///< quadratic, with the HardwareDefects of the thesis's appendix A
+
+    // Normals of triangles, lit per pixel:
     NormalsQuadratic,  ///< quadratic through vertices and midpoints, not renormalized
     NormalsSpherical,  ///< along great circles
+    Taylor,            ///< second-order Taylor series of the lit normal about the centroid
+
+    // Lit vertices, and a part of the light from textures per pixel. That of Blinn and Phong
+    // surfaces only; others are as with Vertex:
+    BlinnMap,        ///< highlights, by linear coordinates of each light
+    QuadraticBlinn,  ///< highlights, by quadratic coordinates of each light
+    HwBlinn,         ///< as BlinnMap, with the HardwareDefects of appendix B
+    PhongMap,        ///< diffuse light, by linear coordinates of each light; no highlights
+    Environment,     ///< highlights of all lights in one sphere map, as if infinitely far away
 };
-inline constexpr int kShadingRates = 7;
+inline constexpr int kShadingRates = 14;
+
+/// The global vector G that fixes the plane basis of Blinn and Phong maps (fakephong.blinn-axis).
+enum class BlinnAxis : std::uint8_t {
+    CameraUp,   ///< the thesis's choice: singular away from the center of the view
+    WorldUp,    ///< +y, as in appendix B
+    WorstCase,  ///< along the projected normal of each vertex: v = 0, no better than Gouraud
+};
+
+/// What the thesis's programs for the hardware of 2002 get wrong. Without all of them HwQuadratic
+/// is Quadratic and HwBlinn is BlinnMap.
+struct HardwareDefects {
+    bool first_light = true;
+    bool color_register = true;
+    bool midpoint_normals = true;
+    bool axis_length = true;
+    bool world_up = true;
+    bool lit_backs = true;
+};
+
+LIMN_FIELDS(HardwareDefects) {
+    LIMN_FIELD(first_light, "hw_quadratic, hw_blinn: lights after the first are left out");
+    LIMN_FIELD(
+        color_register,
+        "hw_quadratic: the place in a triangle is rounded to 8 bits, as colors are");
+    LIMN_FIELD(
+        midpoint_normals,
+        "hw_quadratic: normals of midpoints are scaled with the object and not renormalized");
+    LIMN_FIELD(
+        axis_length, "hw_blinn: the axis of the map is not normalized, so coordinates shrink");
+    LIMN_FIELD(world_up, "hw_blinn: the axis is +y, whatever blinn_axis says");
+    LIMN_FIELD(lit_backs, "hw_blinn: normals that point away from the halfway vector are lit, too");
+}
 
 /// Their names, for fields that hold one.
 inline constexpr const char* kShadingRateNames =
-    "pixel vertex subdivided quadratic cubic normals_quadratic normals_spherical";
+    "pixel vertex subdivided quadratic cubic hw_quadratic normals_quadratic normals_spherical "
+    "taylor "
+    "blinn_map quadratic_blinn hw_blinn phong_map environment";
 
 /// Antialiasing method.
 enum class Antialiasing : std::uint8_t {
@@ -48,6 +95,8 @@ enum class Antialiasing : std::uint8_t {
 struct Rendering {
     LightMethod lights = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;
+    BlinnAxis blinn_axis = BlinnAxis::CameraUp;
+    HardwareDefects hardware = {};
     Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
     float particle_share = 1;      ///< of those that the GPU moves, see below
@@ -60,10 +109,17 @@ LIMN_FIELDS(Rendering) {
         .values = "clustered full_screen volumes object_major light_major");
     LIMN_FIELD(
         shading,
-        .doc = "shading per pixel, or per vertex, or interpolated between 6 (subdivided: in "
-               "quarters; quadratic) or 10 (cubic) points of each triangle; per pixel by normals "
-               "that are quadratic or spherical over it",
+        .doc =
+            "shading per pixel, or a method that stands in for it: colors interpolated between 3 "
+            "(vertex), 6 (subdivided, quadratic, hw_quadratic) or 10 (cubic) lit points of each "
+            "triangle; normals other than linear (normals_*, taylor); textures, which blinn and "
+            "phong materials read highlights from (blinn_map, quadratic_blinn, hw_blinn, "
+            "environment) or diffuse light (phong_map)",
         .values = kShadingRateNames);
+    LIMN_FIELD(
+        blinn_axis, .doc = "vector that fixes the texture coordinates of blinn_map and the like",
+        .values = "camera_up world_up worst_case");
+    LIMN_FIELD(hardware, "defects of hw_quadratic and hw_blinn");
     LIMN_FIELD(
         antialiasing,
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",

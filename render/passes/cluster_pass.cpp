@@ -154,6 +154,8 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     if (comparison != nullptr && view.is(kMainViews)) {
         method.compared = comparison->right;
     }
+    method.blinn_axis = rendering.blinn_axis;
+    method.hardware = rendering.hardware;
     method.method = method.shading == ShadingRate::Pixel && !method.compared
                         ? rendering.lights
                         : LightMethod::ObjectMajor;

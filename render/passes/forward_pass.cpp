@@ -4,7 +4,12 @@
 #include "render/gpu/shader_library.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
+#include "render/passes/highlight_map_pass.h"
+#include "render/shading_rates.h"
 #include "render/surface_draws.h"
+
+#include <algorithm>
+#include <bit>
 
 namespace limn {
 namespace {
@@ -33,20 +38,26 @@ void clear_stencil(gpu::Device& device, const gpu::Program& nothing) {
     device.draw_fullscreen();
 }
 
-/// The shaders of a rate; what they prepare per vertex, per triangle and per pixel is theirs.
-struct RateShaders {
-    const char* vertex;
-    const char* geometry;  ///< "": none
-    const char* fragment;
-};
-constexpr RateShaders kRates[kShadingRates] = {  // in the order of ShadingRate
-    {"mesh.vert", "", "forward_list.frag"},
-    {"gouraud.vert", "", "gouraud.frag"},
-    {"sampled.vert", "six_samples.geom", "subdivided.frag"},
-    {"sampled.vert", "six_samples.geom", "quadratic.frag"},
-    {"sampled.vert", "ten_samples.geom", "cubic.frag"},
-    {"sampled.vert", "facet_normals.geom", "normals_quadratic.frag"},
-    {"sampled.vert", "facet_normals.geom", "normals_spherical.frag"}};
+/// What the shaders of a ShadingRate are compiled with.
+void add_definitions(
+    Variant& variant, const ShadingRateRow& row, const LightingMethod& method, int lights) {
+    if (row.single_lights > 0) {
+        const auto kept = static_cast<unsigned>(std::clamp(lights, 1, row.single_lights));
+        variant.add("SINGLE_LIGHTS", static_cast<int>(std::bit_ceil(kept)));
+    }
+    if (row.map != HighlightMap::None) {
+        variant.add("BLINN_AXIS", static_cast<int>(method.blinn_axis));
+    }
+    const HardwareDefects& defects = method.hardware;
+    const bool quadratic = row.rate == ShadingRate::HwQuadratic;
+    const bool blinn = row.rate == ShadingRate::HwBlinn;
+    variant.add_if(defects.first_light && (quadratic || blinn), "HW_FIRST_LIGHT");
+    variant.add_if(defects.color_register && quadratic, "HW_REGISTER");
+    variant.add_if(defects.midpoint_normals && quadratic, "HW_MIDPOINTS");
+    variant.add_if(defects.axis_length && blinn, "HW_AXIS");
+    variant.add_if(defects.world_up && blinn, "HW_UP");
+    variant.add_if(defects.lit_backs && blinn, "HW_BACKS");
+}
 
 void draw_object_major(
     PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int turn) {
@@ -57,16 +68,24 @@ void draw_object_major(
     records.object_lists.bind(context.device(), kLightCellsUnit);
     Variant variant = view.lighting.variant;
     variant.add("OBJECT_LIGHTS");
-    const auto row = static_cast<std::size_t>(rate);
+    const auto& method = view.data.get<LightingMethod>();
+    const ShadingRateRow& row = row_of(rate);
+    add_definitions(
+        variant, row, method, static_cast<int>(view.data.get<LightList>().records.size()));
+    if (row.map != HighlightMap::None) {
+        const auto& maps = view.data.get<HighlightMaps>();
+        context.bind_texture(kHighlightMapsUnit, maps.layers[static_cast<std::size_t>(row.map)]);
+        maps.layer_of_material->bind(context.device(), kHighlightLayersUnit);
+    }
     gpu::PipelineState state = nearest_once(turn);
-    if (*kRates[row].geometry != '\0') {
+    if (*row.geometry != '\0') {
         // A software OpenGL rounds depths otherwise after a geometry shader.
         state.depth.func = GL_GEQUAL;
         state.depth_bias = kGeometryDepthBias;
     }
     draw_runs(
-        context, view, view.data.get<InstanceList>().opaque, pass.rates[row],
-        {.variant = &variant, .state = state});
+        context, view, view.data.get<InstanceList>().opaque,
+        pass.rates[static_cast<std::size_t>(row.rate)], {.variant = &variant, .state = state});
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -108,16 +127,25 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
         .nothing = LIMN_TRY(
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
-    for (const auto& [vertex, geometry, fragment] : kRates) {
+    for (const ShadingRateRow& row : kShadingRateRows) {
         pass.rates.emplace_back(
-            device, gpu::ProgramDesc{.vertex = vertex, .geometry = geometry, .fragment = fragment},
+            device,
+            gpu::ProgramDesc{
+                .vertex = row.vertex, .geometry = row.geometry, .fragment = row.fragment},
             true);
     }
     return pass;
 }
 
 void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared) {
-    const std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
+    std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
+    if (const auto* maps = view.data.find<HighlightMaps>()) {
+        for (const TextureId layers : maps->layers) {
+            if (layers.valid()) {
+                reads.emplace_back(layers);
+            }
+        }
+    }
     const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::ObjectMajor) {

@@ -11,12 +11,11 @@ namespace limn {
 // the lights that reach it (LightMethod::ObjectMajor), or a loop over lights, each added over the
 // objects that it reaches (LightMethod::LightMajor). Kept for comparison with the clusters.
 //
-// Reads    InstanceList, LightObjects, light records, environment
+// Reads    InstanceList, LightObjects, light records, environment, HighlightMaps
 // Writes   depth, radiance: linear; alpha 1 where there is a surface
 // Order    in place of the G-buffer and draw_lights()
 // Shaders  mesh.vert, depth_first.frag, forward_base.frag, forward_one.frag; with
-//          LightMethod::ObjectMajor those of the ShadingRate, a table in forward_pass.cpp: what is
-//          prepared once per vertex or triangle, and what a pixel makes of it
+//          LightMethod::ObjectMajor those of the ShadingRate (shading_rates.h)
 //
 // The first pass draws depth only; the others draw with depth EQUAL, so that each visible fragment
 // is lit once (engine.depth-first). Where surfaces of two objects have exactly the same depth, as

@@ -4,10 +4,5 @@
 #include "lib/sampled_light.glsl"
 
 void main() {
-    float basis[6] = quadratic_basis(st);
-    mat2x3 light = basis[0] * light_sample(0);
-    for (int i = 1; i < 6; ++i) {
-        light += basis[i] * light_sample(i);
-    }
-    radiance = facet_radiance(light);
+    radiance = facet_radiance(quadratic_light(st));
 }

@@ -1,4 +1,5 @@
-// Vertices of triangles that lib/facet_samples.glsl lights.
+// Vertices of triangles that lib/facet.glsl prepares. Definition HW_MIDPOINTS: also normals as hw_quadratic.geom wants
+// them.
 #version 450
 #include "lib/mesh_vertex.glsl"
 #include "lib/view.glsl"
@@ -8,6 +9,10 @@ layout(location = 1) out vec3 corner_normal_ws;
 layout(location = 2) out vec4 corner_uv;
 layout(location = 3) out vec4 corner_color;
 layout(location = 4) out uvec3 corner_instance;  // material, flags, object
+#ifdef HW_MIDPOINTS
+layout(location = 5) out vec3 corner_normal_ms;
+layout(location = 6) out vec3 corner_scaled_normal;
+#endif
 invariant gl_Position;  // the depth must equal that of depth_first.frag
 
 void main() {
@@ -17,4 +22,9 @@ void main() {
     corner_uv = vec4(first_uv, second_uv);
     corner_color = color;
     corner_instance = instance.xyz;
+#ifdef HW_MIDPOINTS
+    corner_normal_ms = normal_ms;
+    corner_scaled_normal = vec3(
+        dot(world_row0.xyz, normal_ms), dot(world_row1.xyz, normal_ms), dot(world_row2.xyz, normal_ms));
+#endif
 }

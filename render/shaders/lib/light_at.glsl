@@ -41,16 +41,25 @@ SurfaceSample point_surface(MeshPoint p) {
     return s;
 }
 
+// Where a point of a mesh is seen [px].
+vec2 point_pixel(MeshPoint p) {
+    vec4 clip = view.clip_from_world * vec4(p.position_ws, 1.0);
+    return (clip.xy / clip.w * 0.5 + 0.5) * view.size.xy;
+}
+
+// The point and spot lights of the point's object, as in add_listed(): here light_cells holds the lists of objects, not
+// of cells.
+uvec2 point_list(MeshPoint p) {
+#ifdef LOCAL_LIGHTS
+    return texelFetch(light_cells, int(p.object)).xy;
+#else
+    return uvec2(0u);
+#endif
+}
+
 // Diffuse: still to be multiplied by the base color map; with the emission of unlit surfaces.
 Reflected light_at(MeshPoint p) {
-    vec4 clip = view.clip_from_world * vec4(p.position_ws, 1.0);
-    vec2 pixel = (clip.xy / clip.w * 0.5 + 0.5) * view.size.xy;
     SurfaceSample s = point_surface(p);
-    // Here light_cells holds the lists of objects, not of cells.
-    uvec2 list = uvec2(0u);
-#ifdef LOCAL_LIGHTS
-    list = texelFetch(light_cells, int(p.object)).xy;
-#endif
-    Reflected light = reflect_all(s, p.position_ws, pixel, list);
+    Reflected light = reflect_all(s, p.position_ws, point_pixel(p), point_list(p));
     return Reflected(light.diffuse + s.emission, light.specular);
 }

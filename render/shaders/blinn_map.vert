@@ -1,0 +1,10 @@
+// Lit at vertices, but highlights by coordinates in a Blinn map, a pair per light (fakephong.blinn-map). Definitions
+// SINGLE_LIGHTS and BLINN_AXIS: lib/single_lights.glsl, lib/highlight_map.glsl.
+#version 450
+#include "lib/map_vertex.glsl"
+
+vec2 map_coordinates(LitPoint p, vec3 to_light) {
+    return blinn_coordinates(p.reflector.normal, to_light, p.reflector.to_camera);
+}
+
+#include "lib/map_lights.glsl"

@@ -1,0 +1,7 @@
+// Highlights of all lights by one fetch from a sphere map (fakephong.envmap). Definition SINGLE_LIGHTS, which is 1.
+#version 450
+#include "lib/map_pixel.glsl"
+
+void main() {
+    radiance = map_radiance(diffuse, specular + map_factor[0] * map_texel(0, highlight_layer));
+}

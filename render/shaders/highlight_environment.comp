@@ -1,0 +1,60 @@
+// Highlights of all lights in a sphere map of the camera's axes (fakephong.envmap-bake): a layer per exponent of the sum
+// of E (W.L)^(n / 4), W the direction that a texel stands for and n the exponent of Blinn's highlight. All lights count
+// as directional, as they are seen from `center`. Texels at the edge are 0, as those beyond the disc.
+#version 450
+#define LINEAR_FADE
+#define SPOT_ANGLES
+#include "lib/light.glsl"
+#include "lib/view.glsl"
+#include "light_gpu.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 7) uniform samplerBuffer exponents;  // by layer
+layout(binding = 9) uniform samplerBuffer lights;     // LightRecord
+layout(binding = 0, rgba16f) writeonly uniform image2DArray maps;
+
+uniform vec3 center;  // [m]
+uniform int light_count;
+
+const float kLobe = 0.25;  // exponent of W.L over that of N.H: lobes of equal width
+
+struct Lobe {
+    vec3 to_light;
+    vec3 irradiance;
+};
+
+Lobe lobe_of(int light) {
+    vec4 texels[4];
+    for (int i = 0; i < 4; ++i) {
+        texels[i] = texelFetch(lights, light * int(kLightTexels) + i);
+    }
+    if (light < int(view.grid_depth.z)) {
+        return Lobe(texels[0].xyz, texels[1].rgb);
+    }
+    vec3 offset = texels[0].xyz - center;
+    float d2 = max(dot(offset, offset), 1e-12);
+    vec3 to_light = offset * inversesqrt(d2);
+    float fade = distance_attenuation(d2, texels[0].w, texels[2].xyz, texels[1].w)
+                 * spot_attenuation(to_light, texels[3].xyz, texels[3].w, texels[2].w);
+    return Lobe(to_light, fade * texels[1].rgb);
+}
+
+void main() {
+    ivec2 size = imageSize(maps).xy;
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    vec2 at = 2.0 * (vec2(texel) + 0.5) / vec2(size) - 1.0;
+    float squared = 1.0 - dot(at, at);
+    vec3 sum = vec3(0.0);
+    if (squared >= 0.0 && all(greaterThan(texel, ivec2(0))) && all(lessThan(texel, size - 1))) {
+        vec3 w = vec3(2.0 * sqrt(squared) * at, 2.0 * squared - 1.0);
+        vec3 w_ws = w.x * normalize(view.ray_right.xyz) + w.y * normalize(view.ray_up.xyz) - w.z * view.ray_forward.xyz;
+        float exponent = kLobe * texelFetch(exponents, int(gl_WorkGroupID.z)).x;
+        for (int i = 0; i < light_count; ++i) {
+            Lobe lobe = lobe_of(i);
+            float cosine = dot(w_ws, lobe.to_light);
+            sum += cosine > 0.0 ? pow(cosine, exponent) * lobe.irradiance : vec3(0.0);
+        }
+    }
+    imageStore(maps, ivec3(gl_GlobalInvocationID), vec4(min(sum, 65504.0), 1.0));
+}

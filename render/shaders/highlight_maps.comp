@@ -1,0 +1,19 @@
+// Blinn maps (fakephong.blinn-texture): a layer per exponent n of (1 - x^2 - y^2)^(n / 2) over the unit disc, which is
+// (N.H)^n where (x, y) is N projected along H, and N.L where n = 1. Texels at the edge are 0, as what is addressed
+// beyond the disc.
+#version 450
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 7) uniform samplerBuffer exponents;  // by layer
+layout(binding = 0, r16f) writeonly uniform image2DArray maps;
+
+void main() {
+    ivec2 size = imageSize(maps).xy;
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    vec2 at = 2.0 * (vec2(texel) + 0.5) / vec2(size) - 1.0;
+    float squared = 1.0 - dot(at, at);
+    bool inside = squared > 1e-12 && all(greaterThan(texel, ivec2(0))) && all(lessThan(texel, size - 1));
+    float exponent = texelFetch(exponents, int(gl_WorkGroupID.z)).x;
+    imageStore(maps, ivec3(gl_GlobalInvocationID), vec4(inside ? pow(squared, 0.5 * exponent) : 0.0));
+}

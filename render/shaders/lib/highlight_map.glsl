@@ -1,0 +1,77 @@
+// Where light is read in textures over the unit disc, whose address is 0.5 + 0.5 (x, y). Definition:
+//   BLINN_AXIS  the global vector of plane_axis(): 0 the camera's up, 1 the world's up, 2 the projected normal itself,
+//               the worst choice, with which all of v is 0
+
+#include "lib/view.glsl"
+
+vec3 unit_or(vec3 v, vec3 otherwise) {
+    float squared = dot(v, v);
+    return squared > 1e-12 ? v * inversesqrt(squared) : otherwise;
+}
+
+// Unit, in the plane orthogonal to unit `normal`; the camera's right in it where the global vector is parallel to the
+// normal (fakephong.blinn-axis).
+vec3 plane_axis(vec3 normal, vec3 projected) {
+#if BLINN_AXIS == 2
+    vec3 global = projected;
+#elif BLINN_AXIS == 1
+    vec3 global = vec3(0.0, 1.0, 0.0);
+#else
+    vec3 global = normalize(view.ray_up.xyz);
+#endif
+    vec3 right = normalize(view.ray_right.xyz);
+    vec3 other = unit_or(right - dot(right, normal) * normal, vec3(0.0));
+    return unit_or(global - dot(global, normal) * normal, other);
+}
+
+// Of unit `v` in the plane orthogonal to unit `normal`, so that 1 - x^2 - y^2 = (v.normal)^2; on the rim, whose texels
+// are 0, where v points away.
+vec2 plane_coordinates(vec3 v, vec3 normal) {
+    float cosine = dot(v, normal);
+    vec3 projected = v - cosine * normal;
+    vec3 axis = plane_axis(normal, projected);
+    projected = cosine > 0.0 ? projected : unit_or(projected, axis);
+    return vec2(dot(axis, projected), dot(cross(normal, axis), projected));
+}
+
+// Blinn map: the normal seen along H (fakephong.blinn-map); on the rim where L = -V.
+vec2 blinn_coordinates(vec3 normal, vec3 to_light, vec3 to_camera) {
+    vec3 h = unit_or(to_light + to_camera, vec3(0.0));
+    return h == vec3(0.0) ? vec2(1.0, 0.0) : plane_coordinates(normal, h);
+}
+
+// The same as the vertex program of appendix B has it, as far as its defects are defined (fakephong.hw-blinn):
+//   HW_AXIS   the axis is not normalized
+//   HW_UP     it is the world's up
+//   HW_BACKS  N.H < 0 is not handled
+vec2 hardware_blinn_coordinates(vec3 normal, vec3 to_light, vec3 to_camera) {
+    vec3 h = unit_or(to_light + to_camera, vec3(0.0));
+    float n_h = dot(normal, h);
+    vec3 projected = normal - n_h * h;
+#ifdef HW_UP
+    vec3 axis = vec3(0.0, 1.0, 0.0) - h.y * h;
+#ifndef HW_AXIS
+    axis = unit_or(axis, vec3(0.0));
+#endif
+#else
+    vec3 axis = plane_axis(h, projected);
+#ifdef HW_AXIS
+    vec3 up = normalize(view.ray_up.xyz);
+    axis = up - dot(up, h) * h;
+#endif
+#endif
+#ifndef HW_BACKS
+    projected = n_h > 0.0 ? projected : unit_or(projected, axis);
+#endif
+    return vec2(dot(axis, projected), dot(cross(h, axis), projected));
+}
+
+// Sphere map: the view direction mirrored at the normal, in the camera's axes (fakephong.envmap). No light takes part.
+// In the center where the mirrored direction points straight away from the camera.
+vec2 sphere_map_coordinates(vec3 normal, vec3 to_camera) {
+    vec3 w = 2.0 * dot(normal, to_camera) * normal - to_camera;
+    vec3 seen = vec3(
+        dot(w, normalize(view.ray_right.xyz)), dot(w, normalize(view.ray_up.xyz)), -dot(w, view.ray_forward.xyz));
+    float m2 = seen.x * seen.x + seen.y * seen.y + (seen.z + 1.0) * (seen.z + 1.0);
+    return m2 > 1e-10 ? seen.xy * inversesqrt(m2) : vec2(0.0);
+}

@@ -1,0 +1,32 @@
+// The coordinates of each light of a vertex. Include after lib/map_vertex.glsl and a definition of
+//     vec2 map_coordinates(LitPoint p, vec3 to_light)
+// Definitions:
+//   MAP_DIFFUSE     the texture holds diffuse light in place of highlights, which there are none of
+//   HW_FIRST_LIGHT  no lights but the first
+void main() {
+    LitPoint p = put_vertex();
+    int end = kEveryLight;
+#ifdef HW_FIRST_LIGHT
+    end = 1;
+#endif
+    for (int k = 0; k < SINGLE_LIGHTS; ++k) {
+        map_at[k] = vec3(1.0, 0.0, 0.0);
+        map_factor[k] = vec3(0.0);
+        if (k < min(p.single, end)) {
+            Incoming light = single_light(p, k);
+            map_at[k] = vec3(map_coordinates(p, light.to_light), dot(p.reflector.normal, light.to_light));
+#ifdef MAP_DIFFUSE
+            map_factor[k] = light.irradiance / kPi * p.reflector.diffuse;
+#else
+            map_factor[k] = light.irradiance / kPi * p.reflector.specular_0;
+#endif
+        }
+    }
+#ifdef MAP_DIFFUSE
+    Reflected light = light_from(p, p.single, p.single > 0 ? kEveryLight : 0, end);
+#else
+    Reflected light = light_from(p, 0, p.single, end);
+#endif
+    diffuse = light.diffuse;
+    specular = light.specular;
+}

@@ -1,0 +1,24 @@
+// A pixel of a surface that lib/map_vertex.glsl has prepared. Include first.
+#define LIT_AT_VERTICES
+#include "lib/material.glsl"
+#include "lib/radiance.glsl"
+
+layout(binding = 5) uniform sampler2DArray highlight_maps;
+
+layout(location = 0) in vec3 diffuse;
+layout(location = 1) in vec3 specular;
+layout(location = 6) flat in float highlight_layer;
+layout(location = 8) in vec3 map_at[SINGLE_LIGHTS];  // in the unit disc; z: N.L
+layout(location = 16) in vec3 map_factor[SINGLE_LIGHTS];
+
+layout(location = 0) out vec4 radiance;
+
+// What is read for light `k`.
+vec3 map_texel(int k, float layer) {
+    return texture(highlight_maps, vec3(0.5 + 0.5 * map_at[k].xy, layer)).rgb;
+}
+
+// `tinted`: still to be multiplied by the base color map.
+vec4 map_radiance(vec3 tinted, vec3 highlights) {
+    return vec4(storable(tinted * base_color_texel().rgb + highlights + surface_emission()), 1.0);
+}

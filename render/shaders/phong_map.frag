@@ -1,0 +1,13 @@
+// Diffuse light by one fetch per light (fakephong.phong-map). Definition SINGLE_LIGHTS: lib/single_lights.glsl.
+#version 450
+#include "lib/map_pixel.glsl"
+
+const float kDiffuseLayer = 0.0;
+
+void main() {
+    vec3 tinted = diffuse;
+    for (int k = 0; k < SINGLE_LIGHTS; ++k) {
+        tinted += map_factor[k] * map_texel(k, kDiffuseLayer).r;
+    }
+    radiance = map_radiance(tinted, specular);
+}

@@ -1,0 +1,61 @@
+// Coordinates in a Blinn map at corners and midpoints of each triangle, for each light (fakephong.quadratic-blinn). All
+// other light is that of the corners. Definitions SINGLE_LIGHTS and BLINN_AXIS: lib/single_lights.glsl,
+// lib/highlight_map.glsl.
+#version 450
+#include "lib/facet.glsl"
+#include "lib/single_lights.glsl"
+#include "lib/highlight_map.glsl"
+
+layout(binding = 6) uniform usamplerBuffer highlight_layers;  // by material
+
+layout(location = 1) out vec3 diffuse;
+layout(location = 5) out vec3 specular;
+layout(location = 6) flat out float highlight_layer;
+layout(location = 8) out vec4 map_factor[SINGLE_LIGHTS];  // w: N.L
+// 16 bits a coordinate, six pairs a light.
+layout(location = 16) flat out uvec4 map_at[(6 * SINGLE_LIGHTS + 3) / 4];
+
+void main() {
+    uint at[6 * SINGLE_LIGHTS + 2];
+    vec4 factors[3 * SINGLE_LIGHTS];
+    vec3 corner_diffuse[3];
+    vec3 corner_specular[3];
+    at[6 * SINGLE_LIGHTS] = 0u;  // fills the last vector
+    at[6 * SINGLE_LIGHTS + 1] = 0u;
+    for (int i = 0; i < 6; ++i) {
+        LitPoint p = lit_point(mesh_point(kSixPoints[i]));
+        for (int k = 0; k < SINGLE_LIGHTS; ++k) {
+            vec2 place = vec2(1.0, 0.0);
+            vec4 factor = vec4(0.0);
+            if (k < p.single) {
+                Incoming light = single_light(p, k);
+                place = blinn_coordinates(p.reflector.normal, light.to_light, p.reflector.to_camera);
+                factor = vec4(
+                    light.irradiance / kPi * p.reflector.specular_0, dot(p.reflector.normal, light.to_light));
+            }
+            at[6 * k + i] = packSnorm2x16(place);
+            if (i % 2 == 0) {
+                factors[3 * k + i / 2] = factor;
+            }
+        }
+        if (i % 2 == 0) {
+            Reflected light = light_from(p, 0, p.single, kEveryLight);
+            corner_diffuse[i / 2] = light.diffuse;
+            corner_specular[i / 2] = light.specular;
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        put_corner(i);
+        diffuse = corner_diffuse[i];
+        specular = corner_specular[i];
+        highlight_layer = float(texelFetch(highlight_layers, int(corner_instance[0].x)).x);
+        for (int k = 0; k < SINGLE_LIGHTS; ++k) {
+            map_factor[k] = factors[3 * k + i];
+        }
+        for (int k = 0; k < map_at.length(); ++k) {
+            map_at[k] = uvec4(at[4 * k], at[4 * k + 1], at[4 * k + 2], at[4 * k + 3]);
+        }
+        EmitVertex();
+    }
+    EndPrimitive();
+}

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "ecs/components/rendering.h"
+
+#include <cstdint>
+#include <iterator>
+
+namespace limn {
+
+// The methods of shading, as shaders. A method is a value of ShadingRate, a row here, and what it
+// does once per vertex or triangle and what a pixel makes of that: a few lines each, over
+// lib/facet.glsl, lib/facet_pixel.glsl, lib/map_vertex.glsl and lib/map_pixel.glsl.
+
+/// Textures that take the place of a part of the lighting (highlight_map_pass.h).
+enum class HighlightMap : std::uint8_t {
+    None,
+    Blinn,        ///< over the plane coordinates of a light
+    Environment,  ///< over the mirrored view direction
+};
+
+struct ShadingRateRow {
+    ShadingRate rate;
+    const char* vertex;
+    const char* geometry;  ///< "": none
+    const char* fragment;
+    HighlightMap map = HighlightMap::None;
+    int single_lights = 0;  ///< of how many lights it keeps terms at most (lib/single_lights.glsl)
+};
+
+inline constexpr int kMaxSingleLights = 8;  ///< what fits between shader stages
+
+/// In the order of ShadingRate.
+inline constexpr ShadingRateRow kShadingRateRows[] = {
+    {ShadingRate::Pixel, "mesh.vert", "", "forward_list.frag"},
+    {ShadingRate::Vertex, "gouraud.vert", "", "gouraud.frag"},
+    {ShadingRate::Subdivided, "sampled.vert", "six_samples.geom", "subdivided.frag"},
+    {ShadingRate::Quadratic, "sampled.vert", "six_samples.geom", "quadratic.frag"},
+    {ShadingRate::Cubic, "sampled.vert", "ten_samples.geom", "cubic.frag"},
+    {ShadingRate::HwQuadratic, "sampled.vert", "hw_quadratic.geom", "hw_quadratic.frag",
+     HighlightMap::None, 1},
+    {ShadingRate::NormalsQuadratic, "sampled.vert", "facet_normals.geom", "normals_quadratic.frag"},
+    {ShadingRate::NormalsSpherical, "sampled.vert", "facet_normals.geom", "normals_spherical.frag"},
+    {ShadingRate::Taylor, "sampled.vert", "taylor.geom", "taylor.frag", HighlightMap::None,
+     kMaxSingleLights},
+    {ShadingRate::BlinnMap, "blinn_map.vert", "", "blinn_map.frag", HighlightMap::Blinn,
+     kMaxSingleLights},
+    {ShadingRate::QuadraticBlinn, "sampled.vert", "quadratic_blinn.geom", "quadratic_blinn.frag",
+     HighlightMap::Blinn, kMaxSingleLights},
+    {ShadingRate::HwBlinn, "hw_blinn.vert", "", "blinn_map.frag", HighlightMap::Blinn,
+     kMaxSingleLights},
+    {ShadingRate::PhongMap, "phong_map.vert", "", "phong_map.frag", HighlightMap::Blinn,
+     kMaxSingleLights},
+    {ShadingRate::Environment, "environment_map.vert", "", "environment_map.frag",
+     HighlightMap::Environment, 1},
+};
+static_assert(std::size(kShadingRateRows) == kShadingRates);
+
+[[nodiscard]] constexpr const ShadingRateRow& row_of(ShadingRate rate) {
+    return kShadingRateRows[static_cast<std::size_t>(rate)];
+}
+
+}  // namespace limn

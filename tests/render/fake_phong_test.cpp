@@ -1,0 +1,249 @@
+#include "render/highlight_layers.h"
+#include "tests/render/laboratory_fixture.h"
+
+#include <cmath>
+#include <vector>
+
+namespace limn::test {
+namespace {
+
+bool is_all_finite(const gpu::FloatImage& image) {
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const Vec3 c = rgb_at(image, x, y);
+            if (!(std::isfinite(c.x + c.y + c.z) && std::min({c.x, c.y, c.z}) >= 0)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// Of the light; surfaces are where they are in `b`.
+gpu::FloatImage sum(const gpu::FloatImage& a, gpu::FloatImage b) {
+    for (std::size_t i = 0; i < b.pixels.size(); ++i) {
+        b.pixels[i] += i % 4 == 3 ? 0 : a.pixels[i];
+    }
+    return b;
+}
+
+constexpr Vec3 kAround[] = {{0.2f, 0.4f, 1},   {-0.5f, 0.1f, 1},  {0.1f, -0.6f, 1},
+                            {0.7f, 0, 1},      {-0.3f, -0.3f, 1}, {0.4f, 0.6f, 1},
+                            {0, 0.1f, 1},      {-0.7f, 0.5f, 1},  {0.6f, -0.5f, 1},
+                            {-0.1f, -0.9f, 1}, {0.3f, -0.2f, 1},  {-0.8f, -0.1f, 1}};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Laboratory, "fake phong: eight lights are as the laboratory has them") {
+    show(make_ball(5));
+    for (int i = 0; i < 8; ++i) {
+        directional_light(kAround[i]);
+        laboratory.lights.back().color = glm::dvec3(0.125);
+    }
+    world.query<DirectionalLight>().each(
+        [](DirectionalLight& light) { light.illuminance = kPi / 8; });
+    compare_all();
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: of twelve lights the first eight have terms of their own, and the "
+                "others are lit per vertex") {
+    show(make_ball(5));
+    std::vector<Entity> lights;
+    for (const Vec3& to_light : kAround) {
+        lights.push_back(
+            shine(DirectionalLight{.illuminance = 0.3f}, look_at({0, 0, 0}, -to_light)));
+    }
+    const auto only = [&](std::size_t first, std::size_t end, ShadingRate rate) {
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            world.get<DirectionalLight>(lights[i]).enabled = i >= first && i < end;
+        }
+        return drawn(rate);
+    };
+    const gpu::FloatImage others = only(8, 12, ShadingRate::Vertex);
+    for (const ShadingRate rate :
+         {ShadingRate::Taylor, ShadingRate::BlinnMap, ShadingRate::QuadraticBlinn}) {
+        const gpu::FloatImage first = only(0, 8, rate);
+        CHECK(largest_difference(only(0, 12, rate), sum(first, others)) < 1e-3f);
+        CHECK(largest_difference(first, only(0, 8, ShadingRate::Vertex)) > 0.02f);
+    }
+}
+
+TEST_CASE_FIXTURE(Laboratory, "fake phong: a base color map tints what is no highlight") {
+    world.resource<Assets>().materials[shiny.index].base_color_texture.image =
+        add(ImageData{.name = "magenta", .width = 1, .height = 1, .pixels = {255, 0, 255, 255}});
+    laboratory.material.color *= glm::dvec3(1, 0, 1);
+    show(make_spread_triangle());
+    point_light({0.3f, 0.2f, 2});
+    compare_all();
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: with each axis a Blinn map is as the laboratory has it") {
+    show(make_ball(5));
+    point_light({0.6f, 1.5f, 3});
+    constexpr fakephong::BlinnAxis kTheirs[] = {
+        fakephong::BlinnAxis::CameraUp, fakephong::BlinnAxis::WorldUp,
+        fakephong::BlinnAxis::WorstCase};
+    std::vector<gpu::FloatImage> images;
+    for (int axis = 0; axis < 3; ++axis) {
+        rendering.blinn_axis = static_cast<BlinnAxis>(axis);
+        laboratory.axis = kTheirs[axis];
+        CHECK(largest_distance({ShadingRate::BlinnMap, "blinn-map"}) < kStep);
+        CHECK(largest_distance({ShadingRate::QuadraticBlinn, "quadratic-blinn"}) < kStep);
+        CHECK(largest_distance({ShadingRate::PhongMap, "phong-map"}) < kStep);
+        images.push_back(drawn(ShadingRate::BlinnMap));
+    }
+    CHECK(largest_difference(images[0], images[2]) > 0.05f);
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: a sphere map follows lights, the camera, materials and objects") {
+    constexpr NamedRate kRate = {ShadingRate::Environment, "envmap"};
+    show(make_ball(8));
+    directional_light({0.2f, 0.4f, 1});
+    point_light({0.6f, 1.5f, 3});
+    CHECK(largest_distance(kRate) < kStep);
+    SUBCASE("lights") {
+        point_light({-1, -0.5f, 3});
+    }
+    SUBCASE("the camera") {
+        eye = {-1.5f, 0.2f, 2.5f};
+        laboratory.camera.eye = glm::dvec3(eye);
+    }
+    SUBCASE("materials") {
+        auto& assets = world.resource<Assets>();
+        assets.materials[shiny.index].shininess = 60;
+        ++assets.material_version;
+        laboratory.material.exponent = 60;
+        laboratory.environment_exponent = 15;
+    }
+    SUBCASE("objects") {
+        for (glm::dvec3& p : laboratory.mesh.positions) {
+            p += glm::dvec3(0.4, 0, 0);
+        }
+        world.get<WorldTransform>(object).world = at({0.4f, 0, 0});
+        world.get<PreviousWorldTransform>(object).world = at({0.4f, 0, 0});
+    }
+    CHECK(largest_distance(kRate) < kStep);
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: on a fine ball a sphere map has Phong's own highlights") {
+    auto& material = world.resource<Assets>().materials[shiny.index];
+    material.shading = ShadingModel::Phong;
+    material.shininess = 8;
+    show(make_ball(48));
+    directional_light({0.2f, 0.4f, 1});
+    CHECK(
+        largest_difference(drawn(ShadingRate::Environment), drawn(ShadingRate::Pixel)) < 2 * kStep);
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory,
+    "fake phong: at the centroid a Taylor series is exact for lights and eye far away") {
+    show(make_spread_triangle());
+    directional_light({0.3f, 0.2f, 1});
+    rendering.infinite_viewer = true;
+    const RenderView centered = look({0, 0, 2}, {0, 0, 0}, 129, 129);
+    const auto middle = [&](ShadingRate rate) {
+        rendering.shading = rate;
+        world.insert_resource(rendering);
+        return rgb_at(radiance(centered), 64, 64);
+    };
+    const Vec3 pixel = middle(ShadingRate::Pixel);
+    const Vec3 taylor = middle(ShadingRate::Taylor);
+    CHECK(glm::length(taylor - pixel) < 1e-3f);
+    CHECK(glm::length(middle(ShadingRate::Vertex) - pixel) > 0.02f);
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: without its defects the hardware of 2002 draws what is meant") {
+    show(make_ball(5));
+    world.get<WorldTransform>(object).world = affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.9f));
+    world.get<PreviousWorldTransform>(object) = {world.get<WorldTransform>(object).world};
+    directional_light({0.2f, 0.7f, 1});
+    directional_light({-0.6f, 0.1f, 1});
+    directional_light({0, 2, -0.4f});
+    using Defect = bool HardwareDefects::*;
+    const auto check = [&](ShadingRate hardware, ShadingRate meant, std::vector<Defect> defects) {
+        rendering.hardware = {false, false, false, false, false, false};
+        const gpu::FloatImage right = drawn(meant);
+        CHECK(largest_difference(drawn(hardware), right) < 1e-5f);
+        for (std::size_t i = 0; i < defects.size(); ++i) {
+            CAPTURE(i);
+            rendering.hardware.*defects[i] = true;
+            CHECK(largest_difference(drawn(hardware), right) > kStep / 4);
+            rendering.hardware.*defects[i] = false;
+        }
+    };
+    check(
+        ShadingRate::HwQuadratic, ShadingRate::Quadratic,
+        {&HardwareDefects::first_light, &HardwareDefects::color_register,
+         &HardwareDefects::midpoint_normals});
+    rendering.blinn_axis = BlinnAxis::WorstCase;
+    check(
+        ShadingRate::HwBlinn, ShadingRate::BlinnMap,
+        {&HardwareDefects::first_light, &HardwareDefects::axis_length, &HardwareDefects::world_up});
+}
+
+TEST_CASE_FIXTURE(Laboratory, "fake phong: bad input leaves no NaN and no negative light") {
+    MeshData mesh = make_square();
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}, {0, 0, 0}};
+    mesh.normals = {{0, 0, 1}, {0, 0, -1}, {0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 0}};
+    mesh.tangents.assign(6, {1, 0, 0, 1});
+    mesh.uvs.assign(6, {0, 0});
+    mesh.indices = {0, 1, 2, 0, 2, 3, 4, 5, 0, 4, 4, 4, 3, 4, 2};  // two have no area
+    show(mesh);
+    auto& assets = world.resource<Assets>();
+    SUBCASE("lights in a vertex, in the eye and behind") {
+        point_light({1, -1, 0});
+        point_light(eye);
+        point_light({0.2f, 0.1f, -1});
+        directional_light({0, 0, -1});
+    }
+    SUBCASE("the eye in a vertex") {
+        eye = {-1, 1, 0};
+        point_light({0, 0, 1});
+    }
+    SUBCASE("exponent 0") {
+        assets.materials[shiny.index].shininess = 0;
+        point_light({0, 0, 1});
+    }
+    SUBCASE("exponent 10,000") {
+        assets.materials[shiny.index].shininess = 10000;
+        point_light({0, 0, 1});
+    }
+    SUBCASE("no light") {}
+    for (const NamedRate& named : kRates) {
+        CHECK_MESSAGE(is_all_finite(drawn(named.rate)), std::string(named.method));
+    }
+}
+
+TEST_CASE("highlight layers: one per exponent, whatever the number of materials") {
+    const std::vector<Material> materials = {
+        {.shading = ShadingModel::Blinn, .shininess = 80},
+        {.shading = ShadingModel::Pbr, .shininess = 7},
+        {.shading = ShadingModel::Phong, .shininess = 20},
+        {.shading = ShadingModel::Blinn, .shininess = 5}};
+    const HighlightLayers layers = assign_highlight_layers(materials);
+    CHECK(layers.exponents == std::vector<float>{1, 5, 80});
+    CHECK(layers.of_record == std::vector<std::uint32_t>{0, 0, 2, 0, 2, 1});
+}
+
+TEST_CASE("highlight layers: a thousand exponents share those that there is room for") {
+    std::vector<Material> materials;
+    for (int i = 0; i < 1000; ++i) {
+        materials.push_back(
+            {.shading = ShadingModel::Blinn, .shininess = 1.5f + static_cast<float>(999 - i)});
+    }
+    const HighlightLayers layers = assign_highlight_layers(materials);
+    CHECK(layers.exponents.size() == kMaxHighlightLayers);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const float given = layers.exponents.at(layers.of_record[i + 2]);
+        CHECK(given >= materials[i].shininess);
+        CHECK(given <= materials[i].shininess + 17);
+    }
+}
+
+}  // namespace limn::test
