@@ -92,7 +92,8 @@ void draw_comparison_overlay(const HudStyle& style, World& world) {
     const auto* rendering = std::as_const(world).find_resource<Rendering>();
     const std::string left = rate_name(rendering != nullptr ? rendering->shading : ShadingRate{});
     const std::string right = rate_name(comparison->right);
-    const float y = 12 * style.scale;
+    const float bottom = size.y * (1 - (plot != nullptr ? plot->height : 0));
+    const float y = bottom - 34 * style.scale;
     if (comparison->image == ComparisonImage::Difference) {
         const std::string power = comparison->exponent == 1
                                       ? ""
@@ -105,7 +106,7 @@ void draw_comparison_overlay(const HudStyle& style, World& world) {
     const float gap = 10 * style.scale;
     draw_name(style, left, kLeftColor, x - gap, y, 1);
     draw_name(style, right, kRightColor, x + gap, y, 0);
-    drag_divider(style, *comparison, size.y * (1 - (plot != nullptr ? plot->height : 0)));
+    drag_divider(style, *comparison, bottom);
 }
 
 }  // namespace limn
