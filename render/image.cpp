@@ -20,6 +20,8 @@
 #include "render/passes/particle_shadow_pass.h"
 #include "render/passes/probe_pass.h"
 #include "render/passes/ripple_pass.h"
+#include "render/passes/shading_comparison_pass.h"
+#include "render/passes/shading_marks_pass.h"
 #include "render/passes/shadow_pass.h"
 #include "render/passes/sky_pass.h"
 #include "render/passes/speed_line_pass.h"
@@ -55,6 +57,7 @@ constexpr EffectEntry kImage[] = {
 
     // Light.
     effect<LightEffect>(kSceneViews),
+    effect<ShadingComparisonEffect>(kMainViews),  // two methods as one image
     effect<SkyEffect>(kSceneViews),
     effect<MirrorCausticEffect>(kSceneViews),
     effect<WaterEffect>(kSceneViews),      // over all that is opaque
@@ -77,6 +80,7 @@ constexpr EffectEntry kImage[] = {
     effect<DazzleEffect>(kMainViews),
     effect<GlareEffect>(kFilmViews),
     effect<GlowEffect>(kMainViews | kMeanView),
+    effect<ShadingMarksEffect>(kMainViews),  // over the image: no lens blurs them
     effect<VignetteEffect>(kFilmViews),
 
     // The film.

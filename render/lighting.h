@@ -5,6 +5,7 @@
 #include "render/light_list.h"
 
 #include <initializer_list>
+#include <optional>
 #include <vector>
 
 namespace limn {
@@ -28,6 +29,7 @@ inline constexpr unsigned kShadowMasksUnit = 17;
 struct LightingMethod {
     LightMethod method = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;  ///< the others with LightMethod::ObjectMajor
+    std::optional<ShadingRate> compared;  ///< lit a second time, ObjectMajor (ComparedRadiance)
     BlinnAxis blinn_axis = BlinnAxis::CameraUp;
     HardwareDefects hardware = {};
     bool infinite_viewer = false;  ///< specular light as seen from infinitely far away
@@ -55,6 +57,13 @@ lighting_reads(const ViewData& view, std::initializer_list<Use> reads);
 /// `depth`, the other targets of the G-buffer that lib/stored_surface.glsl reads, and those of the
 /// view's LightingInputs.
 [[nodiscard]] std::vector<Use> surface_reads(const ViewData& view, Use depth);
+
+/// Opaque surfaces as lit by LightingMethod::shading and ::compared; alpha 0 where there is none.
+/// Published in draw(), where two methods are compared.
+struct ComparedRadiance {
+    TextureId left;
+    TextureId right;
+};
 
 /// The layers of shadow masks, as this frame's graph knows them: one per light with a shadow volume
 /// (shadow_volume_pass.h). They hold for the opaque surfaces alone.

@@ -2,6 +2,7 @@
 
 #include "ecs/components/rendering.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 
@@ -17,6 +18,7 @@ enum class HighlightMap : std::uint8_t {
     Blinn,        ///< over the plane coordinates of a light
     Environment,  ///< over the mirrored view direction
 };
+inline constexpr std::size_t kHighlightMaps = 3;
 
 struct ShadingRateRow {
     ShadingRate rate;

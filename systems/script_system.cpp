@@ -13,6 +13,18 @@ namespace limn {
 
 namespace {
 
+/// Moves an enumeration or bool on, from its last value to its first.
+void step_field(const FieldInfo& field, void* to, int steps) {
+    if (field.type == FieldType::Bool) {
+        *static_cast<bool*>(to) = *static_cast<bool*>(to) != (steps % 2 != 0);
+        return;
+    }
+    const int count = static_cast<int>(field.values.size());
+    const int now = static_cast<int>(get_unsigned(field, to));
+    const int next = ((now + steps) % count + count) % count;
+    (void)set_enum(field, to, field.values[static_cast<std::size_t>(next)]).ok();  // it exists
+}
+
 /// Adds the field at `by` to the one at `to`.
 void add_to_field(const FieldInfo& field, void* to, const void* by) {
     if (field.shape == FieldShape::List) {
@@ -41,6 +53,8 @@ void apply_edits(const ScriptAction& action, void* target) {
         const void* const from = static_cast<const std::byte*>(action.value.data()) + edit.offset;
         if (action.action == EventAction::Set) {
             copy_field(*edit.field, to, from);
+        } else if (edit.steps != 0) {
+            step_field(*edit.field, to, edit.steps);
         } else {
             add_to_field(*edit.field, to, from);
         }

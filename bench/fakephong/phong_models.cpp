@@ -1,7 +1,7 @@
 #include "bench/fakephong/phong_models.h"
 
+#include "content/make/shapes.h"
 #include "content/make/teapot.h"
-#include "ecs/components/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,30 +25,28 @@ constexpr PhongLight kBallLight = {.at = {-1.5, 1.5, 3}};
 
 }  // namespace
 
-PhongMesh make_coarse_sphere(int slices, int stacks) {
-    PhongMesh mesh;
-    for (int j = 0; j <= stacks; ++j) {
-        for (int i = 0; i < slices; ++i) {
-            const double polar = 0.5 * kTurn * j / stacks;
-            const double around = kTurn * i / slices;
-            mesh.positions.emplace_back(
-                std::sin(polar) * std::sin(around), std::cos(polar),
-                std::sin(polar) * std::cos(around));
+PhongMesh phong_mesh(const MeshData& mesh) {
+    PhongMesh result;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        result.positions.emplace_back(mesh.positions[i]);
+        result.normals.emplace_back(i < mesh.normals.size() ? mesh.normals[i] : Vec3(0));
+        if (i < mesh.uvs.size()) {
+            result.uvs.emplace_back(mesh.uvs[i]);
         }
     }
-    mesh.normals = mesh.positions;
-    const auto vertex = [slices](int i, int j) {
-        return static_cast<std::uint32_t>(j * slices + i % slices);
-    };
-    for (int j = 0; j < stacks; ++j) {
-        for (int i = 0; i < slices; ++i) {
-            if (j + 1 < stacks) {
-                mesh.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1)});
-            }
-            if (j > 0) {
-                mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j)});
-            }
-        }
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        result.triangles.push_back({mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
+    }
+    return result;
+}
+
+PhongMesh make_coarse_sphere(int slices, int stacks) {
+    PhongMesh mesh = phong_mesh(make_sphere({.radius = 1, .segments = slices, .rings = stacks}));
+    for (dvec3& p : mesh.positions) {
+        p = {-p.x, p.y, -p.z};
+    }
+    for (dvec3& n : mesh.normals) {
+        n = {-n.x, n.y, -n.z};
     }
     return mesh;
 }
@@ -95,12 +93,7 @@ PhongMesh make_dodecahedron() {
 
 PhongScene triangle_scene() {
     PhongScene scene = {.name = "triangle"};
-    const double x = std::sqrt(0.75);
-    scene.mesh = {
-        .positions = {{0, 1, 0}, {-x, -0.5, 0}, {x, -0.5, 0}},
-        .normals = std::vector<dvec3>(3, dvec3(0, 0, 1)),
-        .uvs = {{0.5, 0}, {0, 1}, {1, 1}},
-        .triangles = {{0, 1, 2}}};
+    scene.mesh = phong_mesh(make_triangle({.radius = 1}));
     scene.material.color = {0, 0, 1};
     scene.lights = {{.at = {0, -0.2, 0.6}}};
     scene.camera = {.eye = {0, 0, 20}, .target = dvec3(0), .half_size = 0.052, .size = 256};
@@ -132,15 +125,10 @@ PhongScene printed_teapot_scene() {
 }
 
 PhongScene teapot_scene() {
-    const MeshData pot = make_teapot({.divisions = 8, .height = 1.5f, .bottom = false});
     PhongScene scene = {.name = "teapot"};
-    for (std::size_t i = 0; i < pot.positions.size(); ++i) {
-        scene.mesh.positions.emplace_back(dvec3(pot.positions[i]) - dvec3(0, 0.75, 0));
-        scene.mesh.normals.emplace_back(dvec3(pot.normals[i]));
-        scene.mesh.uvs.emplace_back(dvec2(pot.uvs[i]));
-    }
-    for (std::size_t i = 0; i + 2 < pot.indices.size(); i += 3) {
-        scene.mesh.triangles.push_back({pot.indices[i], pot.indices[i + 1], pot.indices[i + 2]});
+    scene.mesh = phong_mesh(make_teapot({.divisions = 8, .height = 1.5f, .bottom = false}));
+    for (dvec3& p : scene.mesh.positions) {
+        p.y -= 0.75;
     }
     scene.material.color = {0.7, 0.3, 0.2};
     scene.lights = {{.directional = true, .at = {-1, 1, 1}}};

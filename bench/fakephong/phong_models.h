@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/fakephong/phong_scene.h"
+#include "ecs/components/surface.h"
 
 #include <array>
 #include <span>
@@ -12,7 +13,10 @@ namespace limn::fakephong {
 // The scenes of the thesis, rebuilt (fakephong.scenes). It gives the models and the kinds of light;
 // positions, exponents and cameras are fitted.
 
-/// A latitude and longitude sphere of 2 slices (stacks - 1) triangles, with radial normals.
+/// A mesh of content/make or of a file, its triangles as they are.
+[[nodiscard]] PhongMesh phong_mesh(const MeshData& mesh);
+/// A latitude and longitude sphere of 2 slices (stacks - 1) triangles, with radial normals: the
+/// mesh "sphere" of levels, turned so that a column of vertices faces the eye.
 [[nodiscard]] PhongMesh make_coarse_sphere(int slices, int stacks);
 /// The regular dodecahedron as 12 fans of three triangles, with radial normals.
 [[nodiscard]] PhongMesh make_dodecahedron();

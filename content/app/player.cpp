@@ -105,9 +105,7 @@ void Player::set_input(World& world, const Input& input) const {
     if (resource == nullptr) {
         return;
     }
-    const bool waiting = resource->click;  // until a step has seen it: a frame may run none
-    *resource = input;
-    resource->click = input.click || waiting;
+    take_input(*resource, input);
     const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera);
     if (camera_.mode != CameraMode::Level && driver != nullptr) {
         for (const ActionInfo& action : driver->actions) {

@@ -1,5 +1,6 @@
 // What the window of `limn play` shows: the level, of a show with and without, and the HUD.
 
+#include "content/app/comparison_overlay.h"
 #include "content/app/emitter_controls.h"
 #include "content/app/outline.h"
 #include "content/app/path_overlay.h"
@@ -158,6 +159,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     if (paths_shown_) {
         draw_path_overlay(view, stage_->world);
     }
+    draw_comparison_overlay(hud_->style(), stage_->world);
     const std::string weather = describe_weather(stage_->world);
     const std::string motion = describe_motion();
     const std::string drops = describe_drops(stage_->world);

@@ -25,11 +25,16 @@ int key_code(std::string_view name) {
     return found != codes.end() ? found->second : name.size() == 1 ? name[0] : GLFW_KEY_UNKNOWN;
 }
 
-bool is_down(const Window& window, std::string_view name) {
+/// Held, or pressed since the last frame and released already.
+bool is_down(const Window& window, const WindowEvents& events, std::string_view name) {
     const int key = key_code(name);
     const bool has_right = key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_LEFT_ALT;
+    const bool tapped =
+        std::any_of(events.keys.begin(), events.keys.end(), [key](const KeyPress& press) {
+            return press.key == key && !press.repeated;
+        });
     return key != GLFW_KEY_UNKNOWN
-           && (window.is_key_down(key)
+           && (tapped || window.is_key_down(key)
                || (has_right && window.is_key_down(key + GLFW_KEY_RIGHT_ALT - GLFW_KEY_LEFT_ALT)));
 }
 
@@ -52,8 +57,8 @@ Input Player::read_input(const WindowEvents& events, float dt) {
         && !window_->is_key_down(GLFW_KEY_RIGHT_CONTROL)) {
         const auto* bindings = std::as_const(stage_->world).find_resource<Bindings>();
         const auto read = [&](std::string_view action, std::span<const std::string> keys) {
-            if (std::any_of(keys.begin(), keys.end(), [this](const std::string& key) {
-                    return is_down(*window_, key);
+            if (std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
+                    return is_down(*window_, events, key);
                 })) {
                 set_action(input, action);
             }

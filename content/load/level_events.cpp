@@ -15,10 +15,12 @@ namespace limn {
 
 namespace {
 
-constexpr std::string_view kKeys[] = {"at",       "every", "times",  "key",
-                                      "released", "text",  "set",    "set_resources",
-                                      "impulse",  "spawn", "destroy"};
+constexpr std::string_view kKeys[] = {
+    "at",    "every",  "times",         "key",     "released",
+    "text",  "set",    "set_resources", "impulse", "impulse_resources",
+    "spawn", "destroy"};
 constexpr double kMaxTime = 1e6;  // [s]
+constexpr int kMaxSteps = 1000;   // through an enumeration
 
 std::string event_hint(std::string_view name, const std::string& did_you_mean) {
     return find_resource(name) != nullptr
@@ -47,6 +49,16 @@ Status read_field_edits(
             continue;
         }
         FieldInfo wide = *field;
+        if (action.action == EventAction::Impulse && field->shape == FieldShape::One
+            && (field->type == FieldType::Enum || field->type == FieldType::Bool)) {
+            const double steps =
+                LIMN_TRY(expect_number(member.value, -kMaxSteps, kMaxSteps, inner));
+            if (steps != std::floor(steps) || steps == 0) {
+                return unexpected(member.value, inner, "how many values further: 1, -1 ...");
+            }
+            action.edits.push_back({field, inner_offset, static_cast<int>(steps)});
+            continue;
+        }
         if (action.action == EventAction::Impulse) {
             if (number_count(field->type) == 0 || field->shape == FieldShape::List) {
                 return error_at(inner, member.at, "a non-numeric field", "a numeric one");
@@ -56,7 +68,7 @@ Status read_field_edits(
         }
         void* const data = static_cast<std::byte*>(action.value.data()) + inner_offset;
         LIMN_TRY(read_field(member.value, wide, data, inner, names));
-        action.edits.push_back({field, inner_offset});
+        action.edits.push_back({field, inner_offset, 0});
     }
     return Done{};
 }
@@ -131,7 +143,10 @@ struct EventReader {
             return read_targets(member.value, EventAction::Impulse, at);
         }
         if (key == "set_resources") {
-            return read_resources(member.value, at);
+            return read_resources(member.value, EventAction::Set, at);
+        }
+        if (key == "impulse_resources") {
+            return read_resources(member.value, EventAction::Impulse, at);
         }
         if (key == "spawn") {
             return read_spawns(member.value, at);
@@ -183,10 +198,11 @@ struct EventReader {
         return Done{};
     }
 
-    Status read_resources(const JsonValue& json, const JsonPlace& at) {
+    Status read_resources(const JsonValue& json, EventAction kind, const JsonPlace& at) {
         LIMN_TRY(expect(json, JsonKind::Object, at, "an object: resources by name"));
         for (const JsonMember& resource : json.members) {
             ScriptAction action;
+            action.action = kind;
             action.is_resource = true;
             LIMN_TRY(read_change(
                 resource, find_resource(resource.key), resource_suggestion(resource.key),

@@ -18,8 +18,9 @@ namespace limn {
 //       // assigns fields
 //       "set": {"lamp": {"point_light": {"enabled": false}}},
 //       "set_resources": {"exposure": {"ev": -1}},
-//       // adds to numbers, composes rotations
+//       // adds to numbers, composes rotations, steps through enumerations and bools
 //       "impulse": {"lamp": {"transform": {"position": [0, 1, 0]}}},
+//       "impulse_resources": {"rendering": {"shading": 1}},
 //       "spawn": [NODE, ...],        // each a new root
 //       "destroy": ["old lamp"]      // with its descendants
 //     }

@@ -378,6 +378,10 @@ JsonValue schema_of_event() {
                             map_of(map_of(of_type("object"))),
                             "what is added to fields, by entity, component and field")),
          member(
+             "impulse_resources",
+             described(
+                 map_of(of_type("object")), "what is added to fields, by resource and field")),
+         member(
              "spawn", described(
                           array_of(reference("node")),
                           "nodes that appear, of prefabs or with the level's meshes")),

@@ -71,6 +71,7 @@ std::span<const MeshKind> mesh_kinds() {
             "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),
         mesh_kind<TerrainShape, make_terrain>("terrain", "hills and ridges as a height field"),
         mesh_kind<TorusShape, make_torus>("torus", "a ring around +y"),
+        mesh_kind<TriangleShape, make_triangle>("triangle", "an equilateral triangle that faces z"),
         mesh_kind<VaultShape, make_vault>("vault", "a pointed cross vault over a rectangle"),
         mesh_kind<WallShape, make_wall>("wall", "a wall with a pointed or round opening, facing z"),
     };

@@ -230,6 +230,37 @@ MeshData make_plane(const PlaneShape& shape) {
     return mesh;
 }
 
+MeshData make_triangle(const TriangleShape& shape) {
+    LIMN_CHECK(shape.radius > 0 && shape.divisions >= 1);
+    const float half_side = std::sqrt(0.75f);
+    MeshData mesh;
+    for (int j = 0; j <= shape.divisions; ++j) {
+        for (int i = 0; i <= j; ++i) {
+            const float down = part(j, shape.divisions);
+            const float right = part(2 * i - j, shape.divisions);
+            mesh.positions.push_back(shape.radius * Vec3(right * half_side, 1 - 1.5f * down, 0));
+            mesh.normals.emplace_back(0, 0, 1);
+            mesh.tangents.emplace_back(1, 0, 0, 1);
+            mesh.uvs.emplace_back(0.5f + 0.5f * right, down);
+            grow(mesh.bounds, mesh.positions.back());
+        }
+    }
+    const auto vertex = [](int i, int j) {
+        return static_cast<std::uint32_t>(j * (j + 1) / 2 + i);
+    };
+    for (int j = 0; j < shape.divisions; ++j) {
+        for (int i = 0; i <= j; ++i) {
+            mesh.indices.insert(
+                mesh.indices.end(), {vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1)});
+            if (i < j) {
+                mesh.indices.insert(
+                    mesh.indices.end(), {vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j)});
+            }
+        }
+    }
+    return mesh;
+}
+
 MeshData make_cylinder(const CylinderShape& shape) {
     return make_cone(
         {.radius = shape.radius,

@@ -70,6 +70,17 @@ LIMN_FIELDS(PlaneShape) {
     LIMN_FIELD(metric, "the image repeats every meter");
 }
 
+/// An equilateral triangle in the x-y plane that faces +z, a corner on top.
+struct TriangleShape {
+    float radius = 0.5f;
+    int divisions = 1;
+};
+
+LIMN_FIELDS(TriangleShape) {
+    LIMN_FIELD(radius, "from the center to the corners", "m", 1e-4, 1e5);
+    LIMN_FIELD(divisions, "of each side; their square is the number of facets", "", 1, 1024);
+}
+
 /// A tube around +y, closed by two discs.
 struct CylinderShape {
     float radius = 0.5f;
@@ -145,6 +156,7 @@ LIMN_FIELDS(LatheShape) {
 [[nodiscard]] MeshData make_box(const BoxShape& shape);
 [[nodiscard]] MeshData make_torus(const TorusShape& shape);
 [[nodiscard]] MeshData make_plane(const PlaneShape& shape);
+[[nodiscard]] MeshData make_triangle(const TriangleShape& shape);
 [[nodiscard]] MeshData make_cylinder(const CylinderShape& shape);
 [[nodiscard]] MeshData make_cone(const ConeShape& shape);
 [[nodiscard]] MeshData make_disc(const DiscShape& shape);

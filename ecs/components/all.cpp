@@ -36,6 +36,7 @@
 #include "ecs/components/rendering.h"
 #include "ecs/components/ripple.h"
 #include "ecs/components/rotation_track.h"
+#include "ecs/components/shading_comparison.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/shoaling_waves.h"
@@ -164,6 +165,8 @@ void register_all_components() {
     register_resource<Input>();
     register_resource<Environment>();
     register_resource<Rendering>();
+    register_resource<ShadingComparison>();
+    register_resource<ScanlinePlot>();
     register_resource<Exposure>();
     register_resource<Glow>();
     register_resource<Glare>();

@@ -5,6 +5,7 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace limn {
 
@@ -47,6 +48,14 @@ void set_action(Input& input, std::string_view action, float value) {
     if (value != 0.0f) {
         input.actions.push_back({std::string(action), value});
     }
+}
+
+void take_input(Input& input, const Input& frame) {
+    std::vector<ActionValue> before = std::move(input.before);
+    const bool waiting = input.click;
+    input = frame;
+    input.before = std::move(before);
+    input.click = frame.click || waiting;
 }
 
 MoveInput camera_input(const Input& input) {

@@ -55,6 +55,9 @@ LIMN_FIELDS(Input) {
 /// Value of `more` minus that of `less`.
 [[nodiscard]] float action_axis(const Input& input, std::string_view more, std::string_view less);
 void set_action(Input& input, std::string_view action, float value = 1.0f);
+/// Replaces the input by that of a new frame. What was in use in the previous step stays known, and
+/// a click waits until a step has seen it, as a frame may run none.
+void take_input(Input& input, const Input& frame);
 
 /// What moves a camera or a person: values of `move` are right, up and forward.
 struct MoveInput {

@@ -78,6 +78,12 @@ LIMN_FIELDS(HardwareDefects) {
     LIMN_FIELD(lit_backs, "hw_blinn: normals that point away from the halfway vector are lit, too");
 }
 
+/// Their names, for fields that hold one.
+inline constexpr const char* kShadingRateNames =
+    "pixel vertex subdivided quadratic cubic hw_quadratic normals_quadratic normals_spherical "
+    "taylor "
+    "blinn_map quadratic_blinn hw_blinn phong_map environment";
+
 /// Antialiasing method.
 enum class Antialiasing : std::uint8_t {
     Auto,  ///< temporal where it is played; `limn render` averages samples instead
@@ -109,9 +115,7 @@ LIMN_FIELDS(Rendering) {
             "triangle; normals other than linear (normals_*, taylor); textures, which blinn and "
             "phong materials read highlights from (blinn_map, quadratic_blinn, hw_blinn, "
             "environment) or diffuse light (phong_map)",
-        .values = "pixel vertex subdivided quadratic cubic hw_quadratic normals_quadratic "
-                  "normals_spherical taylor blinn_map quadratic_blinn hw_blinn phong_map "
-                  "environment");
+        .values = kShadingRateNames);
     LIMN_FIELD(
         blinn_axis, .doc = "vector that fixes the texture coordinates of blinn_map and the like",
         .values = "camera_up world_up worst_case");

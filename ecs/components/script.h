@@ -19,11 +19,13 @@ namespace limn {
 struct FieldEdit {
     const FieldInfo* field = nullptr;
     std::uint32_t offset = 0;  ///< from the start of the component [bytes]
+    int steps = 0;  ///< of an impulse on an enumeration or bool: to a later (earlier) value, cyclic
 };
 
 enum class EventAction : std::uint8_t {
     Set,      ///< assigns the fields of `value`; a missing component is added first
-    Impulse,  ///< adds the fields of `value`, clamped to their ranges; rotations are multiplied
+    Impulse,  ///< adds the fields of `value`, clamped to their ranges; rotations are multiplied,
+              ///< enumerations and bools stepped through
     Spawn,    ///< creates an instance of `prefab`
     Destroy,  ///< destroys `entity` and its descendants
 };

@@ -1,6 +1,7 @@
 #include "render/passes/cluster_pass.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/shading_comparison.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
@@ -148,10 +149,16 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     const Rendering rendering = found != nullptr && view.is(kMainViews) ? *found : Rendering{};
     auto& method = view.data.publish<LightingMethod>();
     method.shading = rendering.shading;
+    const auto* comparison = frame.world->find_resource<ShadingComparison>();
+    method.compared.reset();
+    if (comparison != nullptr && view.is(kMainViews)) {
+        method.compared = comparison->right;
+    }
     method.blinn_axis = rendering.blinn_axis;
     method.hardware = rendering.hardware;
-    method.method =
-        method.shading == ShadingRate::Pixel ? rendering.lights : LightMethod::ObjectMajor;
+    method.method = method.shading == ShadingRate::Pixel && !method.compared
+                        ? rendering.lights
+                        : LightMethod::ObjectMajor;
     method.infinite_viewer = rendering.infinite_viewer;
 
     auto& lights = view.data.publish<LightList>();

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -64,7 +65,8 @@ meshes(gpu::Device& device, const char* vertex, const char* geometry, const char
     return {device, {.vertex = vertex, .geometry = geometry, .fragment = fragment}, true};
 }
 
-void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& view) {
+void draw_object_major(
+    PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int turn) {
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
     bind_shadow_masks(context, view);
@@ -73,18 +75,29 @@ void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& 
     Variant variant = view.lighting.variant;
     variant.add("OBJECT_LIGHTS");
     const auto& method = view.data.get<LightingMethod>();
-    const ShadingRateRow& row = row_of(method.shading);
+    const ShadingRateRow& row = row_of(rate);
     add_definitions(
         variant, row, method, static_cast<int>(view.data.get<LightList>().records.size()));
     if (row.map != HighlightMap::None) {
-        const auto& maps = view.data.get<HighlightMaps>();
+        const HighlightLayerMaps& maps =
+            view.data.get<HighlightMaps>()[static_cast<std::size_t>(row.map)];
         context.bind_texture(kHighlightMapsUnit, maps.layers);
         maps.layer_of_material->bind(context.device(), kHighlightLayersUnit);
     }
     draw_runs(
         context, view, view.data.get<InstanceList>().opaque,
         pass.rates[static_cast<std::size_t>(row.rate)],
-        {.variant = &variant, .state = nearest_once(0)});
+        {.variant = &variant, .state = nearest_once(turn)});
+}
+
+void draw_depth(FrameGraph& graph, ProgramVariants& programs, const ViewData& view) {
+    const Use depth[] = {cleared(view.gbuffer.depth)};
+    graph.add_pass(
+        "objects.depth", mesh_reads(graph, *view.frame), depth,
+        [&programs, &view](PassContext& context) {
+            bind_view(context, view);
+            draw_depths(context, view, view.data.get<InstanceList>().opaque, programs);
+        });
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -124,6 +137,7 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
     ForwardPass pass{
         .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
+        .mesh_depth = ProgramVariants::of_meshes(device, "depth_first.frag"),
         .facet_depth = meshes(device, "sampled.vert", "facet_depth.geom", "depth_first.frag"),
         .nothing = LIMN_TRY(
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
@@ -133,28 +147,37 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
     return pass;
 }
 
-void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view) {
+void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared) {
     std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
     if (const auto* maps = view.data.find<HighlightMaps>()) {
-        reads.emplace_back(maps->layers);
+        for (const HighlightLayerMaps& its : *maps) {
+            if (its.layers.valid()) {
+                reads.emplace_back(its.layers);
+            }
+        }
     }
-    const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::ObjectMajor) {
-        if (*row_of(method.shading).geometry != '\0') {
-            const Use depth[] = {cleared(view.gbuffer.depth)};
+        bool of_facets = false;  // the depth, through a geometry shader
+        const auto draw_by = [&](ShadingRate rate, TextureId target, int turn) {
+            if (const bool facets = *row_of(rate).geometry != '\0';
+                std::exchange(of_facets, facets) != facets) {
+                draw_depth(graph, facets ? pass.facet_depth : pass.mesh_depth, view);
+            }
+            const Use writes[] = {cleared(target), view.gbuffer.depth};
             graph.add_pass(
-                "objects.depth", mesh_reads(graph, *view.frame), depth,
-                [&pass, &view](PassContext& context) {
-                    bind_view(context, view);
-                    draw_depths(context, view, pass.facet_depth);
+                "objects", std::span(reads), writes,
+                [&pass, &view, rate, turn](PassContext& context) {
+                    draw_object_major(context, pass, view, rate, turn);
                 });
+        };
+        draw_by(method.shading, view.radiance, 0);
+        if (method.compared) {
+            draw_by(*method.compared, compared, 1);
         }
-        graph.add_pass("objects", std::span(reads), first, [&pass, &view](PassContext& context) {
-            draw_object_major(context, pass, view);
-        });
         return;
     }
+    const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
     graph.add_pass("objects.base", std::span(reads), first, [&pass, &view](PassContext& context) {
         bind_lighting(context, view);
         draw_runs(

@@ -26,13 +26,15 @@ struct ForwardPass {
     std::vector<ProgramVariants> rates = {};  ///< by ShadingRate
     ProgramVariants base;
     ProgramVariants one;
+    ProgramVariants mesh_depth;   ///< of the others, after one with
     ProgramVariants facet_depth;  ///< of rates with a geometry shader
     const gpu::Program* nothing = nullptr;
 };
 
 [[nodiscard]] Result<ForwardPass> create_forward_pass(gpu::Device& device);
 
-/// Draws all opaque surfaces, whose depth is in view.gbuffer, into view.radiance.
-void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view);
+/// Draws all opaque surfaces, whose depth is in view.gbuffer, into view.radiance; where two methods
+/// of shading are compared also into `compared`, which is else not valid().
+void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared);
 
 }  // namespace limn

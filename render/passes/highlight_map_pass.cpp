@@ -1,6 +1,6 @@
 #include "render/passes/highlight_map_pass.h"
 
-#include "ecs/components/rendering.h"
+#include "ecs/components/shading_comparison.h"
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
@@ -25,9 +25,21 @@ constexpr unsigned kLightsUnit = 9;
 constexpr unsigned kMapsImage = 0;
 constexpr unsigned kGroup = 8;
 
-HighlightMap map_in_use(const World& world) {
+constexpr HighlightMap kMaps[] = {HighlightMap::Blinn, HighlightMap::Environment};
+
+/// Whether a rate of the world reads the map.
+bool is_read(const World& world, HighlightMap map) {
     const auto* rendering = world.find_resource<Rendering>();
-    return rendering != nullptr ? row_of(rendering->shading).map : HighlightMap::None;
+    const auto* comparison = world.find_resource<ShadingComparison>();
+    return (rendering != nullptr && row_of(rendering->shading).map == map)
+           || (comparison != nullptr && row_of(comparison->right).map == map);
+}
+
+/// Whether one of the view does.
+bool is_read(const ViewData& view, HighlightMap map) {
+    const auto& method = view.data.get<LightingMethod>();
+    return row_of(method.shading).map == map
+           || (method.compared && row_of(*method.compared).map == map);
 }
 
 /// The middle of the boxes around the objects of each layer.
@@ -62,36 +74,61 @@ bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Sour
 }  // namespace
 
 Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const RenderSettings&) {
-    return HighlightMapEffect{
-        .bake_blinn = LIMN_TRY(device.shaders().load({.compute = "highlight_maps.comp"})),
-        .bake_environment =
-            LIMN_TRY(device.shaders().load({.compute = "highlight_environment.comp"}))};
+    gpu::ShaderLibrary& shaders = device.shaders();
+    HighlightMapEffect effect;
+    effect.maps[static_cast<std::size_t>(HighlightMap::Blinn)].bake =
+        LIMN_TRY(shaders.load({.compute = "highlight_maps.comp"}));
+    effect.maps[static_cast<std::size_t>(HighlightMap::Environment)].bake =
+        LIMN_TRY(shaders.load({.compute = "highlight_environment.comp"}));
+    return effect;
 }
 
 bool HighlightMapEffect::is_used(const FrameData& frame) {
-    return map_in_use(*frame.world) != HighlightMap::None;
+    return std::any_of(std::begin(kMaps), std::end(kMaps), [&](HighlightMap map) {
+        return is_read(*frame.world, map);
+    });
 }
 
 void HighlightMapEffect::collect(FrameData& frame) {
-    const auto& materials = frame.assets->materials;
-    layers = map_in_use(*frame.world) == HighlightMap::Environment ? layers_by_material(materials)
-                                                                   : layers_by_exponent(materials);
-    layer_of_material.upload(*frame.ring, layers.of_record);
+    for (const HighlightMap map : kMaps) {
+        if (is_read(*frame.world, map)) {
+            const auto& materials = frame.assets->materials;
+            Maps& its = maps[static_cast<std::size_t>(map)];
+            its.layers = map == HighlightMap::Environment ? layers_by_material(materials)
+                                                          : layers_by_exponent(materials);
+            its.layer_of_material.upload(*frame.ring, its.layers.of_record);
+        }
+    }
 }
 
 bool HighlightMapEffect::prepare(const FrameData&, ViewData& view) {
-    return row_of(view.data.get<LightingMethod>().shading).map != HighlightMap::None;
+    return std::any_of(std::begin(kMaps), std::end(kMaps), [&](HighlightMap map) {
+        return is_read(view, map);
+    });
 }
 
 void HighlightMapEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    const bool by_view =
-        row_of(view.data.get<LightingMethod>().shading).map == HighlightMap::Environment;
+    auto& published = view.data.publish<HighlightMaps>();
+    published = {};
+    for (const HighlightMap map : kMaps) {
+        if (is_read(view, map)) {
+            Maps& its = maps[static_cast<std::size_t>(map)];
+            published[static_cast<std::size_t>(map)] = {
+                bake(graph, frame, view, map), &its.layer_of_material};
+        }
+    }
+}
+
+TextureId HighlightMapEffect::bake(
+    FrameGraph& graph, const FrameData& frame, const ViewData& view, HighlightMap map) {
+    const bool by_view = map == HighlightMap::Environment;
+    Maps& its = maps[static_cast<std::size_t>(map)];
     Source wanted;
-    for (const float exponent : layers.exponents) {
+    for (const float exponent : its.layers.exponents) {
         wanted.layers.emplace_back(0, 0, 0, exponent);
     }
     if (by_view) {
-        const std::vector<Vec3> centers = layer_centers(frame, layers);
+        const std::vector<Vec3> centers = layer_centers(frame, its.layers);
         for (std::size_t i = 0; i < centers.size(); ++i) {
             wanted.layers[i] = Vec4(centers[i], wanted.layers[i].w);
         }
@@ -101,42 +138,41 @@ void HighlightMapEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDat
         wanted.camera = view.camera.world_from_camera;
     }
 
-    Maps& maps = by_view ? environment : blinn;
     const std::size_t count = wanted.layers.size();
-    if (!maps.texture || maps.texture.layers() != static_cast<int>(count)) {
-        maps.texture = gpu::Texture(
+    if (!its.texture || its.texture.layers() != static_cast<int>(count)) {
+        its.texture = gpu::Texture(
             "highlight maps", {.format = static_cast<GLenum>(by_view ? GL_RGBA16F : GL_R16F),
                                .width = kHighlightMapSize,
                                .height = kHighlightMapSize,
                                .depth = static_cast<int>(count),
                                .target = GL_TEXTURE_2D_ARRAY});
-        maps.source = {};
+        its.source = {};
     }
-    auto& published = view.data.publish<HighlightMaps>();
-    published.layers = graph.import("highlight maps", maps.texture);
-    published.layer_of_material = &layer_of_material;
-    if (is_same(maps.source, wanted)) {
-        return;
+    const TextureId texture = graph.import("highlight maps", its.texture);
+    if (is_same(its.source, wanted)) {
+        return texture;
     }
-    maps.source = std::move(wanted);
-    layer_records.upload(*frame.ring, maps.source.layers);
-    lights.upload(*frame.ring, maps.source.lights);
+    its.source = std::move(wanted);
+    its.layer_records.upload(*frame.ring, its.source.layers);
+    if (by_view) {
+        lights.upload(*frame.ring, its.source.lights);
+    }
     graph.add_pass(
-        "highlight maps", {}, {image(published.layers)},
-        [this, texture = published.layers, count, by_view, &view](PassContext& context) {
-            const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
-            context.device().use(program);
-            layer_records.bind(context.device(), kLayersUnit);
+        "highlight maps", {}, {image(texture)},
+        [this, &its, texture, count, by_view, &view](PassContext& context) {
+            context.device().use(*its.bake);
+            its.layer_records.bind(context.device(), kLayersUnit);
             context.bind_image(kMapsImage, texture, GL_WRITE_ONLY);
             if (by_view) {
                 bind_view(context, view);
                 lights.bind(context.device(), kLightsUnit);
-                program.set("light_count", static_cast<int>(environment.source.lights.size()));
+                its.bake->set("light_count", static_cast<int>(its.source.lights.size()));
             }
             context.device().dispatch(
                 kHighlightMapSize / kGroup, kHighlightMapSize / kGroup,
                 static_cast<unsigned>(count));
         });
+    return texture;
 }
 
 }  // namespace limn

@@ -5,7 +5,9 @@
 #include "render/gpu/texture.h"
 #include "render/highlight_layers.h"
 #include "render/shaders/light_gpu.h"
+#include "render/shading_rates.h"
 
+#include <array>
 #include <vector>
 
 namespace limn {
@@ -30,11 +32,14 @@ inline constexpr int kHighlightMapSize = 256;  ///< [px]
 inline constexpr unsigned kHighlightMapsUnit = 5;
 inline constexpr unsigned kHighlightLayersUnit = 6;
 
-/// Published in the views whose rate reads them.
-struct HighlightMaps {
-    TextureId layers;
+/// The layers of one kind of map.
+struct HighlightLayerMaps {
+    TextureId layers;                                  ///< not valid() where no rate reads it
     const BufferTexture* layer_of_material = nullptr;  ///< by record
 };
+
+/// Published in the views of which a rate reads them, by HighlightMap.
+using HighlightMaps = std::array<HighlightLayerMaps, kHighlightMaps>;
 
 struct HighlightMapEffect {
     /// What a texture was made of.
@@ -45,24 +50,26 @@ struct HighlightMapEffect {
         Affine camera = {};
     };
     struct Maps {
+        const gpu::Program* bake = nullptr;
+        HighlightLayers layers = {};
         gpu::Texture texture = {};
         Source source = {};
+        BufferTexture layer_records = BufferTexture("highlight layer records", GL_RGBA32F);
+        BufferTexture layer_of_material = BufferTexture("highlight layers", GL_R32UI);
     };
 
-    const gpu::Program* bake_blinn = nullptr;
-    const gpu::Program* bake_environment = nullptr;
-    Maps blinn = {};
-    Maps environment = {};
-    HighlightLayers layers = {};
-    BufferTexture layer_records = BufferTexture("highlight layer records", GL_RGBA32F);
+    std::array<Maps, kHighlightMaps> maps = {};  ///< by HighlightMap
     BufferTexture lights = BufferTexture("highlight lights", GL_RGBA32F);
-    BufferTexture layer_of_material = BufferTexture("highlight layers", GL_R32UI);
 
     static Result<HighlightMapEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
     void collect(FrameData& frame);
     bool prepare(const FrameData& frame, ViewData& view);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+
+    /// Part of draw(): the texture, baked again where its source has changed.
+    TextureId
+    bake(FrameGraph& graph, const FrameData& frame, const ViewData& view, HighlightMap map);
 };
 
 }  // namespace limn

@@ -105,7 +105,12 @@ void LightEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
         draw_clustered(graph, clustered, view);
     } else if (method.is_forward()) {
         if (ForwardPass* pass = get_or_create(forward, *frame.device, create_forward_pass)) {
-            draw_forward(graph, *pass, view);
+            TextureId compared;
+            if (method.compared) {
+                compared = create_radiance(graph, view, "radiance, compared");
+                view.data.publish<ComparedRadiance>() = {view.radiance, compared};
+            }
+            draw_forward(graph, *pass, view, compared);
         }
     } else if (LightEachPass* pass = get_or_create(each, *frame.device, create_light_each_pass)) {
         draw_each_light(graph, *pass, view);

@@ -378,6 +378,9 @@ TEST_CASE("bad level: wrong types and numbers out of range") {
          R"({"events": [{"at": 1, "jump": 1}]})",
          R"({"events": [{"at": 1, "set_resources": {"exposure": {"evv": 1}}}]})",
          R"({"entities": [{"name": "a"}], "events": [{"at": 1, "impulse": {"a": {"camera": {"active": true}}}}]})",
+         R"({"events": [{"at": 1, "impulse_resources": {"exposure": {"curve": "aces"}}}]})",
+         R"({"events": [{"at": 1, "impulse_resources": {"exposure": {"curve": 0.5}}}]})",
+         R"({"events": [{"at": 1, "impulse_resources": {"exposure": {"curve": 0}}}]})",
          R"({"entities": [{"name": "a"}], "events": [{"at": 1, "set": {"a": {"spinn": {}}}}]})"}) {
         CAPTURE(text);
         CHECK_FALSE(error_of(text).empty());

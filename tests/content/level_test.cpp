@@ -453,14 +453,15 @@ TEST_CASE("level: events name entities, resources and what they spawn") {
             {"at": "500ms", "every": 0.25, "times": 4, "set": {"lamp": {"point_light": {"attenuation": {"linear": 2}}}},
              "set_resources": {"exposure": {"ev": -1}},
              "impulse": {"lamp": {"transform": {"position": [0, -1, 0]}, "point_light": {"intensity": -3}}},
-             "spawn": [{"prefab": "stone"}], "destroy": ["target"]},
+             "spawn": [{"prefab": "stone"}], "destroy": ["target"],
+             "impulse_resources": {"exposure": {"curve": -1}}},
             {"at": 1, "every": 1, "set": {"lamp": {"orbit_camera": {"target": "lamp"}}}}]})");
     const EventList& list = world.resource<EventList>();
     REQUIRE(list.events.size() == 2);
     const ScriptEvent& event = list.events[0];
     CHECK(event.time == 0.5);
     CHECK(event.times == 4);
-    REQUIRE(event.actions.size() == 6);
+    REQUIRE(event.actions.size() == 7);
     CHECK(event.actions[0].entity == find_named(world, "lamp"));
     CHECK(std::string(event.actions[0].edits.at(0).field->name) == "linear");
     CHECK(event.actions[1].is_resource);
@@ -472,6 +473,8 @@ TEST_CASE("level: events name entities, resources and what they spawn") {
         }
     }
     CHECK(event.actions[5].entity == find_named(world, "target"));
+    CHECK(event.actions[6].is_resource);
+    CHECK(event.actions[6].edits.at(0).steps == -1);
     CHECK(list.events[1].times > 1'000'000);  // without times: for ever
     CHECK(list.events[1].actions[0].value.as<OrbitCamera>().target == find_named(world, "lamp"));
 }

@@ -28,7 +28,7 @@ MeshData make_default(const MeshKind& kind) {
 
 TEST_CASE(
     "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
-    REQUIRE(mesh_kinds().size() == 21);
+    REQUIRE(mesh_kinds().size() == 22);
     for (const MeshKind& kind : mesh_kinds()) {
         const std::string name = kind.name;
         if (kind.make_rig != nullptr || name == "hovercraft" || name == "boat"
@@ -132,6 +132,22 @@ TEST_CASE("shapes: lobes keep a lathe closed, and its area is that of the curve"
     CHECK(worst_tangent(mesh) > 0.95f);
     // The mean of (1 + d cos)^2 is 1 + d^2 / 2.
     CHECK(signed_volume(mesh) == test::near(kPiD * 0.25 * 1.02).epsilon(1e-3));
+}
+
+TEST_CASE("shapes: a triangle in n divisions has n^2 facets of equal area that fill it") {
+    for (const int n : {1, 2, 5}) {
+        const MeshData mesh = make_triangle({.radius = 1, .divisions = n});
+        CHECK(mesh.indices.size() == static_cast<std::size_t>(3 * n * n));
+        const double whole = 0.75 * std::sqrt(3.0);
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+            const Vec3& a = mesh.positions[mesh.indices[i]];
+            const Vec3 normal = 0.5f
+                                * glm::cross(
+                                    mesh.positions[mesh.indices[i + 1]] - a,
+                                    mesh.positions[mesh.indices[i + 2]] - a);
+            CHECK(static_cast<double>(normal.z) == near(whole / (n * n)));
+        }
+    }
 }
 
 TEST_CASE("shapes: metric texture coordinates are meters") {

@@ -162,6 +162,27 @@ TEST_CASE("script: an impulse adds within the range, and turns rotations further
     CHECK(world.get<const PointLight>(entity).intensity == 0.0f);  // not below its range
 }
 
+TEST_CASE("script: an impulse steps through enumerations, around both ends, and toggles bools") {
+    World world;
+    const Entity lamp = world.create(PointLight{.enabled = false});
+    world.insert_resource(Exposure{.metering = Metering::Auto});
+    const auto stepped = [&world, lamp](int steps) {
+        ScriptAction metering = change(EventAction::Impulse, Entity{}, Exposure{}, "metering");
+        metering.is_resource = true;
+        metering.edits[0].steps = steps;
+        ScriptAction enabled = change(EventAction::Impulse, lamp, PointLight{}, "enabled");
+        enabled.edits[0].steps = steps;
+        world.insert_resource(EventList{{event_at(0, metering), event_at(0, enabled)}});
+        run_step(world, 0);
+    };
+    stepped(1);
+    CHECK(world.resource<Exposure>().metering == Metering::Manual);  // the first after the last
+    CHECK(world.get<const PointLight>(lamp).enabled);
+    stepped(-2);
+    CHECK(world.resource<Exposure>().metering == Metering::Key);
+    CHECK(world.get<const PointLight>(lamp).enabled);
+}
+
 TEST_CASE("script: spawned prefabs are whole and new each time; destroy takes what is below") {
     World world;
     Prefab prefab;
@@ -190,6 +211,27 @@ TEST_CASE("script: spawned prefabs are whole and new each time; destroy takes wh
     CHECK(world.query<const Parent>().count() == 3);
     CHECK_FALSE(world.alive(old));
     CHECK_FALSE(world.alive(below));
+}
+
+TEST_CASE("script: a key that is held over many frames of a window is pressed once") {
+    World world;
+    const Entity entity = world.create(Transform{});
+    ScriptEvent event;
+    event.key = "G";
+    event.actions.push_back(
+        change(EventAction::Impulse, entity, Transform{.position = {0, 1, 0}}, "position"));
+    world.insert_resource(EventList{{event}});
+    world.insert_resource(Input{});
+    Input held;
+    set_action(held, key_action("G"));
+    std::uint64_t step = 0;
+    for (const int steps : {2, 0, 1, 3}) {  // of a frame
+        take_input(world.resource<Input>(), held);
+        for (int i = 0; i < steps; ++i) {
+            run_step(world, step++);
+        }
+    }
+    CHECK(world.get<const Transform>(entity).position.y == 1.0f);
 }
 
 TEST_CASE(

@@ -72,6 +72,12 @@ vec3 srgb_encode(vec3 linear) {
     return mix(power, 12.92 * linear, lessThan(linear, vec3(0.0031308)));
 }
 
+// The inverse.
+vec3 srgb_to_linear(vec3 encoded) {
+    return mix(
+        pow((encoded + 0.055) / 1.055, vec3(2.4)), encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
+}
+
 // Triangular noise in (-1, 1): added in units of one code before rounding, it makes the rounding error
 // independent of the color and so removes banding.
 float triangular_dither(vec2 pixel) {

@@ -1,0 +1,114 @@
+// The divider of a comparison, a scanline and the plot of its brightness, over the image (shading_marks_pass.h).
+#version 450
+#include "lib/tone.glsl"
+
+layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = 1) uniform sampler2D left_radiance;
+layout(binding = 2) uniform sampler2D right_radiance;
+
+uniform float row;          // 0 .. 1 from below
+uniform float plot_height;  // of the image; 0: no plot
+uniform float divider;      // of the width; negative: none
+uniform int curves;         // 1: of the left image alone
+
+layout(location = 0) out vec4 radiance;
+
+// sRGB
+const vec3 kLeft = vec3(0.98, 0.66, 0.26);
+const vec3 kRight = vec3(0.36, 0.70, 1.0);
+const vec3 kPaper = vec3(0.055, 0.065, 0.085);
+const vec3 kGrid = vec3(0.36, 0.40, 0.47);
+const vec3 kMark = vec3(0.96, 0.97, 0.98);
+const float kPadding = 0.12;  // of the plot's height, below 0 and above 1
+
+vec3 image_color;
+
+void paint(vec3 srgb, float opacity) {
+    image_color = mix(image_color, srgb_to_linear(srgb), clamp(opacity, 0.0, 1.0));
+}
+
+// (r + g + b) / 3 of a pixel of the row (thesis, equation 6.3).
+float brightness(sampler2D image, int x) {
+    ivec2 size = textureSize(image, 0);
+    int y = clamp(int(row * float(size.y)), 0, size.y - 1);
+    vec4 c = texelFetch(image, ivec2(clamp(x, 0, size.x - 1), y), 0);
+    return dot(clamp(c.rgb, 0.0, 1.0), vec3(1.0 / 3.0));
+}
+
+float distance_to_segment(vec2 p, vec2 a, vec2 b) {
+    vec2 d = b - a;
+    return distance(p, a + clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0) * d);
+}
+
+// Height in the plot of a brightness [px].
+float plotted(float value, float plot) {
+    return plot * (kPadding + (1.0 - 2.0 * kPadding) * value);
+}
+
+// 1 on the curve, 0 beyond half its `width` [px].
+float curve(sampler2D image, vec2 p, float plot, float width) {
+    int x = int(p.x);
+    float nearest = 1e9;
+    int reach = int(ceil(width)) + 1;
+    vec2 last = vec2(float(x - reach) + 0.5, plotted(brightness(image, x - reach), plot));
+    for (int i = 1 - reach; i <= reach; ++i) {
+        vec2 next = vec2(float(x + i) + 0.5, plotted(brightness(image, x + i), plot));
+        nearest = min(nearest, distance_to_segment(p, last, next));
+        last = next;
+    }
+    return clamp(0.5 * width + 0.5 - nearest, 0.0, 1.0);
+}
+
+void paint_plot(vec2 p, float plot, float unit) {
+    paint(kPaper, 0.88);
+    for (int i = 0; i <= 4; ++i) {
+        float line = clamp(1.0 - abs(p.y - plotted(0.25 * float(i), plot)), 0.0, 1.0);
+        paint(kGrid, line * (i % 4 == 0 ? 0.75 : 0.3));
+    }
+    if (curves > 1) {
+        float left = plotted(brightness(left_radiance, int(p.x)), plot);
+        float right = plotted(brightness(right_radiance, int(p.x)), plot);
+        float inside = clamp(max(left, right) - p.y + 0.5, 0.0, 1.0)
+                       * clamp(p.y - min(left, right) + 0.5, 0.0, 1.0);
+        paint(left > right ? kLeft : kRight, 0.22 * inside);
+        paint(kRight, curve(right_radiance, p, plot, 1.8 * unit));
+    }
+    paint(kLeft, curve(left_radiance, p, plot, 1.8 * unit));
+    paint(kMark, 0.5 * clamp(1.0 - abs(p.y - plot + 0.5), 0.0, 1.0));
+}
+
+// A line with a round handle that has an arrow to each side, and above the color of each side.
+void paint_divider(vec2 p, vec2 size, float unit) {
+    float x = p.x - floor(divider * size.x);
+    float top = size.y - p.y;
+    paint(x < 0.0 ? kLeft : kRight, 0.95 * clamp(4.0 * unit - top, 0.0, 1.0));
+    paint(vec3(0.0), 0.45 * (1.0 - smoothstep(1.0 * unit, 4.0 * unit, abs(x))));
+    paint(kMark, clamp(0.8 * unit + 0.5 - abs(x), 0.0, 1.0));
+    vec2 q = vec2(x, p.y - 0.5 * size.y) / unit;
+    float from_handle = length(q);
+    paint(vec3(0.0), 0.35 * (1.0 - smoothstep(13.0, 19.0, from_handle)));
+    paint(kMark, clamp((13.0 - from_handle) * unit + 0.5, 0.0, 1.0));
+    float arrow = min(8.0 - abs(q.x) - abs(q.y), abs(q.x) - 2.5);  // a triangle to each side
+    paint(kPaper, clamp(arrow * unit + 0.5, 0.0, 1.0));
+}
+
+void main() {
+    vec2 p = gl_FragCoord.xy;
+    vec2 size = vec2(textureSize(scene_radiance, 0));
+    float unit = max(size.y / 720.0, 0.5);  // [px]
+    vec4 scene = texelFetch(scene_radiance, ivec2(p), 0);
+    image_color = scene.rgb;
+    float plot = floor(plot_height * size.y);
+    if (plot_height > 0.0) {
+        float dashes = step(0.5, fract(p.x / (12.0 * unit)));
+        float line = clamp(0.5 * unit + 0.5 - abs(p.y - floor(row * size.y) - 0.5), 0.0, 1.0);
+        paint(kMark, 0.6 * line * dashes);
+    }
+    if (divider >= 0.0) {
+        paint_divider(p, size, unit);
+    }
+    if (p.y < plot) {
+        paint_plot(p, plot, unit);
+    }
+    radiance = vec4(image_color, scene.a);
+}
