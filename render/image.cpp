@@ -22,6 +22,7 @@
 #include "render/passes/shadow_pass.h"
 #include "render/passes/sky_pass.h"
 #include "render/passes/speed_line_pass.h"
+#include "render/passes/subsurface_pass.h"
 #include "render/passes/temporal_pass.h"
 #include "render/passes/texture_combine_pass.h"
 #include "render/passes/texture_shade_pass.h"
@@ -53,6 +54,7 @@ constexpr EffectEntry kImage[] = {
 
     // Light.
     effect<LightEffect>(kSceneViews),
+    effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // light that spreads within surfaces
     effect<SkyEffect>(kSceneViews),
     effect<MirrorCausticEffect>(kSceneViews),
     effect<WaterEffect>(kSceneViews),      // over all that is opaque

@@ -1,12 +1,17 @@
 #include "render/material_blocks.h"
 
 #include "ecs/components/surface.h"
+#include "render/diffusion_profile.h"
 #include "render/material_maps.h"
 #include "render/shaders/material_blocks_gpu.h"
 #include "render/shaders/material_classic_gpu.h"
+#include "render/shaders/material_lafortune_gpu.h"
 #include "render/shaders/material_skin_gpu.h"
+#include "render/shaders/material_subsurface_gpu.h"
+#include "render/skin_tone.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <iterator>
 #include <optional>
@@ -26,6 +31,38 @@ std::optional<layout::SkinBlock> make_skin_block(const Material& m) {
     return m.shading == ShadingModel::Skin ? std::optional(
                layout::SkinBlock{.rim = Vec4(m.skin_color, m.wide_rim ? 1.0f : 0.0f)})
                                            : std::nullopt;
+}
+
+using LafortuneBlock = std::array<layout::LafortuneLobeRecord, kMaxLafortuneLobes>;
+
+std::optional<LafortuneBlock> make_lafortune_block(const Material& m) {
+    if (m.shading != ShadingModel::Lafortune) {
+        return std::nullopt;
+    }
+    LafortuneBlock block = {};
+    const std::size_t count = std::min(m.lobes.size(), block.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const LafortuneLobe& lobe = m.lobes[i];
+        block[i] = {
+            .across = Vec4(lobe.across, 0),
+            .along = Vec4(lobe.along, 0),
+            .exponent = Vec4(lobe.exponent, 0)};
+    }
+    block[0].across.w = static_cast<float>(count);
+    return block;
+}
+
+std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) {
+    if (m.shading != ShadingModel::Subsurface) {
+        return std::nullopt;
+    }
+    const Vec3 d = diffusion_distance(Vec3(m.base_color) * skin_tone(m), m.scatter);
+    layout::SubsurfaceBlock block{
+        .specular = Vec4(m.specular, m.gloss),
+        .diffusion = Vec4(d, m.gloss_roughness),
+        .samples = {}};
+    sample_diffusion(d, block.samples);
+    return block;
 }
 
 struct BlockKind {
@@ -56,6 +93,8 @@ constexpr BlockKind kKinds[] = {
     {layout::kUvBlock, 2 * layout::kMaxMapSlots, append_uv_block},
     block_kind<make_classic_block>(layout::kClassicBlock),
     block_kind<make_skin_block>(layout::kSkinBlock),
+    block_kind<make_lafortune_block>(layout::kLafortuneBlock),
+    block_kind<make_subsurface_block>(layout::kSubsurfaceBlock),
 };
 
 /// What a material with all blocks needs fits the offsets, and each kind has its number.
