@@ -129,12 +129,15 @@ struct ViewData {
     int index = 0;          ///< ExtraView::index
     bool velocity = false;  ///< motion vectors are drawn
     bool attributes = false;
+    bool spreads = false;  ///< light within surfaces is drawn apart, to be spread; set in prepare()
     gpu::RingSlice block;  ///< layout::ViewBlock
     LightingInputs lighting;
 
     Gbuffer gbuffer;
-    TextureId radiance;  ///< the image so far; effects replace it
-    TextureId display;   ///< RGBA8, at the end of kFilmViews
+    TextureId radiance;   ///< the image so far; effects replace it
+    TextureId scattered;  ///< light within surfaces that scatter, before their albedo, alpha 1
+                          ///< there, with mip levels; valid() after lighting where `spreads`
+    TextureId display;  ///< RGBA8, at the end of kFilmViews
 
     TypedStore data;
 

@@ -25,6 +25,7 @@
 #include "render/passes/shadow_pass.h"
 #include "render/passes/sky_pass.h"
 #include "render/passes/speed_line_pass.h"
+#include "render/passes/subsurface_pass.h"
 #include "render/passes/temporal_pass.h"
 #include "render/passes/texture_combine_pass.h"
 #include "render/passes/texture_shade_pass.h"
@@ -58,6 +59,7 @@ constexpr EffectEntry kImage[] = {
     // Light.
     effect<LightEffect>(kSceneViews),
     effect<ShadingComparisonEffect>(kMainViews),  // two methods as one image
+    effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // light that spreads within surfaces
     effect<SkyEffect>(kSceneViews),
     effect<MirrorCausticEffect>(kSceneViews),
     effect<WaterEffect>(kSceneViews),      // over all that is opaque

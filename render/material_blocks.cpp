@@ -1,13 +1,18 @@
 #include "render/material_blocks.h"
 
 #include "ecs/components/surface.h"
+#include "render/diffusion_profile.h"
 #include "render/material_maps.h"
 #include "render/shaders/material_blocks_gpu.h"
 #include "render/shaders/material_classic_gpu.h"
 #include "render/shaders/material_clear_gpu.h"
+#include "render/shaders/material_lafortune_gpu.h"
 #include "render/shaders/material_skin_gpu.h"
+#include "render/shaders/material_subsurface_gpu.h"
+#include "render/skin_tone.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <iterator>
 #include <optional>
@@ -40,6 +45,38 @@ std::optional<layout::ClearBlock> make_clear_block(const Material& m) {
         .absorption = Vec4(-glm::log(left) / std::max(m.attenuation_distance, 1e-6f), 0)};
 }
 
+using LafortuneBlock = std::array<layout::LafortuneLobeRecord, kMaxLafortuneLobes>;
+
+std::optional<LafortuneBlock> make_lafortune_block(const Material& m) {
+    if (m.shading != ShadingModel::Lafortune) {
+        return std::nullopt;
+    }
+    LafortuneBlock block = {};
+    const std::size_t count = std::min(m.lobes.size(), block.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const LafortuneLobe& lobe = m.lobes[i];
+        block[i] = {
+            .across = Vec4(lobe.across, 0),
+            .along = Vec4(lobe.along, 0),
+            .exponent = Vec4(lobe.exponent, 0)};
+    }
+    block[0].across.w = static_cast<float>(count);
+    return block;
+}
+
+std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) {
+    if (m.shading != ShadingModel::Subsurface) {
+        return std::nullopt;
+    }
+    const Vec3 d = diffusion_distance(Vec3(m.base_color) * skin_tone(m), m.scatter);
+    layout::SubsurfaceBlock block{
+        .specular = Vec4(m.specular, m.gloss),
+        .diffusion = Vec4(d, m.gloss_roughness),
+        .samples = {}};
+    sample_diffusion(d, block.samples);
+    return block;
+}
+
 struct BlockKind {
     std::uint32_t number;
     std::uint32_t texels;  ///< at most
@@ -68,7 +105,9 @@ constexpr BlockKind kKinds[] = {
     {layout::kUvBlock, 2 * layout::kMaxMapSlots, append_uv_block},
     block_kind<make_classic_block>(layout::kClassicBlock),
     block_kind<make_skin_block>(layout::kSkinBlock),
+    block_kind<make_lafortune_block>(layout::kLafortuneBlock),
     block_kind<make_clear_block>(layout::kClearBlock),
+    block_kind<make_subsurface_block>(layout::kSubsurfaceBlock),
 };
 
 /// What a material with all blocks needs fits the offsets, and each kind has its number.

@@ -16,6 +16,7 @@ constexpr MapSlot kSlots[] = {
     {layout::kOcclusionSlot, "OCCLUSION_MAP", &Material::occlusion_texture, false},
     {layout::kEmissionSlot, "EMISSION_MAP", &Material::emission_texture, false},
     {layout::kWrinkleSlot, "WRINKLE_MAP", &Material::wrinkle_texture, false},
+    {layout::kDetailSlot, "DETAIL_MAP", &Material::detail_texture, false},
 };
 
 constexpr bool numbers_fit() {

@@ -3,6 +3,7 @@
 #include "ecs/base/log.h"
 #include "render/gpu/device.h"
 #include "render/material_blocks.h"
+#include "render/skin_tone.h"
 
 #include <algorithm>
 
@@ -19,7 +20,7 @@ bool shares_occlusion(const Material& m) {
 
 layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks) {
     return {
-        .base_color = m.base_color,
+        .base_color = m.base_color * Vec4(skin_tone(m), 1.0f),
         .emission = Vec4(m.emission, m.normal_scale),
         .factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff},
         .blocks = append_blocks(m, blocks),

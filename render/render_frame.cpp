@@ -354,6 +354,8 @@ void Renderer::prepare_views() {
         view.lighting.clear();
         view.gbuffer = {};
         view.radiance = {};
+        view.scattered = {};
+        view.spreads = false;
         view.display = {};
         view.data.begin();
         slot.name = main ? std::string_view() : frame_.views[i].name;

@@ -31,6 +31,9 @@ inline constexpr ShadingModelRow kShadingModels[] = {
     {ShadingModel::Phong, "phong", "kModelPhong", "SHADE_PHONG", "classic", true},
     {ShadingModel::Unlit, "unlit", "kModelUnlit", "SHADE_UNLIT"},
     {ShadingModel::Skin, "skin", "kModelSkin", "SHADE_SKIN", "classic", true},
+    {ShadingModel::Lafortune, "lafortune", "kModelLafortune", "SHADE_LAFORTUNE", "lafortune", true},
+    {ShadingModel::Subsurface, "subsurface", "kModelSubsurface", "SHADE_SUBSURFACE", "subsurface",
+     true},
 };
 static_assert(std::size(kShadingModels) < 16, "four bits in the G-buffer, and 0 is no surface");
 

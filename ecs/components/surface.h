@@ -119,12 +119,37 @@ LIMN_FIELDS(TextureSlot) {
 }
 
 enum class ShadingModel : std::uint8_t {
-    Pbr,    ///< glTF metallic-roughness: GGX with multi-scatter compensation, Lambert diffuse
-    Blinn,  ///< ka, kd, ks, n with the half vector (light.halfway-vector)
-    Phong,  ///< the same with the reflection vector (light.phong-model)
-    Unlit,  ///< (1 - m) base color + m reflected environment, m = metalness
-    Skin,   ///< Blinn plus a rim glow from all sides that imitates soft skin (char.skin-shade)
+    Pbr,         ///< glTF metallic-roughness: GGX with multi-scatter compensation, Lambert diffuse
+    Blinn,       ///< ka, kd, ks, n with the half vector (light.halfway-vector)
+    Phong,       ///< the same with the reflection vector (light.phong-model)
+    Unlit,       ///< (1 - m) base color + m reflected environment, m = metalness
+    Skin,        ///< Blinn plus a rim glow from all sides that imitates soft skin (char.skin-shade)
+    Lafortune,   ///< the base color and lobes fitted to a measured BRDF (skin.brdf-lafortune)
+    Subsurface,  ///< two GGX lobes over diffuse light that scatters under the surface
 };
+
+/// How the amounts of melanin and blood color skin.
+enum class Pigments : std::uint8_t {
+    None,     ///< they do not
+    Plane,    ///< each takes away a multiple of a color (skin.melanin-blood)
+    Density,  ///< each absorbs, as measured skin of types I to VI does
+};
+
+/// One lobe of a BRDF (Lafortune et al. 1997), for red, green and blue: (across (ux vx + uy vy) +
+/// along uz vz)^exponent, u and v toward light and viewer, z along the normal.
+struct LafortuneLobe {
+    Vec3 across = {-1, -1, -1};
+    Vec3 along = {1, 1, 1};
+    Vec3 exponent = {10, 10, 10};
+};
+
+LIMN_FIELDS(LafortuneLobe) {
+    LIMN_FIELD(across, "coefficient Cx = Cy; negative: mirrors", "", -2, 2);
+    LIMN_FIELD(along, "coefficient Cz", "", -2, 2);
+    LIMN_FIELD(exponent, "n", "", 0, 10000);
+}
+
+inline constexpr std::size_t kMaxLafortuneLobes = 4;
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
@@ -142,6 +167,13 @@ struct Material {
     float shininess = 50.0f;
     Vec3 skin_color = {0.6f, 0.2f, 0.1f};
     bool wide_rim = false;
+    Pigments pigments = Pigments::None;
+    float melanin = 0.2f;
+    float blood = 0.5f;
+    std::vector<LafortuneLobe> lobes = {};
+    Vec3 scatter = {3.67e-3f, 1.37e-3f, 0.68e-3f};
+    float gloss = 0.2f;
+    float gloss_roughness = 0.3f;
     float normal_scale = 1.0f;
     float occlusion_strength = 1.0f;
     float transmission = 0.0f;
@@ -155,10 +187,13 @@ struct Material {
     TextureSlot occlusion_texture = {};
     TextureSlot emission_texture = {};
     TextureSlot wrinkle_texture = {};
+    TextureSlot detail_texture = {};
 };
 
 LIMN_FIELDS(Material) {
-    LIMN_FIELD(shading, .doc = "shading model", .values = "pbr blinn phong unlit skin");
+    LIMN_FIELD(
+        shading, .doc = "shading model",
+        .values = "pbr blinn phong unlit skin lafortune subsurface");
     LIMN_FIELD(alpha_mode, .doc = "how alpha is used", .values = "opaque mask blend");
     LIMN_FIELD(double_sided, "back faces are drawn too");
     LIMN_FIELD(alpha_cutoff, "with mask: lower alpha is discarded", "", 0, 1);
@@ -169,13 +204,26 @@ LIMN_FIELDS(Material) {
         emission, .doc = "emitted radiance", .unit = "W/(sr m^2)", .min = 0, .max = 1e6,
         .color = true);
     LIMN_FIELD(
-        specular, .doc = "specular color ks of blinn, phong and skin", .min = 0, .max = 1,
-        .color = true);
+        specular,
+        .doc = "specular color ks of blinn, phong and skin; of subsurface its reflectance head on",
+        .min = 0, .max = 1, .color = true);
     LIMN_FIELD(shininess, "specular exponent n of blinn, phong and skin", "", 1, 10000);
     LIMN_FIELD(
         skin_color, .doc = "rim color of skin, multiplied by the base color", .min = 0, .max = 1,
         .color = true);
     LIMN_FIELD(wide_rim, "skin: wide rim, 1 - (n.v)^2 instead of (1 - n.v)^2");
+    LIMN_FIELD(
+        pigments, .doc = "how melanin and blood color skin, a factor of the base color",
+        .values = "none plane density");
+    LIMN_FIELD(melanin, "amount of melanin", "", 0, 1);
+    LIMN_FIELD(blood, "amount of blood: pale, or blushing", "", 0, 1);
+    LIMN_FIELD(lobes, "of lafortune, at most 4, added to the base color");
+    LIMN_FIELD(
+        scatter,
+        "subsurface: mean free path of diffuse light, for red, green and blue; 0: none passes", "m",
+        0, 1);
+    LIMN_FIELD(gloss, "subsurface: share of the second lobe, that of the oily film", "", 0, 1);
+    LIMN_FIELD(gloss_roughness, "subsurface: perceptual roughness of the second lobe", "", 0, 1);
     LIMN_FIELD(normal_scale, "strength of the normal map", "", 0, 10);
     LIMN_FIELD(occlusion_strength, "strength of the occlusion map", "", 0, 1);
     LIMN_FIELD(
@@ -203,6 +251,10 @@ LIMN_FIELDS(Material) {
         wrinkle_texture,
         "tangent-space normals, green up, 128 flat, of wrinkles in full: drawn where a "
         "wrinkle_surface is compressed");
+    LIMN_FIELD(
+        detail_texture,
+        "tangent-space normals, green up, of finer relief, added to normal_texture: give it a "
+        "scale to tile it");
 }
 
 /// Whether what is behind the surface is seen through it.

@@ -1,12 +1,15 @@
 #include "render/passes/light_pass.h"
 
 #include "ecs/base/log.h"
+#include "render/fullscreen.h"
 #include "render/gpu/device.h"
 #include "render/instance_list.h"
 #include "render/light_clusters.h"
 #include "render/lighting.h"
 #include "render/material_pool.h"
 #include "render/render_frame.h"
+
+#include <algorithm>
 
 namespace limn {
 namespace {
@@ -57,10 +60,22 @@ Pass* get_or_create(
     return &*pass;
 }
 
+constexpr int kScatteredLevels = 6;
+
+TextureId create_scattered(FrameGraph& graph, const ViewData& view) {
+    const IVec2 size = view.size();
+    return create_target(
+        graph, "scattered", view.frame->radiance_format, size,
+        std::min(kScatteredLevels, gpu::full_level_count(size.x, size.y)));
+}
+
 void draw_clustered(FrameGraph& graph, ProgramVariants& programs, const ViewData& view) {
     const std::vector<Use> reads =
         surface_reads(view, sampled(depth_tested(view.gbuffer.depth), kDepthUnit));
-    const Use writes[] = {cleared(view.radiance)};
+    std::vector<Use> writes = {cleared(view.radiance)};
+    if (view.scattered.valid()) {
+        writes.push_back(cleared(view.scattered));
+    }
     graph.add_pass("lights", std::span(reads), writes, [&programs, &view](PassContext& context) {
         const gpu::Program* program = programs.get(view.lighting.variant);
         if (program == nullptr) {
@@ -102,6 +117,9 @@ void LightEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
     view.radiance = create_radiance(graph, view);
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::Clustered) {
+        if (view.spreads) {
+            view.scattered = create_scattered(graph, view);
+        }
         draw_clustered(graph, clustered, view);
     } else if (method.is_forward()) {
         if (ForwardPass* pass = get_or_create(forward, *frame.device, create_forward_pass)) {

@@ -14,7 +14,9 @@ namespace limn {
 // Lights all opaque surfaces, by the method that the level chose (LightMethod).
 //
 // Reads    G-buffer or depth, light records and clusters, LightingInputs
-// Writes   radiance: linear; alpha 1 where there is a surface, black elsewhere
+// Writes   radiance: linear; alpha 1 where there is a surface, black elsewhere; where the view
+// spreads
+//          light within surfaces (subsurface_pass.h), that light apart
 // Order    after the G-buffer, shadows and caustics
 // Shaders  light_pass.frag, lib/lighting.glsl
 //

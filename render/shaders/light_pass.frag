@@ -1,9 +1,13 @@
-// Deferred shading: one pass over the G-buffer, each pixel with the lights of its cluster cell.
+// Deferred shading: one pass over the G-buffer, each pixel with the lights of its cluster cell. Definition SCATTERED:
+// diffuse light of Subsurface goes to a target of its own.
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/stored_surface.glsl"
 
 layout(location = 0) out vec4 radiance;
+#ifdef SCATTERED
+layout(location = 1) out vec4 scattered;  // light that has entered, before the albedo; alpha 1 where it spreads
+#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -11,5 +15,10 @@ void main() {
     SurfaceSample s = stored_surface(pixel);
     Reflected light = reflect_all(
         s, world_position(gl_FragCoord.xy, depth), gl_FragCoord.xy, cell_list(gl_FragCoord.xy, view_distance(depth)));
+#ifdef SCATTERED
+    bool spreads = s.model == kModelSubsurface;
+    scattered = spreads ? vec4(storable(light.diffuse / max(s.albedo, vec3(1e-4))), 1.0) : vec4(0.0);
+    light.diffuse = spreads ? vec3(0.0) : light.diffuse;
+#endif
     radiance = vec4(storable(s.emission + light.diffuse + light.specular), 1.0);
 }

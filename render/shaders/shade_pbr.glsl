@@ -17,13 +17,18 @@ float dielectric_reflectance(SurfaceSample s) {
 #endif
 }
 
+// Reflectance of a specular lobe under uniform light: x f0 + y.
+vec2 lobe_albedo(float n_v, float roughness) {
+    vec2 size = vec2(textureSize(specular_albedo, 0));
+    return texture(specular_albedo, (vec2(min(n_v, 1.0), roughness) * (size - 1.0) + 0.5) / size).rg;
+}
+
 // Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Both compensate the
 // energy lost by single scattering: Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019.
 void prepare_pbr(inout Reflector r, SurfaceSample s) {
     float roughness = max(s.roughness, kMinRoughness);
     r.alpha2 = roughness * roughness * roughness * roughness;
-    vec2 size = vec2(textureSize(specular_albedo, 0));
-    vec2 fit = texture(specular_albedo, (vec2(min(r.n_v, 1.0), s.roughness) * (size - 1.0) + 0.5) / size).rg;
+    vec2 fit = lobe_albedo(r.n_v, s.roughness);
     float lost = 1.0 / (fit.x + fit.y) - 1.0;
     float head_on = dielectric_reflectance(s);
     float dielectric_90 = 1.0 + head_on * lost;

@@ -11,6 +11,7 @@
 //   MIRRORS             some water reflects the sun's light upward
 //   PARTICLE_SHADOWS    particles cast shadows: 1: in the first directional light, 2: in a spot with a shadow
 
+#include "lib/diffusion.glsl"
 #include "lib/light.glsl"
 #include "lib/numbers.glsl"  // must not be included first within the #ifdef below
 #include "lib/optics.glsl"
@@ -72,6 +73,7 @@ vec3 light_transmittance(int index, vec3 position_ws, vec3 normal, vec3 to_light
 Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
     vec3 to_light = texelFetch(lights, index * int(kLightTexels)).xyz;
     vec3 irradiance = texelFetch(lights, index * int(kLightTexels) + 1).rgb;
+    vec3 unshadowed = irradiance;
 #ifdef UNDER_WATER
     vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
     Underwater water = underwater_at(position_ws);
@@ -84,6 +86,7 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
         shadow.xyz = vec3(focused.view, kShadowView, 1.0);
     }
     to_light = under_water ? bent : to_light;
+    unshadowed = irradiance;
 #ifdef LIGHT_TRANSMITTANCE
     irradiance *= shadow_transmittance(shadow, position_ws, normal, to_light, pixel);
 #endif
@@ -93,7 +96,7 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
 #if defined(PARTICLE_SHADOWS) && PARTICLE_SHADOWS == 1
     irradiance *= particle_transmittance(index, position_ws);
 #endif
-    return Incoming(to_light, irradiance);
+    return Incoming(to_light, irradiance, unshadowed);
 }
 
 // The water that a point is in.
@@ -133,8 +136,23 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium me
     vec4 axis = texelFetch(lights, index * int(kLightTexels) + 3);
     fade *= spot_attenuation(to_light, axis.xyz, axis.w, polynomial.w);
 #endif
-    return Incoming(to_light, color.rgb * (fade * lamp_through_water(medium, offset)));
+    vec3 irradiance = color.rgb * (fade * lamp_through_water(medium, offset));
+    return Incoming(to_light, irradiance, irradiance);
 }
+
+#if defined(SHADE_SUBSURFACE) && defined(SHADOW_MAPS)
+// Adds the diffuse light that has entered behind a body of Subsurface and passed it: by the profile, over the distance
+// from where the light's shadow map is hit, with the normal there taken to be the opposite one (Jimenez et al.,
+// "Real-Time Realistic Skin Translucency", 2010).
+void add_light_through(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
+    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
+    vec3 share = transmitted_share(shadow_thickness(shadow, position_ws, light.to_light), r.diffusion);
+    sum.diffuse += light.unshadowed * share * max(-dot(r.normal, light.to_light), 0.0);
+}
+#else
+void add_light_through(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
+}
+#endif
 
 // Cell of the light clusters of a pixel at a distance along the view axis.
 int light_cell(vec2 pixel, float distance) {
@@ -162,7 +180,9 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
     int directional = int(view.grid_depth.z);
     int n = 0;
     do {
-        add_light(sum, r, incoming_directional(n, position_ws, r.normal, pixel));
+        Incoming light = incoming_directional(n, position_ws, r.normal, pixel);
+        add_light(sum, r, light);
+        add_light_through(sum, r, n, light, position_ws);
     } while (++n < directional);
 #endif
 }
@@ -194,7 +214,9 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
         Incoming light = incoming_local(existing, position_ws, r.normal, medium);
         vec3 transmittance = light_transmittance(existing, position_ws, r.normal, light.to_light, pixel);
         light.irradiance *= i < end ? transmittance : vec3(0.0);
+        light.unshadowed *= i < end ? 1.0 : 0.0;
         add_light(sum, r, light);
+        add_light_through(sum, r, existing, light, position_ws);
         ++i;
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
     } while (i < end);

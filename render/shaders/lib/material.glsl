@@ -1,6 +1,6 @@
 // The surface of a material at a point: factors times textures. Which textures exist is fixed at compile time,
 // since a software OpenGL executes both sides of every branch:
-//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP  each is the texture unit of the map
+//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP         all maps share a uv set and transform; otherwise they use the first set untransformed
@@ -110,12 +110,16 @@ vec3 surface_emission() {
 vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n = normal_ws;
     smooth_normal = n;
-#if defined(NORMAL_MAP) || defined(WRINKLES)
+#if defined(NORMAL_MAP) || defined(WRINKLES) || defined(DETAIL_MAP)
     vec3 n_ts = vec3(0.0, 0.0, 1.0);
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
 #ifdef NORMAL_MAP
     n_ts = texture(material_maps[NORMAL_MAP], map_place(kNormalSlot)).xyz * 2.0 - 1.0;
     n_ts.xy *= strength;
+#endif
+#ifdef DETAIL_MAP
+    vec3 detail = texture(material_maps[DETAIL_MAP], map_place(kDetailSlot)).xyz * 2.0 - 1.0;
+    n_ts.xy += n_ts.z * detail.xy / max(detail.z, 0.1);  // slopes of both heights add up
 #endif
 #ifdef WRINKLES
     smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;

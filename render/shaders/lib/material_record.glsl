@@ -11,12 +11,17 @@ vec4 material_texel(uint material, int i) {
     return texelFetch(materials, int(material * kMaterialTexels) + i);
 }
 
-// Texel `i` of a block that the material has; of one that it lacks, some texel of no meaning.
-vec4 block_texel(uint material, uint kind, int i) {
+// First texel of a block that the material has; of one that it lacks, some texel of no meaning.
+int block_begin(uint material, uint kind) {
     vec4 blocks = material_texel(material, 3);
     uint offsets = uint(blocks[1u + kind / kBlocksPerFloat]);
     uint offset = bitfieldExtract(offsets, int(kind % kBlocksPerFloat * kBlockOffsetBits), int(kBlockOffsetBits));
-    return texelFetch(materials, int(blocks.x) + int(offset) + i);
+    return int(blocks.x) + int(offset);
+}
+
+// Texel `i` of a block.
+vec4 block_texel(uint material, uint kind, int i) {
+    return texelFetch(materials, block_begin(material, kind) + i);
 }
 
 // The layers of all maps of a material.
@@ -31,6 +36,6 @@ float map_layer(vec4 layers, uint slot) {
 }
 
 // Stages of a program agree on what flows between them.
-#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP)
+#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP)
 #define MAP_LAYERS
 #endif

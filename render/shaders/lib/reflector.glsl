@@ -15,6 +15,7 @@
 struct Incoming {
     vec3 to_light;    // unit
     vec3 irradiance;  // on a plane that faces the light
+    vec3 unshadowed;  // the same without what stands in the light's way
 };
 
 // The terms of a surface that are the same for all lights.
@@ -29,6 +30,9 @@ struct Reflector {
     vec3 specular_90;  // the same at grazing angles; factor of Response::fresnel
     vec3 mirror;       // specular reflectance for a uniform environment
     vec4 own;          // of the lobe: its file says what
+#ifdef SHADE_SUBSURFACE
+    vec3 diffusion;    // d of the profile of Subsurface [m]
+#endif
 #ifdef SMOOTH_NORMALS
     vec4 fading;       // normal without wrinkles; w: 1 = light that grazes it fades
 #endif
@@ -59,6 +63,9 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     r.n_v = max(dot(s.normal_ws, to_camera), 1e-3);
     r.model = s.model;
     r.own = vec4(0.0);
+#ifdef SHADE_SUBSURFACE
+    r.diffusion = vec3(0.0);
+#endif
 #ifdef SMOOTH_NORMALS
     r.fading = vec4(s.smooth_normal_ws, s.fades ? 1.0 : 0.0);
 #endif

@@ -189,6 +189,43 @@ float mask_visibility(float layer, vec2 pixel) {
 #endif
 #endif
 
+#ifdef SHADOW_MAPS
+const float kOpaque = 1e6;  // more than anything that light passes [m]
+
+// Distance [m] that light has traveled at `position_ws` since it met the nearest caster, the mean of 2x2 texels; kOpaque
+// of lights without a map and beyond it. Of cascades, the first that holds the point.
+float shadow_thickness(vec4 shadow, vec3 position_ws, vec3 to_light) {
+    int index = max(int(shadow.x), 0);
+#ifdef SHADOW_CUBES
+    index += shadow.y == kShadowCube ? cube_face(-to_light) : 0;
+#endif
+#ifdef SHADOW_CASCADES
+    float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
+    vec4 ends = texelFetch(shadow_views, index * int(kShadowViewTexels) + 9);
+    float passed = min(dot(step(ends, vec4(along)), vec4(1.0)), shadow.z - 1.0);
+    index += shadow.y == kShadowCascades ? int(passed) : 0;
+#endif
+    int at = index * int(kShadowViewTexels);
+    vec4 row_r = texelFetch(shadow_views, at + 2);
+    vec4 row_q = texelFetch(shadow_views, at + 3);
+    vec4 place = vec4(position_ws, 1.0);
+    float q = dot(row_q, place);
+    float r = dot(row_r, place);
+    vec2 st = vec2(dot(texelFetch(shadow_views, at), place), dot(texelFetch(shadow_views, at + 1), place)) / q;
+    vec4 rect = texelFetch(shadow_views, at + 7);
+    vec2 corner = floor(clamp(st, rect.xy + 1.0, rect.zw - 1.0) - 0.5);
+    vec4 nearest = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
+    // Depth (r + t r') / (q + t q') at t toward the light, solved for t.
+    vec4 travel = (nearest * q - r) / (dot(row_r.xyz, to_light) - nearest * dot(row_q.xyz, to_light));
+    vec2 share = clamp(st - corner - 0.5, 0.0, 1.0);
+    travel = max(travel, vec4(0.0));
+    float mean = mix(mix(travel.w, travel.z, share.x), mix(travel.x, travel.y, share.x), share.y);
+    bool inside = q > 0.0 && all(greaterThan(st, rect.xy)) && all(lessThan(st, rect.zw));
+    bool has_map = shadow.y != kShadowNone && shadow.y != kShadowMask;
+    return inside && has_map ? mean : kOpaque;
+}
+#endif
+
 // Share of the light that reaches `position_ws`, 0 .. 1.
 //   shadow  LightRecord::shadow
 //   normal  of the surface, unit

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <span>
+
+namespace limn {
+
+// How far diffuse light travels under a surface: the normalized profile of Christensen and Burley,
+// "Approximate Reflectance Profiles for Efficient Subsurface Scattering" (2015), and its quadrature
+// by rings, one sample each, that render/shaders/subsurface.frag sums.
+
+/// d of the profile [m], for red, green and blue, from the albedo and the mean free path of diffuse
+/// light in the material [m]. The mean radius at which light leaves is 2.5 d.
+[[nodiscard]] Vec3 diffusion_distance(const Vec3& albedo, const Vec3& mean_free_path);
+
+/// Share of the light that leaves within `radius`, 0 .. 1; all of it for d = 0.
+[[nodiscard]] double diffused_within(double radius, double d);
+
+/// Fills `samples` with rings around a point, from the inside out: x = radius of the sample [m],
+/// yzw = share of the profile in its ring for red, green and blue; each channel sums to 1. Rings
+/// hold fewer of the light the farther out they are, and each channel is met by many.
+void sample_diffusion(const Vec3& d, std::span<Vec4> samples);
+
+}  // namespace limn

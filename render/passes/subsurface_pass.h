@@ -1,0 +1,43 @@
+#pragma once
+
+#include "render/effect.h"
+#include "render/gpu/texture.h"
+
+namespace limn {
+
+namespace gpu {
+class Program;
+}
+
+// Light that scatters under surfaces of the shading model Subsurface and leaves around the point
+// where it entered, by the normalized profile of Christensen and Burley (2015) over the material's
+// mean free path.
+//
+// Reads    diffuse light before the albedo, which the light pass draws apart; G-buffer, depth
+// Writes   radiance: adds what leaves, times the albedo there
+// Order    after lights, before all that lies in front of surfaces
+// Shaders  subsurface.frag, distance_moments.frag; diffusion_profile.h
+//
+// Each pixel sums rings in the tangent plane of its surface, in meters, so that neither distance
+// nor tilt changes what is seen; each ring is one sample of a mip level about as wide as the ring's
+// share of the plane. What lies off the plane counts less by how much farther it is, what does not
+// scatter not at all, and the rest is scaled to a share of one: uniform light is unchanged.
+//
+// Only with LightMethod::Clustered; the others shade such surfaces without diffusion, and so do
+// probes and blended surfaces. Light enters with the albedo of where it leaves: textures stay
+// sharp.
+
+struct SubsurfaceEffect {
+    const gpu::Program* program = nullptr;
+    const gpu::Program* moments = nullptr;
+    gpu::Sampler sampler;
+
+    [[nodiscard]] static Result<SubsurfaceEffect>
+    create(gpu::Device& device, const RenderSettings&);
+    /// Some material scatters.
+    static bool is_used(const FrameData& frame);
+    bool prepare(const FrameData& frame, ViewData& view);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+};
+
+}  // namespace limn

@@ -1,0 +1,9 @@
+// The normalized diffusion profile (material_subsurface_gpu.h).
+
+const float kMinDiffusion = 1e-6;  // d below which nothing spreads [m]
+
+// Share of light, spread out evenly behind a slab, that passes its thickness [m]: what the profile holds beyond it.
+vec3 transmitted_share(float thickness, vec3 d) {
+    vec3 x = exp(-thickness / (3.0 * max(d, vec3(kMinDiffusion))));
+    return mix(vec3(0.0), x * (0.75 + 0.25 * x * x), greaterThan(d, vec3(kMinDiffusion)));
+}

@@ -1,0 +1,29 @@
+// Of materials with the shading model Subsurface.
+//
+// Light that enters at a point leaves around it by the normalized profile of Christensen and Burley, "Approximate
+// Reflectance Profiles for Efficient Subsurface Scattering", 2015:
+//
+//     R(r) = (exp(-r/d) + exp(-r/3d)) / (8 pi d r),    share within r: 1 - exp(-r/d)/4 - 3 exp(-r/3d)/4
+//
+// The diffusion pass sums it over rings, each sampled at one point.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+const uint kDiffusionSamples = 64u;
+
+struct SubsurfaceBlock {
+    vec4 specular;  // reflectance head on; w: share of the second lobe
+    vec4 diffusion;  // d for red, green and blue [m]; w: perceptual roughness of the second lobe
+    vec4 samples[kDiffusionSamples];  // x: radius [m], increasing; yzw: share of the profile for red, green and blue
+};
+
+const int kDiffusionTexel = 1;
+const int kSamplesTexel = 2;
+
+#ifdef __cplusplus
+}  // namespace limn::layout
+#endif

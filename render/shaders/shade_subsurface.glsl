@@ -1,0 +1,28 @@
+// Shading model Subsurface, for skin: diffuse light that scatters under the surface, below two GGX lobes, one of them of
+// an oily film. The light that the lobes leave is diffuse; where it leaves the surface is up to the diffusion pass.
+// Reflector::own: x = roughness^4 of the second lobe, y = its share.
+
+#include "lib/brdf.glsl"
+#include "lib/material_record.glsl"
+#include "material_subsurface_gpu.h"
+
+void prepare_subsurface(inout Reflector r, SurfaceSample s) {
+    vec4 specular = block_texel(s.material, kSubsurfaceBlock, 0);
+    vec4 diffusion = block_texel(s.material, kSubsurfaceBlock, kDiffusionTexel);
+    float gloss = max(diffusion.w, kMinRoughness);
+    vec2 fit = mix(lobe_albedo(r.n_v, s.roughness), lobe_albedo(r.n_v, diffusion.w), specular.w);
+    r.specular_0 = specular.rgb;
+    r.specular_90 = vec3(1.0);
+    r.mirror = specular.rgb * fit.x + fit.y;
+    r.diffuse = s.albedo * (1.0 - r.mirror);
+#ifdef SHADE_SUBSURFACE
+    r.diffusion = diffusion.rgb;
+#endif
+    r.own = vec4(gloss * gloss * gloss * gloss, specular.w, 0.0, 0.0);
+}
+
+Response lobe_subsurface(Reflector r, Cosines c) {
+    float lobe = mix(
+        ggx_lobe(c.n_l, r.n_v, c.n_h, r.alpha2), ggx_lobe(c.n_l, r.n_v, c.n_h, r.own.x), r.own.y);
+    return Response(vec3(c.n_l), lobe, lobe * schlick_weight(c.v_h));
+}

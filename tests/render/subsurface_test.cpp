@@ -1,0 +1,314 @@
+#include "bench/oracles/skin_light_oracle.h"
+#include "content/make/shapes.h"
+#include "ecs/components/rendering.h"
+#include "ecs/components/shadow.h"
+#include "ecs/components/shadow_volume.h"
+#include "render/diffusion_profile.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+// Light that spreads under a surface (render/passes/subsurface_pass.h), against the profile in
+// double precision.
+
+namespace limn::test {
+namespace {
+
+using oracle::DVec3;
+
+/// Of skin, forty times as large.
+constexpr Vec3 kFreePath = {0.147f, 0.0548f, 0.0272f};
+constexpr int kSide = 256;  ///< of images [px]
+
+Material wax(const Vec3& free_path = kFreePath) {
+    return {
+        .shading = ShadingModel::Subsurface,
+        .base_color = {0.55f, 0.34f, 0.26f, 1},
+        .roughness = 0.9f,
+        .specular = {0, 0, 0},
+        .scatter = free_path,
+        .gloss = 0};
+}
+
+DVec3 scales(const Material& material) {
+    DVec3 d;
+    for (int c = 0; c < 3; ++c) {
+        d[c] = oracle::diffusion_scale(
+            static_cast<double>(material.base_color[c]), static_cast<double>(material.scatter[c]));
+    }
+    return d;
+}
+
+/// A plane in z = 0 under a light from the right, at 45 degrees, that shines past casters out of
+/// view.
+class LitPlane : public Scene {
+  public:
+    explicit LitPlane(const Material& material) : square(add(make_square())) {
+        world.add(
+            place(square, add(material), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(30))),
+            NoShadow{});
+        world.insert_resource(Rendering{.infinite_viewer = true});
+    }
+    void shine_past() {
+        world.add(
+            shine(DirectionalLight{.illuminance = 2}, look_at({0, 0, 0}, {-1, 0, -1})),
+            Shadow{.method = ShadowMethod::Volume});
+    }
+    /// The shadow of a thin box over `from` < x < `to` in the plane.
+    void darken(float from, float to) {
+        constexpr float kHeight = 20;
+        place(
+            add(make_box({.size = {to - from, 40, 1e-4f}})), add(Material{}),
+            at({0.5f * (from + to) + kHeight, 0, kHeight}));
+    }
+    MeshId square;
+};
+
+/// Where the corner of a pixel, or a fraction of one, lies in z = 0.
+DVec3 point_at(const RenderView& view, double x, double y) {
+    const DVec3 ray = DVec3(transform_vector(
+        view.world_from_camera, {(2 * x / view.width - 1) * view.tangent.x,
+                                 (1 - 2 * y / view.height) * view.tangent.y, -1}));
+    const DVec3 eye = {
+        view.world_from_camera.row[0].w, view.world_from_camera.row[1].w,
+        view.world_from_camera.row[2].w};
+    return eye - ray * (eye.z / ray.z);
+}
+
+/// Largest difference of each channel from the profile's convolution of the image without
+/// diffusion, a pixel a patch, along a row and a column through the middle; of the lit plane.
+DVec3 largest_errors(LitPlane& scene, const RenderView& view) {
+    auto& assets = scene.world.resource<Assets>();
+    const Material material = assets.materials[0];
+    const DVec3 d = scales(material);
+    const gpu::FloatImage found = scene.radiance(view);
+    assets.materials[0].scatter = Vec3(0);
+    ++assets.material_version;
+    const gpu::FloatImage before = scene.radiance(view);
+    assets.materials[0] = material;
+    ++assets.material_version;
+
+    std::vector<oracle::LitPatch> patches;
+    double brightest = 0;
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const DVec3 center = point_at(view, x + 0.5, y + 0.5);
+            patches.push_back(
+                {center, point_at(view, x + 1.0, y + 0.5) - point_at(view, x, y + 0.5),
+                 point_at(view, x + 0.5, y + 1.0) - point_at(view, x + 0.5, y),
+                 static_cast<double>(before.at(x, y, 0))});
+            brightest = std::max(brightest, patches.back().light);
+        }
+    }
+    DVec3 errors(0);
+    for (int i = kSide / 4; i < 3 * kSide / 4; i += 2) {
+        for (const auto& [x, y] : {std::pair(i, kSide / 2), std::pair(kSide / 2, i)}) {
+            for (int c = 0; c < 3; ++c) {
+                const double exact = oracle::diffused_patches(
+                    patches, static_cast<std::size_t>(y * view.width + x), d[c]);
+                const double scale = static_cast<double>(material.base_color.x)
+                                     / static_cast<double>(material.base_color[c]);
+                errors[c] = std::max(
+                    errors[c],
+                    std::abs(static_cast<double>(found.at(x, y, c)) * scale - exact) / brightest);
+            }
+        }
+    }
+    return errors;
+}
+
+/// The view from `eye` to the origin, turned about its axis.
+RenderView turned(const Vec3& eye, float roll) {
+    Affine pose = look_at(eye, {0, 0, 0});
+    pose = pose * affine_from({0, 0, 0}, glm::angleAxis(roll, Vec3(0, 0, 1)), {1, 1, 1});
+    return make_render_view(
+        {.fov_y = radians(90.0f), .near = 0.05f}, pose, pose, {.width = kSide, .height = kSide});
+}
+
+}  // namespace
+
+TEST_CASE("diffusion profile: every channel's rings hold all of its light, from the inside out") {
+    for (const Vec3& d : {Vec3(0.98f, 0.39f, 0.19f), Vec3(1, 1, 1), Vec3(1, 0, 0.5f)}) {
+        std::array<Vec4, 48> rings;
+        sample_diffusion(d, rings);
+        DVec3 sum(0);
+        for (std::size_t i = 0; i < rings.size(); ++i) {
+            sum += DVec3(rings[i].y, rings[i].z, rings[i].w);
+            CHECK(rings[i].x >= (i == 0 ? 0.0f : rings[i - 1].x));
+        }
+        CHECK(glm::length(sum - 1.0) < 1e-5);
+    }
+}
+
+TEST_CASE("diffusion profile: a ring's share is the integral of the profile over it") {
+    const double d = 0.39;
+    double sum = 0;
+    constexpr int kSteps = 100000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double r = 1.5 * (i + 0.5) / kSteps;
+        sum += oracle::diffusion_profile(r, d) * 2 * kPi * r * 1.5 / kSteps;
+    }
+    CHECK(sum == near(diffused_within(1.5, d)).epsilon(1e-6));
+    CHECK(diffused_within(1e4, d) == near(1.0));
+    const Vec3 scale = diffusion_distance({0.55f, 0.34f, 0.9f}, {3.67f, 1.37f, 0.68f});
+    CHECK(scale.x == near(oracle::diffusion_scale(0.55, 3.67)));
+    CHECK(scale.z == near(oracle::diffusion_scale(0.9, 0.68)));
+}
+
+TEST_CASE("subsurface: light spreads over an edge as the profile says, at any distance and tilt") {
+    LitPlane scene(wax());
+    scene.darken(-30, 0);
+    scene.shine_past();
+    for (const RenderView& view :
+         {turned({0, 0, 1}, 0), turned({0, 0, 1}, 0.5f), turned({0, 0, 2.2f}, 1.2f),
+          turned({0, 0, 8}, 0.7f), turned({0.6f, 0, 1.0f}, 0), turned({0, -0.6f, 1.0f}, 0)}) {
+        const DVec3 errors = largest_errors(scene, view);
+        CAPTURE(errors.x);
+        CAPTURE(errors.y);
+        CAPTURE(errors.z);
+        CHECK(std::max({errors.x, errors.y, errors.z}) < 0.01);
+    }
+}
+
+TEST_CASE("subsurface: a thin line of light becomes the profile") {
+    LitPlane scene(wax());
+    constexpr float kWidth = 8.0f / kSide;  // four pixels
+    scene.darken(-30, -0.5f * kWidth);
+    scene.darken(0.5f * kWidth, 30);
+    scene.shine_past();
+    const DVec3 errors = largest_errors(scene, turned({0, 0, 1}, 0));
+    CAPTURE(errors.x);
+    CAPTURE(errors.y);
+    CAPTURE(errors.z);
+    CHECK(std::max({errors.x, errors.y, errors.z}) < 0.01);
+}
+
+TEST_CASE("subsurface: an evenly lit plane is as bright as without diffusion") {
+    for (const Vec3& eye : {Vec3(0, 0, 1), Vec3(0.9f, 0.3f, 0.5f), Vec3(0, 0, 3)}) {
+        gpu::FloatImage images[2];
+        for (const bool spread : {false, true}) {
+            LitPlane scene(wax(spread ? kFreePath : Vec3(0)));
+            scene.shine_past();
+            images[spread ? 1 : 0] = scene.radiance(turned(eye, 0.3f));
+        }
+        CHECK(images[0].at(128, 128, 0) > 0.1f);
+        CHECK(largest_difference(images[0], images[1]) < 1e-5f);
+    }
+}
+
+TEST_CASE("subsurface: no light comes from what does not scatter, nor leaves for it") {
+    LitPlane scene(wax());
+    scene.darken(-30, 0);
+    scene.shine_past();
+    // A lit floor begins where the shadow on the wax ends, a hair above it.
+    scene.world.add(
+        scene.place(scene.square, scene.add(Material{.roughness = 1}), at({1, 0, 1e-4f})),
+        NoShadow{});
+    const gpu::FloatImage image = scene.radiance(turned({0, 0, 1}, 0));
+    for (int x = 0; x < kSide; ++x) {
+        const float red = image.at(x, 128, 0);
+        const bool floor = x >= kSide / 2;
+        CHECK((floor ? std::abs(red - image.at(200, 128, 0)) : red) < 1e-4f);
+    }
+}
+
+TEST_CASE("subsurface: highlights are not spread") {
+    gpu::FloatImage images[2];
+    for (const bool spread : {false, true}) {
+        Material black = wax(spread ? kFreePath : Vec3(0));
+        black.base_color = {0, 0, 0, 1};
+        black.roughness = 0.3f;
+        black.specular = Vec3(0.03f);
+        Scene scene;
+        scene.place(scene.add(make_ball()), scene.add(black), at({0, 0, 0}));
+        scene.shine(PointLight{.intensity = 20, .radius = 0}, at({1, 1, 3}));
+        images[spread ? 1 : 0] = scene.radiance(scene.look({0, 0, 2}, {0, 0, 0}));
+    }
+    CHECK(images[0].pixels == images[1].pixels);
+    CHECK(*std::max_element(images[0].pixels.begin(), images[0].pixels.end()) > 0.05f);
+}
+
+TEST_CASE("subsurface: dark skin behind a bright edge of skin stays dark") {
+    Scene scene;
+    const MeshId square = scene.add(make_square());
+    const MaterialId skin = scene.add(wax());
+    scene.place(square, skin, affine_from({0, 0, -1}, {1, 0, 0, 0}, Vec3(4)));
+    scene.place(square, skin, at({1, 0, 0}));
+    // Reaches the plate in front, not the wall.
+    scene.shine(PointLight{.intensity = 4, .radius = 0.7f}, at({0.2f, 0, 0.4f}));
+    const gpu::FloatImage image = scene.radiance(turned({0, 0, 1}, 0));
+    const float edge = image.at(kSide / 2 + 1, kSide / 2, 0);
+    CHECK(edge > 0.05f);
+    for (int x = 0; x < kSide / 2; ++x) {
+        CAPTURE(x);
+        CHECK(image.at(x, kSide / 2, 0) < 3e-3f * edge);
+    }
+}
+
+namespace {
+
+/// What leaves a slab of wax toward the camera, lit from behind.
+Vec3 behind_slab(float thickness, const auto& light, const Affine& from) {
+    Scene scene;
+    scene.place(
+        scene.add(make_box({.size = {2, 2, thickness}})), scene.add(wax()),
+        at({0, 0, -0.5f * thickness}));
+    scene.world.insert_resource(Rendering{.infinite_viewer = true});
+    scene.world.add(
+        scene.shine(light, from), Shadow{.method = ShadowMethod::Map, .resolution = 1024});
+    return rgb_at(scene.radiance(scene.look({0, 0, 0.8f}, {0, 0, 0}, 65, 65)), 32, 32);
+}
+
+void check_slab(const Vec3& found, double irradiance, double path) {
+    const Material material = wax();
+    const DVec3 d = scales(material);
+    for (int c = 0; c < 3; ++c) {
+        const double expected = static_cast<double>(material.base_color[c]) * irradiance
+                                / static_cast<double>(kPi) * oracle::transmitted(path, d[c]);
+        CHECK(static_cast<double>(found[c]) == near(expected).epsilon(0.02));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("subsurface: a slab lit from behind lets through what the profile holds beyond it") {
+    const DirectionalLight sun = {.illuminance = 3};
+    for (const float thickness : {0.01f, 0.03f, 0.08f}) {
+        const auto path = static_cast<double>(thickness);
+        check_slab(behind_slab(thickness, sun, look_at({0, 0, 0}, {0, 0, 1})), 3, path);
+        const double slanted = std::sqrt(2.0);
+        check_slab(
+            behind_slab(thickness, sun, look_at({0, 0, 0}, {1, 0, 1})), 3 / slanted,
+            slanted * path);
+    }
+}
+
+TEST_CASE("subsurface: lamps and spots shine through a slab as the sun does") {
+    constexpr float kThickness = 0.03f;
+    const double falloff = 5 / square(2.0);
+    const Affine from = look_at({0, 0, -2}, {0, 0, 0});
+    check_slab(
+        behind_slab(kThickness, PointLight{.intensity = 5, .radius = 0}, from), falloff,
+        static_cast<double>(kThickness));
+    check_slab(
+        behind_slab(
+            kThickness,
+            SpotLight{.intensity = 5, .radius = 0, .inner_angle = 0.5f, .outer_angle = 0.6f}, from),
+        falloff, static_cast<double>(kThickness));
+}
+
+TEST_CASE("subsurface: nothing passes a body far thicker than its mean free path, or without one") {
+    const DirectionalLight sun = {.illuminance = 3};
+    const Affine from = look_at({0, 0, 0}, {0, 0, 1});
+    CHECK(behind_slab(1.5f, sun, from).x < 1e-3f * behind_slab(0.03f, sun, from).x);
+}
+
+}  // namespace limn::test
