@@ -9,7 +9,7 @@ namespace {
 constexpr unsigned bit(ShadingModel model) {
     return 1u << static_cast<unsigned>(model);
 }
-constexpr unsigned kRough = bit(ShadingModel::Pbr) | bit(ShadingModel::Unlit);
+constexpr unsigned kMirrors = bit(ShadingModel::Pbr) | bit(ShadingModel::Unlit);
 constexpr unsigned kClassic =
     bit(ShadingModel::Blinn) | bit(ShadingModel::Phong) | bit(ShadingModel::Skin);
 
@@ -19,13 +19,17 @@ struct FieldReaders {
     unsigned models;  ///< a bit each
 };
 constexpr FieldReaders kFieldReaders[] = {
-    {"metalness", kRough},
-    {"roughness", kRough},
-    {"metal_rough_texture", kRough},
-    {"specular", kClassic},
+    {"metalness", kMirrors},
+    {"roughness", kMirrors | bit(ShadingModel::Subsurface)},
+    {"metal_rough_texture", kMirrors | bit(ShadingModel::Subsurface)},
+    {"specular", kClassic | bit(ShadingModel::Subsurface)},
     {"shininess", kClassic},
     {"skin_color", bit(ShadingModel::Skin)},
     {"wide_rim", bit(ShadingModel::Skin)},
+    {"lobes", bit(ShadingModel::Lafortune)},
+    {"scatter", bit(ShadingModel::Subsurface)},
+    {"gloss", bit(ShadingModel::Subsurface)},
+    {"gloss_roughness", bit(ShadingModel::Subsurface)},
 };
 
 }  // namespace

@@ -67,8 +67,10 @@ vec4 gather_near(ivec2 here, float reach, vec4 wide, float radius) {
         wide += (1.0 - under) * light;
         behind += under * light;
     }
+    float covered = min(wide.a + behind.a, 1.0);  // of one surface, whose circles widen, the parts do not overlap
     wide /= max(wide.a, 1.0);
-    return wide + (1.0 - wide.a) * behind / max(behind.a, 1.0);
+    vec4 near = wide + (1.0 - wide.a) * behind / max(behind.a, 1.0);
+    return near * (covered / max(near.a, 1e-5));
 }
 
 void main() {

@@ -379,6 +379,20 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: an uniform image stays uniform, wha
     }
 }
 
+TEST_CASE_FIXTURE(
+    Darkroom, "depth_of_field: a table that comes nearer shows nothing of the wall behind it") {
+    constexpr int kSide = 192;
+    constexpr int kEdge = 160;  // of the table [px]
+    const gpu::FloatImage image = photograph(lens_view(kSide, kSide, kAll), [&](int /*x*/, int y) {
+        const float circle = 2 + 30.0f * static_cast<float>(kEdge - y) / kEdge;
+        return y < kEdge ? Seen{Vec3(0.5f), distance_of(-circle, kAll)} : Seen{Vec3(20)};
+    });
+    for (int y = 2; y < kEdge - 20; ++y) {
+        CAPTURE(y);
+        CHECK(light_at(image, kSide / 2, y) == near(0.5).epsilon(0.01));
+    }
+}
+
 TEST_CASE_FIXTURE(Darkroom, "depth_of_field: what is in focus keeps every bit") {
     Random random(5, 0, 0, 0);
     std::vector<Vec3> light(64 * 48);
