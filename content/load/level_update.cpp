@@ -7,6 +7,7 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace limn {
@@ -118,12 +119,64 @@ bool same_kinds(const std::vector<AnyComponent>& a, const std::vector<AnyCompone
     return same;
 }
 
-bool same_change(const NodeChange& a, const NodeChange& b) {
+/// Of one type of component.
+bool same_edits(const ScriptAction& a, const ScriptAction& b) {
     const auto offset = [](const FieldEdit& edit) { return edit.offset; };
-    return a.entity == b.entity && a.node == b.node && a.info == b.info
-           && a.set.value.is_empty() == b.set.value.is_empty()
-           && std::ranges::equal(a.set.edits, b.set.edits, {}, offset, offset)
-           && (a.set.value.is_empty() || same_value(a.set.value, b.set.value));
+    return a.value.is_empty() == b.value.is_empty()
+           && std::ranges::equal(a.edits, b.edits, {}, offset, offset)
+           && (a.value.is_empty() || same_value(a.value, b.value));
+}
+
+bool same_change(const NodeChange& a, const NodeChange& b) {
+    return a.entity == b.entity && a.node == b.node && a.info == b.info && same_edits(a.set, b.set);
+}
+
+/// Calls `visit` with what events set in components as the level starts.
+template <typename Visit>
+void each_first_set(const EventList& list, Visit&& visit) {
+    for (const ScriptEvent& event : list.events) {
+        for (const ScriptAction& action : event.actions) {
+            if (event.time == 0 && event.key.empty() && action.action == EventAction::Set
+                && !action.is_resource) {
+                visit(action);
+            }
+        }
+    }
+}
+
+/// What events set as the level starts that did not `before`: it has started.
+std::vector<LevelChange> find_first_sets(const World& world, const EventList& before) {
+    std::vector<LevelChange> changes;
+    each_first_set(world.resource<EventList>(), [&](const ScriptAction& action) {
+        const ComponentInfo& info = action.value.info();
+        bool is_new = world.alive(action.entity) && world.has(action.entity, info.id);
+        each_first_set(before, [&](const ScriptAction& other) {
+            is_new = is_new
+                     && !(
+                         other.entity == action.entity && &other.value.info() == &info
+                         && same_edits(other, action));
+        });
+        if (!is_new) {
+            return;
+        }
+        LevelChange change{
+            LevelPart::Component,
+            action.entity,
+            0,
+            AnyComponent::read(world, action.entity, info),
+            {}};
+        for (const FieldEdit& edit : action.edits) {
+            copy_field(
+                *edit.field, static_cast<std::byte*>(change.now.data()) + edit.offset,
+                static_cast<const std::byte*>(action.value.data()) + edit.offset);
+            const auto outer = std::ranges::find_if(info.fields, [&](const FieldInfo& field) {
+                return edit.offset >= field.offset && edit.offset < field.offset + field.size;
+            });
+            change.fields.push_back(&*outer);
+        }
+        changes.push_back(std::move(change));
+    });
+    return changes;
 }
 
 }  // namespace
@@ -188,7 +241,12 @@ update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAs
         localize_component(change.now, fields.entities);
         apply_change(world, change);
     }
+    const EventList before = world.resource<EventList>();
     replace_events(world, std::move(level.events), fields.entities);
+    for (LevelChange& change : find_first_sets(world, before)) {
+        apply_change(world, change);
+        changes.push_back(std::move(change));
+    }
     now.entities = std::move(fields.entities);
     fields = std::move(now);
     return changes;

@@ -44,7 +44,8 @@ struct LevelChange {
 };
 
 /// Loads the level anew and sets the fields of components, resources and materials whose values in
-/// the files are others than before, and the level's events. Returns what has changed. Fails, and
+/// the files are others than before, and the level's events; what new ones set at the start of the
+/// level is set as well. Returns what has changed. Fails, and
 /// changes nothing, with the loader's error, or where the level has other entities, kinds of
 /// components, changes of glTF nodes or assets now, which only loading it again can bring. `world`
 /// held nothing else when the level was spawned.

@@ -123,6 +123,39 @@ TEST_CASE("level update: fields of resources, materials and components come each
     CHECK(world.get<const Transform>(one).position == Vec3(0));
 }
 
+TEST_CASE("level update: what a new event sets at the start comes to a level that has started") {
+    Playing level;
+    const auto write = [&](const std::string& events) {
+        std::ofstream(level.path())
+            << R"({"entities": [{"name": "row", "repeat": {"count": [2, 1, 1]}}], "events": [)"
+            << events << "]}";
+    };
+    write("");
+    World world;
+    Result<Level> loaded = load_level(level.path());
+    REQUIRE(loaded.ok());
+    LevelFields fields = remember_fields(*loaded, level.path());
+    fields.entities = spawn_level(world, *std::move(loaded));
+    const Entity copy = fields.entities[1];
+    const Vec3 place = world.get<const Transform>(copy).position;
+    const std::string first =
+        R"({"at": 0, "set": {"row[1]": {"transform": {"scale": [2, 2, 2]}}}})";
+    write(first);
+    const Result<std::vector<LevelChange>> changes = update_level(world, fields);
+    REQUIRE(changes.ok());
+    REQUIRE(changes->size() == 1);
+    CHECK((*changes)[0].entity == copy);
+    CHECK((*changes)[0].fields.size() == 1);
+    CHECK(world.get<const Transform>(copy).scale == Vec3(2));
+    CHECK(world.get<const Transform>(copy).position == place);
+    // It is not set again, and a later one waits.
+    world.get<Transform>(copy).scale = Vec3(5);
+    write(first + R"(, {"at": 7, "set": {"row[1]": {"transform": {"scale": [3, 3, 3]}}}})");
+    CHECK(update_level(world, fields)->empty());
+    CHECK(world.get<const Transform>(copy).scale == Vec3(5));
+    CHECK(world.resource<EventList>().events.size() == 2);
+}
+
 TEST_CASE("level update: names of entities become those that were spawned") {
     Playing level;
     std::ofstream(level.path()) << R"({"include": ["a.effect.json"], "entities": [

@@ -160,9 +160,10 @@ TEST_CASE("shading models: another value of a field changes just the models that
     // Something that a rough surface mirrors otherwise than a smooth one.
     balls.world.insert_resource(Environment{.sky = SkyKind::Gradient});
     const gpu::FloatImage plain = balls.picture(LightMethod::Clustered);
-    for (const auto& [field, change] : changes) {
+    for (const auto& one : changes) {
+        const std::string field = one.first;
         assets.materials = materials;
-        std::for_each(assets.materials.begin(), assets.materials.end(), change);
+        std::for_each(assets.materials.begin(), assets.materials.end(), one.second);
         ++assets.material_version;
         const gpu::FloatImage changed = balls.picture(LightMethod::Clustered);
         for (std::size_t i = 0; i < std::size(kShadingModels); ++i) {
@@ -174,7 +175,7 @@ TEST_CASE("shading models: another value of a field changes just the models that
                     difference = std::max(difference, glm::length(apart));
                 }
             }
-            CAPTURE(std::string(field));
+            CAPTURE(field);
             CAPTURE(std::string(kShadingModels[i].name));
             CAPTURE(difference);
             CHECK((difference > 1e-3f) == reads_field(kShadingModels[i].model, field));
