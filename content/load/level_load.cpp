@@ -1,5 +1,6 @@
 #include "content/load/level_load.h"
 
+#include "content/load/brdf_file.h"
 #include "content/load/component_json.h"
 #include "content/load/error_list.h"
 #include "content/load/gltf_file.h"
@@ -291,13 +292,23 @@ class LevelParser {
                         + did_you_mean(like->text, sorted_names(materials_)));
             }
             material = level_.assets.materials[other->second];
+            read_brdf_of_like(other->second);
         }
         if (const JsonValue* const pattern = json.find("pattern")) {
             LIMN_TRY(read_pattern(*pattern, at, material));
         }
+        if (const JsonValue* const brdf = json.find("brdf")) {
+            if (brdf->kind != JsonKind::String) {
+                return unexpected(*brdf, at, "the path of a file of fitted reflectance");
+            }
+            level_.brdfs.push_back(
+                {brdf->text, brdf->at, static_cast<std::uint32_t>(level_.assets.materials.size())});
+            material.shading = ShadingModel::Lafortune;
+        }
         material.name = member.key;
         const NameResolver names = asset_names();
-        LIMN_TRY(read_struct(without(json, {"like", "pattern", "tiling"}), material, at, names));
+        LIMN_TRY(
+            read_struct(without(json, {"like", "pattern", "brdf", "tiling"}), material, at, names));
         if (const JsonValue* const tiling = json.find("tiling")) {
             TextureSlot scaled;
             const FieldInfo* const scale =
@@ -310,9 +321,27 @@ class LevelParser {
                 slot->scale = scaled.scale;
             }
         }
+        if (material.lobes.size() > kMaxLafortuneLobes) {
+            return error_at(
+                at, json.find("lobes")->at, fmt::format("{} lobes", material.lobes.size()),
+                fmt::format("at most {}", kMaxLafortuneLobes));
+        }
         materials_[member.key] = static_cast<std::uint32_t>(level_.assets.materials.size());
         level_.assets.materials.push_back(std::move(material));
         return Done{};
+    }
+
+    /// The next material starts as a copy of one whose file is not read yet.
+    void read_brdf_of_like(std::uint32_t other) {
+        const auto found =
+            std::find_if(level_.brdfs.begin(), level_.brdfs.end(), [other](const LevelBrdf& brdf) {
+                return brdf.material == other;
+            });
+        if (found != level_.brdfs.end()) {
+            LevelBrdf copy = *found;
+            copy.material = static_cast<std::uint32_t>(level_.assets.materials.size());
+            level_.brdfs.push_back(std::move(copy));
+        }
     }
 
     /// What is meant by a pattern that does not exist: another one, or a file.
@@ -578,6 +607,20 @@ Status load_image_file(
     return Done{};
 }
 
+/// Base color and lobes of a material.
+Status load_brdf_file(
+    Level& level, const LevelBrdf& brdf, const std::string& folder, const LevelLimits& limits) {
+    const std::vector<std::byte> bytes = LIMN_TRY(
+        fetch_uri(brdf.file, folder, place_of(level, brdf.at, "brdf"), limits.gltf.max_bytes));
+    const std::string path = (std::filesystem::path(folder) / brdf.file).string();
+    const BrdfFit fit =
+        LIMN_TRY(parse_brdf({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path));
+    Material& material = level.assets.materials[brdf.material];
+    material.base_color = Vec4(fit.diffuse, material.base_color.w);
+    material.lobes = fit.lobes;
+    return Done{};
+}
+
 /// Skeleton and skin have the name of the mesh, clips begin with it: "fox.walk".
 void add_rig(Assets& assets, const std::string& name, MeshRig rig) {
     rig.skeleton.name = name;
@@ -639,6 +682,9 @@ Status load_level_assets(
         errors.keep(
             image.pattern != nullptr ? make_pattern(level, image, makes, pixels_left)
                                      : load_image_file(level, image, folder, limits, pixels_left));
+    }
+    for (const LevelBrdf& brdf : level.brdfs) {
+        errors.keep(load_brdf_file(level, brdf, folder, limits));
     }
     for (const GltfUse& use : level.gltfs) {
         Result<GltfScene> scene = load_scene_file(level, use, folder, limits);

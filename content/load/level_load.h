@@ -114,6 +114,13 @@ struct LevelImage {
     std::uint32_t index = 0;  ///< of the (first) image in Level::assets
 };
 
+/// A file of fitted reflectance (brdf_file.h).
+struct LevelBrdf {
+    std::string file;  ///< relative to the level
+    SourcePosition at;
+    std::uint32_t material = 0;  ///< in Level::assets
+};
+
 struct Level {
     std::string file;   ///< path as given, for messages
     std::string name;   ///< "gallery"
@@ -122,6 +129,7 @@ struct Level {
     Bindings bindings;  ///< keys of actions; those not listed keep their defaults
     std::vector<LevelMesh> meshes;
     std::vector<LevelImage> images;
+    std::vector<LevelBrdf> brdfs;
     std::vector<GltfUse> gltfs;
     std::vector<NodeChange> node_changes;
     /// All initial entities; roots have no Parent. Assets are indices into `assets`.

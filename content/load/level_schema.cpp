@@ -258,6 +258,10 @@ JsonValue schema_of_materials() {
             "pattern",
             described(of_type("string"), "a generated image: base color, normals, roughness")),
         member(
+            "brdf",
+            described(
+                of_type("string"), "a file of fitted reflectance beside the level: lafortune")),
+        member(
             "tiling",
             described(array_of(of_type("number"), 2, 2), "repetitions of all maps along u and v"))};
     for (JsonMember& field : properties_of<Material>()) {

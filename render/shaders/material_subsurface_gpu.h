@@ -13,7 +13,7 @@
 namespace limn::layout {
 #endif
 
-const uint kDiffusionSamples = 64u;
+const uint kDiffusionSamples = 80u;
 
 struct SubsurfaceBlock {
     vec4 specular;  // reflectance head on; w: share of the second lobe

@@ -162,6 +162,12 @@ TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none i
     CHECK(wrong.err.find("(did you mean surfaces?)") != std::string::npos);
 }
 
+TEST_CASE("quality: light spreads in skin and shines through it as the profile says") {
+    const TemporaryFolder folder;
+    CHECK(measured_rows("skin", folder).size() == 18);
+    CHECK(read_text(folder.file("stdout.txt")).find("VIOLATED") == std::string::npos);
+}
+
 TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep their law") {
     const TemporaryFolder folder;
     const nlohmann::json rows = measured_rows("shadows", folder);

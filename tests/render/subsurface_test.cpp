@@ -109,7 +109,7 @@ DVec3 largest_errors(LitPlane& scene, const RenderView& view) {
         }
     }
     DVec3 errors(0);
-    for (int i = kSide / 4; i < 3 * kSide / 4; i += 2) {
+    for (int i = kSide / 4; i < 3 * kSide / 4; ++i) {
         for (const auto& [x, y] : {std::pair(i, kSide / 2), std::pair(kSide / 2, i)}) {
             for (int c = 0; c < 3; ++c) {
                 const double exact = oracle::diffused_patches(
