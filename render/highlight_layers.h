@@ -1,5 +1,9 @@
 #pragma once
 
+#include "render/buffer_texture.h"
+#include "render/graph/frame_graph.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -7,6 +11,16 @@
 namespace limn {
 
 struct Material;
+
+/// Units 5 and 6: those of the G-buffer, which passes that draw surfaces do not read.
+inline constexpr unsigned kHighlightMapsUnit = 5;
+inline constexpr unsigned kHighlightLayersUnit = 6;
+
+/// Published in the views whose rate reads them.
+struct HighlightMaps {
+    TextureId layers;
+    const BufferTexture* layer_of_material = nullptr;  ///< by record
+};
 
 inline constexpr std::size_t kMaxHighlightLayers = 64;
 

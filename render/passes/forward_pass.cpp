@@ -2,9 +2,9 @@
 
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/highlight_layers.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
-#include "render/passes/highlight_map_pass.h"
 #include "render/shading_rates.h"
 #include "render/surface_draws.h"
 #include "render/view_block.h"

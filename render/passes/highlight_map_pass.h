@@ -26,16 +26,6 @@ namespace limn {
 
 inline constexpr int kHighlightMapSize = 256;  ///< [px]
 
-/// Units 5 and 6: those of the G-buffer, which passes that draw surfaces do not read.
-inline constexpr unsigned kHighlightMapsUnit = 5;
-inline constexpr unsigned kHighlightLayersUnit = 6;
-
-/// Published in the views whose rate reads them.
-struct HighlightMaps {
-    TextureId layers;
-    const BufferTexture* layer_of_material = nullptr;  ///< by record
-};
-
 struct HighlightMapEffect {
     /// What a texture was made of.
     struct Source {
