@@ -19,7 +19,7 @@ float highlight_exponent(const Material& material) {
     }
 }
 
-HighlightLayers assign_highlight_layers(std::span<const Material> materials) {
+HighlightLayers layers_by_exponent(std::span<const Material> materials) {
     std::vector<float> all;
     for (const Material& material : materials) {
         if (const float exponent = highlight_exponent(material); exponent > 0) {
@@ -42,6 +42,19 @@ HighlightLayers assign_highlight_layers(std::span<const Material> materials) {
             exponent > 0 ? static_cast<std::uint32_t>(found - layers.exponents.begin()) : 0);
     }
     return layers;
+}
+
+HighlightLayers layers_by_material(std::span<const Material> materials) {
+    HighlightLayers layers = {.exponents = {1}, .of_record = {0, 0}};
+    for (const Material& material : materials) {
+        const float exponent = highlight_exponent(material);
+        layers.of_record.push_back(
+            exponent > 0 ? static_cast<std::uint32_t>(layers.exponents.size()) : 0);
+        if (exponent > 0) {
+            layers.exponents.push_back(exponent);
+        }
+    }
+    return layers.exponents.size() <= kMaxHighlightLayers ? layers : layers_by_exponent(materials);
 }
 
 }  // namespace limn

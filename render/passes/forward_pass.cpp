@@ -2,20 +2,21 @@
 
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/highlight_layers.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
-#include "render/passes/highlight_map_pass.h"
 #include "render/shading_rates.h"
 #include "render/surface_draws.h"
+#include "render/view_block.h"
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace limn {
 namespace {
 
-constexpr int kTurns = 255;               ///< distinct stencil references
-constexpr float kGeometryDepthBias = 16;  ///< [smallest steps of depth]; by eye, 0 leaves holes
+constexpr int kTurns = 255;  ///< distinct stencil references
 
 /// Shades the nearest surface, and only one of several at equal depth, once per turn; the stencil
 /// must be cleared after every kTurns turns.
@@ -59,6 +60,11 @@ void add_definitions(
     variant.add_if(defects.lit_backs && blinn, "HW_BACKS");
 }
 
+ProgramVariants
+meshes(gpu::Device& device, const char* vertex, const char* geometry, const char* fragment) {
+    return {device, {.vertex = vertex, .geometry = geometry, .fragment = fragment}, true};
+}
+
 void draw_object_major(
     PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int turn) {
     const auto& records = view.data.get<LightRecords>();
@@ -73,19 +79,15 @@ void draw_object_major(
     add_definitions(
         variant, row, method, static_cast<int>(view.data.get<LightList>().records.size()));
     if (row.map != HighlightMap::None) {
-        const auto& maps = view.data.get<HighlightMaps>();
-        context.bind_texture(kHighlightMapsUnit, maps.layers[static_cast<std::size_t>(row.map)]);
-        maps.layer_of_material->bind(context.device(), kHighlightLayersUnit);
-    }
-    gpu::PipelineState state = nearest_once(turn);
-    if (*row.geometry != '\0') {
-        // A software OpenGL rounds depths otherwise after a geometry shader.
-        state.depth.func = GL_GEQUAL;
-        state.depth_bias = kGeometryDepthBias;
+        const HighlightMaps::Map& map =
+            view.data.get<HighlightMaps>().maps[static_cast<std::size_t>(row.map)];
+        context.bind_texture(kHighlightMapsUnit, map.layers);
+        map.layer_of_material->bind(context.device(), kHighlightLayersUnit);
     }
     draw_runs(
         context, view, view.data.get<InstanceList>().opaque,
-        pass.rates[static_cast<std::size_t>(row.rate)], {.variant = &variant, .state = state});
+        pass.rates[static_cast<std::size_t>(row.rate)],
+        {.variant = &variant, .state = nearest_once(turn)});
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -125,14 +127,12 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
     ForwardPass pass{
         .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
+        .vertex_depth = ProgramVariants::of_meshes(device, "depth_first.frag"),
+        .facet_depth = meshes(device, "sampled.vert", "facet_depth.geom", "depth_first.frag"),
         .nothing = LIMN_TRY(
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
     for (const ShadingRateRow& row : kShadingRateRows) {
-        pass.rates.emplace_back(
-            device,
-            gpu::ProgramDesc{
-                .vertex = row.vertex, .geometry = row.geometry, .fragment = row.fragment},
-            true);
+        pass.rates.push_back(meshes(device, row.vertex, row.geometry, row.fragment));
     }
     return pass;
 }
@@ -140,27 +140,37 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
 void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared) {
     std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
     if (const auto* maps = view.data.find<HighlightMaps>()) {
-        for (const TextureId layers : maps->layers) {
-            if (layers.valid()) {
-                reads.emplace_back(layers);
+        for (const HighlightMaps::Map& map : maps->maps) {
+            if (map.layers.valid()) {
+                reads.emplace_back(map.layers);
             }
         }
     }
     const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::ObjectMajor) {
-        graph.add_pass(
-            "objects", std::span(reads), first,
-            [&pass, &view, rate = method.shading](PassContext& context) {
-                draw_object_major(context, pass, view, rate, 0);
-            });
-        if (method.compared) {
-            const Use second[] = {cleared(compared), view.gbuffer.depth};
+        bool by_facets = false;  // the depth was drawn through a geometry shader, as the rate is
+        const auto light = [&](const char* name, ShadingRate rate, TextureId into, int turn) {
+            const bool facets = *row_of(rate).geometry != '\0';
+            if (std::exchange(by_facets, facets) != facets) {
+                const Use depth[] = {cleared(view.gbuffer.depth)};
+                graph.add_pass(
+                    "objects.depth", mesh_reads(graph, *view.frame), depth,
+                    [&programs = facets ? pass.facet_depth : pass.vertex_depth,
+                     &view](PassContext& context) {
+                        bind_view(context, view);
+                        draw_depths(context, view, programs);
+                    });
+            }
+            const Use writes[] = {cleared(into), view.gbuffer.depth};
             graph.add_pass(
-                "objects, compared", std::span(reads), second,
-                [&pass, &view, rate = *method.compared](PassContext& context) {
-                    draw_object_major(context, pass, view, rate, 1);
+                name, std::span(reads), writes, [&pass, &view, rate, turn](PassContext& context) {
+                    draw_object_major(context, pass, view, rate, turn);
                 });
+        };
+        light("objects", method.shading, view.radiance, 0);
+        if (method.compared) {
+            light("objects, compared", *method.compared, compared, 1);
         }
         return;
     }

@@ -15,7 +15,8 @@ namespace limn {
 // Writes   depth, radiance: linear; alpha 1 where there is a surface
 // Order    in place of the G-buffer and draw_lights()
 // Shaders  mesh.vert, depth_first.frag, forward_base.frag, forward_one.frag; with
-//          LightMethod::ObjectMajor those of the ShadingRate (shading_rates.h)
+//          LightMethod::ObjectMajor those of the ShadingRate (shading_rates.h), after
+//          facet_depth.geom if they have a geometry shader
 //
 // The first pass draws depth only; the others draw with depth EQUAL, so that each visible fragment
 // is lit once (engine.depth-first). Where surfaces of two objects have exactly the same depth, as
@@ -25,6 +26,8 @@ struct ForwardPass {
     std::vector<ProgramVariants> rates = {};  ///< by ShadingRate
     ProgramVariants base;
     ProgramVariants one;
+    ProgramVariants vertex_depth;  ///< of rates without a geometry shader, after others
+    ProgramVariants facet_depth;   ///< of rates with a geometry shader
     const gpu::Program* nothing = nullptr;
 };
 

@@ -7,67 +7,66 @@
 #include "render/gpu/shader_library.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
+#include "render/material_pool.h"
 #include "render/render_items.h"
 #include "render/shading_rates.h"
 #include "render/view_block.h"
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace limn {
 namespace {
 
-constexpr unsigned kExponentsUnit = 7;
+constexpr unsigned kLayersUnit = 7;
 constexpr unsigned kLightsUnit = 9;
 constexpr unsigned kMapsImage = 0;
 constexpr unsigned kGroup = 8;
 
-/// The texture for `layers` layers, new if they were fewer or more.
-void fit(gpu::Texture& maps, const char* label, GLenum format, std::size_t layers) {
-    if (!maps || maps.layers() != static_cast<int>(layers)) {
-        maps = gpu::Texture(
-            label, {.format = format,
-                    .width = kHighlightMapSize,
-                    .height = kHighlightMapSize,
-                    .depth = static_cast<int>(layers),
-                    .target = GL_TEXTURE_2D_ARRAY});
-    }
+/// Whether a rate of the frame reads the map.
+bool is_in_use(const World& world, HighlightMap map) {
+    const auto* rendering = world.find_resource<Rendering>();
+    const auto* comparison = world.find_resource<ShadingComparison>();
+    return (rendering != nullptr && row_of(rendering->shading).map == map)
+           || (comparison != nullptr && row_of(comparison->right).map == map);
 }
 
-void dispatch(gpu::Device& device, std::size_t layers) {
-    device.dispatch(
-        kHighlightMapSize / kGroup, kHighlightMapSize / kGroup, static_cast<unsigned>(layers));
-}
-
-/// The middle of the box around all objects.
-Vec3 center_of(const RenderItems& items) {
-    Bounds all;
-    for (std::size_t n = 0; n < items.block_count(); ++n) {
-        const RenderItemBlock& block = items.block(n);
-        for (std::size_t i = 0; i < block.size(); ++i) {
-            if (block.is_drawable(i)) {
-                grow(all, block.box(i));
-            }
-        }
-    }
-    return is_empty(all) ? Vec3(0) : center(all);
-}
-
-/// Whether a rate of the view reads the map.
-bool reads(const LightingMethod& method, HighlightMap map) {
+/// Whether a rate of the view does.
+bool reads(const ViewData& view, HighlightMap map) {
+    const auto& method = view.data.get<LightingMethod>();
     return row_of(method.shading).map == map
            || (method.compared && row_of(*method.compared).map == map);
 }
 
-bool is_same(const HighlightMapEffect::Environment& a, const HighlightMapEffect::Environment& b) {
-    return a.lights.size() == b.lights.size()
+/// The middle of the boxes around the objects of each layer.
+std::vector<Vec3> layer_centers(const FrameData& frame, const HighlightLayers& layers) {
+    std::vector<Bounds> boxes(layers.exponents.size());
+    for (std::size_t n = 0; n < frame.items->block_count(); ++n) {
+        const RenderItemBlock& block = frame.items->block(n);
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            const std::uint32_t record = frame.materials->record_of(block.surfaces[i].material);
+            if (block.is_drawable(i) && record < layers.of_record.size()) {
+                grow(boxes[layers.of_record[record]], block.box(i));
+            }
+        }
+    }
+    std::vector<Vec3> centers;
+    for (const Bounds& box : boxes) {
+        centers.push_back(is_empty(box) ? Vec3(0) : center(box));
+    }
+    return centers;
+}
+
+bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Source& b) {
+    return a.layers == b.layers && a.lights.size() == b.lights.size()
            && std::memcmp(
                   a.lights.data(), b.lights.data(), a.lights.size() * sizeof(layout::LightRecord))
                   == 0
-           && a.directional == b.directional && a.center == b.center
-           && std::equal(std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row))
-           && a.exponents == b.exponents;
+           && a.directional == b.directional
+           && std::equal(
+               std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row));
 }
 
 }  // namespace
@@ -80,82 +79,94 @@ Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const
 }
 
 bool HighlightMapEffect::is_used(const FrameData& frame) {
-    const auto* rendering = frame.world->find_resource<Rendering>();
-    const auto* comparison = frame.world->find_resource<ShadingComparison>();
-    return (rendering != nullptr && row_of(rendering->shading).map != HighlightMap::None)
-           || (comparison != nullptr && row_of(comparison->right).map != HighlightMap::None);
+    return is_in_use(*frame.world, HighlightMap::Blinn)
+           || is_in_use(*frame.world, HighlightMap::Environment);
 }
 
 void HighlightMapEffect::collect(FrameData& frame) {
-    layers = assign_highlight_layers(frame.assets->materials);
-    exponents.upload(*frame.ring, layers.exponents);
-    layer_of_material.upload(*frame.ring, layers.of_record);
+    const auto& materials = frame.assets->materials;
+    if (is_in_use(*frame.world, HighlightMap::Blinn)) {
+        blinn.layers = layers_by_exponent(materials);
+        blinn.layer_of_material.upload(*frame.ring, blinn.layers.of_record);
+    }
+    if (is_in_use(*frame.world, HighlightMap::Environment)) {
+        environment.layers = layers_by_material(materials);
+        environment.layer_of_material.upload(*frame.ring, environment.layers.of_record);
+    }
 }
 
-bool HighlightMapEffect::prepare(const FrameData& frame, ViewData& view) {
-    const auto& method = view.data.get<LightingMethod>();
-    if (reads(method, HighlightMap::Environment)) {
-        lights.upload(*frame.ring, view.data.get<LightList>().records);
-        return true;
-    }
-    return reads(method, HighlightMap::Blinn);
+bool HighlightMapEffect::prepare(const FrameData&, ViewData& view) {
+    return reads(view, HighlightMap::Blinn) || reads(view, HighlightMap::Environment);
 }
 
 void HighlightMapEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    const auto& method = view.data.get<LightingMethod>();
     auto& published = view.data.publish<HighlightMaps>();
-    published.layers = {};
-    published.layer_of_material = &layer_of_material;
-    if (reads(method, HighlightMap::Blinn)) {
-        published.layers[static_cast<std::size_t>(HighlightMap::Blinn)] = draw_blinn(graph);
-    }
-    if (reads(method, HighlightMap::Environment)) {
-        published.layers[static_cast<std::size_t>(HighlightMap::Environment)] =
-            draw_environment(graph, frame, view);
+    published = {};
+    for (const HighlightMap map : {HighlightMap::Blinn, HighlightMap::Environment}) {
+        if (reads(view, map)) {
+            published.maps[static_cast<std::size_t>(map)] =
+                draw_map(graph, frame, view, map == HighlightMap::Environment);
+        }
     }
 }
 
-TextureId HighlightMapEffect::draw_blinn(FrameGraph& graph) {
-    const std::size_t count = layers.exponents.size();
-    fit(blinn, "Blinn maps", GL_R16F, count);
-    const TextureId maps = graph.import("Blinn maps", blinn);
-    if (std::exchange(blinn_exponents, layers.exponents) != layers.exponents) {
-        graph.add_pass("Blinn maps", {}, {image(maps)}, [this, maps, count](PassContext& context) {
-            context.device().use(*bake_blinn);
-            exponents.bind(context.device(), kExponentsUnit);
-            context.bind_image(kMapsImage, maps, GL_WRITE_ONLY);
-            dispatch(context.device(), count);
-        });
+HighlightMaps::Map HighlightMapEffect::draw_map(
+    FrameGraph& graph, const FrameData& frame, const ViewData& view, bool by_view) {
+    Maps& maps = by_view ? environment : blinn;
+    const HighlightLayers& layers = maps.layers;
+    Source wanted;
+    for (const float exponent : layers.exponents) {
+        wanted.layers.emplace_back(0, 0, 0, exponent);
     }
-    return maps;
-}
+    if (by_view) {
+        const std::vector<Vec3> centers = layer_centers(frame, layers);
+        for (std::size_t i = 0; i < centers.size(); ++i) {
+            wanted.layers[i] = Vec4(centers[i], wanted.layers[i].w);
+        }
+        const auto& list = view.data.get<LightList>();
+        wanted.lights = list.records;
+        wanted.directional = list.directional;
+        wanted.camera = view.camera.world_from_camera;
+    }
 
-TextureId HighlightMapEffect::draw_environment(
-    FrameGraph& graph, const FrameData& frame, const ViewData& view) {
-    const std::size_t count = layers.exponents.size();
-    const auto& list = view.data.get<LightList>();
-    Environment wanted = {
-        list.records, list.directional, center_of(*frame.items), view.camera.world_from_camera,
-        layers.exponents};
-    fit(environment, "highlight environment", GL_RGBA16F, count);
-    const TextureId maps = graph.import("highlight environment", environment);
-    if (is_same(baked, wanted)) {
-        return maps;
+    const std::size_t count = wanted.layers.size();
+    if (!maps.texture || maps.texture.layers() != static_cast<int>(count)) {
+        maps.texture = gpu::Texture(
+            "highlight maps", {.format = static_cast<GLenum>(by_view ? GL_RGBA16F : GL_R16F),
+                               .width = kHighlightMapSize,
+                               .height = kHighlightMapSize,
+                               .depth = static_cast<int>(count),
+                               .target = GL_TEXTURE_2D_ARRAY});
+        maps.source = {};
     }
-    baked = std::move(wanted);
+    const HighlightMaps::Map published = {
+        graph.import(by_view ? "highlight environment" : "Blinn maps", maps.texture),
+        &maps.layer_of_material};
+    if (is_same(maps.source, wanted)) {
+        return published;
+    }
+    maps.source = std::move(wanted);
+    maps.layer_records.upload(*frame.ring, maps.source.layers);
+    if (by_view) {
+        lights.upload(*frame.ring, maps.source.lights);
+    }
     graph.add_pass(
-        "highlight environment", {}, {image(maps)},
-        [this, maps, count, &view](PassContext& context) {
-            context.device().use(*bake_environment);
-            bind_view(context, view);
-            exponents.bind(context.device(), kExponentsUnit);
-            lights.bind(context.device(), kLightsUnit);
-            bake_environment->set("center", baked.center);
-            bake_environment->set("light_count", static_cast<int>(baked.lights.size()));
-            context.bind_image(kMapsImage, maps, GL_WRITE_ONLY);
-            dispatch(context.device(), count);
+        "highlight maps", {}, {image(published.layers)},
+        [this, &maps, texture = published.layers, count, by_view, &view](PassContext& context) {
+            const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
+            context.device().use(program);
+            maps.layer_records.bind(context.device(), kLayersUnit);
+            context.bind_image(kMapsImage, texture, GL_WRITE_ONLY);
+            if (by_view) {
+                bind_view(context, view);
+                lights.bind(context.device(), kLightsUnit);
+                program.set("light_count", static_cast<int>(environment.source.lights.size()));
+            }
+            context.device().dispatch(
+                kHighlightMapSize / kGroup, kHighlightMapSize / kGroup,
+                static_cast<unsigned>(count));
         });
-    return maps;
+    return published;
 }
 
 }  // namespace limn

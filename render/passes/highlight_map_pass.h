@@ -6,56 +6,47 @@
 #include "render/highlight_layers.h"
 #include "render/shaders/light_gpu.h"
 
-#include <array>
 #include <vector>
 
 namespace limn {
 
 // Textures that take the place of a part of the lighting, for the rates that read them
-// (ShadingRateRow::map): Blinn maps (fakephong.blinn-texture), the same for all lights and views,
-// or a sphere map of all lights in the camera's axes (fakephong.envmap-bake), each with a layer per
-// exponent of the materials.
+// (ShadingRateRow::map): Blinn maps (fakephong.blinn-texture), a layer per exponent for all lights
+// and views; or sphere maps of all lights in the camera's axes (fakephong.envmap-bake), a layer per
+// material.
 //
-// Reads    materials; of the sphere map: light records, the boxes of all objects
+// Reads    materials; of sphere maps: light records, the boxes of all objects
 // Writes   HighlightMaps
 // Order    after LightList, before surfaces are lit
 // Shaders  highlight_maps.comp, highlight_environment.comp
 //
-// Baked again only when something has changed. A sphere map has one center for all objects, the
-// middle of all of them: point lights near by shine from the wrong direction. It has no shadows.
+// Baked again only when something has changed. In a sphere map lights have one direction, that from
+// the middle of all objects of the material: a lamp among them shines from a wrong side. It has no
+// shadows.
 
 inline constexpr int kHighlightMapSize = 256;  ///< [px]
 
-/// Units 5 and 6: those of the G-buffer, which passes that draw surfaces do not read.
-inline constexpr unsigned kHighlightMapsUnit = 5;
-inline constexpr unsigned kHighlightLayersUnit = 6;
-
-/// Published in the views of which a rate reads them.
-struct HighlightMaps {
-    std::array<TextureId, 3> layers;  ///< by HighlightMap; not valid() where no rate reads it
-    const BufferTexture* layer_of_material = nullptr;  ///< by record
-};
-
 struct HighlightMapEffect {
-    /// What a sphere map was made of.
-    struct Environment {
+    /// What a texture was made of.
+    struct Source {
+        std::vector<Vec4> layers = {};  ///< middle of the objects [m]; w: exponent of Blinn's lobe
         std::vector<layout::LightRecord> lights = {};
         int directional = 0;
-        Vec3 center = {0, 0, 0};
         Affine camera = {};
-        std::vector<float> exponents = {};
+    };
+    struct Maps {
+        gpu::Texture texture = {};
+        Source source = {};
+        HighlightLayers layers = {};
+        BufferTexture layer_records = BufferTexture("highlight layer records", GL_RGBA32F);
+        BufferTexture layer_of_material = BufferTexture("highlight layers", GL_R32UI);
     };
 
     const gpu::Program* bake_blinn = nullptr;
     const gpu::Program* bake_environment = nullptr;
-    gpu::Texture blinn = {};
-    gpu::Texture environment = {};
-    BufferTexture exponents = BufferTexture("highlight exponents", GL_R32F);
+    Maps blinn = {};
+    Maps environment = {};
     BufferTexture lights = BufferTexture("highlight lights", GL_RGBA32F);
-    BufferTexture layer_of_material = BufferTexture("highlight layers", GL_R32UI);
-    HighlightLayers layers = {};
-    std::vector<float> blinn_exponents = {};  ///< that `blinn` was made of
-    Environment baked = {};
 
     static Result<HighlightMapEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
@@ -63,9 +54,9 @@ struct HighlightMapEffect {
     bool prepare(const FrameData& frame, ViewData& view);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
-    // Parts of draw(); return the layers.
-    TextureId draw_blinn(FrameGraph& graph);
-    TextureId draw_environment(FrameGraph& graph, const FrameData& frame, const ViewData& view);
+    /// The part of draw() for one map, which is baked if something has changed.
+    HighlightMaps::Map
+    draw_map(FrameGraph& graph, const FrameData& frame, const ViewData& view, bool by_view);
 };
 
 }  // namespace limn

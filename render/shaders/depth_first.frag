@@ -2,6 +2,7 @@
 //   ALPHA_MASK  holes where the opacity is below the cutoff
 #version 450
 #ifdef ALPHA_MASK
+#define LIT_AT_VERTICES  // colors alone
 #include "lib/view.glsl"
 #include "lib/material.glsl"
 #endif

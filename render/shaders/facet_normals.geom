@@ -1,6 +1,6 @@
 // The normals of corners and midpoints of each triangle (fakephong.normal-interp-variants), lit per pixel.
 #version 450
-#include "lib/facet.glsl"
+#include "lib/facet_point.glsl"
 
 layout(location = 1) out vec3 position_ws;
 layout(location = 6) flat out uint object;

@@ -1,6 +1,6 @@
-// Highlights of all lights in a sphere map of the camera's axes (fakephong.envmap-bake): a layer per exponent of the sum
-// of E (W.L)^(n / 4), W the direction that a texel stands for and n the exponent of Blinn's highlight. All lights count
-// as directional, as they are seen from `center`. Texels at the edge are 0, as those beyond the disc.
+// Highlights of all lights in sphere maps of the camera's axes (fakephong.envmap-bake): the sum of E (W.L)^(n / 4), W the
+// direction that a texel stands for and n the exponent of Blinn's highlight. All lights count as directional, as they
+// are seen from the middle of a layer's objects. Texels at the edge are 0, as those beyond the disc.
 #version 450
 #define LINEAR_FADE
 #define SPOT_ANGLES
@@ -10,11 +10,10 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 7) uniform samplerBuffer exponents;  // by layer
-layout(binding = 9) uniform samplerBuffer lights;     // LightRecord
+layout(binding = 7) uniform samplerBuffer layers;  // middle of its objects [m]; w: exponent n
+layout(binding = 9) uniform samplerBuffer lights;  // LightRecord
 layout(binding = 0, rgba16f) writeonly uniform image2DArray maps;
 
-uniform vec3 center;  // [m]
 uniform int light_count;
 
 const float kLobe = 0.25;  // exponent of W.L over that of N.H: lobes of equal width
@@ -24,7 +23,7 @@ struct Lobe {
     vec3 irradiance;
 };
 
-Lobe lobe_of(int light) {
+Lobe lobe_of(int light, vec3 center) {
     vec4 texels[4];
     for (int i = 0; i < 4; ++i) {
         texels[i] = texelFetch(lights, light * int(kLightTexels) + i);
@@ -49,11 +48,11 @@ void main() {
     if (squared >= 0.0 && all(greaterThan(texel, ivec2(0))) && all(lessThan(texel, size - 1))) {
         vec3 w = vec3(2.0 * sqrt(squared) * at, 2.0 * squared - 1.0);
         vec3 w_ws = w.x * normalize(view.ray_right.xyz) + w.y * normalize(view.ray_up.xyz) - w.z * view.ray_forward.xyz;
-        float exponent = kLobe * texelFetch(exponents, int(gl_WorkGroupID.z)).x;
+        vec4 layer = texelFetch(layers, int(gl_WorkGroupID.z));
         for (int i = 0; i < light_count; ++i) {
-            Lobe lobe = lobe_of(i);
+            Lobe lobe = lobe_of(i, layer.xyz);
             float cosine = dot(w_ws, lobe.to_light);
-            sum += cosine > 0.0 ? pow(cosine, exponent) * lobe.irradiance : vec3(0.0);
+            sum += cosine > 0.0 ? pow(cosine, kLobe * layer.w) * lobe.irradiance : vec3(0.0);
         }
     }
     imageStore(maps, ivec3(gl_GlobalInvocationID), vec4(min(sum, 65504.0), 1.0));

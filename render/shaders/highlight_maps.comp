@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 7) uniform samplerBuffer exponents;  // by layer
+layout(binding = 7) uniform samplerBuffer layers;  // w: exponent n
 layout(binding = 0, r16f) writeonly uniform image2DArray maps;
 
 void main() {
@@ -14,6 +14,6 @@ void main() {
     vec2 at = 2.0 * (vec2(texel) + 0.5) / vec2(size) - 1.0;
     float squared = 1.0 - dot(at, at);
     bool inside = squared > 1e-12 && all(greaterThan(texel, ivec2(0))) && all(lessThan(texel, size - 1));
-    float exponent = texelFetch(exponents, int(gl_WorkGroupID.z)).x;
+    float exponent = texelFetch(layers, int(gl_WorkGroupID.z)).w;
     imageStore(maps, ivec3(gl_GlobalInvocationID), vec4(inside ? pow(squared, 0.5 * exponent) : 0.0));
 }

@@ -4,7 +4,7 @@
 //   HW_MIDPOINTS    normals of midpoints are normalized before the mesh is turned and scaled, not after
 // SINGLE_LIGHTS: lib/single_lights.glsl, plays no part.
 #version 450
-#include "lib/facet.glsl"
+#include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"
 
 #ifdef HW_MIDPOINTS

@@ -2,7 +2,7 @@
 // other light is that of the corners. Definitions SINGLE_LIGHTS and BLINN_AXIS: lib/single_lights.glsl,
 // lib/highlight_map.glsl.
 #version 450
-#include "lib/facet.glsl"
+#include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"
 #include "lib/highlight_map.glsl"
 

@@ -13,7 +13,7 @@ layout(location = 4) out uvec3 corner_instance;  // material, flags, object
 layout(location = 5) out vec3 corner_normal_ms;
 layout(location = 6) out vec3 corner_scaled_normal;
 #endif
-invariant gl_Position;  // the depth must equal that of depth_first.frag
+invariant gl_Position;
 
 void main() {
     corner_ws = vertex_ws();

@@ -3,7 +3,7 @@
 // lights share, also that of highlights with H in place of L. Lights and viewer count as infinitely far: L and H are
 // those of the middle. Definition SINGLE_LIGHTS: lib/single_lights.glsl.
 #version 450
-#include "lib/facet.glsl"
+#include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"
 
 layout(location = 1) out vec3 diffuse;   // of all else, at vertices

@@ -5,9 +5,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace limn::fakephong {
 namespace {
@@ -154,6 +158,54 @@ TEST_CASE("fakephong: facets without area, behind the eye, facing away or with N
     }
     scene.mesh.triangles = {};
     CHECK(correctness(scene, "gouraud") == 1);  // no pixel counts
+}
+
+TEST_CASE("fakephong: a facet needs an area, however small, and finite corners") {
+    PhongMesh mesh;
+    mesh.positions = {
+        {0, 0, 0},
+        {1, 0, 0},
+        {3, 0, 0},
+        {0, 1e-12, 0},
+        {std::numeric_limits<double>::infinity(), 0, 0}};
+    mesh.normals.assign(5, dvec3(0, 0, 1));
+    mesh.triangles = {{0, 1, 1}, {0, 1, 2}, {0, 1, 4}, {0, 1, 3}};
+    Facet facet;
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK_FALSE(make_facet(mesh, i, facet));
+    }
+    CHECK(make_facet(mesh, 3, facet));
+    CHECK(plain(facet.face_normal) == dvec3(0, 0, 1));
+}
+
+TEST_CASE("fakephong: of edges through pixel centers, each belongs to one side") {
+    PhongScene scene = triangle_scene();
+    scene.camera = {.eye = {0, 0, 1}, .half_size = 1, .size = 34};
+    PhongMesh& mesh = scene.mesh;
+    mesh.positions.clear();
+    mesh.uvs.clear();
+    for (int y = -1; y <= 1; ++y) {  // four squares, of two triangles each, seen over 8.5 .. 25.5
+        for (int x = -1; x <= 1; ++x) {
+            mesh.positions.emplace_back(0.5 * x, 0.5 * y, 0);
+        }
+    }
+    mesh.normals.assign(9, dvec3(0, 0, 1));
+    const auto covered = [&](std::vector<std::array<std::uint32_t, 3>> triangles) {
+        mesh.triangles = std::move(triangles);
+        const PhongImage image = draw(scene, *find_method("phong"));
+        return std::count(image.mask.begin(), image.mask.end(), 1);
+    };
+    std::int64_t parts = 0;
+    std::vector<std::array<std::uint32_t, 3>> all;
+    for (const std::uint32_t a : {0u, 1u, 3u, 4u}) {
+        for (const std::array<std::uint32_t, 3>& t :
+             {std::array{a, a + 1, a + 4}, std::array{a, a + 4, a + 3}}) {
+            parts += covered({t});
+            all.push_back(t);
+        }
+    }
+    CHECK(covered(all) == 17 * 17);
+    CHECK(parts == 17 * 17);
 }
 
 TEST_CASE("fakephong: a triangle through the eye is cut at the near plane") {

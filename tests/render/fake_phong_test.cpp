@@ -2,6 +2,7 @@
 #include "tests/render/laboratory_fixture.h"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace limn::test {
@@ -14,6 +15,15 @@ bool is_all_finite(const gpu::FloatImage& image) {
             if (!(std::isfinite(c.x + c.y + c.z) && std::min({c.x, c.y, c.z}) >= 0)) {
                 return false;
             }
+        }
+    }
+    return true;
+}
+
+bool is_covered_around(const gpu::FloatImage& image, int x, int y) {
+    for (int n = 0; n < 9; ++n) {
+        if (image.at(x + n % 3 - 1, y + n / 3 - 1, 3) == 0) {
+            return false;
         }
     }
     return true;
@@ -46,8 +56,8 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: eight lights are as the laboratory ha
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: of twelve lights the first eight have terms of their own, and the "
-                "others are lit per vertex") {
+    Laboratory,
+    "fake phong: eight of twelve lights have terms of their own, the rest is lit per vertex") {
     show(make_ball(5));
     std::vector<Entity> lights;
     for (const Vec3& to_light : kAround) {
@@ -220,15 +230,70 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: bad input leaves no NaN and no negati
     }
 }
 
+TEST_CASE_FIXTURE(
+    Laboratory,
+    "fake phong: no method leaves a hole, nor shows what lies a hair's breadth behind") {
+    const MeshId ball = add(make_ball(16));
+    const MeshId square = add(make_square());
+    const MaterialId red = add(Material{
+        .shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}, .emission = {9, 0, 0}});
+    for (int i = 0; i < 6; ++i) {
+        const auto n = static_cast<float>(i);
+        place(ball, shiny, at({0.7f * static_cast<float>(i % 3) - 0.7f, 0.3f * n - 0.6f, -2 - n}));
+    }
+    place(square, red, at({0, 0.3f, 0}));
+    place(square, shiny, at({0, 0.3f, 3e-6f}));
+    // Walls and a floor that reach past the edges of the image and behind the eye.
+    for (const auto& [point, target] :
+         {std::pair(Vec3(0, -0.7f, 0), Vec3(0.1f, -10, 0.2f)),
+          std::pair(Vec3(-1.1f, 0, 0), Vec3(-10, 0.3f, 0.1f))}) {
+        Affine pose = look_at(point, 2.0f * point - target);
+        pose = pose * affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(40));
+        place(square, shiny, pose);
+    }
+    directional_light({0.2f, 0.4f, 1});
+    const RenderView view = look({0.37f, 0.51f, 2.9f}, {0.1f, -0.05f, 0}, 323, 201);
+    const auto seen = [&](ShadingRate rate) {
+        world.insert_resource(Rendering{.shading = rate});
+        return radiance(view);
+    };
+    const gpu::FloatImage pixel = seen(ShadingRate::Pixel);
+    for (const NamedRate& named : kRates) {
+        const gpu::FloatImage image = seen(named.rate);
+        int holes = 0;
+        int leaks = 0;
+        for (int y = 1; y + 1 < view.height; ++y) {
+            for (int x = 1; x + 1 < view.width; ++x) {
+                holes += image.at(x, y, 3) == 0 && is_covered_around(pixel, x, y) ? 1 : 0;
+                leaks += image.at(x, y, 0) > 5 ? 1 : 0;
+            }
+        }
+        CHECK_MESSAGE(holes == 0, std::string(named.method));
+        CHECK_MESSAGE(leaks == 0, std::string(named.method));
+    }
+}
+
 TEST_CASE("highlight layers: one per exponent, whatever the number of materials") {
     const std::vector<Material> materials = {
         {.shading = ShadingModel::Blinn, .shininess = 80},
         {.shading = ShadingModel::Pbr, .shininess = 7},
         {.shading = ShadingModel::Phong, .shininess = 20},
         {.shading = ShadingModel::Blinn, .shininess = 5}};
-    const HighlightLayers layers = assign_highlight_layers(materials);
+    const HighlightLayers layers = layers_by_exponent(materials);
     CHECK(layers.exponents == std::vector<float>{1, 5, 80});
     CHECK(layers.of_record == std::vector<std::uint32_t>{0, 0, 2, 0, 2, 1});
+}
+
+TEST_CASE("highlight layers: sphere maps have one per material, as long as there is room") {
+    std::vector<Material> materials = {
+        {.shading = ShadingModel::Blinn, .shininess = 80},
+        {.shading = ShadingModel::Pbr, .shininess = 7},
+        {.shading = ShadingModel::Phong, .shininess = 20}};
+    const HighlightLayers layers = layers_by_material(materials);
+    CHECK(layers.exponents == std::vector<float>{1, 80, 80});
+    CHECK(layers.of_record == std::vector<std::uint32_t>{0, 0, 1, 0, 2});
+    materials.resize(materials.size() + kMaxHighlightLayers, materials[0]);
+    CHECK(layers_by_material(materials).exponents == std::vector<float>{1, 80});
 }
 
 TEST_CASE("highlight layers: a thousand exponents share those that there is room for") {
@@ -237,7 +302,7 @@ TEST_CASE("highlight layers: a thousand exponents share those that there is room
         materials.push_back(
             {.shading = ShadingModel::Blinn, .shininess = 1.5f + static_cast<float>(999 - i)});
     }
-    const HighlightLayers layers = assign_highlight_layers(materials);
+    const HighlightLayers layers = layers_by_exponent(materials);
     CHECK(layers.exponents.size() == kMaxHighlightLayers);
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const float given = layers.exponents.at(layers.of_record[i + 2]);
