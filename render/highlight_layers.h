@@ -1,5 +1,10 @@
 #pragma once
 
+#include "render/buffer_texture.h"
+#include "render/graph/frame_graph.h"
+
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -7,6 +12,20 @@
 namespace limn {
 
 struct Material;
+
+/// Units 5 and 6: those of the G-buffer, which passes that draw surfaces do not read.
+inline constexpr unsigned kHighlightMapsUnit = 5;
+inline constexpr unsigned kHighlightLayersUnit = 6;
+
+/// Published in the views of which a rate reads them: by HighlightMap, empty if none reads that
+/// one.
+struct HighlightMaps {
+    struct Map {
+        TextureId layers;
+        const BufferTexture* layer_of_material = nullptr;  ///< by record
+    };
+    std::array<Map, 3> maps;
+};
 
 inline constexpr std::size_t kMaxHighlightLayers = 64;
 

@@ -2,7 +2,6 @@
 
 #include "ecs/components/rendering.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <iterator>
 
@@ -18,7 +17,6 @@ enum class HighlightMap : std::uint8_t {
     Blinn,        ///< over the plane coordinates of a light
     Environment,  ///< over the mirrored view direction
 };
-inline constexpr std::size_t kHighlightMaps = 3;
 
 struct ShadingRateRow {
     ShadingRate rate;

@@ -21,7 +21,8 @@ void check_points(PhongScene scene, const ShadingMethod& method, MethodResult& r
     const ShadingContext context = make_shading_context(scene);
     FacetSetup setup;
     Facet facet;
-    for (std::size_t f = 0; f < scene.mesh.triangles.size(); ++f) {
+    const std::size_t stride = 1 + scene.mesh.triangles.size() / kMaxCheckedFacets;
+    for (std::size_t f = 0; f < scene.mesh.triangles.size(); f += stride) {
         if (!make_facet(scene.mesh, f, facet)
             || !(
                 glm::dot(
@@ -71,7 +72,7 @@ std::vector<std::string> rank(const SceneResult& result, Key key) {
 
 }  // namespace
 
-SceneResult evaluate_scene(const PhongScene& scene) {
+SceneResult evaluate_scene(const PhongScene& scene, const std::function<void(int done)>& progress) {
     const auto methods = shading_methods();
     SceneResult result = {.scene = scene, .phong = draw(scene, methods[0]), .methods = {}};
     const std::vector<float> wanted = scanline(result.phong.color, scene.row);
@@ -81,6 +82,9 @@ SceneResult evaluate_scene(const PhongScene& scene) {
         one.scanline = compare_scanlines(wanted, scanline(one.image.color, scene.row));
         check_points(scene, method, one);
         result.methods.push_back(std::move(one));
+        if (progress) {
+            progress(1 + static_cast<int>(result.methods.size()));
+        }
     }
     return result;
 }

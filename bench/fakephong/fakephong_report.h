@@ -5,6 +5,8 @@
 #include "bench/fakephong/shading_method.h"
 #include "content/bake/image_compare.h"
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,9 +29,12 @@ struct SceneResult {
     PhongImage phong;
     std::vector<MethodResult> methods;  ///< shading_methods() without the first
 };
-/// Draws `scene` by every method. Samples are checked with textures evaluated exactly, so that what
-/// is left is the method's own.
-[[nodiscard]] SceneResult evaluate_scene(const PhongScene& scene);
+/// Draws `scene` by every method; `progress`, if any, is told how many are done. Samples are
+/// checked with textures evaluated exactly, so that what is left is the method's own, on at most
+/// kMaxCheckedFacets spread over the mesh.
+[[nodiscard]] SceneResult
+evaluate_scene(const PhongScene& scene, const std::function<void(int done)>& progress = {});
+inline constexpr std::size_t kMaxCheckedFacets = 20000;
 
 /// The ids of Table 6.1's methods by a value, best first; equal ones keep the order of the table.
 [[nodiscard]] std::vector<std::string> rank_by_correctness(const SceneResult& result);

@@ -1,4 +1,5 @@
 #include "bench/fakephong/phong_models.h"
+#include "bench/quality/fakephong_file.h"
 #include "bench/quality/fakephong_page.h"
 #include "bench/quality/quality.h"
 
@@ -84,7 +85,8 @@ Status measure_fakephong(HeadlessRenderer& /*headless*/, QualityReport& report) 
 }
 
 const RegisterQuality kRegistered(
-    "fakephong", "Phong shading per pixel, and Table 6.1 of the thesis", measure_fakephong);
+    "fakephong", "Phong shading per pixel, and Table 6.1 of the thesis", measure_fakephong,
+    measure_fakephong_file);
 
 }  // namespace
 }  // namespace limn

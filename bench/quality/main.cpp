@@ -22,6 +22,7 @@ namespace {
 
 struct QualityOptions {
     std::string effect;                   ///< empty = all
+    std::string file;                     ///< a model for `effect`; empty = its own
     std::string json;                     ///< file to write; empty = none
     std::string html;                     ///< file to write; empty = none
     std::optional<gpu::Profile> profile;  ///< empty = by the device
@@ -49,6 +50,11 @@ Result<std::vector<const QualityEffect*>> choose_effects(const std::string& name
 /// Prints the table and writes the files; then fails if a bound is violated.
 Status measure(const QualityOptions& options) {
     const auto effects = LIMN_TRY(choose_effects(options.effect));
+    if (!options.file.empty() && effects[0]->measure_file == nullptr) {
+        return fail(
+            "limn quality: found the file {} for {}, expected none: it has its own scenes",
+            options.file, effects[0]->name);
+    }
     HeadlessRenderer headless = LIMN_TRY(create_headless_renderer(options.profile));
     std::vector<MeasuredQuality> measured;
     std::size_t missed = 0;
@@ -56,7 +62,9 @@ Status measure(const QualityOptions& options) {
         Progress progress("effect", static_cast<int>(effects.size()));
         for (const QualityEffect* effect : effects) {
             QualityReport report;
-            if (const Status status = effect->measure(headless, report); !status) {
+            const Status status = options.file.empty() ? effect->measure(headless, report)
+                                                       : effect->measure_file(options.file, report);
+            if (!status) {
                 return fail("{}: {}", effect->name, status.error().message);
             }
             for (const QualityRow& row : report.rows) {
@@ -89,6 +97,10 @@ int run(int argc, char** argv) {
     program.add_option("effect", options.effect, "name of an effect; default: all")
         ->type_name("EFFECT");
     program
+        .add_option(
+            "file", options.file, "a glTF or Wavefront model to measure, for the effect fakephong")
+        ->type_name("FILE");
+    program
         .add_option_function<std::string>(
             "--profile",
             [&options](const std::string& text) {
@@ -111,7 +123,8 @@ int run(int argc, char** argv) {
         "Effects:\n"
         + names
         + "\nExample:\n"
-          "  limn quality --html quality.html");
+          "  limn quality --html quality.html\n"
+          "  limn quality fakephong model.glb --html model.html");
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& wanted) {  // --help

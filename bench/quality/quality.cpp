@@ -15,13 +15,14 @@ std::vector<QualityEffect>& registered_effects() {
 }  // namespace
 
 RegisterQuality::RegisterQuality(
-    std::string_view name, std::string_view oracle, MeasureQuality measure) {
+    std::string_view name, std::string_view oracle, MeasureQuality measure,
+    MeasureFile measure_file) {
     auto& effects = registered_effects();
     const auto after =
         std::find_if(effects.begin(), effects.end(), [name](const QualityEffect& other) {
             return other.name > name;
         });
-    effects.insert(after, {name, oracle, measure});
+    effects.insert(after, {name, oracle, measure, measure_file});
 }
 
 std::span<const QualityEffect> quality_effects() {

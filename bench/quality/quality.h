@@ -59,15 +59,21 @@ struct QualityReport {
 /// Fails only if nothing could be measured.
 using MeasureQuality = Status (*)(HeadlessRenderer& headless, QualityReport& report);
 
+/// The same of a model that the user gives.
+using MeasureFile = Status (*)(const std::string& path, QualityReport& report);
+
 struct QualityEffect {
     std::string_view name;    ///< as on the command line
     std::string_view oracle;  ///< what it is compared with, in words
     MeasureQuality measure;
+    MeasureFile measure_file = nullptr;  ///< null: it has no models of the user's
 };
 
 /// An object at namespace scope adds an effect.
 struct RegisterQuality {
-    RegisterQuality(std::string_view name, std::string_view oracle, MeasureQuality measure);
+    RegisterQuality(
+        std::string_view name, std::string_view oracle, MeasureQuality measure,
+        MeasureFile measure_file = nullptr);
 };
 
 /// All registered effects, by name.

@@ -45,7 +45,7 @@ h2 { border-top: 1px solid #333a44; margin-top: 2.5rem; padding-top: 1rem; }
 p { color: #98a2b0; }
 table { border-collapse: collapse; margin: 1rem 0; width: 100%; }
 th, td { border-bottom: 1px solid #262b32; padding: .3rem .8rem .3rem 0; text-align: left; }
-td.number { font-variant-numeric: tabular-nums; text-align: right; }
+td.number, th.number { font-variant-numeric: tabular-nums; text-align: right; }
 .yes { color: #7fd494; } .no { color: #ff7b72; font-weight: 600; }
 figure { margin: 1rem 0; } figcaption { color: #98a2b0; margin-bottom: .3rem; }
 .row { display: flex; gap: .6rem; } .row div { flex: 1; } .row img { width: 100%; image-rendering: pixelated; }

@@ -1,5 +1,6 @@
 #include "content/app/bench_command.h"
 
+#include "content/app/bench_fakephong.h"
 #include "content/app/bench_lens.h"
 #include "content/app/bench_lights.h"
 #include "content/app/bench_report.h"
@@ -34,6 +35,7 @@ constexpr int kHeapFrames =
 constexpr int kHeapInterval = 60;                    ///< frames between its measurements
 constexpr const char* kParticlesName = "particles";  ///< likewise: their pools, without a scene
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
+constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
 
 double ms_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -90,6 +92,14 @@ Status run_lens_bench(const BenchOptions& options) {
     }
     return write_results(
         options, lens_bench_table(*bench), lens_bench_json(*bench), lens_bench_csv(*bench));
+}
+
+Status run_fakephong_bench(const BenchOptions& options) {
+    HeadlessRenderer headless = LIMN_TRY(create_renderer_for(options));
+    const FakePhongBench bench = LIMN_TRY(measure_fakephong(options, headless));
+    return write_results(
+        options, fakephong_bench_table(bench), fakephong_bench_json(bench),
+        fakephong_bench_csv(bench));
 }
 
 /// The report's own, which it reserves with the last frame of the warm-up.
@@ -179,6 +189,9 @@ Status run_bench(const BenchOptions& options) {
     }
     if (options.scene == kLensName) {
         return run_lens_bench(options);
+    }
+    if (options.scene == kFakePhongName) {
+        return run_fakephong_bench(options);
     }
     Result<std::unique_ptr<Stage>> opened =
         open_stage(options.scene, {.assignments = options.assignments});

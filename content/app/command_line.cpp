@@ -193,6 +193,12 @@ JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"effect
 "p95_ms", "added_ms", "passes_ms", "passes"}]}
 CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms
 
+`limn bench fakephong` draws each model of the level `phonglab` under 1, 4 and 16 lights by every
+method of rendering.shading, in turns, --frames times each; the best counts.
+JSON: {"scene", "size", "frames", "threads", "gl", "points": [{"model", "lights",
+"methods": [{"shading", "best_ms", "ratio"}]}]}
+CSV: model,lights,shading,frames,best_ms,ratio
+
 `limn bench particles` holds particles to their gates, ratios to loops that people write by hand,
 and shows what a particle costs among a thousand to ten million. It draws nothing; --frames is how
 often each is run at most, and the best counts.
@@ -203,6 +209,7 @@ CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, curve,c
 Examples:
   limn bench lights --size 640x360
   limn bench lens --size 640x360 --frames 100
+  limn bench fakephong --size 640x360 --frames 9
   limn bench gallery --size 640x360 --set glow.strength=0.1
   limn bench stress-instances --frames 600 --json numbers.json
   limn bench particles --csv particles.csv --svg particles.svg)");

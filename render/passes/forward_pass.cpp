@@ -2,9 +2,9 @@
 
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/highlight_layers.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
-#include "render/passes/highlight_map_pass.h"
 #include "render/shading_rates.h"
 #include "render/surface_draws.h"
 #include "render/view_block.h"
@@ -79,25 +79,15 @@ void draw_object_major(
     add_definitions(
         variant, row, method, static_cast<int>(view.data.get<LightList>().records.size()));
     if (row.map != HighlightMap::None) {
-        const HighlightLayerMaps& maps =
-            view.data.get<HighlightMaps>()[static_cast<std::size_t>(row.map)];
-        context.bind_texture(kHighlightMapsUnit, maps.layers);
-        maps.layer_of_material->bind(context.device(), kHighlightLayersUnit);
+        const HighlightMaps::Map& map =
+            view.data.get<HighlightMaps>().maps[static_cast<std::size_t>(row.map)];
+        context.bind_texture(kHighlightMapsUnit, map.layers);
+        map.layer_of_material->bind(context.device(), kHighlightLayersUnit);
     }
     draw_runs(
         context, view, view.data.get<InstanceList>().opaque,
         pass.rates[static_cast<std::size_t>(row.rate)],
         {.variant = &variant, .state = nearest_once(turn)});
-}
-
-void draw_depth(FrameGraph& graph, ProgramVariants& programs, const ViewData& view) {
-    const Use depth[] = {cleared(view.gbuffer.depth)};
-    graph.add_pass(
-        "objects.depth", mesh_reads(graph, *view.frame), depth,
-        [&programs, &view](PassContext& context) {
-            bind_view(context, view);
-            draw_depths(context, view, view.data.get<InstanceList>().opaque, programs);
-        });
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
@@ -137,7 +127,7 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
     ForwardPass pass{
         .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
         .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
-        .mesh_depth = ProgramVariants::of_meshes(device, "depth_first.frag"),
+        .vertex_depth = ProgramVariants::of_meshes(device, "depth_first.frag"),
         .facet_depth = meshes(device, "sampled.vert", "facet_depth.geom", "depth_first.frag"),
         .nothing = LIMN_TRY(
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
@@ -150,34 +140,41 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
 void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared) {
     std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
     if (const auto* maps = view.data.find<HighlightMaps>()) {
-        for (const HighlightLayerMaps& its : *maps) {
-            if (its.layers.valid()) {
-                reads.emplace_back(its.layers);
+        for (const HighlightMaps::Map& map : maps->maps) {
+            if (map.layers.valid()) {
+                reads.emplace_back(map.layers);
             }
         }
     }
+    const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::ObjectMajor) {
-        bool of_facets = false;  // the depth, through a geometry shader
-        const auto draw_by = [&](ShadingRate rate, TextureId target, int turn) {
-            if (const bool facets = *row_of(rate).geometry != '\0';
-                std::exchange(of_facets, facets) != facets) {
-                draw_depth(graph, facets ? pass.facet_depth : pass.mesh_depth, view);
+        bool by_facets = false;  // the depth was drawn through a geometry shader, as the rate is
+        const auto light = [&](const char* name, ShadingRate rate, TextureId into, int turn) {
+            const bool facets = *row_of(rate).geometry != '\0';
+            if (std::exchange(by_facets, facets) != facets) {
+                const Use depth[] = {cleared(view.gbuffer.depth)};
+                graph.add_pass(
+                    "objects.depth", mesh_reads(graph, *view.frame), depth,
+                    [&programs = facets ? pass.facet_depth : pass.vertex_depth,
+                     &view](PassContext& context) {
+                        bind_view(context, view);
+                        draw_depths(
+                            context, view, view.data.get<InstanceList>().opaque, programs);
+                    });
             }
-            const Use writes[] = {cleared(target), view.gbuffer.depth};
+            const Use writes[] = {cleared(into), view.gbuffer.depth};
             graph.add_pass(
-                "objects", std::span(reads), writes,
-                [&pass, &view, rate, turn](PassContext& context) {
+                name, std::span(reads), writes, [&pass, &view, rate, turn](PassContext& context) {
                     draw_object_major(context, pass, view, rate, turn);
                 });
         };
-        draw_by(method.shading, view.radiance, 0);
+        light("objects", method.shading, view.radiance, 0);
         if (method.compared) {
-            draw_by(*method.compared, compared, 1);
+            light("objects, compared", *method.compared, compared, 1);
         }
         return;
     }
-    const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
     graph.add_pass("objects.base", std::span(reads), first, [&pass, &view](PassContext& context) {
         bind_lighting(context, view);
         draw_runs(

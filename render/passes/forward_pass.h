@@ -26,8 +26,8 @@ struct ForwardPass {
     std::vector<ProgramVariants> rates = {};  ///< by ShadingRate
     ProgramVariants base;
     ProgramVariants one;
-    ProgramVariants mesh_depth;   ///< of the others, after one with
-    ProgramVariants facet_depth;  ///< of rates with a geometry shader
+    ProgramVariants vertex_depth;  ///< of rates without a geometry shader, after others
+    ProgramVariants facet_depth;   ///< of rates with a geometry shader
     const gpu::Program* nothing = nullptr;
 };
 

@@ -25,18 +25,16 @@ constexpr unsigned kLightsUnit = 9;
 constexpr unsigned kMapsImage = 0;
 constexpr unsigned kGroup = 8;
 
-constexpr HighlightMap kMaps[] = {HighlightMap::Blinn, HighlightMap::Environment};
-
-/// Whether a rate of the world reads the map.
-bool is_read(const World& world, HighlightMap map) {
+/// Whether a rate of the frame reads the map.
+bool is_in_use(const World& world, HighlightMap map) {
     const auto* rendering = world.find_resource<Rendering>();
     const auto* comparison = world.find_resource<ShadingComparison>();
     return (rendering != nullptr && row_of(rendering->shading).map == map)
            || (comparison != nullptr && row_of(comparison->right).map == map);
 }
 
-/// Whether one of the view does.
-bool is_read(const ViewData& view, HighlightMap map) {
+/// Whether a rate of the view does.
+bool reads(const ViewData& view, HighlightMap map) {
     const auto& method = view.data.get<LightingMethod>();
     return row_of(method.shading).map == map
            || (method.compared && row_of(*method.compared).map == map);
@@ -74,61 +72,54 @@ bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Sour
 }  // namespace
 
 Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const RenderSettings&) {
-    gpu::ShaderLibrary& shaders = device.shaders();
-    HighlightMapEffect effect;
-    effect.maps[static_cast<std::size_t>(HighlightMap::Blinn)].bake =
-        LIMN_TRY(shaders.load({.compute = "highlight_maps.comp"}));
-    effect.maps[static_cast<std::size_t>(HighlightMap::Environment)].bake =
-        LIMN_TRY(shaders.load({.compute = "highlight_environment.comp"}));
-    return effect;
+    return HighlightMapEffect{
+        .bake_blinn = LIMN_TRY(device.shaders().load({.compute = "highlight_maps.comp"})),
+        .bake_environment =
+            LIMN_TRY(device.shaders().load({.compute = "highlight_environment.comp"}))};
 }
 
 bool HighlightMapEffect::is_used(const FrameData& frame) {
-    return std::any_of(std::begin(kMaps), std::end(kMaps), [&](HighlightMap map) {
-        return is_read(*frame.world, map);
-    });
+    return is_in_use(*frame.world, HighlightMap::Blinn)
+           || is_in_use(*frame.world, HighlightMap::Environment);
 }
 
 void HighlightMapEffect::collect(FrameData& frame) {
-    for (const HighlightMap map : kMaps) {
-        if (is_read(*frame.world, map)) {
-            const auto& materials = frame.assets->materials;
-            Maps& its = maps[static_cast<std::size_t>(map)];
-            its.layers = map == HighlightMap::Environment ? layers_by_material(materials)
-                                                          : layers_by_exponent(materials);
-            its.layer_of_material.upload(*frame.ring, its.layers.of_record);
-        }
+    const auto& materials = frame.assets->materials;
+    if (is_in_use(*frame.world, HighlightMap::Blinn)) {
+        blinn.layers = layers_by_exponent(materials);
+        blinn.layer_of_material.upload(*frame.ring, blinn.layers.of_record);
+    }
+    if (is_in_use(*frame.world, HighlightMap::Environment)) {
+        environment.layers = layers_by_material(materials);
+        environment.layer_of_material.upload(*frame.ring, environment.layers.of_record);
     }
 }
 
 bool HighlightMapEffect::prepare(const FrameData&, ViewData& view) {
-    return std::any_of(std::begin(kMaps), std::end(kMaps), [&](HighlightMap map) {
-        return is_read(view, map);
-    });
+    return reads(view, HighlightMap::Blinn) || reads(view, HighlightMap::Environment);
 }
 
 void HighlightMapEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
     auto& published = view.data.publish<HighlightMaps>();
     published = {};
-    for (const HighlightMap map : kMaps) {
-        if (is_read(view, map)) {
-            Maps& its = maps[static_cast<std::size_t>(map)];
-            published[static_cast<std::size_t>(map)] = {
-                bake(graph, frame, view, map), &its.layer_of_material};
+    for (const HighlightMap map : {HighlightMap::Blinn, HighlightMap::Environment}) {
+        if (reads(view, map)) {
+            published.maps[static_cast<std::size_t>(map)] =
+                draw_map(graph, frame, view, map == HighlightMap::Environment);
         }
     }
 }
 
-TextureId HighlightMapEffect::bake(
-    FrameGraph& graph, const FrameData& frame, const ViewData& view, HighlightMap map) {
-    const bool by_view = map == HighlightMap::Environment;
-    Maps& its = maps[static_cast<std::size_t>(map)];
+HighlightMaps::Map HighlightMapEffect::draw_map(
+    FrameGraph& graph, const FrameData& frame, const ViewData& view, bool by_view) {
+    Maps& maps = by_view ? environment : blinn;
+    const HighlightLayers& layers = maps.layers;
     Source wanted;
-    for (const float exponent : its.layers.exponents) {
+    for (const float exponent : layers.exponents) {
         wanted.layers.emplace_back(0, 0, 0, exponent);
     }
     if (by_view) {
-        const std::vector<Vec3> centers = layer_centers(frame, its.layers);
+        const std::vector<Vec3> centers = layer_centers(frame, layers);
         for (std::size_t i = 0; i < centers.size(); ++i) {
             wanted.layers[i] = Vec4(centers[i], wanted.layers[i].w);
         }
@@ -139,40 +130,43 @@ TextureId HighlightMapEffect::bake(
     }
 
     const std::size_t count = wanted.layers.size();
-    if (!its.texture || its.texture.layers() != static_cast<int>(count)) {
-        its.texture = gpu::Texture(
+    if (!maps.texture || maps.texture.layers() != static_cast<int>(count)) {
+        maps.texture = gpu::Texture(
             "highlight maps", {.format = static_cast<GLenum>(by_view ? GL_RGBA16F : GL_R16F),
                                .width = kHighlightMapSize,
                                .height = kHighlightMapSize,
                                .depth = static_cast<int>(count),
                                .target = GL_TEXTURE_2D_ARRAY});
-        its.source = {};
+        maps.source = {};
     }
-    const TextureId texture = graph.import("highlight maps", its.texture);
-    if (is_same(its.source, wanted)) {
-        return texture;
+    const HighlightMaps::Map published = {
+        graph.import(by_view ? "highlight environment" : "Blinn maps", maps.texture),
+        &maps.layer_of_material};
+    if (is_same(maps.source, wanted)) {
+        return published;
     }
-    its.source = std::move(wanted);
-    its.layer_records.upload(*frame.ring, its.source.layers);
+    maps.source = std::move(wanted);
+    maps.layer_records.upload(*frame.ring, maps.source.layers);
     if (by_view) {
-        lights.upload(*frame.ring, its.source.lights);
+        lights.upload(*frame.ring, maps.source.lights);
     }
     graph.add_pass(
-        "highlight maps", {}, {image(texture)},
-        [this, &its, texture, count, by_view, &view](PassContext& context) {
-            context.device().use(*its.bake);
-            its.layer_records.bind(context.device(), kLayersUnit);
+        "highlight maps", {}, {image(published.layers)},
+        [this, &maps, texture = published.layers, count, by_view, &view](PassContext& context) {
+            const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
+            context.device().use(program);
+            maps.layer_records.bind(context.device(), kLayersUnit);
             context.bind_image(kMapsImage, texture, GL_WRITE_ONLY);
             if (by_view) {
                 bind_view(context, view);
                 lights.bind(context.device(), kLightsUnit);
-                its.bake->set("light_count", static_cast<int>(its.source.lights.size()));
+                program.set("light_count", static_cast<int>(environment.source.lights.size()));
             }
             context.device().dispatch(
                 kHighlightMapSize / kGroup, kHighlightMapSize / kGroup,
                 static_cast<unsigned>(count));
         });
-    return texture;
+    return published;
 }
 
 }  // namespace limn

@@ -5,9 +5,7 @@
 #include "render/gpu/texture.h"
 #include "render/highlight_layers.h"
 #include "render/shaders/light_gpu.h"
-#include "render/shading_rates.h"
 
-#include <array>
 #include <vector>
 
 namespace limn {
@@ -28,19 +26,6 @@ namespace limn {
 
 inline constexpr int kHighlightMapSize = 256;  ///< [px]
 
-/// Units 5 and 6: those of the G-buffer, which passes that draw surfaces do not read.
-inline constexpr unsigned kHighlightMapsUnit = 5;
-inline constexpr unsigned kHighlightLayersUnit = 6;
-
-/// The layers of one kind of map.
-struct HighlightLayerMaps {
-    TextureId layers;                                  ///< not valid() where no rate reads it
-    const BufferTexture* layer_of_material = nullptr;  ///< by record
-};
-
-/// Published in the views of which a rate reads them, by HighlightMap.
-using HighlightMaps = std::array<HighlightLayerMaps, kHighlightMaps>;
-
 struct HighlightMapEffect {
     /// What a texture was made of.
     struct Source {
@@ -50,15 +35,17 @@ struct HighlightMapEffect {
         Affine camera = {};
     };
     struct Maps {
-        const gpu::Program* bake = nullptr;
-        HighlightLayers layers = {};
         gpu::Texture texture = {};
         Source source = {};
+        HighlightLayers layers = {};
         BufferTexture layer_records = BufferTexture("highlight layer records", GL_RGBA32F);
         BufferTexture layer_of_material = BufferTexture("highlight layers", GL_R32UI);
     };
 
-    std::array<Maps, kHighlightMaps> maps = {};  ///< by HighlightMap
+    const gpu::Program* bake_blinn = nullptr;
+    const gpu::Program* bake_environment = nullptr;
+    Maps blinn = {};
+    Maps environment = {};
     BufferTexture lights = BufferTexture("highlight lights", GL_RGBA32F);
 
     static Result<HighlightMapEffect> create(gpu::Device& device, const RenderSettings&);
@@ -67,9 +54,9 @@ struct HighlightMapEffect {
     bool prepare(const FrameData& frame, ViewData& view);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
-    /// Part of draw(): the texture, baked again where its source has changed.
-    TextureId
-    bake(FrameGraph& graph, const FrameData& frame, const ViewData& view, HighlightMap map);
+    /// The part of draw() for one map, which is baked if something has changed.
+    HighlightMaps::Map
+    draw_map(FrameGraph& graph, const FrameData& frame, const ViewData& view, bool by_view);
 };
 
 }  // namespace limn

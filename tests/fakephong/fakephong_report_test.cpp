@@ -89,14 +89,18 @@ TEST_CASE("fakephong: chords and quadratics miss an arc by the derived distances
     const PathDeviation d90 = path_deviation(90 * kDegree);
     CHECK(d30.linear_sine == near(0.0090).epsilon(0.01));
     CHECK(d30.linear_cosine == near(0.0329).epsilon(0.01));
+    CHECK(d30.quadratic_sine == near(0.0011).epsilon(0.05));
+    CHECK(d30.quadratic_cosine == near(0.0003).epsilon(0.2));
     CHECK(d60.linear_sine == near(0.0684).epsilon(0.01));
     CHECK(d60.linear_cosine == near(0.1163).epsilon(0.01));
     CHECK(d60.quadratic_sine == near(0.0082).epsilon(0.02));
     CHECK(d60.quadratic_cosine == near(0.0051).epsilon(0.02));
     CHECK(d90.linear_sine == near(0.2105).epsilon(0.01));
+    CHECK(d90.linear_cosine == near(0.2105).epsilon(0.01));
     CHECK(d90.quadratic_sine == near(0.0235).epsilon(0.02));
     CHECK(d90.quadratic_cosine == near(0.0235).epsilon(0.02));
     CHECK(d60.linear_cosine / d30.linear_cosine == near(3.5).epsilon(0.02));
+    CHECK(d60.quadratic_sine / d30.quadratic_sine == near(7.3).epsilon(0.1));
     CHECK(path_deviation(1e-3).linear_cosine < 1e-6);
 }
 

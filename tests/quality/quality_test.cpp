@@ -151,6 +151,58 @@ TEST_CASE(
     CHECK(count_of(page, "as printed</td>") == 2);
 }
 
+TEST_CASE("quality: fakephong measures a given model, whatever its normals and facets are like") {
+    const TemporaryFolder folder;
+    const std::string corners = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\n";
+    const auto found = [&](const std::string& obj, const std::string& row) {
+        test::write_text(folder.file("a.obj"), obj);
+        const ProgramRun run =
+            run_limn(folder, {"quality", "fakephong", "a.obj", "--json", "q.json"});
+        CAPTURE(obj);
+        CAPTURE(run.err);
+        REQUIRE(run.exit_code == 0);
+        const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+        for (const auto& one : json["effects"][0]["rows"]) {
+            if (one["name"] == row) {
+                return one["found"].get<double>();
+            }
+        }
+        FAIL("no row " << row);
+        return 0.0;
+    };
+    const std::string front = corners + "vn 0 0 1\nf 1//1 2//1 3//1\n";
+    CHECK(found(front, "triangles") == 1);
+    CHECK(found(front, "pixels covered") > 1000);
+    CHECK(found(front, "Gouraud: color correctness") < 1);
+    CHECK(found(corners + "vn 0 0 1\nf 3//1 2//1 1//1\n", "pixels covered") == 0);  // from behind
+    CHECK(found(corners + "vn 0 0 0\nf 1//1 2//1 3//1\n", "pixels covered") > 1000);
+    CHECK(
+        found(corners + "vn 0 0 1\nvn 0 0 -1\nf 1//1 2//2 3//1\n", "quadratic: color correctness")
+        > 0);
+    const std::string twice = front + "f 1//1 1//1 2//1\nf 2//1 3//1 3//1\n";
+    CHECK(found(twice, "  without an area, left out") == 2);
+}
+
+TEST_CASE("quality: a model that cannot be shaded is refused in one line that names it") {
+    const TemporaryFolder folder;
+    const auto refused = [&](const std::vector<std::string>& arguments) {
+        std::vector<std::string> all = {"quality"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const ProgramRun run = run_limn(folder, all);
+        CHECK(run.exit_code == 1);
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+        return run.err;
+    };
+    CHECK(refused({"fakephong", "none.glb"}).find("none.glb: no such file") != std::string::npos);
+    test::write_text(folder.file("flat.obj"), "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n");
+    CHECK(
+        refused({"fakephong", "flat.obj"}).find("none with an area, expected at least one")
+        != std::string::npos);
+    test::write_text(folder.file("empty.obj"), "v 0 0 0\n");
+    CHECK(refused({"fakephong", "empty.obj"}).find("empty.obj") != std::string::npos);
+    CHECK(refused({"shadows", "flat.obj"}).find("found the file flat.obj") != std::string::npos);
+}
+
 TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none is named") {
     const TemporaryFolder folder;
     CHECK(measured_rows("surfaces", folder).size() == 6);
