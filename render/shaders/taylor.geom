@@ -38,6 +38,7 @@ void main() {
         (corner_normal_ws[0] + corner_normal_ws[1] + corner_normal_ws[2]) / 3.0);
     LitPoint middle = lit_point(mesh_point(vec2(1.0 / 3.0)));
     vec3 viewer = middle.reflector.to_camera;
+    float side = dot(middle.reflector.normal, series[0]) < 0.0 ? -1.0 : 1.0;  // of double-sided surfaces
     vec4 vectors[SINGLE_LIGHTS];
     vec3 irradiances[SINGLE_LIGHTS];
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {
@@ -57,7 +58,9 @@ void main() {
         diffuse = light.diffuse;
         specular = light.specular;
         to_camera = viewer;
-        normal_series = series;
+        for (int j = 0; j < 6; ++j) {
+            normal_series[j] = side * series[j];
+        }
         light_vector = vectors;
         irradiance = irradiances;
         EmitVertex();

@@ -92,6 +92,16 @@ TEST_CASE("fakephong: the Blinn texture is the power of the projected normal") {
     }
 }
 
+TEST_CASE("fakephong: at the rim and beyond, any texture is dark") {
+    const LookupTexture diffuse =
+        bake_texture(256, [](double x, double y) { return dvec3(blinn_texture_value(1, x, y)); });
+    CHECK(fetch(diffuse, {0, 0}).x.value == near(1).epsilon(1e-4));
+    for (const double x : {-1.5, -1.0, 1.0, 1.5}) {
+        CHECK(fetch(diffuse, {x, 0}).x.value == 0);
+        CHECK(fetch(diffuse, {0, x}).x.value == 0);
+    }
+}
+
 TEST_CASE("fakephong: Blinn coordinates are those of the thesis and lie at sqrt(1 - (N.H)^2)") {
     const PhongScene front = scene_with_half_vector({0, 0, 1});
     const Vec2r at = blinn_coordinates(front, front.lights[0], at_origin({0.6, 0, 0.8}));

@@ -197,6 +197,54 @@ TEST_CASE_FIXTURE(
         {&HardwareDefects::first_light, &HardwareDefects::axis_length, &HardwareDefects::world_up});
 }
 
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: only the hardware of 2002 lights normals that point away from H") {
+    MeshData mesh = make_square();
+    mesh.normals.assign(4, {-0.8f, 0, -0.6f});
+    show(mesh);
+    eye = {0, 0, 3};
+    rendering.infinite_viewer = true;
+    directional_light(glm::normalize(Vec3(0.436f, 0, -0.9f)));  // N.L is 0.19, N.H -0.91
+    rendering.hardware = {false, false, false, false, false, false};
+    const gpu::FloatImage right = drawn(ShadingRate::BlinnMap);
+    CHECK(largest_difference(drawn(ShadingRate::HwBlinn), right) < 1e-5f);
+    rendering.hardware.lit_backs = true;
+    const Vec3 more = rgb_at(drawn(ShadingRate::HwBlinn), kSide / 2, kSide / 2)
+                      - rgb_at(right, kSide / 2, kSide / 2);
+    CHECK(std::abs(more.x - 0.4f * std::pow(0.914f, 20.0f)) < kStep);
+}
+
+TEST_CASE_FIXTURE(Laboratory, "fake phong: a double-sided surface is lit on its back") {
+    auto& material = world.resource<Assets>().materials[shiny.index];
+    material.double_sided = true;
+    material.specular = Vec3(0);
+    show(make_square());
+    eye = {0.4f, 0.5f, -3};
+    directional_light({0.2f, 0.4f, -1});
+    const Vec3 pixel = rgb_at(drawn(ShadingRate::Pixel), kSide / 2, kSide / 2);
+    CHECK(pixel.x > 0.3f);
+    for (const NamedRate& named : kRates) {
+        const Vec3 other = rgb_at(drawn(named.rate), kSide / 2, kSide / 2);
+        CHECK_MESSAGE(glm::length(other - pixel) < kStep, std::string(named.method));
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: materials without Blinn's or Phong's model are lit per vertex") {
+    auto& material = world.resource<Assets>().materials[shiny.index];
+    material.shading = ShadingModel::Pbr;
+    material.roughness = 0.3f;
+    show(make_ball(5));
+    directional_light({0.2f, 0.4f, 1});
+    const gpu::FloatImage vertex = drawn(ShadingRate::Vertex);
+    CHECK(largest_difference(drawn(ShadingRate::Quadratic), vertex) > 0.02f);
+    for (const ShadingRate rate :
+         {ShadingRate::Taylor, ShadingRate::BlinnMap, ShadingRate::QuadraticBlinn,
+          ShadingRate::HwBlinn, ShadingRate::PhongMap, ShadingRate::Environment}) {
+        CHECK(largest_difference(drawn(rate), vertex) < 1e-5f);
+    }
+}
+
 TEST_CASE_FIXTURE(Laboratory, "fake phong: bad input leaves no NaN and no negative light") {
     MeshData mesh = make_square();
     mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}, {0, 0, 0}};
