@@ -29,7 +29,7 @@ constexpr int kSeconds = 10;  // to play, the longest that an event of a level t
 const std::map<std::string, int> kMaxPrograms = {
     {"cistern", 65}, {"cloister", 61},  {"forge", 54},  {"furrows", 41},
     {"gallery", 43}, {"herd", 43},      {"lagoon", 70}, {"lights", 43},
-    {"million", 52}, {"museum", 78},    {"ocean", 51},  {"phonglab", 43}, {"pond", 60},
+    {"million", 52}, {"museum", 78},    {"ocean", 51},  {"phonglab", 47}, {"pond", 60},
     {"raceway", 74}, {"stilllife", 73}, {"storm", 60},  {"stress-instances", 41},
     {"vale", 80}};
 

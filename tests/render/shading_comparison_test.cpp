@@ -91,6 +91,29 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ComparisonScene,
+    "shading comparison: methods with and without a geometry shader leave each other no holes") {
+    place(add(make_ball(40)), MaterialId{0}, at({1.3f, -0.4f, -0.7f}));
+    view = look({0.7f, 0.6f, 2.1f}, {0.3f, 0, 0}, 320, 240);
+    struct Pair {
+        ShadingRate left, right;
+    };
+    for (const auto& [left, right] :
+         {Pair{ShadingRate::Quadratic, ShadingRate::Pixel},
+          Pair{ShadingRate::Pixel, ShadingRate::Cubic}}) {
+        const gpu::FloatImage alone = by(right);
+        const gpu::FloatImage both = compared({.right = right, .divider = 0}, left);
+        int different = 0;
+        for (int y = 8; y < view.height; ++y) {
+            for (int x = 24; x < view.width; ++x) {  // right of the divider with its handle
+                different += both.at(x, y, 0) == alone.at(x, y, 0) ? 0 : 1;
+            }
+        }
+        CHECK(different == 0);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ComparisonScene,
     "shading comparison: a difference is that of 8-bit images to the power 1/10, times the gain") {
     const auto rounded = [](ColorImage image) {
         for (Vec3& c : image.pixels) {
