@@ -13,7 +13,9 @@
 #include "ecs/components/path.h"
 #include "ecs/components/skeleton.h"
 #include "ecs/components/surface.h"
+#include "ecs/field_access.h"
 #include "ecs/hierarchy.h"
+#include "ecs/reflect.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
@@ -249,13 +251,13 @@ void print_assets(
     }
     print_rest(meshes.size());
 
-    static constexpr const char* kShading[] = {"pbr", "blinn", "phong", "unlit", "skin"};
+    const FieldInfo& shading = *find_field(component_info<Material>().fields, "shading");
     fmt::print("{}\n", counted(materials.size(), "material"));
     for (std::size_t i = 0; i < std::min(materials.size(), kMaxLines); ++i) {
         const Material& material = materials[i];
         fmt::print(
             "    {:<5}  metalness {:<6}  roughness {:<6}  {}\n",
-            kShading[static_cast<std::size_t>(material.shading)],
+            shading.values[static_cast<std::size_t>(material.shading)],
             factor_text(material.metalness, material.metal_rough_texture),
             factor_text(material.roughness, material.metal_rough_texture), material.name);
     }

@@ -369,6 +369,19 @@ TEST_CASE("cli: info tells what particles may cost, by emitter and in all") {
     CHECK(run_limn(folder, {"info", "none.level.json"}).out.find("emitter") == std::string::npos);
 }
 
+TEST_CASE("cli: info names every material's shading model") {
+    const TemporaryFolder folder;
+    test::write_text(
+        folder.file("my.level.json"),
+        R"({"materials": {"wax": {"shading": "subsurface"}, "plain": {"shading": "unlit"}}})");
+    const ProgramRun run = run_limn(folder, {"info", "my.level.json"});
+    CHECK(run.exit_code == 0);
+    CHECK(
+        run.out.find("\n    subsurface  metalness 0.00    roughness 0.50    wax\n")
+        != std::string::npos);
+    CHECK(run.out.find("    unlit") != std::string::npos);
+}
+
 TEST_CASE("cli: check draws a level that is right, and warns of what has no effect") {
     const TemporaryFolder folder;
     const ProgramRun good = run_limn(folder, {"check", "lights"});

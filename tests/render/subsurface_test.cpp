@@ -224,7 +224,7 @@ TEST_CASE("subsurface: highlights are not spread") {
     gpu::FloatImage images[2];
     for (const bool spread : {false, true}) {
         Material black = wax(spread ? kFreePath : Vec3(0));
-        black.base_color = {0, 0, 0, 1};
+        black.base_color = {1e-3f, 1e-3f, 1e-3f, 1};
         black.roughness = 0.3f;
         black.specular = Vec3(0.03f);
         Scene scene;
@@ -232,8 +232,12 @@ TEST_CASE("subsurface: highlights are not spread") {
         scene.shine(PointLight{.intensity = 20, .radius = 0}, at({1, 1, 3}));
         images[spread ? 1 : 0] = scene.radiance(scene.look({0, 0, 2}, {0, 0, 0}));
     }
-    CHECK(images[0].pixels == images[1].pixels);
-    CHECK(*std::max_element(images[0].pixels.begin(), images[0].pixels.end()) > 0.05f);
+    CHECK(largest_difference(images[0], images[1]) < 2e-3f);
+    float brightest = 0;
+    for (int i = 0; i < images[1].width * images[1].height; ++i) {
+        brightest = std::max(brightest, images[1].at(i % images[1].width, i / images[1].width, 0));
+    }
+    CHECK(brightest > 0.05f);
 }
 
 TEST_CASE("subsurface: dark skin behind a bright edge of skin stays dark") {
