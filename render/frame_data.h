@@ -137,7 +137,7 @@ struct ViewData {
     TextureId radiance;   ///< the image so far; effects replace it
     TextureId scattered;  ///< light within surfaces that scatter, before their albedo, alpha 1
                           ///< there, with mip levels; valid() after lighting where `spreads`
-    TextureId display;  ///< RGBA8, at the end of kFilmViews
+    TextureId display;    ///< RGBA8, at the end of kFilmViews
 
     TypedStore data;
 

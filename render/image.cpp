@@ -58,7 +58,7 @@ constexpr EffectEntry kImage[] = {
 
     // Light.
     effect<LightEffect>(kSceneViews),
-    effect<ShadingComparisonEffect>(kMainViews),  // two methods as one image
+    effect<ShadingComparisonEffect>(kMainViews),         // two methods as one image
     effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // light that spreads within surfaces
     effect<SkyEffect>(kSceneViews),
     effect<MirrorCausticEffect>(kSceneViews),

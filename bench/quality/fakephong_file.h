@@ -17,9 +17,9 @@ namespace fakephong {
 
 }  // namespace fakephong
 
-/// `limn quality fakephong FILE`: every method on the triangles of a glTF or Wavefront file. Time and
-/// memory are linear in them, a million take 5 s of processor time; points are checked on at most
-/// kMaxCheckedFacets.
+/// `limn quality fakephong FILE`: every method on the triangles of a glTF or Wavefront file. Time
+/// and memory are linear in them, a million take 5 s of processor time; points are checked on at
+/// most kMaxCheckedFacets.
 [[nodiscard]] Status measure_fakephong_file(const std::string& path, QualityReport& report);
 
 }  // namespace limn

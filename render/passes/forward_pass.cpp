@@ -159,8 +159,7 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, Te
                     [&programs = facets ? pass.facet_depth : pass.vertex_depth,
                      &view](PassContext& context) {
                         bind_view(context, view);
-                        draw_depths(
-                            context, view, view.data.get<InstanceList>().opaque, programs);
+                        draw_depths(context, view, view.data.get<InstanceList>().opaque, programs);
                     });
             }
             const Use writes[] = {cleared(into), view.gbuffer.depth};

@@ -27,11 +27,13 @@ constexpr int kSeconds = 10;  // to play, the longest that an event of a level t
 /// where one would do, or has definitions that follow the view (render/effect.h), change the
 /// effect; if the level shows something new, raise its number to what it needs and a few.
 const std::map<std::string, int> kMaxPrograms = {
-    {"cistern", 65},          {"cloister", 61}, {"forge", 54},     {"furrows", 41},
-    {"gallery", 43},          {"herd", 43},     {"lagoon", 70},    {"lights", 43},
-    {"million", 52},          {"museum", 78},   {"ocean", 51},     {"phonglab", 47},
-    {"pond", 60},                 {"portrait", 43},         {"raceway", 74},  {"stilllife", 73}, {"storm", 60},
-    {"stress-instances", 41}, {"vale", 80}};
+    {"cistern", 65},   {"cloister", 61}, {"forge", 54},
+    {"furrows", 41},   {"gallery", 43},  {"herd", 43},
+    {"lagoon", 70},    {"lights", 43},   {"million", 52},
+    {"museum", 78},    {"ocean", 51},    {"phonglab", 47},
+    {"pond", 60},      {"portrait", 43}, {"raceway", 74},
+    {"stilllife", 73}, {"storm", 60},    {"stress-instances", 41},
+    {"vale", 80}};
 
 HeadlessRenderer& shared_headless() {
     static HeadlessRenderer shared = [] {

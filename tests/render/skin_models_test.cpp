@@ -259,16 +259,14 @@ TEST_CASE("subsurface gloss: white skin in white light is white, and none is bri
             Scene scene;
             scene.place(
                 scene.add(make_square()),
-                scene.add(
-                    Material{
-                        .shading = ShadingModel::Subsurface,
-                        .base_color = Vec4(1),
-                        .specular = Vec3(0.028f),
-                        .gloss = gloss}),
+                scene.add(Material{
+                    .shading = ShadingModel::Subsurface,
+                    .base_color = Vec4(1),
+                    .specular = Vec3(0.028f),
+                    .gloss = gloss}),
                 at({0, 0, 0}));
             scene.world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(1)});
-            const float found =
-                scene.radiance(scene.look(eye, {0, 0, 0}, 17, 17)).at(8, 8, 1);
+            const float found = scene.radiance(scene.look(eye, {0, 0, 0}, 17, 17)).at(8, 8, 1);
             CHECK(found <= 1.002f);
             CHECK(found > 0.98f);
         }
@@ -293,8 +291,7 @@ TEST_CASE("detail: its slopes add to those of the normal map") {
     material.detail_texture.image = scene.add(map("fine", {0, 1.0f / 3, 1}));
     material.detail_texture.scale = {8, 8};
     scene.place(scene.add(make_square()), scene.add(material), at({0, 0, 0}));
-    const Vec3 found =
-        rgb_at(scene.aov(scene.look({0, 0, 1}, {0, 0, 0}, 17, 17), "normal"), 8, 8);
+    const Vec3 found = rgb_at(scene.aov(scene.look({0, 0, 1}, {0, 0, 0}, 17, 17), "normal"), 8, 8);
     CHECK(glm::distance(found, glm::normalize(Vec3(0.25f, 1.0f / 3, 1))) < 0.01f);
 }
 
