@@ -127,7 +127,7 @@ TEST_CASE("quality: wrong usage ends with 2, and the effects are listed in the h
     CHECK(wrong.err.find("--jsn") != std::string::npos);
     const ProgramRun help = run_limn(folder, {"quality", "--help"});
     CHECK(help.exit_code == 0);
-    CHECK(quality_effects().size() == 15);
+    CHECK(quality_effects().size() == 16);
     for (const QualityEffect& effect : quality_effects()) {
         CHECK(
             help.out.find(fmt::format("  {:<12}vs {}\n", effect.name, effect.oracle))

@@ -140,7 +140,7 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium me
     return Incoming(to_light, irradiance, irradiance);
 }
 
-#if defined(SHADE_SUBSURFACE) && defined(SHADOW_MAPS)
+#if defined(SHADE_SUBSURFACE) && defined(SHADOWS) && defined(SHADOW_MAPS)
 // Adds the diffuse light that has entered behind a body of Subsurface and passed it: by the profile, over the distance
 // from where the light's shadow map is hit, with the normal there taken to be the opposite one (Jimenez et al.,
 // "Real-Time Realistic Skin Translucency", 2010).

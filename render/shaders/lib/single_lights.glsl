@@ -33,7 +33,7 @@ LitPoint lit_point(MeshPoint at) {
 
 // What arrives of light number `k` < p.lights.
 Incoming single_light(LitPoint p, int k) {
-    Incoming light = Incoming(p.reflector.normal, vec3(0.0));
+    Incoming light = Incoming(p.reflector.normal, vec3(0.0), vec3(0.0));
     int local = k;
 #ifdef DIRECTIONAL_LIGHTS
     local = k - int(view.grid_depth.z);
