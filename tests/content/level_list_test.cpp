@@ -12,7 +12,8 @@
 
 using namespace limn;
 
-TEST_CASE("levels: every level of the project loads, is named and has a camera that moves or that keys place") {
+TEST_CASE("levels: every level of the project loads, is named and has a camera that moves or that "
+          "keys place") {
     register_game_components();
     const std::vector<LevelEntry> levels = list_levels();
     for (const LevelEntry& entry : levels) {
