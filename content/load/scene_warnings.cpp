@@ -11,6 +11,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/path.h"
+#include "ecs/components/post.h"
 #include "ecs/components/rotation_track.h"
 #include "ecs/components/script.h"
 #include "ecs/components/shadow.h"
@@ -27,6 +28,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -128,6 +130,11 @@ bool is_solid(const Assets& assets, const MeshInstance& instance) {
                    && !assets.materials[instance.material.index].double_sided));
 }
 
+// Illuminance [lx] times exposure: from which matte white is over thirty times as bright as an
+// image can show, and that suits.
+constexpr float kBurns = 100;
+constexpr float kSuits = 5;
+
 struct SceneCheck {
     const World& world;
     std::vector<SceneWarning> warnings = {};
@@ -223,6 +230,26 @@ struct SceneCheck {
         world.query<const Caustics>().each([&](Entity entity, const Caustics&) {
             if (!has_sun) {
                 warn(entity, "caustics has no effect without a directional_light from above");
+            }
+        });
+    }
+
+    /// Suns in lux as measured outdoors, in an image that is exposed for a few.
+    void check_exposure() {
+        const auto* const found = world.find_resource<Exposure>();
+        const Exposure exposure = found != nullptr ? *found : Exposure{};
+        if (exposure.metering != Metering::Manual) {
+            return;
+        }
+        const float factor = std::exp2(exposure.ev + exposure.manual_ev);
+        world.query<const DirectionalLight>().each([&](Entity entity,
+                                                       const DirectionalLight& light) {
+            if (light.enabled && light.illuminance * factor > kBurns) {
+                warn(
+                    entity, fmt::format(
+                                "{:.6g} lx are far too bright for the exposure; set the resource "
+                                "\"exposure\": {{\"metering\": \"auto\"}}, or about {:.1g} lx",
+                                light.illuminance, kSuits / factor));
             }
         });
     }
@@ -401,6 +428,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_cameras();
     check.check_camera_places();
     check.check_caustics();
+    check.check_exposure();
     check.check_colors<PointLight>();
     check.check_colors<SpotLight>();
     check.check_colors<DirectionalLight>();

@@ -233,6 +233,24 @@ TEST_CASE("scene warnings: caustics without a sun above the horizon") {
     }
 }
 
+TEST_CASE("scene warnings: a sun far brighter than the exposure is made for") {
+    const auto level = [](std::string_view exposure, std::string_view sun) {
+        return fmt::format(
+            R"({{"resources": {{{}}}, "entities": [{{"name": "sun",
+                "directional_light": {{"illuminance": {}}}}}]}})",
+            exposure, sun);
+    };
+    CHECK(
+        warnings_of(level("", "40000"))
+        == Warnings{
+            "entity \"sun\": 40000 lx are far too bright for the exposure; set the resource "
+            "\"exposure\": {\"metering\": \"auto\"}, or about 5 lx"});
+    CHECK(warnings_of(level(R"("exposure": {"ev": 2})", "30")).size() == 1);
+    CHECK(warnings_of(level("", "26")).empty());
+    CHECK(warnings_of(level(R"("exposure": {"manual_ev": -13})", "40000")).empty());
+    CHECK(warnings_of(level(R"("exposure": {"metering": "auto"})", "40000")).empty());
+}
+
 TEST_CASE("scene warnings: the color of a light is no intensity") {
     CHECK(warnings_of(R"({"entities": [{"point_light": {"color": [1, 0.5, 0]}}]})").empty());
     CHECK(
