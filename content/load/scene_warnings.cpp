@@ -247,8 +247,9 @@ struct SceneCheck {
             if (light.enabled && light.illuminance * factor > kBurns) {
                 warn(
                     entity, fmt::format(
-                                "{:.6g} lx are far too bright for the exposure; set the resource "
-                                "\"exposure\": {{\"metering\": \"auto\"}}, or about {:.1g} lx",
+                                "{:.6g} lx are far too bright for the exposure, which suits about "
+                                "{:.1g} lx, as skies and effects do; \"exposure\": {{\"metering\": "
+                                "\"auto\"}} follows any light",
                                 light.illuminance, kSuits / factor));
             }
         });

@@ -243,8 +243,9 @@ TEST_CASE("scene warnings: a sun far brighter than the exposure is made for") {
     CHECK(
         warnings_of(level("", "40000"))
         == Warnings{
-            "entity \"sun\": 40000 lx are far too bright for the exposure; set the resource "
-            "\"exposure\": {\"metering\": \"auto\"}, or about 5 lx"});
+            "entity \"sun\": 40000 lx are far too bright for the exposure, which suits about "
+            "5 lx, as skies and effects do; \"exposure\": {\"metering\": \"auto\"} follows any "
+            "light"});
     CHECK(warnings_of(level(R"("exposure": {"ev": 2})", "30")).size() == 1);
     CHECK(warnings_of(level("", "26")).empty());
     CHECK(warnings_of(level(R"("exposure": {"manual_ev": -13})", "40000")).empty());
