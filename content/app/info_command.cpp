@@ -255,11 +255,14 @@ void print_assets(
     fmt::print("{}\n", counted(materials.size(), "material"));
     for (std::size_t i = 0; i < std::min(materials.size(), kMaxLines); ++i) {
         const Material& material = materials[i];
+        const std::string clear = material.transmission > 0
+                                      ? fmt::format("transmission {:.2f}  ", material.transmission)
+                                      : "";
         fmt::print(
-            "    {:<5}  metalness {:<6}  roughness {:<6}  {}\n",
+            "    {:<5}  metalness {:<6}  roughness {:<6}  {}{}\n",
             shading.values[static_cast<std::size_t>(material.shading)],
             factor_text(material.metalness, material.metal_rough_texture),
-            factor_text(material.roughness, material.metal_rough_texture), material.name);
+            factor_text(material.roughness, material.metal_rough_texture), clear, material.name);
     }
     print_rest(materials.size());
 
