@@ -55,6 +55,12 @@ double diffusion_scale(double albedo, double mean_free_path) {
     return mean_free_path / (3.5 + 100 * std::pow(albedo - 0.33, 4));
 }
 
+DVec3 diffusion_scales(const DVec3& albedo, const DVec3& mean_free_path) {
+    return {
+        diffusion_scale(albedo.x, mean_free_path.x), diffusion_scale(albedo.y, mean_free_path.y),
+        diffusion_scale(albedo.z, mean_free_path.z)};
+}
+
 double diffused_edge(double x, double d) {
     // Of the ring r, the part on the lit side: all, none or an arc.
     constexpr int kRings = 20000;

@@ -35,6 +35,8 @@ lafortune_albedo(double diffuse, std::span<const Lobe> lobes, const DVec3& u, in
 [[nodiscard]] double diffused_share(double r, double d);
 /// d for an albedo and the mean free path of diffuse light ("searchlight" fit).
 [[nodiscard]] double diffusion_scale(double albedo, double mean_free_path);
+/// The same for red, green and blue.
+[[nodiscard]] DVec3 diffusion_scales(const DVec3& albedo, const DVec3& mean_free_path);
 
 /// Irradiance of a plane whose half x > 0 is lit by 1, once diffused, at `x`.
 [[nodiscard]] double diffused_edge(double x, double d);

@@ -38,12 +38,7 @@ Material skin(const Vec3& free_path = kFreePath) {
 }
 
 dvec3 scales_of(const Material& material) {
-    dvec3 d;
-    for (int c = 0; c < 3; ++c) {
-        d[c] = oracle::diffusion_scale(
-            static_cast<double>(material.base_color[c]), static_cast<double>(material.scatter[c]));
-    }
-    return d;
+    return oracle::diffusion_scales(dvec3(Vec3(material.base_color)), dvec3(material.scatter));
 }
 
 /// A strip of light on a plane, between two casters out of view.

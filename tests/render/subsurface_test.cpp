@@ -39,12 +39,7 @@ Material wax(const Vec3& free_path = kFreePath) {
 }
 
 DVec3 scales(const Material& material) {
-    DVec3 d;
-    for (int c = 0; c < 3; ++c) {
-        d[c] = oracle::diffusion_scale(
-            static_cast<double>(material.base_color[c]), static_cast<double>(material.scatter[c]));
-    }
-    return d;
+    return oracle::diffusion_scales(DVec3(Vec3(material.base_color)), DVec3(material.scatter));
 }
 
 /// A plane in z = 0 under a light from the right, at 45 degrees, that shines past casters out of

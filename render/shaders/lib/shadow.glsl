@@ -190,15 +190,21 @@ float mask_visibility(float layer, vec2 pixel) {
 #endif
 
 #ifdef SHADOW_MAPS
+// The view of a light toward a point; of cascades, the nearest.
+int first_view(vec4 shadow, vec3 to_light) {
+    int index = max(int(shadow.x), 0);
+#ifdef SHADOW_CUBES
+    index += shadow.y == kShadowCube ? cube_face(-to_light) : 0;
+#endif
+    return index;
+}
+
 const float kOpaque = 1e6;  // more than anything that light passes [m]
 
 // Distance [m] that light has traveled at `position_ws` since it met the nearest caster, the mean of 2x2 texels; kOpaque
 // of lights without a map and beyond it. Of cascades, the first that holds the point.
 float shadow_thickness(vec4 shadow, vec3 position_ws, vec3 to_light) {
-    int index = max(int(shadow.x), 0);
-#ifdef SHADOW_CUBES
-    index += shadow.y == kShadowCube ? cube_face(-to_light) : 0;
-#endif
+    int index = first_view(shadow, to_light);
 #ifdef SHADOW_CASCADES
     float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
     vec4 ends = texelFetch(shadow_views, index * int(kShadowViewTexels) + 9);
@@ -232,10 +238,7 @@ float shadow_thickness(vec4 shadow, vec3 position_ws, vec3 to_light) {
 //   pixel   that shows it, gl_FragCoord.xy
 float light_visibility(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
 #ifdef SHADOW_MAPS
-    int index = max(int(shadow.x), 0);
-#ifdef SHADOW_CUBES
-    index += shadow.y == kShadowCube ? cube_face(-to_light) : 0;
-#endif
+    int index = first_view(shadow, to_light);
 #ifdef SHADOW_CASCADES
     // Toward its end a cascade blends into the next one, or into light; only there both are sampled.
     float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
