@@ -14,6 +14,7 @@
 #include "content/app/play_command.h"
 #include "content/app/render_command.h"
 #include "content/app/sibling_program.h"
+#include "content/app/speak_command.h"
 #include "content/app/view_command.h"
 #include "content/make/find_kind.h"
 #include "ecs/base/type_name.h"
@@ -405,6 +406,40 @@ Command add_import(CLI::App& program, ImportOptions& options) {
     return {app, [&options] { return run_import(options); }};
 }
 
+Command add_speak(CLI::App& program, SpeakOptions& options) {
+    CLI::App* app = program.add_subcommand("speak", "Make a face say a text, with its sound");
+    app->add_option("text", options.text, "what it says, English")->required();
+    app->add_option("--face", options.face, "face whose shapes have FACS action units")
+        ->type_name("FILE.glb")
+        ->required();
+    app->add_option("-o,--out", options.out, "file to write; sound goes beside it as .wav")
+        ->type_name("FILE.glb")
+        ->required();
+    app->add_option("--voice", options.voice, "of espeak-ng (en, en-us, en-gb-scotland ...)")
+        ->capture_default_str();
+    add_assignments(
+        *app, options.expression, "--express",
+        "weight of a shape or action unit while speaking, as AU12=0.5");
+    app->add_option("--fragments", options.fragments, "move as these recordings do, not by rules")
+        ->type_name("FILE.json");
+    app->add_option("--record", options.record, "add the utterance to these recordings")
+        ->type_name("FILE.json");
+    app->add_flag("--silent", options.silent, "spell by rules, without espeak-ng and sound");
+    app->add_option("--seed", options.seed, "of blinks, gaze and the head")->capture_default_str();
+    app->footer(
+        "The clip comes first in a copy of the face: mouth, blinks, gaze, and the head where a\n"
+        "node is named so. Sounds and their times come from the program espeak-ng; without it,\n"
+        "from spelling rules and mean durations. Neighboring sounds shape each other\n"
+        "(dominance functions of Cohen and Massaro 1993).\n\n"
+        "Examples:\n"
+        "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
+        "  limn speak \"The time is exactly one.\" --face face.glb -o clock.glb\n"
+        "  limn speak \"Hello!\" --face face.glb -o hello.glb --express AU12=0.4 --express "
+        "AU2=0.5\n"
+        "  limn play clock.glb");
+    return {app, [&options] { return run_speak(options); }};
+}
+
 Command add_levels(CLI::App& program) {
     CLI::App* app = program.add_subcommand("levels", "List the levels");
     app->footer("Example:\n  limn levels");
@@ -457,6 +492,7 @@ struct AllOptions {
     BakeOptions bake;
     std::string info_file;
     ImportOptions import_options;
+    SpeakOptions speak;
     std::string show;
     std::string checked;
     ComponentsOptions components;
@@ -475,6 +511,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_bake(program, options.bake),
         add_info(program, options.info_file),
         add_import(program, options.import_options),
+        add_speak(program, options.speak),
         add_levels(program),
         add_shows(program, options.show),
         add_components(program, options.components)};

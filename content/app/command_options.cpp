@@ -28,19 +28,21 @@ CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
         std::numeric_limits<std::int64_t>::max());
 }
 
-void add_assignments(CLI::App& app, std::vector<Assignment>& assignments) {
+void add_assignments(
+    CLI::App& app, std::vector<Assignment>& assignments, const std::string& name,
+    const std::string& doc) {
     app.add_option_function<std::vector<std::string>>(
-           "--set",
-           [&assignments](const std::vector<std::string>& texts) {
+           name,
+           [&assignments, name](const std::vector<std::string>& texts) {
                for (const std::string& text : texts) {
                    Result<Assignment> assignment = parse_assignment(text);
                    if (!assignment) {
-                       throw CLI::ValidationError("--set", assignment.error().message);
+                       throw CLI::ValidationError(name, assignment.error().message);
                    }
                    assignments.push_back(*std::move(assignment));
                }
            },
-           "change a field after loading; may be repeated")
+           doc + "; may be repeated")
         ->type_name("PATH=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

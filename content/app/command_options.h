@@ -69,8 +69,10 @@ CLI::Option* add_size(CLI::App& app, IVec2& size);
 /// --seed of all random numbers.
 CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed);
 
-/// --set of fields, any number of times.
-void add_assignments(CLI::App& app, std::vector<Assignment>& assignments);
+/// --set of fields, or `name` of what `doc` says, any number of times.
+void add_assignments(
+    CLI::App& app, std::vector<Assignment>& assignments, const std::string& name = "--set",
+    const std::string& doc = "change a field after loading");
 
 /// --profile of the device.
 void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile);

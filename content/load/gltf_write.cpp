@@ -527,8 +527,6 @@ class GlbWriter {
         JsonValue asset = json_object();
         set(asset, "version", json_of(std::string_view("2.0")));
         set(asset, "generator", json_of(std::string_view("limn")));
-        JsonValue buffer = json_object();
-        set(buffer, "byteLength", json_index(bytes_.size()));
         JsonValue scene = json_object();
         if (!roots_.items.empty()) {
             set(scene, "nodes", std::move(roots_));
@@ -555,33 +553,7 @@ class GlbWriter {
                 set(root, key, std::move(*list));
             }
         }
-        if (!bytes_.empty()) {
-            set(root, "buffers", json_array({std::move(buffer)}));
-        }
-        std::string json = write_json(root);
-        json.resize((json.size() + 3) / 4 * 4, ' ');
-        const std::size_t size = 12 + 8 + json.size() + (bytes_.empty() ? 0 : 8 + bytes_.size());
-        if (size > kMaxBytes) {
-            return fail("{}: found {} bytes, expected at most {}", scene_.name, size, kMaxBytes);
-        }
-        std::vector<std::byte> file;
-        file.reserve(size);
-        append_words(file, {0x46546c67u, 2, static_cast<std::uint32_t>(size)});
-        append_words(file, {static_cast<std::uint32_t>(json.size()), 0x4e4f534au});
-        append(file, std::as_bytes(std::span(json)));
-        if (!bytes_.empty()) {
-            append_words(file, {static_cast<std::uint32_t>(bytes_.size()), 0x004e4942u});
-            append(file, bytes_);
-        }
-        return file;
-    }
-
-    static void append(std::vector<std::byte>& file, std::span<const std::byte> bytes) {
-        file.insert(file.end(), bytes.begin(), bytes.end());
-    }
-    static void
-    append_words(std::vector<std::byte>& file, std::initializer_list<std::uint32_t> words) {
-        append(file, std::as_bytes(std::span(words.begin(), words.size())));
+        return pack_glb(std::move(root), bytes_, scene_.name);
     }
 
     const GltfScene& scene_;
@@ -599,7 +571,41 @@ class GlbWriter {
     std::set<std::size_t> merged_;                ///< nodes that are written as another's mesh
 };
 
+void append(std::vector<std::byte>& file, std::span<const std::byte> bytes) {
+    file.insert(file.end(), bytes.begin(), bytes.end());
+}
+
+void append_words(std::vector<std::byte>& file, std::initializer_list<std::uint32_t> words) {
+    append(file, std::as_bytes(std::span(words.begin(), words.size())));
+}
+
 }  // namespace
+
+Result<std::vector<std::byte>>
+pack_glb(JsonValue root, std::span<const std::byte> bytes, const std::string& name) {
+    std::erase_if(root.members, [](const JsonMember& member) { return member.key == "buffers"; });
+    if (!bytes.empty()) {
+        JsonValue buffer = json_object();
+        set(buffer, "byteLength", json_index(bytes.size()));
+        set(root, "buffers", json_array({std::move(buffer)}));
+    }
+    std::string json = write_json(root);
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::size_t size = 12 + 8 + json.size() + (bytes.empty() ? 0 : 8 + bytes.size());
+    if (size > kMaxBytes) {
+        return fail("{}: found {} bytes, expected at most {}", name, size, kMaxBytes);
+    }
+    std::vector<std::byte> file;
+    file.reserve(size);
+    append_words(file, {0x46546c67u, 2, static_cast<std::uint32_t>(size)});
+    append_words(file, {static_cast<std::uint32_t>(json.size()), 0x4e4f534au});
+    append(file, std::as_bytes(std::span(json)));
+    if (!bytes.empty()) {
+        append_words(file, {static_cast<std::uint32_t>(bytes.size()), 0x004e4942u});
+        append(file, bytes);
+    }
+    return file;
+}
 
 Result<std::vector<std::byte>> write_glb(const GltfScene& scene) {
     return GlbWriter(scene).write();

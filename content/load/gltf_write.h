@@ -1,9 +1,11 @@
 #pragma once
 
 #include "content/load/gltf_scene.h"
+#include "content/load/json_document.h"
 #include "ecs/base/result.h"
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,12 @@ namespace limn {
 /// other shading models than pbr and unlit.
 [[nodiscard]] Result<std::vector<std::byte>> write_glb(const GltfScene& scene);
 
-/// The same into a file, which appears complete or not at all.
+/// The container: `root` with the one buffer `bytes`, whose size must be a multiple of four. Fails
+/// where it is too large for a .glb; `name` is the prefix of the message.
+[[nodiscard]] Result<std::vector<std::byte>>
+pack_glb(JsonValue root, std::span<const std::byte> bytes, const std::string& name);
+
+/// The bytes of write_glb into a file, which appears complete or not at all.
 [[nodiscard]] Status save_glb(const std::string& path, const GltfScene& scene);
 
 }  // namespace limn

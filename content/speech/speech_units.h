@@ -1,0 +1,72 @@
+#pragma once
+
+#include "content/speech/resample.h"
+#include "content/speech/speech_track.h"
+#include "ecs/base/result.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+// Speech from recorded motion (face.speech-fragments): recordings with labels are cut into nested
+// units, and an utterance is covered by as few of them as possible, since sounds that were spoken
+// together already shape each other.
+
+/// One recording: what was said, when, and how the face moved. `track` covers it from 0 on, with
+/// silence first and last.
+struct SpeechRecording {
+    std::string text;
+    SpeechTrack track;
+    SampledCurves motion;
+};
+
+enum class UnitKind : std::uint8_t {
+    Sentence,  ///< all sounds of a recording
+    Word,
+    Diphone,  ///< from the middle of one sound to the middle of the next
+};
+
+/// A range of sounds of a recording; nothing is copied.
+struct SpeechUnit {
+    UnitKind kind = UnitKind::Sentence;
+    std::uint32_t recording = 0;
+    std::uint32_t first = 0;  ///< segment of the track
+    std::uint32_t count = 0;
+};
+
+/// All units of all recordings (face.unit-generate): the sentence without its margins, its words,
+/// and the diphones, those with silence at the margins too. A recording of p sounds and two margins
+/// has p + 1 diphones.
+[[nodiscard]] std::vector<SpeechUnit> generate_units(std::span<const SpeechRecording> recordings);
+
+/// Time in the recording at which a unit starts or ends [s].
+[[nodiscard]] float unit_start(const SpeechUnit& unit, const SpeechRecording& recording);
+[[nodiscard]] float unit_end(const SpeechUnit& unit, const SpeechRecording& recording);
+
+/// A unit that stands for sounds of an utterance, the first of them at segment `at` of its track.
+struct PlacedUnit {
+    SpeechUnit unit;
+    std::uint32_t at = 0;
+};
+
+/// Covers the utterance by units (face.unit-select): the fewest joins, plus `join_cost` times the
+/// distance between the poses at each join, by dynamic programming (A. Hunt and A. Black, "Unit
+/// selection in a concatenative speech synthesis system", 1996). Silence needs no unit. Of equal
+/// covers the one whose units come first in `units`. Fails with the sound or the pair of sounds
+/// that is missing.
+[[nodiscard]] Result<std::vector<PlacedUnit>> select_units(
+    const SpeechTrack& target, std::span<const SpeechUnit> units,
+    std::span<const SpeechRecording> recordings, float join_cost);
+
+/// The motion of the utterance (face.align-resample, face.fragment-blend): each unit is stretched
+/// so that its sounds fall on those of `target`, and neighbors are blended over up to half a sound
+/// on both sides of a join; where that is shorter than two samples, the second begins at the end of
+/// the first and the difference fades. At rest, 0, in silence without a unit.
+[[nodiscard]] SampledCurves join_units(
+    const SpeechTrack& target, std::span<const PlacedUnit> placed,
+    std::span<const SpeechRecording> recordings, float rate);
+
+}  // namespace limn
