@@ -5,6 +5,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/weather.h"
 #include "systems/animation/clip_player_system.h"
+#include "systems/animation/deformer_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/autofocus_system.h"
@@ -66,12 +67,14 @@ void add_object_systems(SystemList& systems) {
 
 void add_animation_systems(SystemList& systems) {
     systems.add<add_poses>(Create, Both);
+    systems.add<add_deformer_states>(Create, Both);
     systems.add<add_rotation_track_states>(Create, Both);
     systems.add<prepare_rotation_tracks>(Move);
     systems.add<update_rotation_tracks>(Move, Both);
     systems.add<update_wrinkle_tracks>(Move, Both);
     systems.add<advance_clips>(Animate);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
+    systems.add<update_deformers>(Animate, Both);
     systems.add<update_attachments>(Animate, Both);
     systems.add<prepare_wrinkles>(Create, Both);
 }

@@ -31,14 +31,14 @@ std::vector<Vec3> posed_positions(const World& world, Entity entity) {
     if (!check_deformable(mesh).empty()) {
         return {};
     }
-    const DeformSource source =
-        find_deform_source(world, *assets, instance->mesh, joint_count(mesh.skin), *deformed);
+    const DeformSource source = find_deform_source(
+        world, *assets, entity, instance->mesh, joint_count(mesh.skin), *deformed);
     if (!source.fault.empty()) {
         return {};
     }
     std::vector<Vec3> positions;
-    const bool deforms =
-        deform_positions(mesh, *deformed, source.skin, source.pose, source.morphs, positions);
+    const bool deforms = deform_positions(
+        mesh, *deformed, source.skin, source.pose, source.morphs, source.deformers, positions);
     return deforms ? positions : std::vector<Vec3>{};
 }
 

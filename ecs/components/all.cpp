@@ -9,6 +9,7 @@
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
 #include "ecs/components/dazzle.h"
+#include "ecs/components/deformers.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/force_field.h"
@@ -108,6 +109,8 @@ void register_all_components() {
     register_component<MorphWeights>();
     register_component<MorphPlayer>();
     register_component<Deformed>();
+    register_component<Deformers>();
+    register_component<DeformerState>();
     register_component<WrinkleSurface>();
     register_component<WrinkleMaps>();
     register_component<WrinkleWeights>();

@@ -16,6 +16,7 @@ constexpr unsigned kGroupsUnit = 1;
 constexpr unsigned kRestUnit = 2;
 constexpr unsigned kPalettesUnit = 3;
 constexpr unsigned kWeightsUnit = 4;
+constexpr unsigned kControlsUnit = 5;
 constexpr unsigned kPositionsBinding = 0;
 constexpr unsigned kBeforeBinding = 1;
 constexpr unsigned kFramesBinding = 2;
@@ -98,6 +99,7 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bo
     pass.rest.set(shapes.rest().texels());
     pass.palettes.set(work.palettes);
     pass.weights.set(work.weights);
+    pass.controls.set(work.controls);
     const DeformedVertices& vertices = shapes.vertices();
     std::vector<Use> writes;
     for (const BufferId buffer : import_deformed(graph, vertices)) {
@@ -110,6 +112,7 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bo
         pass.rest.bind(device, kRestUnit);
         pass.palettes.bind(device, kPalettesUnit);
         pass.weights.bind(device, kWeightsUnit);
+        pass.controls.bind(device, kControlsUnit);
         for (const DeformBatch& batch : shapes.work().batches) {
             if (warm_up) {
                 const bool before{shapes.vertices().before()};

@@ -8,13 +8,14 @@
 
 namespace limn {
 
-// Computes the vertices of every instance whose shape changed: morph targets, then joints, as
-// linear blend or dual quaternion skinning, any number of each (char.skin-gpu).
+// Computes the vertices of every instance whose shape changed: morph targets, then
+// deformers (lib/deformers.glsl), then joints, as linear blend or dual quaternion skinning, any
+// number of each (char.skin-gpu).
 //
 // Reads    DeformWork, RestPool
 // Writes   DeformedVertices: positions, normals, tangents; previous positions if requested
 // Order    before everything that draws meshes
-// Shaders  deform.comp, lib/skinning.glsl; layout in deform_gpu.h
+// Shaders  deform.comp, lib/skinning.glsl, lib/deformers.glsl; layout in deform_gpu.h
 
 struct DeformPass {
     /// By kDeform*, loaded on first use. Null: failed to compile, nothing is deformed.
@@ -24,6 +25,7 @@ struct DeformPass {
     BufferTexture rest = BufferTexture("meshes at rest", GL_RGBA32UI);
     BufferTexture palettes = BufferTexture("joint palettes", GL_RGBA32F);
     BufferTexture weights = BufferTexture("morph weights", GL_R32F);
+    BufferTexture controls = BufferTexture("deformers", GL_RGBA32F);
 };
 
 [[nodiscard]] Result<DeformPass> create_deform_pass(gpu::Device& device);

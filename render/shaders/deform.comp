@@ -5,6 +5,9 @@
 #include "deform_gpu.h"
 #include "lib/skinning.glsl"
 
+layout(binding = 5) uniform samplerBuffer controls;  // packed deformers
+#include "lib/deformers.glsl"
+
 layout(local_size_x = 64) in;  // kDeformGroup
 layout(binding = 0) uniform usamplerBuffer jobs;        // DeformJob
 layout(binding = 1) uniform usamplerBuffer group_jobs;  // job of each work group
@@ -104,9 +107,21 @@ Vertex move_by_duals(Vertex v, Lists lists, int palette) {
     return Vertex(dual_point(d, v.position), dual_vector(d, v.normal), dual_vector(d, v.tangent));
 }
 
-Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight) {
+Vertex apply_controls(Vertex v, int first) {
+    vec3 normal = unit_or(v.normal, vec3(0.0, 0.0, 1.0));
+    vec3 across = unit_or(cross(abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0), normal), normal);
+    vec3 along = cross(normal, across);
+    vec3 turned = cross(deform_vector(first, v.position, across), deform_vector(first, v.position, along));
+    vec3 tangent = deform_vector(first, v.position, unit_or(v.tangent, across));
+    return Vertex(deform_point(first, v.position), unit_or(turned, normal), tangent);
+}
+
+Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight, uint first_control) {
     if ((kFlags & kDeformMorphs) != 0u) {
         v = add_morphs(v, lists, int(first_weight));
+    }
+    if ((kFlags & kDeformControls) != 0u) {
+        v = apply_controls(v, int(first_control));
     }
     if ((kFlags & kDeformJoints) == 0u || lists.influence == lists.influence_end) {
         return v;
@@ -124,6 +139,7 @@ void main() {
     int job = int(kDeformJobTexels * texelFetch(group_jobs, int(group)).x);
     uvec4 job0 = texelFetch(jobs, job);      // rest, vertex_count, slot, first_group
     uvec4 job1 = texelFetch(jobs, job + 1);  // palette, previous_palette, weights, previous_weights
+    uvec4 job2 = texelFetch(jobs, job + 2);  // controls, previous_controls
     uint number = (group - job0.w) * kDeformGroup + gl_LocalInvocationID.x;
     if (number >= job0.y) {
         return;
@@ -147,13 +163,13 @@ void main() {
         int(b.w),
         int(texelFetch(rest, texel + int(kRestTexels) + 1).w));
     if ((kFlags & kDeformPrevious) != 0u) {
-        vec3 p = deformed(v, lists, job1.y, job1.w).position;
+        vec3 p = deformed(v, lists, job1.y, job1.w, job2.y).position;
         previous[3u * place] = p.x;
         previous[3u * place + 1u] = p.y;
         previous[3u * place + 2u] = p.z;
     }
     if ((kFlags & kDeformCurrent) != 0u) {
-        Vertex now = deformed(v, lists, job1.x, job1.z);
+        Vertex now = deformed(v, lists, job1.x, job1.z, job2.x);
         positions[3u * place] = now.position.x;
         positions[3u * place + 1u] = now.position.y;
         positions[3u * place + 2u] = now.position.z;

@@ -15,7 +15,7 @@ const uint kRestTexels = 3u;    // per vertex
 const uint kOffsetTexels = 2u;  // per offset of a morph target
 const float kMaxUnitDifference = 2.0; // largest difference of two unit vectors, by component
 
-// One instance to deform: two texels.
+// One instance to deform: three texels.
 struct DeformJob {
     uint rest;            // first texel of the mesh
     uint vertex_count;
@@ -25,9 +25,13 @@ struct DeformJob {
     uint previous_palette;  // the same in the previous frame
     uint weights;         // first of its morph weights
     uint previous_weights;
+    uint controls;        // first texel of its packed deformers (lib/deformers.glsl)
+    uint previous_controls;
+    uint unused0;
+    uint unused1;
 };
 
-const uint kDeformJobTexels = 2u;
+const uint kDeformJobTexels = 3u;
 const uint kDeformGroup = 64u;        // vertices
 const uint kDeformGroupsWide = 1024u; // groups of a dispatch along x
 
@@ -38,6 +42,7 @@ const uint kDeformCopyPrevious = 4u;  // copies the last drawn positions to the 
 const uint kDeformJoints = 8u;      // has a palette
 const uint kDeformDual = 16u;       // of dual quaternions
 const uint kDeformMorphs = 32u;     // has morph weights, one per target
+const uint kDeformControls = 64u;   // has deformers
 
 #ifdef __cplusplus
 static_assert(sizeof(DeformJob) == 16 * kDeformJobTexels);

@@ -9,14 +9,21 @@
 namespace limn {
 
 DeformSource find_deform_source(
-    const World& world, const Assets& assets, MeshId mesh, std::uint32_t joint_count,
+    const World& world, const Assets& assets, Entity entity, MeshId mesh, std::uint32_t joint_count,
     const Deformed& settings) {
     const std::string& name = assets.meshes[mesh.index].name;
     const bool alive = !settings.character.is_null() && world.alive(settings.character);
     DeformSource source;
     source.pose = alive ? world.find<Pose>(settings.character) : nullptr;
     source.morphs = alive ? world.find<MorphWeights>(settings.character) : nullptr;
-    if (source.pose == nullptr && source.morphs == nullptr) {
+    source.deformers = world.find<DeformerState>(entity);
+    if (joint_count == 0 && assets.meshes[mesh.index].morphs.empty()
+        && source.deformers == nullptr) {
+        source.fault =
+            fmt::format("deformed mesh {} has neither joints, morph targets nor deformers", name);
+        return source;
+    }
+    if (source.pose == nullptr && source.morphs == nullptr && source.deformers == nullptr) {
         source.fault = fmt::format(
             "deformed mesh {}: its character {}", name,
             alive ? "has neither Pose nor MorphWeights" : "is gone");

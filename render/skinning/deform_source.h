@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
 
 #include <string>
@@ -11,16 +12,17 @@ class World;
 
 /// Inputs of a deformed instance; valid until the world changes.
 struct DeformSource {
-    const SkinData* skin = nullptr;        ///< null: not skinned
-    const Pose* pose = nullptr;            ///< contains all joints of the skin
-    const MorphWeights* morphs = nullptr;  ///< null: no morph targets
+    const SkinData* skin = nullptr;            ///< null: not skinned
+    const Pose* pose = nullptr;                ///< contains all joints of the skin
+    const MorphWeights* morphs = nullptr;      ///< null: no morph targets
+    const DeformerState* deformers = nullptr;  ///< of the mesh itself; null: none
     std::string fault;  ///< why it is drawn in rest pose; empty if it is deformed
 };
 
-/// `joint_count`: number of joints that the mesh's weights refer to. The mesh itself must be valid
-/// (check_deformable).
+/// Of `entity`, an instance of `mesh`. `joint_count`: number of joints that the mesh's weights
+/// refer to. The mesh itself must be valid (check_deformable).
 [[nodiscard]] DeformSource find_deform_source(
-    const World& world, const Assets& assets, MeshId mesh, std::uint32_t joint_count,
+    const World& world, const Assets& assets, Entity entity, MeshId mesh, std::uint32_t joint_count,
     const Deformed& settings);
 
 }  // namespace limn

@@ -49,6 +49,20 @@ std::uint64_t hash_at(const std::vector<T>& before, const std::vector<T>& now, f
         hash_combine(hash_values(before), hash_values(now)), std::bit_cast<std::uint32_t>(alpha));
 }
 
+/// The packed deformers at time `alpha` between the last two steps.
+void make_controls(const DeformerState* state, float alpha, std::vector<Vec4>& controls) {
+    controls.clear();
+    if (state == nullptr) {
+        return;
+    }
+    controls = state->now;
+    if (state->previous.size() == controls.size()) {
+        for (std::size_t i = 0; i < controls.size(); ++i) {
+            controls[i] = glm::mix(state->previous[i], controls[i], alpha);
+        }
+    }
+}
+
 bool is_finite(const Bounds& box) {
     const Vec3 sum = box.min + box.max;
     return std::isfinite(sum.x + sum.y + sum.z);
@@ -110,11 +124,12 @@ bool DeformedList::resolve(
         fault = fmt::format("deformed mesh {} {}", name, entry.rest->fault);
         return false;
     }
-    DeformSource source =
-        find_deform_source(world, assets, entry.mesh, entry.rest->joint_count, entry.settings);
+    DeformSource source = find_deform_source(
+        world, assets, entry.entity, entry.mesh, entry.rest->joint_count, entry.settings);
     entry.skin = source.skin;
     entry.pose = source.pose;
     entry.morphs = source.morphs;
+    entry.deformers = source.deformers;
     fault = std::move(source.fault);
     return fault.empty();
 }
@@ -133,6 +148,10 @@ void DeformedList::evaluate(Entry& entry) const {
             shape =
                 hash_combine(shape, hash_at(entry.morphs->previous, entry.morphs->weights, alpha));
         }
+        if (entry.deformers != nullptr) {
+            shape = hash_combine(
+                shape, hash_at(entry.deformers->previous, entry.deformers->now, alpha));
+        }
         return shape | 1;
     };
     entry.shape = hash_shape(alpha_);
@@ -145,8 +164,10 @@ void DeformedList::evaluate(Entry& entry) const {
     make_morph_weights(
         entry.morphs, settings.first_morph, entry.rest->bounds.morphs.size(), alpha_,
         entry.weights);
-    entry.bounds =
-        posed_bounds(entry.rest->bounds, entry.palette, settings.skinning, entry.weights);
+    make_controls(entry.deformers, alpha_, entry.controls);
+    entry.bounds = posed_bounds(
+        entry.rest->bounds, entry.palette, settings.skinning, entry.weights,
+        max_displacement(entry.controls));
 }
 
 void DeformedList::update(
@@ -266,7 +287,8 @@ std::uint32_t DeformedList::flags_of(const Entry& entry) {
         flags |= layout::kDeformJoints;
         flags |= entry.settings.skinning == Skinning::DualQuaternion ? layout::kDeformDual : 0u;
     }
-    return flags | (entry.weights.empty() ? 0u : layout::kDeformMorphs);
+    return flags | (entry.weights.empty() ? 0u : layout::kDeformMorphs)
+           | (entry.controls.empty() ? 0u : layout::kDeformControls);
 }
 
 void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
@@ -278,6 +300,11 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
     const auto add_weights = [&](const std::vector<float>& values) {
         const auto first = static_cast<std::uint32_t>(weights_.size());
         weights_.insert(weights_.end(), values.begin(), values.end());
+        return first;
+    };
+    const auto add_controls = [&](const std::vector<Vec4>& values) {
+        const auto first = static_cast<std::uint32_t>(controls_.size());
+        controls_.insert(controls_.end(), values.begin(), values.end());
         return first;
     };
     layout::DeformJob job{};
@@ -294,6 +321,9 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
             entry.morphs, settings.first_morph, entry.weights.size(), previous_alpha_, weights);
         job.previous_palette = add_palette(palette);
         job.previous_weights = add_weights(weights);
+        std::vector<Vec4> controls;
+        make_controls(entry.deformers, previous_alpha_, controls);
+        job.previous_controls = add_controls(controls);
     }
     if ((flags & (layout::kDeformPrevious | layout::kDeformCopyPrevious)) != 0) {
         entry.drawn_previous = entry.previous_shape;
@@ -301,6 +331,7 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
     if ((flags & layout::kDeformCurrent) != 0) {
         job.palette = add_palette(entry.palette);
         job.weights = add_weights(entry.weights);
+        job.controls = add_controls(entry.controls);
         entry.drawn = entry.shape;
     }
     const std::uint32_t groups =
@@ -329,6 +360,7 @@ void DeformedList::write_jobs(gpu::RingBuffer& ring) {
     groups_.clear();
     palette_texels_.clear();
     weights_.clear();
+    controls_.clear();
     if (meshes_ != nullptr) {
         vertices_.use_indices_of(*meshes_);
     }
@@ -358,6 +390,7 @@ void DeformedList::write_jobs(gpu::RingBuffer& ring) {
     work_.groups = push(groups_);
     work_.palettes = push(palette_texels_);
     work_.weights = push(weights_);
+    work_.controls = push(controls_);
 }
 
 }  // namespace limn

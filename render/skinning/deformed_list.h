@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
 #include "ecs/entity.h"
 #include "render/gpu/ring_buffer.h"
@@ -56,6 +57,7 @@ struct DeformWork {
     gpu::RingSlice groups;    ///< job index of each work group
     gpu::RingSlice palettes;  ///< texels of deform.comp
     gpu::RingSlice weights;
+    gpu::RingSlice controls;
     int instances = 0;
     std::int64_t vertices = 0;
 };
@@ -124,10 +126,12 @@ class DeformedList {
         std::uint64_t evaluated = 0;       ///< shape of the bounds and palette
         std::vector<Affine> palette;       ///< mesh from rest pose, one per joint
         std::vector<float> weights;
+        std::vector<Vec4> controls;  ///< packed deformers
         // Valid until the world changes.
         const SkinData* skin = nullptr;
         const Pose* pose = nullptr;
         const MorphWeights* morphs = nullptr;
+        const DeformerState* deformers = nullptr;
         const RestMesh* rest = nullptr;
     };
 
@@ -164,6 +168,7 @@ class DeformedList {
     std::vector<std::uint32_t> groups_;
     std::vector<Vec4> palette_texels_;
     std::vector<float> weights_;
+    std::vector<Vec4> controls_;
 };
 
 }  // namespace limn

@@ -80,8 +80,10 @@ SkinBounds make_skin_bounds(const MeshData& mesh) {
 
 Bounds posed_bounds(
     const SkinBounds& bounds, std::span<const Affine> palette, Skinning skinning,
-    std::span<const float> weights) {
-    const Bounds morphs = sum_of_morphs(bounds.morphs, weights);
+    std::span<const float> weights, float displacement) {
+    Bounds morphs = sum_of_morphs(bounds.morphs, weights);
+    morphs.min -= displacement;
+    morphs.max += displacement;
     if (palette.empty()) {
         return widened(bounds.rest, morphs);
     }
@@ -114,9 +116,6 @@ Bounds posed_bounds(
 std::string check_deformable(const MeshData& mesh) {
     const std::size_t vertices = mesh.positions.size();
     const SkinWeights& skin = mesh.skin;
-    if (skin.empty() && mesh.morphs.empty()) {
-        return "has neither joints nor morph targets";
-    }
     if (!skin.empty()) {
         const bool whole = skin.first.size() == vertices + 1 && skin.first[0] == 0
                            && std::is_sorted(skin.first.begin(), skin.first.end())

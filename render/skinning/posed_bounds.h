@@ -39,11 +39,12 @@ struct SkinBounds {
 [[nodiscard]] SkinBounds make_skin_bounds(const MeshData& mesh);
 
 /// `palette`: posed mesh from rest pose, one per joint of the skin; empty: morph targets only.
-/// Matrices for dual quaternions have no scale. Missing weights are 0. The result is not finite if
-/// a joint that influences a vertex is not.
+/// Matrices for dual quaternions have no scale. Missing weights are 0. `displacement`: by which
+/// deformers move any vertex at most [m]. The result is not finite if a joint that influences a
+/// vertex is not.
 [[nodiscard]] Bounds posed_bounds(
     const SkinBounds& bounds, std::span<const Affine> palette, Skinning skinning,
-    std::span<const float> weights);
+    std::span<const float> weights, float displacement = 0.0f);
 
 /// Why the mesh cannot be deformed, to follow its name in a message; empty if it can.
 [[nodiscard]] std::string check_deformable(const MeshData& mesh);

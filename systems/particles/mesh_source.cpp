@@ -26,7 +26,8 @@ MeshSource find_mesh_source(
 void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions) {
     if (source.deformed != nullptr) {
         deform_positions(
-            *source.data, *source.deformed, source.skin, source.pose, source.morphs, positions);
+            *source.data, *source.deformed, source.skin, source.pose, source.morphs, nullptr,
+            positions);
     } else {
         positions = source.data->positions;
     }

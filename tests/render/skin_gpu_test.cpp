@@ -2,6 +2,8 @@
 #include "tests/render/skin_fixture.h"
 // clang-format on
 #include "render/skinning/deformed_list.h"
+#include "systems/animation/deformer_kernels.h"
+#include "systems/animation/deformer_system.h"
 #include "systems/animation/skin_kernels.h"
 #include "tests/near.h"
 #include "tests/support.h"
@@ -478,6 +480,63 @@ TEST_CASE_FIXTURE(
     CHECK(gpu.shapes().vertices().slots().used() == 0);
 }
 
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: deformers move vertices and normals as on the CPU") {
+    const Entity entity = world.create(
+        Transform{}, WorldTransform{}, MeshInstance{add(make_tube(24, 24, 1)), gray},
+        Deformers{
+            .muscles =
+                {{.attachment = {0, 0.2f, 0},
+                  .insertion = {0.3f, 0.6f, 0.1f},
+                  .angle = 0.9f,
+                  .full = 0.3f,
+                  .reach = 0.7f,
+                  .contraction = 0.3f},
+                 {.attachment = {0, 0.9f, 0},
+                  .insertion = {0.2f, 0.5f, 0},
+                  .angle = 1.2f,
+                  .full = 0.2f,
+                  .reach = 0.5f,
+                  .contraction = -0.2f}},
+            .sphincters =
+                {{.center = {0.1f, 0.5f, 0},
+                  .right = {0, 0, 0.4f},
+                  .up = {0, 0.3f, 0},
+                  .depth = 0.4f,
+                  .contraction = 0.6f}},
+            .lattices = {
+                {.origin = {-0.5f, 0.4f, -0.5f},
+                 .offsets = std::vector<Vec3>(kLatticePoints, Vec3(0.1f, 0.05f, 0))}}});
+    world.get<Deformers>(entity).lattices[0].offsets[27] = {0.2f, -0.3f, 0.3f};
+    world.run(add_deformer_states);
+    world.run(update_deformers);
+    world.get<Deformers>(entity).muscles[0].contraction = 0.6f;
+    world.run(update_deformers);
+    const DeformerState& state = world.get<DeformerState>(entity);
+    const MeshData& mesh = mesh_of(entity);
+    const oracle::SkinReadbackVertices got = read(entity, 1, 0);
+    REQUIRE(got.positions.size() == mesh.positions.size());
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < got.positions.size(); ++i) {
+        const Vec3 rest = mesh.positions[i];
+        CHECK(glm::distance(got.positions[i], deform_point(state.now, rest)) <= 1e-5f);
+        CHECK(glm::distance(got.before[i], deform_point(state.previous, rest)) <= 1e-5f);
+        CHECK(
+            glm::distance(got.normals[i], deform_normal(state.now, rest, mesh.normals[i]))
+            <= 3e-3f);
+        moved += glm::distance(got.positions[i], rest) > 0.01f ? 1 : 0;
+    }
+    CHECK(moved > mesh.positions.size() / 2);
+    // Half a step earlier.
+    const oracle::SkinReadbackVertices half = read(entity, 0.5f, 0);
+    std::vector<Vec4> between;
+    for (std::size_t i = 0; i < state.now.size(); ++i) {
+        between.push_back(0.5f * (state.previous[i] + state.now[i]));
+    }
+    for (std::size_t i = 0; i < half.positions.size(); ++i) {
+        CHECK(glm::distance(half.positions[i], deform_point(between, mesh.positions[i])) <= 1e-5f);
+    }
+}
+
 TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one line says why") {
     const auto complaint = [&](Entity entity) {
         const std::vector<std::string> messages = messages_of([&] {
@@ -520,7 +579,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one li
     CHECK(has(complaint(entity), "not finite"));
     entity = snake(Skinning::Linear, 5, 4, 30);
     world.get<MeshInstance>(entity).mesh = add(make_tube(2, 5, 1));
-    CHECK(has(complaint(entity), "neither joints nor morph targets"));
+    CHECK(has(complaint(entity), "neither joints, morph targets nor deformers"));
     entity = snake(Skinning::Linear, 5, 4, 30);
     MeshData broken = mesh_of(entity);
     broken.skin.first.pop_back();

@@ -1,0 +1,129 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/reflect.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Shape controls of a mesh: few parameters that move thousands of vertices. They act on the rest
+// shape after morph targets and before joints. All positions are in mesh space.
+
+/// A muscle between bone and skin that pulls what lies in its cone toward the bone
+/// (face.waters-muscle): K. Waters, "A Muscle Model for Animating Three-Dimensional Facial
+/// Expression", 1987.
+struct LinearMuscle {
+    Vec3 attachment{0, 0, 0};
+    Vec3 insertion{0, 0.05f, 0};
+    float angle = 0.6f;        ///< between axis and border of the cone [rad]
+    float full = 0.04f;        ///< distance of the strongest pull from the attachment [m]
+    float reach = 0.06f;       ///< distance at which the pull ends [m], > full
+    float contraction = 0.0f;  ///< share of the muscle's length by which it pulls
+};
+
+LIMN_FIELDS(LinearMuscle) {
+    LIMN_FIELD(attachment, "on the bone", "m");
+    LIMN_FIELD(insertion, "in the skin", "m");
+    LIMN_FIELD(angle, "between axis and border of the cone that it moves", "rad", 0.01f, 1.57f);
+    LIMN_FIELD(full, "distance of the strongest pull from the attachment", "m", 1e-4f, 1e4f);
+    LIMN_FIELD(reach, "distance at which the pull ends; more than full", "m", 1e-4f, 1e4f);
+    LIMN_FIELD(contraction, "share of its length by which it pulls; negative: pushes", "", -1, 1);
+}
+
+/// A ring of muscle that draws together what lies in its ellipse, as around the mouth
+/// (face.waters-muscle).
+struct SphincterMuscle {
+    Vec3 center{0, 0, 0};
+    Vec3 right{0.03f, 0, 0};   ///< semi-axis [m]
+    Vec3 up{0, 0.02f, 0};      ///< semi-axis; what it has of `right` is ignored [m]
+    float depth = 0.03f;       ///< reach perpendicular to the ellipse [m]
+    float contraction = 0.0f;  ///< share of the way to the center
+};
+
+LIMN_FIELDS(SphincterMuscle) {
+    LIMN_FIELD(center, "of the ellipse", "m");
+    LIMN_FIELD(right, "semi-axis of the ellipse", "m");
+    LIMN_FIELD(up, "other semi-axis", "m");
+    LIMN_FIELD(depth, "reach perpendicular to the ellipse", "m", 1e-4f, 1e4f);
+    LIMN_FIELD(contraction, "share of the way to the center; negative: apart", "", -1, 1);
+}
+
+/// A box of 4 x 4 x 4 control points (face.ffd): T. Sederberg and S. Parry, "Free-Form Deformation
+/// of Solid Geometric Models", 1986. A vertex inside follows the points by the weights of cubic
+/// Bezier volumes; others stay. Where two layers of points at a side stay, the surface is smooth
+/// there.
+struct Lattice {
+    Vec3 origin{-0.5f, -0.5f, -0.5f};  ///< corner
+    Vec3 u{1, 0, 0};                   ///< edges [m]
+    Vec3 v{0, 1, 0};
+    Vec3 w{0, 0, 1};
+    std::vector<Vec3> offsets;  ///< of the point (i, j, k) at i + 4 j + 16 k [m]; missing: 0
+};
+
+LIMN_FIELDS(Lattice) {
+    LIMN_FIELD(origin, "corner of the box", "m");
+    LIMN_FIELD(u, "edge of the box", "m");
+    LIMN_FIELD(v, "edge of the box", "m");
+    LIMN_FIELD(w, "edge of the box", "m");
+    LIMN_FIELD(offsets, "of the control point (i, j, k), 0 .. 3 each, at i + 4 j + 16 k", "m");
+}
+
+inline constexpr std::size_t kLatticePoints = 64;
+
+/// With a MeshInstance. Pulls of all muscles add, but move nothing farther than the most distant
+/// attachment or center that pulls; then the lattices act in turn.
+struct Deformers {
+    std::vector<LinearMuscle> muscles;
+    std::vector<SphincterMuscle> sphincters;
+    std::vector<Lattice> lattices;
+};
+
+LIMN_FIELDS(Deformers) {
+    LIMN_FIELD(muscles, "muscles that pull toward bone");
+    LIMN_FIELD(sphincters, "rings of muscle");
+    LIMN_FIELD(lattices, "free-form deformation, one after the other");
+}
+
+/// The Deformers packed for whoever moves vertices; written by update_deformers.
+struct DeformerState {
+    std::vector<Vec4> now;       ///< pack_deformers
+    std::vector<Vec4> previous;  ///< of the previous step; as long as `now` after the first
+};
+
+LIMN_FIELDS(DeformerState) {
+    LIMN_FIELD(now, "packed controls after the last step");
+    LIMN_FIELD(previous, "those of the previous step");
+}
+
+/// Not copied with a prefab: an instance has no history.
+template <>
+struct ComponentTraits<DeformerState> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+
+// A packed list begins with (number of records, step for normals [m], 0, 0). Records:
+//   muscle     (kMuscle, contraction * length, angle, 0) (attachment, full) (unit axis, reach)
+//   sphincter  (kSphincter, contraction, 0, 0) (center, 0) and three rows that take the vector from
+//              the center to the unit ball: (row of right, 0) (row of up, 0) (row of depth, depth)
+//   lattice    (kLattice, 0, 0, 0) (origin, 0), three rows that take the vector from the origin to
+//              the unit cube, (row, 0) each, and the offsets of 64 points, (offset, 0) each
+// shaders/lib/deformers.glsl reads the same.
+
+inline constexpr float kMuscle = 1.0f;
+inline constexpr float kSphincter = 2.0f;
+inline constexpr float kLattice = 3.0f;
+inline constexpr std::size_t kMuscleTexels = 3;
+inline constexpr std::size_t kSphincterTexels = 5;
+inline constexpr std::size_t kLatticeTexels = 5 + kLatticePoints;
+
+/// Controls without extent (a muscle of no length or with full >= reach, an ellipse or a box of no
+/// area or volume) and controls that are not finite are left out. Empty if nothing is left.
+[[nodiscard]] std::vector<Vec4> pack_deformers(const Deformers& deformers);
+
+/// No vertex moves farther [m], whatever its place.
+[[nodiscard]] float max_displacement(std::span<const Vec4> packed);
+
+}  // namespace limn

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <span>
+
+namespace limn {
+
+// Deformers (deformers.h) on the CPU: the reference for shaders/lib/deformers.glsl, and for whoever
+// needs the deformed surface.
+
+/// Where the packed deformers take a point; the point itself without any.
+[[nodiscard]] Vec3 deform_point(std::span<const Vec4> packed, const Vec3& point);
+
+/// The unit normal of the deformed surface at a point with this normal, by central differences in
+/// its tangent plane.
+[[nodiscard]] Vec3
+deform_normal(std::span<const Vec4> packed, const Vec3& point, const Vec3& normal);
+
+/// deform_point of all points, in place.
+void deform_points(std::span<const Vec4> packed, std::span<Vec3> points);
+
+}  // namespace limn

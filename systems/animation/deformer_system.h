@@ -1,0 +1,22 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
+#include "ecs/components/surface.h"
+#include "ecs/query.h"
+#include "ecs/system.h"
+
+namespace limn {
+
+/// Adds a DeformerState to every Deformers that lacks one, and a Deformed by itself to those of
+/// them whose mesh no character deforms.
+void add_deformer_states(
+    Query<const Deformers, Without<DeformerState>> bare, Query<const Deformed> deformed,
+    Commands commands);
+
+/// Packs the controls; keeps those of the previous step for velocities. In the first step, and
+/// where controls came or went, both are the same.
+void update_deformers(Query<const Deformers, DeformerState> deformers);
+
+}  // namespace limn
