@@ -64,6 +64,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     models_.clear();
     textures_.clear();
     shading_models_ = 0;
+    diffuses_ = false;
     add_material(Material{});
     Material missing;
     missing.shading = ShadingModel::Unlit;
@@ -148,6 +149,8 @@ void MaterialPool::add_material(const Material& material) {
     records_.push_back(record);
     models_.push_back(static_cast<std::uint8_t>(stored_number(material.shading)));
     shading_models_ |= 1u << stored_number(material.shading);
+    diffuses_ =
+        diffuses_ || (material.shading == ShadingModel::Subsurface && material.scatter != Vec3(0));
 }
 
 std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) {

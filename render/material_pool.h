@@ -57,6 +57,8 @@ class MaterialPool {
     [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
     /// Those that some material has.
     [[nodiscard]] ShadingModelSet shading_models() const { return shading_models_; }
+    /// Whether light spreads under the surface of some material (subsurface_pass.h).
+    [[nodiscard]] bool diffuses() const { return diffuses_; }
 
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
@@ -87,6 +89,7 @@ class MaterialPool {
     std::uint64_t material_version_ = 0;
     std::uint64_t revision_ = 0;
     ShadingModelSet shading_models_ = 0;
+    bool diffuses_ = false;
 };
 
 }  // namespace limn

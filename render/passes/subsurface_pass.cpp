@@ -24,7 +24,7 @@ Result<SubsurfaceEffect> SubsurfaceEffect::create(gpu::Device& device, const Ren
 }
 
 bool SubsurfaceEffect::is_used(const FrameData& frame) {
-    return (frame.materials->shading_models() >> stored_number(ShadingModel::Subsurface) & 1u) != 0;
+    return frame.materials->diffuses();
 }
 
 bool SubsurfaceEffect::prepare(const FrameData&, ViewData& view) {

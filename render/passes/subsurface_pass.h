@@ -34,7 +34,7 @@ struct SubsurfaceEffect {
 
     [[nodiscard]] static Result<SubsurfaceEffect>
     create(gpu::Device& device, const RenderSettings&);
-    /// Some material scatters.
+    /// Some material scatters: has a mean free path other than 0.
     static bool is_used(const FrameData& frame);
     bool prepare(const FrameData& frame, ViewData& view);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);

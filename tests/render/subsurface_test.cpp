@@ -193,6 +193,7 @@ TEST_CASE("subsurface: an evenly lit plane is as bright as without diffusion") {
             LitPlane scene(wax(spread ? kFreePath : Vec3(0)));
             scene.shine_past();
             images[spread ? 1 : 0] = scene.radiance(turned(eye, 0.3f));
+            CHECK(frame_graph(shared_renderer()).was_run("subsurface") == spread);
         }
         CHECK(images[0].at(128, 128, 0) > 0.1f);
         CHECK(largest_difference(images[0], images[1]) < 1e-5f);
