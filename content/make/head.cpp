@@ -2,7 +2,10 @@
 
 #include "content/bake/face_regions.h"
 #include "content/bake/tangents.h"
+#include "content/make/head_clips.h"
+#include "content/make/head_expressions.h"
 #include "content/make/head_layout.h"
+#include "content/make/head_parts.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
 
@@ -14,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -56,22 +60,24 @@ Vec3 skin_color(const HeadVertex& vertex, const Vec3& point) {
     return color;
 }
 
-MeshData make_skin(const HeadShape& shape) {
+/// Vertices that the seam of the texture doubles are there twice.
+HeadPart make_skin(const HeadShape& shape) {
     const HeadLayout& layout = head_layout();
     const std::vector<Vec3> positions = wrap_head(shape);
-    MeshData mesh;
-    mesh.name = "head";
-    std::vector<std::uint32_t> source;
+    HeadPart part;
+    part.mesh.name = "head";
     std::map<std::pair<std::uint32_t, bool>, std::uint32_t> made;  // copies beyond the seam
     const auto vertex_at = [&](std::uint32_t v, bool beyond) {
         const auto [found, added] =
-            made.try_emplace({v, beyond}, static_cast<std::uint32_t>(source.size()));
+            made.try_emplace({v, beyond}, static_cast<std::uint32_t>(part.points.size()));
         if (added) {
-            source.push_back(v);
-            const Vec2 chart = layout.vertices[v].chart + Vec2(beyond ? kHeadColumns : 0, 0);
-            mesh.positions.push_back(kMeters * positions[v]);
-            mesh.uvs.push_back({0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)});
-            mesh.colors.emplace_back(skin_color(layout.vertices[v], positions[v]), 1.0f);
+            const HeadVertex& vertex = layout.vertices[v];
+            const Vec2 chart = vertex.chart + Vec2(beyond ? kHeadColumns : 0, 0);
+            part.points.push_back(skin_point(vertex, positions[v]));
+            part.mesh.positions.push_back(positions[v]);
+            part.mesh.uvs.push_back(
+                {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)});
+            part.mesh.colors.emplace_back(skin_color(vertex, positions[v]), 1.0f);
         }
         return found->second;
     };
@@ -86,30 +92,109 @@ MeshData make_skin(const HeadShape& shape) {
             corners[k] = vertex_at(quad[k], beyond);
         }
         for (const int k : {0, 1, 2, 0, 2, 3}) {
-            mesh.indices.push_back(corners[k]);
+            part.mesh.indices.push_back(corners[k]);
         }
     }
-    generate_normals(mesh);
+    generate_normals(part.mesh);
     // Ears, and what lies behind lids and lips, are no skin of the face.
     std::vector<Vec3> reference;
-    for (const std::uint32_t v : source) {
-        const HeadVertex& vertex = layout.vertices[v];
-        const bool face = vertex.loops == HeadLoops::None
-                          || (vertex.loops == HeadLoops::Eye && vertex.loop <= kLidLoop)
-                          || (vertex.loops == HeadLoops::Mouth && vertex.loop <= kLipLoop);
-        reference.push_back(face ? positions[v] : Vec3(std::numeric_limits<float>::quiet_NaN()));
+    for (const HeadPoint& point : part.points) {
+        const bool face = point.loops == HeadLoops::None
+                          || (point.loops == HeadLoops::Eye && point.loop <= kLidLoop)
+                          || (point.loops == HeadLoops::Mouth && point.loop <= kLipLoop);
+        reference.push_back(face ? point.rest : Vec3(std::numeric_limits<float>::quiet_NaN()));
     }
-    mesh.regions = make_face_regions(reference, mesh.normals);
-    return mesh;
+    part.mesh.regions = make_face_regions(reference, part.mesh.normals);
+    return part;
+}
+
+HeadPart make_part(const HeadShape& shape) {
+    switch (shape.part) {
+    case HeadPartKind::Skin:
+        return make_skin(shape);
+    case HeadPartKind::Eyes:
+        return make_eye_balls();
+    case HeadPartKind::Corneas:
+        return make_corneas();
+    case HeadPartKind::Teeth:
+        return make_teeth();
+    case HeadPartKind::Mouth:
+        return make_mouth();
+    case HeadPartKind::Hair:
+        return make_face_hair(shape);
+    }
+    return {};
+}
+
+enum class HeadJoint : std::uint16_t { Head, Jaw, LeftEye, RightEye };
+
+/// Of the joints of make_head_rig.
+SkinWeights head_weights(std::span<const HeadPoint> points) {
+    constexpr float kMinWeight = 0.001f;
+    SkinWeights skin;
+    const auto add = [&](HeadJoint joint, float weight) {
+        if (weight >= kMinWeight) {
+            skin.joints.push_back(static_cast<std::uint16_t>(joint));
+            skin.weights.push_back(weight);
+        }
+    };
+    for (const HeadPoint& point : points) {
+        skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
+        if (point.eye != 0) {
+            add(point.eye > 0 ? HeadJoint::LeftEye : HeadJoint::RightEye, 1);
+        } else {
+            const float jaw = point.jaw < kMinWeight ? 0 : point.jaw;
+            add(HeadJoint::Head, 1 - jaw);
+            add(HeadJoint::Jaw, jaw);
+        }
+    }
+    skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
+    return skin;
 }
 
 }  // namespace
 
 MeshData make_head(const HeadShape& shape) {
-    MeshData mesh = make_skin(shape);
+    HeadPart part = make_part(shape);
+    MeshData& mesh = part.mesh;
+    if (shape.part != HeadPartKind::Skin) {  // whose points are those of a skewed head already
+        for (std::size_t v = 0; v < part.points.size(); ++v) {
+            mesh.positions[v] = skew_head(mesh.positions[v], shape);
+        }
+        generate_normals(mesh);
+    }
+    for (Vec3& p : mesh.positions) {
+        p *= kMeters;
+    }
+    mesh.skin = head_weights(part.points);
+    mesh.morphs = make_expressions(part.points, shape);
+    generate_morph_normals(mesh);
     generate_tangents(mesh);
+    generate_morph_tangents(mesh);
     update_bounds(mesh);
     return mesh;
+}
+
+MeshRig make_head_rig(const HeadShape& shape) {
+    const Vec3 right = kEyeCenter * Vec3(-1, 1, 1);
+    const std::array<Vec3, 4> places = {
+        Vec3(0), Vec3(0, kJawAxis.x, kJawAxis.y), skew_head(kEyeCenter, shape),
+        skew_head(right, shape)};
+    MeshRig rig;
+    rig.skeleton.joints = {"head", "jaw", "left_eye", "right_eye"};
+    rig.skeleton.parents = {-1, 0, 0, 0};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        rig.skeleton.rest.translations.push_back(kMeters * places[i]);
+        rig.skeleton.rest.rotations.emplace_back(1, 0, 0, 0);
+        rig.skeleton.rest.scales.emplace_back(1);
+        rig.skin.joints.push_back(static_cast<std::uint16_t>(i));
+        rig.skin.joint_from_mesh.push_back(
+            affine_from(-kMeters * places[i], Quat(1, 0, 0, 0), Vec3(1)));
+    }
+    if (shape.part == HeadPartKind::Skin) {
+        rig.clips = make_head_clips();
+    }
+    return rig;
 }
 
 }  // namespace limn

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "content/make/creature.h"
 #include "ecs/components/surface.h"
+
+#include <cstdint>
 
 namespace limn {
 
@@ -10,10 +13,21 @@ namespace limn {
 // ears (head_layout.h), wrapped around an implicit surface (head_surface.h). One UV seam runs down
 // the back. Proportions after Farkas, "Anthropometry of the Head and Face" (1994).
 //
-// Regions are those of face_regions.h. There are no eyeballs, teeth, hair or morph targets yet:
-// openings of eyes and mouth end in closed pockets, which fit balls of kEyeRadius at kEyeCenter.
+// Regions are those of face_regions.h. Expressions are morph targets (head_expressions.h), jaw and
+// eyes are joints as well: "head", "jaw", "left_eye", "right_eye". Each part is a mesh of its own,
+// with a material of its own, and has the same morph targets:
+//
+//     skin      with regions that fold
+//     eyes      white, iris and pupil, in vertex colors
+//     corneas   clear shells before them, for a material that is nearly transparent
+//     teeth     of both jaws
+//     mouth     gums and tongue
+//     hair      brows and lashes: ribbons, for a material with two sides
+
+enum class HeadPartKind : std::uint8_t { Skin, Eyes, Corneas, Teeth, Mouth, Hair };
 
 struct HeadShape {
+    HeadPartKind part = HeadPartKind::Skin;
     float age = 0.3f;
     float sex = 0.0f;
     float build = 0.0f;
@@ -21,6 +35,7 @@ struct HeadShape {
 };
 
 LIMN_FIELDS(HeadShape) {
+    LIMN_FIELD(part, .doc = "part of the head", .values = "skin eyes corneas teeth mouth hair");
     LIMN_FIELD(age, "0: twenty years, 1: seventy; lips thin, tissue sags", "", 0, 1);
     LIMN_FIELD(sex, "-1: a woman's features, 1: a man's", "", -1, 1);
     LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);
@@ -29,5 +44,10 @@ LIMN_FIELDS(HeadShape) {
 
 /// In meters; the origin lies between the ears, 3.5 cm below the pupils.
 [[nodiscard]] MeshData make_head(const HeadShape& shape);
+
+/// The same skeleton for all parts. The skin has clips: each face of head_clips.h for a few
+/// seconds, "expressions" with all of them, "talk", and "blink", for a morph animation beside
+/// others.
+[[nodiscard]] MeshRig make_head_rig(const HeadShape& shape);
 
 }  // namespace limn

@@ -1,5 +1,7 @@
 #include "content/make/head_layout.h"
 
+#include "content/make/head_surface.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -78,9 +80,19 @@ constexpr std::array<Block, 5> kBlocks = {{
     {HeadLoops::Eye, 4, 16, 24, 34, kEyeLoops},
     {HeadLoops::Eye, -16, -4, 24, 34, kEyeLoops},
     {HeadLoops::Mouth, -11, 11, 44, 56, kMouthLoops},
-    {HeadLoops::Ear, 30, 35, 27, 43, kEarLoops},
-    {HeadLoops::Ear, -35, -30, 27, 43, kEarLoops},
+    {HeadLoops::Ear, 29, 34, 27, 43, kEarLoops},
+    {HeadLoops::Ear, -34, -29, 27, 43, kEarLoops},
 }};
+
+/// The loop whose place is known, or 0.
+int edge_loop(HeadLoops loops) {
+    return loops == HeadLoops::Eye ? kLidLoop : loops == HeadLoops::Mouth ? kLipLoop : 0;
+}
+
+Vec3 edge_point(HeadLoops loops, float angle, bool left) {
+    return loops == HeadLoops::Mouth ? lip_line(angle)
+                                     : lid_margin(angle) * Vec3(left ? 1 : -1, 1, 1);
+}
 
 bool inside(const Block& block, int column, int row, int margin) {
     return column >= block.column0 + margin && column <= block.column1 - margin
@@ -226,6 +238,13 @@ class Builder {
                 vertex.loops = block.loops;
                 vertex.loop = static_cast<std::int16_t>(loop);
                 vertex.angle = 2 * kPi * static_cast<float>(k) / static_cast<float>(count);
+                const int edge = edge_loop(block.loops);
+                if (loop < edge) {  // evenly between the border and the edge of the opening
+                    vertex.start = glm::mix(
+                        layout_.vertices[border[k]].start,
+                        edge_point(block.loops, vertex.angle, left),
+                        static_cast<float>(loop) / static_cast<float>(edge));
+                }
                 vertex.left = block.loops == HeadLoops::Mouth
                                   ? k <= count / 4 || k >= count - count / 4
                                   : left;

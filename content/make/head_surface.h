@@ -23,6 +23,9 @@ inline constexpr Vec2 kJawAxis = {-0.55f, 1.82f};
 /// with nose, lids, lips and all strokes.
 [[nodiscard]] float head_distance(const Vec3& p, const HeadShape& shape, float detail);
 
+/// Of head_distance: about unit, outwards.
+[[nodiscard]] Vec3 head_gradient(const Vec3& p, const HeadShape& shape, float detail);
+
 /// Moves `p` along the gradient onto the surface.
 [[nodiscard]] Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail);
 
@@ -31,6 +34,10 @@ inline constexpr Vec2 kJawAxis = {-0.55f, 1.82f};
 
 /// Of the left lids: outer edge of the margin at `angle` [rad], 0 lateral, pi / 2 up.
 [[nodiscard]] Vec3 lid_margin(float angle);
+
+/// From 1 at the left corner of the mouth, where `angle` is 0, to -1 at the right one: even steps,
+/// as its corners are sharp.
+[[nodiscard]] float across_mouth(float angle);
 
 /// Where the lips touch, at `angle` around the mouth.
 [[nodiscard]] Vec3 lip_line(float angle);

@@ -2,6 +2,7 @@
 
 #include "content/make/head_layout.h"
 #include "content/make/head_surface.h"
+#include "ecs/base/jobs.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -56,12 +57,12 @@ Vec3 mouth_point(const HeadVertex& vertex, const HeadShape& shape, float detail)
         float depth, open, width;  // behind the lips, above or below their line, share of its width
     };
     constexpr std::array<Profile, 7> kProfile = {{
-        {0.10f, 0.015f, 1},
-        {0.40f, 0.02f, 0.99f},
-        {0.75f, 0.25f, 0.99f},
-        {1.2f, 0.8f, 1.02f},
-        {2.2f, 1.1f, 1.02f},
-        {4.0f, 1.2f, 0.95f},
+        {0.10f, 0, 1},
+        {0.35f, 0, 0.99f},
+        {0.55f, 0.28f, 1.0f},
+        {0.66f, 0.9f, 1.03f},
+        {0.95f, 1.5f, 1.08f},
+        {3.0f, 1.55f, 1.05f},
         {5.5f, 0.9f, 0.7f},
     }};
     const Profile& profile = kProfile[vertex.loop - kLipLoop];
@@ -99,23 +100,23 @@ constexpr std::array<EarProfile, kEarLoops> kFreeEar = {{
     {0.08f, -0.66f},
 }};
 constexpr std::array<EarProfile, kEarLoops> kFrontEar = {{
-    {1.36f, -0.66f},
-    {1.28f, -0.62f},
-    {1.20f, -0.58f},
-    {1.12f, -0.54f},
-    {1.04f, -0.48f},
-    {0.96f, -0.40f},
-    {0.88f, -0.28f},
-    {0.80f, -0.15f},
-    {0.72f, -0.05f},
-    {0.64f, -0.01f},
-    {0.56f, -0.03f},
-    {0.50f, -0.12f},
-    {0.47f, -0.25f},
-    {0.44f, -0.38f},
-    {0.40f, -0.48f},
-    {0.33f, -0.56f},
-    {0.2f, -0.63f},
+    {1.36f, 0.14f},
+    {1.28f, 0.14f},
+    {1.20f, 0.13f},
+    {1.12f, 0.12f},
+    {1.04f, 0.12f},
+    {0.96f, 0.14f},
+    {0.88f, 0.20f},
+    {0.80f, 0.27f},
+    {0.72f, 0.28f},
+    {0.66f, 0.20f},
+    {0.61f, 0.03f},
+    {0.57f, -0.18f},
+    {0.52f, -0.36f},
+    {0.47f, -0.48f},
+    {0.41f, -0.55f},
+    {0.33f, -0.60f},
+    {0.2f, -0.64f},
     {0.08f, -0.66f},
 }};
 
@@ -181,6 +182,7 @@ class HeadWrap {
                 positions_[v] = project(layout_.vertices[v], positions_[v], shape_, 1);
             }
         }
+        heal();
         set_ears();
         make_symmetric();
         return std::move(positions_);
@@ -204,22 +206,72 @@ class HeadWrap {
 
     void relax(float detail) {
         const std::vector<Vec3> before = positions_;
+        parallel_for(positions_.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                if (free_[v]) {
+                    const Vec3 moved = glm::mix(before[v], mean_around(before, v), 0.35f);
+                    positions_[v] = project(layout_.vertices[v], moved, shape_, detail);
+                }
+            }
+        });
+    }
+
+    /// Smooths the mesh where it is folded: its normal is not that of the surface.
+    void heal() {
+        std::vector<Vec3> normals(positions_.size(), Vec3(0));
+        for (const auto& quad : layout_.quads) {
+            const Vec3 normal = glm::cross(
+                positions_[quad[2]] - positions_[quad[0]],
+                positions_[quad[3]] - positions_[quad[1]]);
+            for (const std::uint32_t v : quad) {
+                normals[v] += normalize_or(normal, Vec3(0));
+            }
+        }
+        constexpr int kRings = 2;  // around what is folded
+        std::vector<int> ring(positions_.size(), kRings + 1);
         for (std::size_t v = 0; v < positions_.size(); ++v) {
-            if (!free_[v]) {
-                continue;
+            const Vec3 out = head_gradient(positions_[v], shape_, 1);
+            if (free_[v] && layout_.vertices[v].loops == HeadLoops::None
+                && glm::dot(normalize_or(normals[v], out), normalize_or(out, Vec3(0))) < 0.7f) {
+                ring[v] = 0;
             }
-            Vec3 mean = Vec3(0);
-            for (const std::uint32_t other : neighbors_[v]) {
-                mean += before[other];
+        }
+        for (int grown = 1; grown <= kRings; ++grown) {
+            for (std::size_t v = 0; v < positions_.size(); ++v) {
+                for (const std::uint32_t other : neighbors_[v]) {
+                    ring[v] = std::min(ring[v], ring[other] == grown - 1 ? grown : kRings + 1);
+                }
             }
-            mean /= static_cast<float>(neighbors_[v].size());
-            positions_[v] =
-                project(layout_.vertices[v], glm::mix(before[v], mean, 0.35f), shape_, detail);
+        }
+        for (int round = 0; round < 10; ++round) {
+            const std::vector<Vec3> before = positions_;
+            for (std::size_t v = 0; v < positions_.size(); ++v) {
+                if (free_[v] && ring[v] <= kRings) {
+                    positions_[v] = glm::mix(before[v], mean_around(before, v), 0.5f);
+                }
+            }
         }
     }
 
+    /// At the corners of eyes and mouth, where loops turn sharply, mostly of neighbors on other
+    /// loops: along a loop the mean lies beyond the opening.
+    Vec3 mean_around(const std::vector<Vec3>& positions, std::size_t v) const {
+        const HeadVertex& vertex = layout_.vertices[v];
+        const bool opening = vertex.loops == HeadLoops::Eye || vertex.loops == HeadLoops::Mouth;
+        const float corner = glm::smoothstep(0.5f, 0.9f, std::abs(std::cos(vertex.angle)));
+        const float along = opening ? glm::mix(1.0f, 0.05f, corner) : 1.0f;
+        Vec3 sum = Vec3(0);
+        float weights = 0;
+        for (const std::uint32_t other : neighbors_[v]) {
+            const float weight = layout_.vertices[other].loop == vertex.loop ? along : 1.0f;
+            sum += weight * positions[other];
+            weights += weight;
+        }
+        return sum / weights;
+    }
+
     void set_ears() {
-        const Vec3 root = project_to_head({7, 0.95f, -0.9f}, shape_, 1) + Vec3(0.75f, 0, 0.1f);
+        const Vec3 root = project_to_head({7, 0.95f, -0.3f}, shape_, 1) + Vec3(0.6f, 0, 0.1f);
         for (std::size_t v = 0; v < positions_.size(); ++v) {
             const HeadVertex& vertex = layout_.vertices[v];
             if (vertex.loops == HeadLoops::Ear) {
@@ -234,11 +286,8 @@ class HeadWrap {
             const Vec3& other = before[layout_.mirror[v]];
             positions_[v] = 0.5f * (before[v] + Vec3(-other.x, other.y, other.z));
         }
-        // One side a little higher, the chin and the nose a little aside.
         for (Vec3& p : positions_) {
-            const float low = glm::smoothstep(6.0f, -7.0f, p.y);
-            p.x += shape_.asymmetry * 0.18f * low * glm::smoothstep(0.0f, 8.0f, p.z);
-            p.y += shape_.asymmetry * 0.02f * p.x;
+            p = skew_head(p, shape_);
         }
     }
 
@@ -250,6 +299,13 @@ class HeadWrap {
 };
 
 }  // namespace
+
+Vec3 skew_head(Vec3 p, const HeadShape& shape) {
+    const float low = glm::smoothstep(6.0f, -7.0f, p.y);
+    p.x += shape.asymmetry * 0.18f * low * glm::smoothstep(0.0f, 8.0f, p.z);
+    p.y += shape.asymmetry * 0.02f * p.x;
+    return p;
+}
 
 std::vector<Vec3> wrap_head(const HeadShape& shape) {
     return HeadWrap(shape).run();

@@ -12,4 +12,8 @@ namespace limn {
 /// curves of their own. Symmetric but for HeadShape::asymmetry.
 [[nodiscard]] std::vector<Vec3> wrap_head(const HeadShape& shape);
 
+/// Where a point of a symmetric head is on one with HeadShape::asymmetry: one side a little higher,
+/// chin and nose a little aside.
+[[nodiscard]] Vec3 skew_head(Vec3 p, const HeadShape& shape);
+
 }  // namespace limn

@@ -58,7 +58,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
         mesh_kind<FragmentsShape, make_fragments>(
             "fragments", "another mesh of the level, broken into pieces that can fly apart"),
-        mesh_kind<HeadShape, make_head>("head", "the skin of a human head that faces z"),
+        rigged_kind<HeadShape, make_head, make_head_rig>(
+            "head", "a part of a human head that faces z, with expressions, skeleton and clips"),
         mesh_kind<HovercraftShape, make_hovercraft>(
             "hovercraft", "a racing craft that hovers, facing z"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),

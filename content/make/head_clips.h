@@ -1,0 +1,17 @@
+#pragma once
+
+#include "ecs/components/skeleton.h"
+
+#include <vector>
+
+namespace limn {
+
+// Faces that people make, as action units: after P. Ekman and W. Friesen, "Emotional Facial Action
+// Coding System" (1983), and some of single muscles.
+
+/// Clips of make_head_rig: "smile", "surprise", "frown", "sadness", "disgust", "fear", "pucker",
+/// "puff", "wink", "doubt" and "gape", each from rest to rest; "expressions", all of them with a
+/// gaze that wanders; "talk"; and "blink".
+[[nodiscard]] std::vector<ClipData> make_head_clips();
+
+}  // namespace limn

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "content/make/head_action_units.h"
+#include "ecs/components/skeleton.h"
+
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// The expressions of a head as morph targets: halves of action units that are sided, other units as
+// a whole, then visemes. All parts of a head have the same list.
+
+/// One target for each shape; a target without vertices moves none. `points`: one per vertex.
+/// Normals are left to generate_morph_normals.
+[[nodiscard]] std::vector<MorphTarget>
+make_expressions(std::span<const HeadPoint> points, const HeadShape& shape);
+
+/// Index of the target called `name`, which must exist.
+[[nodiscard]] std::uint16_t expression_index(std::string_view name);
+
+}  // namespace limn

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "content/make/head_action_units.h"
+#include "ecs/components/surface.h"
+
+#include <vector>
+
+namespace limn {
+
+// Parts of a head besides its skin, in centimeters of the space of head_surface.h.
+
+struct HeadPart {
+    MeshData mesh;                  ///< positions, uvs, colors and indices [cm]
+    std::vector<HeadPoint> points;  ///< one per vertex
+};
+
+/// Both balls, of the radius kBallRadius, with an iris that lies as deep behind the cornea as in a
+/// real eye, and a pupil of 3 mm.
+[[nodiscard]] HeadPart make_eye_balls();
+
+/// The clear shells before them.
+[[nodiscard]] HeadPart make_corneas();
+
+/// 14 teeth in each jaw.
+[[nodiscard]] HeadPart make_teeth();
+
+/// Gums and the tongue.
+[[nodiscard]] HeadPart make_mouth();
+
+/// Brows and lashes: ribbons, visible from both sides.
+[[nodiscard]] HeadPart make_face_hair(const HeadShape& shape);
+
+/// Radius of an eye without its cornea [cm]: the lids lie on a ball that is a little larger.
+inline constexpr float kBallRadius = 1.27f;
+
+/// Adds a grid of `rows` x `columns` vertices, which have been appended row after row, as
+/// triangles; `closed`: the last column joins the first. They face the side from which rows run
+/// down and columns to the left; flipped, the other.
+void append_grid(
+    MeshData& mesh, std::uint32_t rows, std::uint32_t columns, bool closed, bool flip = false);
+
+}  // namespace limn
