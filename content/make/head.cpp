@@ -192,7 +192,7 @@ MeshRig make_head_rig(const HeadShape& shape) {
             affine_from(-kMeters * places[i], Quat(1, 0, 0, 0), Vec3(1)));
     }
     if (shape.part == HeadPartKind::Skin) {
-        rig.clips = make_head_clips();
+        rig.clips = make_head_clips(shape.says);
     }
     return rig;
 }

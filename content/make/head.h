@@ -4,6 +4,7 @@
 #include "ecs/components/surface.h"
 
 #include <cstdint>
+#include <string>
 
 namespace limn {
 
@@ -32,6 +33,7 @@ struct HeadShape {
     float sex = 0.0f;
     float build = 0.0f;
     float asymmetry = 0.0f;
+    std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
 
 LIMN_FIELDS(HeadShape) {
@@ -40,6 +42,7 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(sex, "-1: a woman's features, 1: a man's", "", -1, 1);
     LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);
     LIMN_FIELD(asymmetry, "of the left and right half; 0: mirror images", "", 0, 1);
+    LIMN_FIELD(says, "what it says in its clip talk, English");
 }
 
 /// In meters; the origin lies between the ears, 3.5 cm below the pupils.

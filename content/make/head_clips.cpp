@@ -2,12 +2,17 @@
 
 #include "content/make/head_expressions.h"
 #include "content/make/head_visemes.h"
+#include "content/speech/face_clip.h"
+#include "content/speech/head_motion.h"
+#include "content/speech/utterance.h"
 #include "ecs/base/math.h"
 
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -165,35 +170,54 @@ ClipData make_blink() {
     return clip;
 }
 
-/// Every viseme but silence, each for as long as a syllable.
-ClipData make_talk() {
+/// What a speaker's mouth, lids, eyes and head do.
+ClipData make_talk(std::string_view says) {
+    constexpr float kRate = 60.0f;  ///< keys per second
+    constexpr std::uint64_t kSeed = 1;
     ClipData clip;
     clip.name = "talk";
-    constexpr float kSyllable = 0.28f;  // [s]
-    const std::size_t count = visemes().size();
-    const float end = kSyllable * static_cast<float>(count + 1);
-    for (std::size_t i = 1; i < count; ++i) {
-        const float peak = kSyllable * static_cast<float>(i);
-        std::vector<float> times = {peak - kSyllable, peak, peak + kSyllable, end};
-        std::vector<float> weights = {0, 1, 0, 0};
-        if (times[0] > 0) {
-            times.insert(times.begin(), 0);
-            weights.insert(weights.begin(), 0);
-        }
-        add_curve(clip, expression_index(visemes()[i].name), std::move(times), std::move(weights));
+    const SpeechTrack track = spell_utterance(says).track;
+    const MouthTrack mouth = make_mouth_track(track);
+    const EyeTrack eyes = make_eye_track(track.duration(), kSeed);
+    const std::vector<std::string> names = expression_names();
+    std::vector<GltfShape> shapes;
+    for (const std::string& name : names) {
+        shapes.push_back({name, name});
     }
+    const std::vector<FaceLink> links = link_shapes(shapes);
+    ClipSheet sheet;
+    sheet.rotating = {0, 2, 3};
+    for (const FaceLink& link : links) {
+        sheet.morphing.push_back(static_cast<std::uint16_t>(link.shape));
+    }
+    std::ranges::sort(sheet.morphing);
+    sheet.morphing.erase(std::ranges::unique(sheet.morphing).begin(), sheet.morphing.end());
+    const auto frames = static_cast<int>(std::ceil(track.duration() * kRate));
+    for (int frame = 0; frame <= frames; ++frame) {
+        const float time = static_cast<float>(frame) / kRate;
+        const EyePose eye = eyes_at(eyes, time);
+        std::vector<float> weights(shapes.size(), 0.0f);
+        add_face_weights(links, mouth_at(mouth, time), eye, weights);
+        for (const std::uint16_t shape : sheet.morphing) {
+            sheet.weights.push_back(weights[shape]);
+        }
+        sheet.rotations.push_back(head_at(track, time, kSeed));
+        add_gaze(sheet, time, {eye.yaw, eye.pitch});
+    }
+    clip.duration = sheet.times.back();
+    clip.sheets.push_back(std::move(sheet));
     return clip;
 }
 
 }  // namespace
 
-std::vector<ClipData> make_head_clips() {
+std::vector<ClipData> make_head_clips(std::string_view says) {
     std::vector<ClipData> clips;
     for (const Face& face : kFaces) {
         clips.push_back(make_face_clip(face));
     }
     clips.push_back(make_all_faces());
-    clips.push_back(make_talk());
+    clips.push_back(make_talk(says));
     clips.push_back(make_blink());
     return clips;
 }

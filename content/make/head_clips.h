@@ -2,6 +2,7 @@
 
 #include "ecs/components/skeleton.h"
 
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -11,7 +12,8 @@ namespace limn {
 
 /// Clips of make_head_rig: "smile", "surprise", "frown", "sadness", "disgust", "fear", "pucker",
 /// "puff", "wink", "doubt" and "gape", each from rest to rest; "expressions", all of them with a
-/// gaze that wanders; "talk"; and "blink".
-[[nodiscard]] std::vector<ClipData> make_head_clips();
+/// gaze that wanders; "talk", which says the English text `says` by the rules of content/speech,
+/// with its blinks, gaze and nods; and "blink".
+[[nodiscard]] std::vector<ClipData> make_head_clips(std::string_view says);
 
 }  // namespace limn

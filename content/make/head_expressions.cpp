@@ -19,7 +19,7 @@ enum class Side : std::uint8_t { Both, Left, Right };
 struct Expression {
     std::string name;
     const ActionUnit* unit = nullptr;
-    const Viseme* viseme = nullptr;
+    const HeadViseme* viseme = nullptr;
     Side side = Side::Both;
 };
 
@@ -35,7 +35,7 @@ const std::vector<Expression>& expressions() {
                 made.push_back({name, &unit, nullptr, Side::Both});
             }
         }
-        for (const Viseme& viseme : visemes()) {
+        for (const HeadViseme& viseme : head_visemes()) {
             made.push_back({std::string(viseme.name), nullptr, &viseme, Side::Both});
         }
         return made;
@@ -75,6 +75,14 @@ make_expressions(std::span<const HeadPoint> points, const HeadShape& shape) {
         }
     });
     return targets;
+}
+
+std::vector<std::string> expression_names() {
+    std::vector<std::string> names;
+    for (const Expression& expression : expressions()) {
+        names.push_back(expression.name);
+    }
+    return names;
 }
 
 std::uint16_t expression_index(std::string_view name) {

@@ -4,6 +4,8 @@
 #include "ecs/components/skeleton.h"
 
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -15,6 +17,9 @@ namespace limn {
 /// Normals are left to generate_morph_normals.
 [[nodiscard]] std::vector<MorphTarget>
 make_expressions(std::span<const HeadPoint> points, const HeadShape& shape);
+
+/// Of all targets, in their order.
+[[nodiscard]] std::vector<std::string> expression_names();
 
 /// Index of the target called `name`, which must exist.
 [[nodiscard]] std::uint16_t expression_index(std::string_view name);

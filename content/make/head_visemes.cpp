@@ -6,7 +6,7 @@ namespace {
 
 constexpr float kPerMm = 0.1f;  ///< centimeters
 
-constexpr Viseme kVisemes[] = {
+constexpr HeadViseme kVisemes[] = {
     {.name = "viseme_sil"},
     {.name = "viseme_pbm", .units = {{{"AU26", 0.05f}, {"AU8", 0.2f}, {"AU24", 0.4f}}}},
     {.name = "viseme_fv",
@@ -58,11 +58,11 @@ constexpr Viseme kVisemes[] = {
 
 }  // namespace
 
-std::span<const Viseme> visemes() {
+std::span<const HeadViseme> head_visemes() {
     return kVisemes;
 }
 
-Vec3 viseme_offset(const Viseme& viseme, const HeadPoint& point, const HeadShape& shape) {
+Vec3 viseme_offset(const HeadViseme& viseme, const HeadPoint& point, const HeadShape& shape) {
     Vec3 offset = kPerMm * square(point.tongue) * viseme.tongue_tip;
     offset.y += kPerMm * viseme.tongue_back * 4 * point.tongue * (1 - point.tongue);
     for (const UnitWeight& part : viseme.units) {

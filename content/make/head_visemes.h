@@ -17,17 +17,17 @@ struct UnitWeight {
     float weight = 0;  ///< 0: the end of the list
 };
 
-struct Viseme {
+struct HeadViseme {
     std::string_view name;  ///< "viseme_sil" ...
     std::array<UnitWeight, 6> units = {};
     Vec3 tongue_tip = {};   ///< motion of the tongue's tip [mm]
     float tongue_back = 0;  ///< rise of its back [mm]
 };
 
-[[nodiscard]] std::span<const Viseme> visemes();
+[[nodiscard]] std::span<const HeadViseme> head_visemes();
 
 /// How far the pose moves `point` [cm].
 [[nodiscard]] Vec3
-viseme_offset(const Viseme& viseme, const HeadPoint& point, const HeadShape& shape);
+viseme_offset(const HeadViseme& viseme, const HeadPoint& point, const HeadShape& shape);
 
 }  // namespace limn

@@ -5,6 +5,7 @@
 #include "content/make/head_surface.h"
 #include "content/make/head_visemes.h"
 #include "content/make/head_wrap.h"
+#include "content/speech/utterance.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -173,7 +174,7 @@ TEST_CASE("head expressions: there are more than 40 of them, of units, and 15 vi
     const auto units = std::ranges::count_if(
         shapes(), [](const MorphTarget& target) { return !target.action_unit.empty(); });
     CHECK(units >= 40);
-    CHECK(visemes().size() == 15);
+    CHECK(head_visemes().size() == 15);
     CHECK(shapes().size() == static_cast<std::size_t>(units) + 15);
     for (std::size_t i = 0; i < shapes().size(); ++i) {
         CHECK(expression_index(shapes()[i].name) == i);  // each name once
@@ -349,4 +350,36 @@ TEST_CASE("head expressions: every clip fits the skeleton and begins and ends at
 }
 
 }  // namespace
+TEST_CASE("head: its clip talk opens the mouth at a, closes it at m, and ends at rest") {
+    HeadShape shape;
+    shape.says = "map mat";
+    const MeshRig rig = make_head_rig(shape);
+    const auto talk = std::ranges::find(rig.clips, "talk", &ClipData::name);
+    REQUIRE(talk != rig.clips.end());
+    REQUIRE(talk->sheets.size() == 1);
+    const ClipSheet& sheet = talk->sheets[0];
+    const auto column = std::ranges::find(sheet.morphing, expression_index("AU27"));
+    REQUIRE(column != sheet.morphing.end());
+    const auto jaw_at = [&](std::size_t key) {
+        return sheet.weights
+            [key * sheet.morphing.size()
+             + static_cast<std::size_t>(column - sheet.morphing.begin())];
+    };
+    const SpeechTrack track = spell_utterance("map mat").track;
+    const auto key_of = [&](std::size_t segment) {
+        return static_cast<std::size_t>(
+            30.0f * (track.segments[segment].start + track.segments[segment].end) + 0.5f);
+    };
+    // Silence, m, a, p, m, a, t, silence.
+    CHECK(jaw_at(key_of(2)) > 0.15f);
+    CHECK(jaw_at(key_of(4)) < 0.3f * jaw_at(key_of(2)));
+    CHECK(jaw_at(key_of(5)) > 0.15f);
+    for (std::size_t i = 0; i < sheet.morphing.size(); ++i) {
+        CHECK(sheet.weights[i] == 0.0f);
+        CHECK(std::abs(sheet.weights[sheet.weights.size() - 1 - i]) < 1e-3f);
+    }
+    CHECK(talk->duration >= track.duration());
+    CHECK(check_clip(*talk, 4, expression_names().size()).ok());
+}
+
 }  // namespace limn

@@ -192,8 +192,7 @@ TEST_CASE("lattice: an affine map of its points is the same map of what is insid
     }
 }
 
-TEST_CASE("lattice: an inner point moves the middle by 0.375^3 of its way, a corner only its "
-          "vertex fully") {
+TEST_CASE("lattice: an inner point moves the middle by 0.375^3 of its way, a corner its vertex") {
     const Vec3 by(0.5f, 0.25f, -1.0f);
     const Lattice inner = make_lattice([&](const Vec3&, int i, int j, int k) {
         return i == 1 && j == 2 && k == 1 ? by : Vec3(0);
