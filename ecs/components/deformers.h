@@ -14,7 +14,8 @@ namespace limn {
 
 /// A muscle between bone and skin that pulls what lies in its cone toward the bone
 /// (face.waters-muscle): K. Waters, "A Muscle Model for Animating Three-Dimensional Facial
-/// Expression", 1987.
+/// Expression", 1987. His cosines are squared where the pull ends, at the border of the cone and at
+/// its reach: their slopes there would crease the skin.
 struct LinearMuscle {
     Vec3 attachment{0, 0, 0};
     Vec3 insertion{0, 0.05f, 0};

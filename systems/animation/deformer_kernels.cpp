@@ -43,9 +43,10 @@ void add_muscle(const Vec4* record, const Vec3& p, Pull& pull) {
     if (off_axis >= 1.0f) {
         return;
     }
-    const float along =
-        distance <= full ? 1.0f - distance / full : (distance - full) / (reach - full);
-    const float strength = std::cos(0.5f * kPi * along) * std::cos(0.5f * kPi * off_axis);
+    const float beyond = std::max((distance - full) / (reach - full), 0.0f);
+    const float rise = std::sin(0.5f * kPi * std::min(distance / full, 1.0f));
+    const float strength =
+        rise * square(std::cos(0.5f * kPi * beyond)) * square(std::cos(0.5f * kPi * off_axis));
     pull.sum += (record[0].y * strength / distance) * to_attachment;
     pull.farthest = std::max(pull.farthest, distance);
 }

@@ -42,9 +42,10 @@ void add_muscle(int record, vec3 p, inout Pull pull) {
     if (off_axis >= 1.0) {
         return;
     }
-    float along = distance <= attachment.w ? 1.0 - distance / attachment.w
-                                           : (distance - attachment.w) / (axis.w - attachment.w);
-    float share = cos(kHalfPi * along) * cos(kHalfPi * off_axis);
+    float beyond = max((distance - attachment.w) / (axis.w - attachment.w), 0.0);
+    float rise = sin(kHalfPi * min(distance / attachment.w, 1.0));
+    float fall = cos(kHalfPi * beyond) * cos(kHalfPi * off_axis);
+    float share = rise * fall * fall;
     pull.sum += (strength.y * share / distance) * to_attachment;
     pull.farthest = max(pull.farthest, distance);
 }
