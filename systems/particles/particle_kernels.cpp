@@ -1,10 +1,8 @@
 #include "systems/particles/particle_kernels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -42,12 +40,6 @@ std::size_t stir_particles_vector(const ParticleBlock&, const Turbulence&, float
     return 0;
 }
 std::size_t wrap_axis_vector(float*, std::size_t, float, float) {
-    return 0;
-}
-std::size_t find_alive_vector(const float*, const float*, std::size_t, std::uint8_t*) {
-    return 0;
-}
-std::size_t compact_vector(const std::uint32_t*, std::size_t, const std::uint8_t*, std::uint32_t*) {
     return 0;
 }
 
@@ -244,34 +236,6 @@ std::size_t wrap_axis_vector(float* x, std::size_t count, float center, float si
     return i;
 }
 
-/// Who lives of whole vectors, as bits in `alive`: one mask after another, each in whole bytes.
-std::size_t
-find_alive_vector(const float* age, const float* life, std::size_t count, std::uint8_t* alive) {
-    const std::size_t n = hn::Lanes(d);
-    std::size_t i = 0;
-    for (; i + n <= count; i += n) {
-        const auto lives = hn::Lt(hn::LoadU(d, age + i), hn::LoadU(d, life + i));
-        alive += hn::StoreMaskBits(d, lives, alive);
-    }
-    return i;
-}
-
-/// Moves those of `count` values, whole vectors, that live to `to`, at or before `from`; returns
-/// how many. Compress and store: CompressStore is ten times as slow on some processors.
-std::size_t compact_vector(
-    const std::uint32_t* from, std::size_t count, const std::uint8_t* alive, std::uint32_t* to) {
-    const std::size_t n = hn::Lanes(d);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; i += n) {
-        const auto lives = hn::LoadMaskBits(d, alive);
-        alive += (n + 7) / 8;
-        const V packed = hn::Compress(hn::BitCast(d, hn::LoadU(du, from + i)), lives);
-        hn::StoreU(hn::BitCast(du, packed), du, to + kept);
-        kept += hn::CountTrue(d, lives);
-    }
-    return kept;
-}
-
 #endif
 
 }  // namespace limn::HWY_NAMESPACE
@@ -283,8 +247,6 @@ namespace limn {
 HWY_EXPORT(move_particles_vector);
 HWY_EXPORT(stir_particles_vector);
 HWY_EXPORT(wrap_axis_vector);
-HWY_EXPORT(find_alive_vector);
-HWY_EXPORT(compact_vector);
 
 namespace {
 
@@ -306,37 +268,6 @@ Fade fade(float t) {
 float blend(float a, float b, float t) {
     return a + (b - a) * t;
 }
-
-/// Every column of a pool, as words.
-struct Columns {
-    std::array<std::uint32_t*, 10> begin = {};
-    std::size_t count = 0;
-};
-Columns columns_of(ParticlePool& pool) {
-    Columns all;
-    for (auto* column :
-         {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
-        all.begin[all.count++] = reinterpret_cast<std::uint32_t*>(column->data());
-    }
-    all.begin[all.count++] = pool.look.data();
-    if (pool.stuck.size() == pool.size()) {
-        all.begin[all.count++] = pool.stuck.data();
-    }
-    return all;
-}
-
-void shrink(ParticlePool& pool, std::size_t size) {
-    const bool sticks = pool.stuck.size() == pool.size();
-    for (auto* column :
-         {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
-        column->resize(size);
-    }
-    pool.look.resize(size);
-    pool.stuck.resize(sticks ? size : 0);
-}
-
-/// Particles whose columns are compacted one after another: who of them lives is found once.
-constexpr std::size_t kCompacted = 16384;
 
 }  // namespace
 
@@ -516,51 +447,6 @@ void wrap_particles(const ParticleBlock& b, const Vec3& center, const Vec3& size
             wrap_axis(places[axis] + done, b.count - done, center[axis], size[axis]);
         }
     }
-}
-
-std::size_t remove_dead(ParticlePool& pool, std::size_t first) {
-    const Columns columns = columns_of(pool);
-    std::array<std::uint8_t, kCompacted + 8> masks;  // 8 more, which may be loaded and stored
-    std::array<bool, kCompacted> lives;              // of those beyond whole vectors
-    std::size_t kept = first;
-    for (std::size_t begin = first; begin < pool.size(); begin += kCompacted) {
-        const std::size_t count = std::min(pool.size() - begin, kCompacted);
-        const float* const age = pool.age.data() + begin;
-        const float* const life = pool.life.data() + begin;
-        const std::size_t whole =
-            HWY_DYNAMIC_DISPATCH(find_alive_vector)(age, life, count, masks.data());
-        for (std::size_t i = whole; i < count; ++i) {
-            lives[i] = age[i] < life[i];
-        }
-        std::size_t alive = 0;
-        for (std::size_t c = 0; c < columns.count; ++c) {
-            const std::uint32_t* const from = columns.begin[c] + begin;
-            std::uint32_t* const to = columns.begin[c] + kept;
-            alive = HWY_DYNAMIC_DISPATCH(compact_vector)(from, whole, masks.data(), to);
-            for (std::size_t i = whole; i < count; ++i) {
-                std::memcpy(to + alive, from + i, sizeof(*to));
-                alive += lives[i] ? 1 : 0;
-            }
-        }
-        kept += alive;
-    }
-    shrink(pool, kept);
-    return kept;
-}
-
-std::size_t remove_dead_scalar(ParticlePool& pool, std::size_t first) {
-    const Columns columns = columns_of(pool);
-    std::size_t kept = first;
-    for (std::size_t i = first; i < pool.size(); ++i) {
-        if (pool.age[i] < pool.life[i]) {
-            for (std::size_t c = 0; c < columns.count; ++c) {
-                std::memcpy(columns.begin[c] + kept, columns.begin[c] + i, sizeof(std::uint32_t));
-            }
-            ++kept;
-        }
-    }
-    shrink(pool, kept);
-    return kept;
 }
 
 }  // namespace limn
