@@ -1,9 +1,9 @@
 #include "systems/particles/particle_kernels.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/particles/particle_kernels.cpp"
@@ -21,8 +21,14 @@ inline constexpr std::uint32_t kHashY = 0xd8163841u;
 inline constexpr std::uint32_t kHashZ = 0xcb1ab31fu;
 inline constexpr std::uint32_t kHashMix = 0x7feb352du;
 inline constexpr std::uint32_t kSeedB = 0x68bc21ebu;  // of the second field of curl noise
-inline constexpr float kCurlScale = 0.887f;           // root mean square 1, measured
-inline constexpr float kRawUnit = 30 * 0x1p-31f;      // of raw_gradient
+
+// Added to whole numbers up to 2^22 it leaves them in the lowest bits of the sum. Beyond, where
+// floats have no fraction to speak of, the lattice is another one.
+inline constexpr float kWhole = 0x1.8p23f;
+inline constexpr auto kWholeBits = std::bit_cast<std::uint32_t>(kWhole);
+
+inline constexpr float kCurlScale = 0.887f;       // root mean square 1, measured
+inline constexpr float kRawUnit = 30 * 0x1p-31f;  // of raw_gradient
 
 /// From the cross product of two raw gradients to an acceleration.
 inline float raw_curl_scale(const Turbulence& turbulence) {
@@ -160,7 +166,8 @@ HWY_INLINE Axis axis_at(V place, std::uint32_t multiplier) {
     const V cell = hn::Floor(place);
     const V t = hn::Sub(place, cell);
     const U step = hn::Set(du, multiplier);
-    const U low = hn::Mul(hn::BitCast(du, hn::ConvertTo(di, cell)), step);
+    const U moved = hn::BitCast(du, hn::Add(cell, hn::Set(d, particles::kWhole)));
+    const U low = hn::Mul(hn::Sub(moved, hn::Set(du, particles::kWholeBits)), step);
     const V inner = hn::Add(
         hn::Mul(t, hn::Sub(hn::Mul(t, hn::Set(d, 6.0f)), hn::Set(d, 15.0f))), hn::Set(d, 10.0f));
     const V t2 = hn::Mul(t, t);
@@ -276,11 +283,8 @@ struct Axis {
 Axis axis_at(float place, std::uint32_t multiplier) {
     const float cell = std::floor(place);
     const float t = place - cell;
-    constexpr float kEnd = 0x1p31f;  // saturates, as vectors do
-    const std::int32_t whole = cell >= kEnd    ? std::numeric_limits<std::int32_t>::max()
-                               : cell >= -kEnd ? static_cast<std::int32_t>(cell)
-                                               : std::numeric_limits<std::int32_t>::min();
-    const std::uint32_t low = static_cast<std::uint32_t>(whole) * multiplier;
+    const auto moved = std::bit_cast<std::uint32_t>(cell + particles::kWhole);
+    const std::uint32_t low = (moved - particles::kWholeBits) * multiplier;
     const float t2 = t * t;
     const float hill = t2 - t;
     return {low, low + multiplier, t2 * t * (t * (t * 6.0f - 15.0f) + 10.0f), hill * hill};
