@@ -478,7 +478,9 @@ LIMN_FIELDS(EmitterClock) {
     LIMN_FIELD(carry, "share of a birth that is due");
 }
 
-/// The particles of an emitter, oldest first; kept by the systems. World space.
+/// The particles of an emitter; kept by the systems. World space. Newborns are appended. Where
+/// somebody tells particles by their order (keeps_order in systems/particles/particle_deaths.h),
+/// they are kept oldest first; otherwise the last ones take the places of the dead.
 struct ParticlePool {
     std::vector<float> x, y, z;        ///< position [m]
     std::vector<float> vx, vy, vz;     ///< velocity [m/s]
@@ -486,7 +488,8 @@ struct ParticlePool {
     std::vector<std::uint32_t> look;   ///< random bits: size, angle, spin
     std::vector<std::uint32_t> stuck;  ///< 1: sticks to a surface; shorter: the rest does not
     EmitterClock clock;
-    std::uint64_t fresh = 0;  ///< of the youngest, how many have not moved yet
+    std::uint64_t fresh = 0;  ///< of the last ones, how many were born since the dead were removed
+    bool mixed = false;       ///< not oldest first
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
@@ -503,7 +506,8 @@ LIMN_FIELDS(ParticlePool) {
     LIMN_FIELD(look, "random bits of each");
     LIMN_FIELD(stuck, "1 for those that stick to a surface");
     LIMN_FIELD(clock, "births so far, and the emitter's time");
-    LIMN_FIELD(fresh, "births that have not moved yet");
+    LIMN_FIELD(fresh, "births since the dead were removed");
+    LIMN_FIELD(mixed, "whether they are in another order than that of their births");
 }
 
 [[nodiscard]] inline bool runs_on_gpu(const ParticleEmitter& emitter) {

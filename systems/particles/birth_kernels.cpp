@@ -44,7 +44,8 @@ HWY_INLINE V constant(float value) {
 
 /// Random of as many births as there are lanes, numbered in a row. Of the 64 bits of a lane of L,
 /// only the lower half counts: Philox multiplies 32 bits to 64, in the even and the odd lanes
-/// apart.
+/// apart. Eight words at a time, which is what most births take: two blocks of four, whose rounds
+/// do not wait for each other.
 class LaneRandom {
   public:
     HWY_INLINE LaneRandom(const Random& first, U numbers)
@@ -55,7 +56,7 @@ class LaneRandom {
         if (left_ == 0) {
             draw();
         }
-        return words_[4 - left_--];
+        return words_[8 - left_--];
     }
     HWY_INLINE V uniform() {
         return hn::Mul(
@@ -67,48 +68,59 @@ class LaneRandom {
     }
 
   private:
-    HWY_INLINE static void round(L& c0, L& c1, L& c2, L& c3, L key0, L key1) {
-        const L a = hn::MulEven(hn::Set(du, 0xd2511f53u), hn::BitCast(du, c0));
-        const L b = hn::MulEven(hn::Set(du, 0xcd9e8d57u), hn::BitCast(du, c2));
-        c0 = hn::Xor3(hn::ShiftRight<32>(b), c1, key0);
-        c2 = hn::Xor3(hn::ShiftRight<32>(a), c3, key1);
-        c1 = b;
-        c3 = a;
+    struct Counter {
+        L c0, c1, c2, c3;
+
+        HWY_INLINE void round(L key0, L key1) {
+            const L a = hn::MulEven(hn::Set(du, 0xd2511f53u), hn::BitCast(du, c0));
+            const L b = hn::MulEven(hn::Set(du, 0xcd9e8d57u), hn::BitCast(du, c2));
+            c0 = hn::Xor3(hn::ShiftRight<32>(b), c1, key0);
+            c2 = hn::Xor3(hn::ShiftRight<32>(a), c3, key1);
+            c1 = b;
+            c3 = a;
+        }
+    };
+    HWY_INLINE Counter begin(std::uint32_t block, L numbers) const {
+        return {
+            hn::Set(dl, counter_[0] + block), numbers, hn::Set(dl, counter_[2]),
+            hn::Set(dl, counter_[3])};
     }
     HWY_INLINE static U join(L even, L odd) {
         return hn::OddEven(hn::BitCast(du, hn::ShiftLeft<32>(odd)), hn::BitCast(du, even));
     }
     HWY_INLINE void draw() {
-        L even0 = hn::Set(dl, counter_[0]);
-        L even1 = even_;
-        L even2 = hn::Set(dl, counter_[2]);
-        L even3 = hn::Set(dl, counter_[3]);
-        L odd0 = even0;
-        L odd1 = odd_;
-        L odd2 = even2;
-        L odd3 = even3;
+        Counter even_a = begin(0, even_);
+        Counter odd_a = begin(0, odd_);
+        Counter even_b = begin(1, even_);
+        Counter odd_b = begin(1, odd_);
         PhiloxKey key = key_;
         for (int i = 0; i < 10; ++i) {
             const L key0 = hn::Set(dl, key[0]);
             const L key1 = hn::Set(dl, key[1]);
-            round(even0, even1, even2, even3, key0, key1);
-            round(odd0, odd1, odd2, odd3, key0, key1);
+            even_a.round(key0, key1);
+            odd_a.round(key0, key1);
+            even_b.round(key0, key1);
+            odd_b.round(key0, key1);
             key[0] += 0x9e3779b9u;
             key[1] += 0xbb67ae85u;
         }
-        words_[0] = join(even0, odd0);
-        words_[1] = join(even1, odd1);
-        words_[2] = join(even2, odd2);
-        words_[3] = join(even3, odd3);
-        ++counter_[0];
-        left_ = 4;
+        words_[0] = join(even_a.c0, odd_a.c0);
+        words_[1] = join(even_a.c1, odd_a.c1);
+        words_[2] = join(even_a.c2, odd_a.c2);
+        words_[3] = join(even_a.c3, odd_a.c3);
+        words_[4] = join(even_b.c0, odd_b.c0);
+        words_[5] = join(even_b.c1, odd_b.c1);
+        words_[6] = join(even_b.c2, odd_b.c2);
+        words_[7] = join(even_b.c3, odd_b.c3);
+        counter_[0] += 2;
+        left_ = 8;
     }
 
     PhiloxCounter counter_;
     PhiloxKey key_;
     L even_;
     L odd_;
-    U words_[4];
+    U words_[8];
     int left_ = 0;
 };
 
@@ -345,7 +357,8 @@ draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes&
     // as Rewind
     const V time = hn::Mul(at, constant(step.dt));
     const V3 air = splat(step.air);
-    const V undo = exp_of_share(hn::Mul(at, constant(draw.rewind.drag)));
+    const float drag = draw.rewind.drag;
+    const V undo = drag > 0 ? exp_of_share(hn::Mul(at, constant(drag))) : constant(1.0f);
     its.velocity =
         subtract(add(air, scale(subtract(now, air), undo)), scale(splat(step.gravity), time));
     const V3 mean = add(

@@ -3,11 +3,15 @@
 #include "ecs/base/check.h"
 
 #include <glm/geometric.hpp>
+#include <hwy/cache_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <span>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/particles/particle_collision_kernels.cpp"
@@ -37,7 +41,7 @@ struct Field {
     Vec2 per_meter;  ///< 1 / cell
     Vec2 last;       ///< grid coordinates of the last point
     int width, last_i, last_j;
-    const float* heights;
+    std::span<const float> heights;
 };
 
 }  // namespace limn::particle_surface
@@ -106,19 +110,45 @@ HWY_INLINE void respond_lanes(
     write(p.vz.data(), v.z, normal.z);
 }
 
-std::size_t plane_vector(const ParticleColumns& p, const Plane& plane, const Response& response) {
+/// Calls touch(i) for those whole vectors for which may_touch(i). Few do: their velocities, which
+/// are not read otherwise, are on the way before the first one is needed. Returns how many
+/// particles the whole vectors have.
+template <typename MayTouch, typename Touch>
+HWY_INLINE std::size_t each_touched(const ParticleColumns& p, MayTouch may_touch, Touch touch) {
+    constexpr std::size_t kBlock = 2048;
     const std::size_t lanes = hn::Lanes(d);
+    const std::size_t end = p.px.size() / lanes * lanes;
+    std::array<std::size_t, kBlock / 4 + 1> touched;  // vectors have 4 lanes or more
+    for (std::size_t begin = 0; begin < end; begin += kBlock) {
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < std::min(begin + kBlock, end); i += lanes) {
+            touched[count] = i;
+            count += may_touch(i) ? 1 : 0;
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            hwy::Prefetch(p.vx.data() + touched[k]);
+            hwy::Prefetch(p.vy.data() + touched[k]);
+            hwy::Prefetch(p.vz.data() + touched[k]);
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            touch(touched[k]);
+        }
+    }
+    return end;
+}
+
+std::size_t plane_vector(const ParticleColumns& p, const Plane& plane, const Response& response) {
     const V3 normal = set(plane.normal);
     const V level = hn::Set(d, plane.level);
-    std::size_t i = 0;
-    for (; i + lanes <= p.px.size(); i += lanes) {
+    const auto distance_of = [&](const V3& at) HWY_ATTR { return hn::Sub(dot(at, normal), level); };
+    const auto may_touch = [&](std::size_t i) HWY_ATTR {
+        return !hn::AllFalse(d, hn::Lt(distance_of(load(p.px, p.py, p.pz, i)), hn::Zero(d)));
+    };
+    return each_touched(p, may_touch, [&](std::size_t i) HWY_ATTR {
         const V3 at = load(p.px, p.py, p.pz, i);
-        const V distance = hn::Sub(dot(at, normal), level);
+        const V distance = distance_of(at);
         const M inside = hn::Lt(distance, hn::Zero(d));
-        if (hn::AllFalse(d, inside)) {
-            continue;
-        }
-        const auto write = [&](float* to, V component, V along) {
+        const auto write = [&](float* to, V component, V along) HWY_ATTR {
             const V out = hn::Sub(component, hn::Mul(distance, along));
             hn::StoreU(hn::IfThenElse(inside, out, component), d, to + i);
         };
@@ -126,34 +156,37 @@ std::size_t plane_vector(const ParticleColumns& p, const Plane& plane, const Res
         write(p.py.data(), at.y, normal.y);
         write(p.pz.data(), at.z, normal.z);
         respond_lanes(p, i, inside, normal, response);
-    }
-    return i;
+    });
 }
 
 std::size_t
 sphere_vector(const ParticleColumns& p, const Sphere& sphere, const Response& response) {
-    const std::size_t lanes = hn::Lanes(d);
     const V3 center = set(sphere.center);
     const V zero = hn::Zero(d);
     const V one = hn::Set(d, 1.0f);
     const V radius = hn::Set(d, sphere.radius);
     const V radius2 = hn::Set(d, sphere.radius2);
-    std::size_t i = 0;
-    for (; i + lanes <= p.px.size(); i += lanes) {
+    const auto offset_of = [&](const V3& at) HWY_ATTR {
+        return V3{hn::Sub(at.x, center.x), hn::Sub(at.y, center.y), hn::Sub(at.z, center.z)};
+    };
+    const auto is_inside = [&](V length2) HWY_ATTR {
+        return sphere.inverted ? hn::Gt(length2, radius2) : hn::Lt(length2, radius2);
+    };
+    const auto may_touch = [&](std::size_t i) HWY_ATTR {
+        const V3 offset = offset_of(load(p.px, p.py, p.pz, i));
+        return !hn::AllFalse(d, is_inside(dot(offset, offset)));
+    };
+    return each_touched(p, may_touch, [&](std::size_t i) HWY_ATTR {
         const V3 at = load(p.px, p.py, p.pz, i);
-        const V3 delta = {
-            hn::Sub(at.x, center.x), hn::Sub(at.y, center.y), hn::Sub(at.z, center.z)};
-        const V length2 = dot(delta, delta);
-        const M inside = sphere.inverted ? hn::Gt(length2, radius2) : hn::Lt(length2, radius2);
-        if (hn::AllFalse(d, inside)) {
-            continue;
-        }
+        const V3 offset = offset_of(at);
+        const V length2 = dot(offset, offset);
+        const M inside = is_inside(length2);
         const M off_center = hn::Gt(length2, zero);
         const V scale = hn::IfThenElseZero(off_center, hn::Div(one, hn::Sqrt(length2)));
         V3 outward = {
-            hn::Mul(delta.x, scale), hn::IfThenElse(off_center, hn::Mul(delta.y, scale), one),
-            hn::Mul(delta.z, scale)};
-        const auto write = [&](float* to, V component, V middle, V along) {
+            hn::Mul(offset.x, scale), hn::IfThenElse(off_center, hn::Mul(offset.y, scale), one),
+            hn::Mul(offset.z, scale)};
+        const auto write = [&](float* to, V component, V middle, V along) HWY_ATTR {
             const V out = hn::Add(middle, hn::Mul(radius, along));
             hn::StoreU(hn::IfThenElse(inside, out, component), d, to + i);
         };
@@ -164,8 +197,28 @@ sphere_vector(const ParticleColumns& p, const Sphere& sphere, const Response& re
             outward = {hn::Neg(outward.x), hn::Neg(outward.y), hn::Neg(outward.z)};
         }
         respond_lanes(p, i, inside, outward, response);
+    });
+}
+
+/// No surface is higher, rounding included; NaN, which nothing is below, does not count. Unbounded
+/// where looking at all points would take longer than it saves.
+HWY_INLINE float find_highest(const Field& field, std::size_t particles) {
+    const std::size_t lanes = hn::Lanes(d);
+    if (particles < field.heights.size() || field.heights.size() < lanes) {
+        return std::numeric_limits<float>::infinity();
     }
-    return i;
+    V highest = hn::Set(d, std::numeric_limits<float>::lowest());
+    V largest = hn::Zero(d);
+    for (std::size_t i = 0; i < field.heights.size(); i += lanes) {
+        // The last vector overlaps the one before.
+        const std::size_t at = std::min(i, field.heights.size() - lanes);
+        const V height = hn::LoadU(d, field.heights.data() + at);
+        highest = hn::IfThenElse(hn::Gt(height, highest), height, highest);
+        largest = hn::IfThenElse(hn::Gt(hn::Abs(height), largest), hn::Abs(height), largest);
+    }
+    constexpr float kRounding = 1e-5f;
+    const float size = hn::GetLane(hn::MaxOfLanes(d, largest)) + std::abs(field.origin.y);
+    return hn::GetLane(hn::MaxOfLanes(d, highest)) + field.origin.y + kRounding * size;
 }
 
 /// The heights around each cell. Copying pairs of neighbors takes half the time of four gathers.
@@ -175,7 +228,7 @@ load_corners(const Field& field, hn::Vec<Ints> index, V& h00, V& h10, V& h01, V&
     HWY_ALIGN float corners[4 * hn::MaxLanes(d)];
     hn::Store(index, ints, first);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-        const float* const row = field.heights + first[lane];
+        const float* const row = field.heights.data() + first[lane];
         std::memcpy(corners + 4 * lane, row, 2 * sizeof(float));
         std::memcpy(corners + 4 * lane + 2, row + field.width, 2 * sizeof(float));
     }
@@ -183,11 +236,13 @@ load_corners(const Field& field, hn::Vec<Ints> index, V& h00, V& h10, V& h01, V&
 }
 
 std::size_t field_vector(const ParticleColumns& p, const Field& field, const Response& response) {
-    const std::size_t lanes = hn::Lanes(d);
     const V zero = hn::Zero(d);
     const V one = hn::Set(d, 1.0f);
-    std::size_t i = 0;
-    for (; i + lanes <= p.px.size(); i += lanes) {
+    const V highest = hn::Set(d, find_highest(field, p.px.size()));
+    const auto may_touch = [&](std::size_t i) HWY_ATTR {
+        return !hn::AllFalse(d, hn::Lt(hn::LoadU(d, p.py.data() + i), highest));
+    };
+    return each_touched(p, may_touch, [&](std::size_t i) HWY_ATTR {
         const V3 at = load(p.px, p.py, p.pz, i);
         const V x =
             hn::Mul(hn::Sub(at.x, hn::Set(d, field.origin.x)), hn::Set(d, field.per_meter.x));
@@ -196,10 +251,14 @@ std::size_t field_vector(const ParticleColumns& p, const Field& field, const Res
         const M in_grid = hn::And(
             hn::And(hn::Ge(x, zero), hn::Le(x, hn::Set(d, field.last.x))),
             hn::And(hn::Ge(z, zero), hn::Le(z, hn::Set(d, field.last.y))));
-        const auto cell_x = hn::Min(
-            hn::ConvertTo(ints, hn::IfThenElseZero(in_grid, x)), hn::Set(ints, field.last_i));
-        const auto cell_z = hn::Min(
-            hn::ConvertTo(ints, hn::IfThenElseZero(in_grid, z)), hn::Set(ints, field.last_j));
+        const M low = hn::And(in_grid, hn::Lt(at.y, highest));
+        if (hn::AllFalse(d, low)) {
+            return;
+        }
+        const auto cell_x =
+            hn::Min(hn::ConvertTo(ints, hn::IfThenElseZero(low, x)), hn::Set(ints, field.last_i));
+        const auto cell_z =
+            hn::Min(hn::ConvertTo(ints, hn::IfThenElseZero(low, z)), hn::Set(ints, field.last_j));
         const V fx = hn::Sub(x, hn::ConvertTo(d, cell_x));
         const V fz = hn::Sub(z, hn::ConvertTo(d, cell_z));
         const auto index = hn::Add(hn::Mul(cell_z, hn::Set(ints, field.width)), cell_x);
@@ -215,9 +274,9 @@ std::size_t field_vector(const ParticleColumns& p, const Field& field, const Res
         const V surface = hn::Add(
             hn::Add(hn::Add(h00, hn::Mul(slope_x, fx)), hn::Mul(along_z, fz)),
             hn::Set(d, field.origin.y));
-        const M inside = hn::And(in_grid, hn::Lt(at.y, surface));
+        const M inside = hn::And(low, hn::Lt(at.y, surface));
         if (hn::AllFalse(d, inside)) {
-            continue;
+            return;
         }
         hn::StoreU(hn::IfThenElse(inside, surface, at.y), d, p.py.data() + i);
         const V slope_z = hn::Add(along_z, hn::Mul(twist, fx));
@@ -226,8 +285,7 @@ std::size_t field_vector(const ParticleColumns& p, const Field& field, const Res
         const V scale =
             hn::Div(one, hn::Sqrt(hn::Add(hn::Add(hn::Mul(nx, nx), one), hn::Mul(nz, nz))));
         respond_lanes(p, i, inside, {hn::Mul(nx, scale), scale, hn::Mul(nz, scale)}, response);
-    }
-    return i;
+    });
 }
 
 #endif  // HWY_TARGET
@@ -270,7 +328,7 @@ Field prepare(const HeightCollider& field, float radius) {
         .width = field.width,
         .last_i = field.width - 2,
         .last_j = field.depth - 2,
-        .heights = field.heights.data()};
+        .heights = field.heights};
 }
 
 void check_sizes(const ParticleColumns& p) {
@@ -330,7 +388,7 @@ void collide_from(
         const int cell_z = std::min(static_cast<int>(z), field.last_j);
         const float fx = x - static_cast<float>(cell_x);
         const float fz = z - static_cast<float>(cell_z);
-        const float* const h = field.heights + cell_z * field.width + cell_x;
+        const float* const h = field.heights.data() + cell_z * field.width + cell_x;
         const float along_x = h[1] - h[0];
         const float along_z = h[field.width] - h[0];
         const float twist = h[field.width + 1] - h[1] - along_z;

@@ -1,11 +1,9 @@
 #include "systems/particles/particle_kernels.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/particles/particle_kernels.cpp"
@@ -23,7 +21,19 @@ inline constexpr std::uint32_t kHashY = 0xd8163841u;
 inline constexpr std::uint32_t kHashZ = 0xcb1ab31fu;
 inline constexpr std::uint32_t kHashMix = 0x7feb352du;
 inline constexpr std::uint32_t kSeedB = 0x68bc21ebu;  // of the second field of curl noise
-inline constexpr float kCurlScale = 0.887f;           // root mean square 1, measured
+
+// Added to whole numbers up to 2^22 it leaves them in the lowest bits of the sum. Beyond, where
+// floats have no fraction to speak of, the lattice is another one.
+inline constexpr float kWhole = 0x1.8p23f;
+inline constexpr auto kWholeBits = std::bit_cast<std::uint32_t>(kWhole);
+
+inline constexpr float kCurlScale = 0.887f;       // root mean square 1, measured
+inline constexpr float kRawUnit = 30 * 0x1p-31f;  // of raw_gradient
+
+/// From the cross product of two raw gradients to an acceleration.
+inline float raw_curl_scale(const Turbulence& turbulence) {
+    return turbulence.strength * (kCurlScale * kRawUnit * kRawUnit);
+}
 
 }  // namespace limn::particles
 #endif
@@ -44,12 +54,6 @@ std::size_t stir_particles_vector(const ParticleBlock&, const Turbulence&, float
 std::size_t wrap_axis_vector(float*, std::size_t, float, float) {
     return 0;
 }
-std::size_t find_alive_vector(const float*, const float*, std::size_t, std::uint8_t*) {
-    return 0;
-}
-std::size_t compact_vector(const std::uint32_t*, std::size_t, const std::uint8_t*, std::uint32_t*) {
-    return 0;
-}
 
 #else
 
@@ -64,29 +68,41 @@ constexpr Words du;
 constexpr Ints di;
 
 /// The first `count` lanes of a vector at `p`, the others 0; all of them for a whole vector.
-HWY_INLINE V load_part(const float* p, std::size_t count) {
-    return count < hn::Lanes(d) ? hn::MaskedLoad(hn::FirstN(d, count), d, p) : hn::LoadU(d, p);
+template <typename D>
+HWY_INLINE hn::Vec<D> load_part(D tag, const float* p, std::size_t count) {
+    return count < hn::Lanes(tag) ? hn::MaskedLoad(hn::FirstN(tag, count), tag, p)
+                                  : hn::LoadU(tag, p);
 }
-HWY_INLINE void store_part(V values, float* p, std::size_t count) {
-    if (count < hn::Lanes(d)) {
-        hn::BlendedStore(values, hn::FirstN(d, count), d, p);
+template <typename D>
+HWY_INLINE void store_part(D tag, hn::Vec<D> values, float* p, std::size_t count) {
+    if (count < hn::Lanes(tag)) {
+        hn::BlendedStore(values, hn::FirstN(tag, count), tag, p);
     } else {
-        hn::StoreU(values, d, p);
+        hn::StoreU(values, tag, p);
     }
 }
 
-/// Calls run(first, count) for whole vectors, then for what is left if that can be loaded without
-/// touching what is behind it. Returns how many elements that were.
+template <typename D, typename Run>
+HWY_INLINE std::size_t each_whole_vector(D tag, std::size_t i, std::size_t count, Run run) {
+    for (const std::size_t n = hn::Lanes(tag); i + n <= count; i += n) {
+        run(tag, i, n);
+    }
+    return i;
+}
+
+/// Calls run(tag, first, count) for whole vectors, ever narrower ones, then for a part of the
+/// narrowest if that can be loaded without touching what is behind it. Parts of wide vectors would
+/// wait for stores to what is behind them, and small pools lie close to each other. Returns how
+/// many elements that were.
 template <typename Run>
 HWY_INLINE std::size_t each_vector(std::size_t count, Run run) {
-    const std::size_t n = hn::Lanes(d);
-    std::size_t i = 0;
-    for (; i + n <= count; i += n) {
-        run(i, n);
-    }
+    constexpr hn::CappedTag<float, 4> d4;
+    std::size_t i = each_whole_vector(d, 0, count, run);
+    i = each_whole_vector(hn::CappedTag<float, 8>(), i, count, run);
+    i = each_whole_vector(d4, i, count, run);
 #if !HWY_MEM_OPS_MIGHT_FAULT
     if (i < count) {
-        run(i, count - i);
+        run(d4, i, count - i);
         i = count;
     }
 #endif
@@ -94,19 +110,19 @@ HWY_INLINE std::size_t each_vector(std::size_t count, Run run) {
 }
 
 HWY_INLINE void move_axis(
-    float* HWY_RESTRICT x, float* HWY_RESTRICT v, std::size_t count, float push_step,
-    float air_speed, const ParticleStep& step) {
-    const V push = hn::Set(d, push_step);
-    const V air = hn::Set(d, air_speed);
-    const V keep = hn::Set(d, step.keep);
-    const V old_dt = hn::Set(d, step.old_dt());
-    const V new_dt = hn::Set(d, step.new_dt());
-    each_vector(count, [&](std::size_t i, std::size_t n) HWY_ATTR {
-        const V old = load_part(v + i, n);
-        const V next = hn::Add(air, hn::Mul(hn::Sub(hn::Add(old, push), air), keep));
-        store_part(next, v + i, n);
-        const V way = hn::Add(hn::Mul(old, old_dt), hn::Mul(next, new_dt));
-        store_part(hn::Add(load_part(x + i, n), way), x + i, n);
+    float* HWY_RESTRICT x, float* HWY_RESTRICT v, std::size_t count, float push, float air,
+    const ParticleStep& step) {
+    const float old_dt = step.old_dt();
+    const float new_dt = step.new_dt();
+    const float keep = step.keep;
+    each_vector(count, [=](auto tag, std::size_t i, std::size_t n) HWY_ATTR {
+        const auto old = load_part(tag, v + i, n);
+        const auto relative = hn::Sub(hn::Add(old, hn::Set(tag, push)), hn::Set(tag, air));
+        const auto next = hn::Add(hn::Set(tag, air), hn::Mul(relative, hn::Set(tag, keep)));
+        store_part(tag, next, v + i, n);
+        const auto way =
+            hn::Add(hn::Mul(old, hn::Set(tag, old_dt)), hn::Mul(next, hn::Set(tag, new_dt)));
+        store_part(tag, hn::Add(load_part(tag, x + i, n), way), x + i, n);
     });
 }
 
@@ -118,86 +134,81 @@ move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::siz
     move_axis(b.x, b.vx, b.count, push.x, step.air.x, step);
     move_axis(b.y, b.vy, b.count, push.y, step.air.y, step);
     move_axis(b.z, b.vz, b.count, push.z, step.air.z, step);
-    const V dt = hn::Set(d, step.dt);
-    return each_vector(b.count, [&](std::size_t i, std::size_t n) HWY_ATTR {
-        const V age = hn::Add(load_part(b.age + i, n), dt);
-        store_part(age, b.age + i, n);
-        const auto old = hn::Ge(age, load_part(b.life + i, n));
-        // Lanes behind the end do not count.
-        dead += hn::CountTrue(d, n < hn::Lanes(d) ? hn::And(old, hn::FirstN(d, n)) : old);
-    });
+    std::size_t found = 0;
+    const std::size_t done =
+        each_vector(b.count, [&](auto tag, std::size_t i, std::size_t n) HWY_ATTR {
+            const auto age = hn::Add(load_part(tag, b.age + i, n), hn::Set(tag, step.dt));
+            store_part(tag, age, b.age + i, n);
+            const auto old = hn::Ge(age, load_part(tag, b.life + i, n));
+            // Lanes behind the end do not count.
+            found +=
+                hn::CountTrue(tag, n < hn::Lanes(tag) ? hn::And(old, hn::FirstN(tag, n)) : old);
+        });
+    dead += found;
+    return done;
 }
 
-/// -2^23 .. 2^23 of a lattice point, from the products of its coordinates with the multipliers.
-/// Sums of these round as those of values scaled to -1 .. 1 do: the scale is a power of two.
+/// -2^31 .. 2^31 of a lattice point, from the products of its coordinates with the multipliers.
 HWY_INLINE V lattice_value(U x, U y, U z) {
     U h = hn::Xor3(x, y, z);
     h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(du, particles::kHashMix));
     h = hn::Xor3(h, hn::ShiftRight<13>(h), hn::Set(du, 0x80000000u));
-    return hn::ConvertTo(d, hn::ShiftRight<8>(hn::BitCast(di, h)));
+    return hn::ConvertTo(d, hn::BitCast(di, h));
 }
 
-/// Quintic weight of the upper lattice point, and its slope.
-struct Fade {
-    V weight;
-    V slope;
+/// Along an axis: lattice points before and behind, times the multiplier; quintic weight of the
+/// one behind, and a thirtieth of its slope.
+struct Axis {
+    U low, high;
+    V weight, slope;
 };
-HWY_INLINE Fade fade(V t) {
-    const V t2 = hn::Mul(t, t);
+HWY_INLINE Axis axis_at(V place, std::uint32_t multiplier) {
+    const V cell = hn::Floor(place);
+    const V t = hn::Sub(place, cell);
+    const U step = hn::Set(du, multiplier);
+    const U moved = hn::BitCast(du, hn::Add(cell, hn::Set(d, particles::kWhole)));
+    const U low = hn::Mul(hn::Sub(moved, hn::Set(du, particles::kWholeBits)), step);
     const V inner = hn::Add(
         hn::Mul(t, hn::Sub(hn::Mul(t, hn::Set(d, 6.0f)), hn::Set(d, 15.0f))), hn::Set(d, 10.0f));
-    const V rest = hn::Sub(t, hn::Set(d, 1.0f));
-    return {
-        hn::Mul(hn::Mul(t2, t), inner),
-        hn::Mul(hn::Mul(hn::Set(d, 30.0f), t2), hn::Mul(rest, rest))};
-}
-HWY_INLINE V blend(V a, V b, V t) {
-    return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
+    const V t2 = hn::Mul(t, t);
+    const V hill = hn::Sub(t2, t);
+    return {low, hn::Add(low, step), hn::Mul(hn::Mul(t2, t), inner), hn::Mul(hill, hill)};
 }
 
 struct Gradient {
     V x, y, z;
 };
-HWY_INLINE Gradient noise_gradient(V px, V py, V pz, std::uint32_t seed) {
-    const V cx = hn::Floor(px);
-    const V cy = hn::Floor(py);
-    const V cz = hn::Floor(pz);
-    const Fade fx = fade(hn::Sub(px, cx));
-    const Fade fy = fade(hn::Sub(py, cy));
-    const Fade fz = fade(hn::Sub(pz, cz));
-    const U step_x = hn::Set(du, particles::kHashX);
-    const U step_y = hn::Set(du, particles::kHashY);
-    const U step_z = hn::Set(du, particles::kHashZ);
-    const U x0 =
-        hn::Xor(hn::Mul(hn::BitCast(du, hn::ConvertTo(di, cx)), step_x), hn::Set(du, seed));
-    const U y0 = hn::Mul(hn::BitCast(du, hn::ConvertTo(di, cy)), step_y);
-    const U z0 = hn::Mul(hn::BitCast(du, hn::ConvertTo(di, cz)), step_z);
-    const U x1 = hn::Xor(
-        hn::Mul(hn::BitCast(du, hn::Add(hn::ConvertTo(di, cx), hn::Set(di, 1))), step_x),
-        hn::Set(du, seed));
-    const U y1 = hn::Add(y0, step_y);
-    const U z1 = hn::Add(z0, step_z);
-    const V v000 = lattice_value(x0, y0, z0);
-    const V v100 = lattice_value(x1, y0, z0);
-    const V v010 = lattice_value(x0, y1, z0);
-    const V v110 = lattice_value(x1, y1, z0);
-    const V v001 = lattice_value(x0, y0, z1);
-    const V v101 = lattice_value(x1, y0, z1);
-    const V v011 = lattice_value(x0, y1, z1);
-    const V v111 = lattice_value(x1, y1, z1);
-    const V x00 = blend(v000, v100, fx.weight);
-    const V x10 = blend(v010, v110, fx.weight);
-    const V x01 = blend(v001, v101, fx.weight);
-    const V x11 = blend(v011, v111, fx.weight);
-    const V y0w = blend(x00, x10, fy.weight);
-    const V y1w = blend(x01, x11, fy.weight);
-    const V dx0 = blend(hn::Sub(v100, v000), hn::Sub(v110, v010), fy.weight);
-    const V dx1 = blend(hn::Sub(v101, v001), hn::Sub(v111, v011), fy.weight);
-    const V unit = hn::Set(d, 0x1p-23f);
+/// As raw_gradient below.
+HWY_INLINE Gradient raw_gradient(V px, V py, V pz, std::uint32_t seed) {
+    const Axis x = axis_at(px, particles::kHashX);
+    const Axis y = axis_at(py, particles::kHashY);
+    const Axis z = axis_at(pz, particles::kHashZ);
+    const U x0 = hn::Xor(x.low, hn::Set(du, seed));
+    const U x1 = hn::Xor(x.high, hn::Set(du, seed));
+    const V v000 = lattice_value(x0, y.low, z.low);
+    const V v100 = lattice_value(x1, y.low, z.low);
+    const V v010 = lattice_value(x0, y.high, z.low);
+    const V v110 = lattice_value(x1, y.high, z.low);
+    const V v001 = lattice_value(x0, y.low, z.high);
+    const V v101 = lattice_value(x1, y.low, z.high);
+    const V v011 = lattice_value(x0, y.high, z.high);
+    const V v111 = lattice_value(x1, y.high, z.high);
+    const V along_x = hn::Sub(v100, v000);
+    const V along_y = hn::Sub(v010, v000);
+    const V along_z = hn::Sub(v001, v000);
+    const V behind_x = hn::Sub(v101, v001);
+    const V xy = hn::Sub(hn::Sub(v110, v010), along_x);
+    const V xz = hn::Sub(behind_x, along_x);
+    const V yz = hn::Sub(hn::Sub(v011, v001), along_y);
+    const V xyz = hn::Sub(hn::Sub(hn::Sub(v111, v011), behind_x), xy);
+    const V yz_at_x = hn::Add(yz, hn::Mul(xyz, x.weight));
+    const V xz_at_y = hn::Add(xz, hn::Mul(xyz, y.weight));
+    const auto sum = [](V a, V b, V wb, V c, V wc)
+                         HWY_ATTR { return hn::Add(hn::Add(a, hn::Mul(b, wb)), hn::Mul(c, wc)); };
     return {
-        hn::Mul(hn::Mul(blend(dx0, dx1, fz.weight), unit), fx.slope),
-        hn::Mul(hn::Mul(blend(hn::Sub(x10, x00), hn::Sub(x11, x01), fz.weight), unit), fy.slope),
-        hn::Mul(hn::Mul(hn::Sub(y1w, y0w), unit), fz.slope)};
+        hn::Mul(sum(along_x, xy, y.weight, xz_at_y, z.weight), x.slope),
+        hn::Mul(sum(along_y, xy, x.weight, yz_at_x, z.weight), y.slope),
+        hn::Mul(sum(along_z, xz, x.weight, yz_at_x, y.weight), z.slope)};
 }
 
 HWY_INLINE void add_to(float* HWY_RESTRICT v, V push) {
@@ -210,16 +221,16 @@ HWY_INLINE V cross_axis(V ay, V az, V by, V bz) {
 std::size_t stir_particles_vector(const ParticleBlock& b, const Turbulence& t, float dt) {
     const std::size_t n = hn::Lanes(d);
     const V per_size = hn::Set(d, 1.0f / t.size);
-    const V scale = hn::Set(d, t.strength * particles::kCurlScale * dt);
+    const V scale = hn::Set(d, particles::raw_curl_scale(t) * dt);
     const auto place = [&](const float* x, float drift) {
         return hn::Add(hn::Mul(hn::LoadU(d, x), per_size), hn::Set(d, drift));
     };
     std::size_t i = 0;
     for (; i + n <= b.count; i += n) {
-        const Gradient p = noise_gradient(
+        const Gradient p = raw_gradient(
             place(b.x + i, t.drift_a.x), place(b.y + i, t.drift_a.y), place(b.z + i, t.drift_a.z),
             t.seed);
-        const Gradient q = noise_gradient(
+        const Gradient q = raw_gradient(
             place(b.x + i, t.drift_b.x), place(b.y + i, t.drift_b.y), place(b.z + i, t.drift_b.z),
             t.seed ^ particles::kSeedB);
         add_to(b.vx + i, hn::Mul(cross_axis(p.y, p.z, q.y, q.z), scale));
@@ -244,34 +255,6 @@ std::size_t wrap_axis_vector(float* x, std::size_t count, float center, float si
     return i;
 }
 
-/// Who lives of whole vectors, as bits in `alive`: one mask after another, each in whole bytes.
-std::size_t
-find_alive_vector(const float* age, const float* life, std::size_t count, std::uint8_t* alive) {
-    const std::size_t n = hn::Lanes(d);
-    std::size_t i = 0;
-    for (; i + n <= count; i += n) {
-        const auto lives = hn::Lt(hn::LoadU(d, age + i), hn::LoadU(d, life + i));
-        alive += hn::StoreMaskBits(d, lives, alive);
-    }
-    return i;
-}
-
-/// Moves those of `count` values, whole vectors, that live to `to`, at or before `from`; returns
-/// how many. Compress and store: CompressStore is ten times as slow on some processors.
-std::size_t compact_vector(
-    const std::uint32_t* from, std::size_t count, const std::uint8_t* alive, std::uint32_t* to) {
-    const std::size_t n = hn::Lanes(d);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; i += n) {
-        const auto lives = hn::LoadMaskBits(d, alive);
-        alive += (n + 7) / 8;
-        const V packed = hn::Compress(hn::BitCast(d, hn::LoadU(du, from + i)), lives);
-        hn::StoreU(hn::BitCast(du, packed), du, to + kept);
-        kept += hn::CountTrue(d, lives);
-    }
-    return kept;
-}
-
 #endif
 
 }  // namespace limn::HWY_NAMESPACE
@@ -283,8 +266,6 @@ namespace limn {
 HWY_EXPORT(move_particles_vector);
 HWY_EXPORT(stir_particles_vector);
 HWY_EXPORT(wrap_axis_vector);
-HWY_EXPORT(find_alive_vector);
-HWY_EXPORT(compact_vector);
 
 namespace {
 
@@ -292,51 +273,58 @@ float lattice_value(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     std::uint32_t h = x ^ y ^ z;
     h = (h ^ (h >> 15)) * particles::kHashMix;
     h ^= h >> 13;
-    return static_cast<float>(h >> 8) * 0x1p-23f - 1.0f;
+    return static_cast<float>(static_cast<std::int32_t>(h ^ 0x80000000u));
 }
 
-struct Fade {
-    float weight;
-    float slope;
+struct Axis {
+    std::uint32_t low, high;
+    float weight, slope;
 };
-Fade fade(float t) {
-    const float rest = t - 1.0f;
-    return {t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f), 30.0f * (t * t) * (rest * rest)};
-}
-float blend(float a, float b, float t) {
-    return a + (b - a) * t;
-}
-
-/// Every column of a pool, as words.
-struct Columns {
-    std::array<std::uint32_t*, 10> begin = {};
-    std::size_t count = 0;
-};
-Columns columns_of(ParticlePool& pool) {
-    Columns all;
-    for (auto* column :
-         {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
-        all.begin[all.count++] = reinterpret_cast<std::uint32_t*>(column->data());
-    }
-    all.begin[all.count++] = pool.look.data();
-    if (pool.stuck.size() == pool.size()) {
-        all.begin[all.count++] = pool.stuck.data();
-    }
-    return all;
+Axis axis_at(float place, std::uint32_t multiplier) {
+    const float cell = std::floor(place);
+    const float t = place - cell;
+    const auto moved = std::bit_cast<std::uint32_t>(cell + particles::kWhole);
+    const std::uint32_t low = (moved - particles::kWholeBits) * multiplier;
+    const float t2 = t * t;
+    const float hill = t2 - t;
+    return {low, low + multiplier, t2 * t * (t * (t * 6.0f - 15.0f) + 10.0f), hill * hill};
 }
 
-void shrink(ParticlePool& pool, std::size_t size) {
-    const bool sticks = pool.stuck.size() == pool.size();
-    for (auto* column :
-         {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
-        column->resize(size);
-    }
-    pool.look.resize(size);
-    pool.stuck.resize(sticks ? size : 0);
+/// The gradient of noise_gradient() without its factor kRawUnit: values are -2^31 .. 2^31, slopes
+/// (t^2 - t)^2 instead of 30 times that. The interpolated value is a sum of products of weights,
+///
+///     v000 + x wx + y wy + z wz + xy wx wy + xz wx wz + yz wy wz + xyz wx wy wz
+///
+/// whose derivatives need no value (Quilez, "Value noise derivatives", 2008).
+Vec3 raw_gradient(const Vec3& at, std::uint32_t seed) {
+    const Axis x = axis_at(at.x, particles::kHashX);
+    const Axis y = axis_at(at.y, particles::kHashY);
+    const Axis z = axis_at(at.z, particles::kHashZ);
+    const std::uint32_t x0 = x.low ^ seed;
+    const std::uint32_t x1 = x.high ^ seed;
+    const float v000 = lattice_value(x0, y.low, z.low);
+    const float v100 = lattice_value(x1, y.low, z.low);
+    const float v010 = lattice_value(x0, y.high, z.low);
+    const float v110 = lattice_value(x1, y.high, z.low);
+    const float v001 = lattice_value(x0, y.low, z.high);
+    const float v101 = lattice_value(x1, y.low, z.high);
+    const float v011 = lattice_value(x0, y.high, z.high);
+    const float v111 = lattice_value(x1, y.high, z.high);
+    const float along_x = v100 - v000;
+    const float along_y = v010 - v000;
+    const float along_z = v001 - v000;
+    const float behind_x = v101 - v001;
+    const float xy = v110 - v010 - along_x;
+    const float xz = behind_x - along_x;
+    const float yz = v011 - v001 - along_y;
+    const float xyz = v111 - v011 - behind_x - xy;
+    const float yz_at_x = yz + xyz * x.weight;
+    const float xz_at_y = xz + xyz * y.weight;
+    return {
+        (along_x + xy * y.weight + xz_at_y * z.weight) * x.slope,
+        (along_y + xy * x.weight + yz_at_x * z.weight) * y.slope,
+        (along_z + xz * x.weight + yz_at_x * y.weight) * z.slope};
 }
-
-/// Particles whose columns are compacted one after another: who of them lives is found once.
-constexpr std::size_t kCompacted = 16384;
 
 }  // namespace
 
@@ -375,68 +363,33 @@ std::size_t move_particles_scalar(const ParticleBlock& b, const ParticleStep& st
 std::size_t move_particles(const ParticleBlock& block, const ParticleStep& step) {
     std::size_t dead = 0;
     const std::size_t done = HWY_DYNAMIC_DISPATCH(move_particles_vector)(block, step, dead);
-    return dead + move_particles_scalar(block.from(done), step);
+    return done == block.count ? dead : dead + move_particles_scalar(block.from(done), step);
 }
 
 Vec3 noise_gradient(const Vec3& at, std::uint32_t seed) {
-    const Vec3 cell = glm::floor(at);
-    const Fade fx = fade(at.x - cell.x);
-    const Fade fy = fade(at.y - cell.y);
-    const Fade fz = fade(at.z - cell.z);
-    const auto lattice = [](float c) {  // saturates, as vectors do
-        constexpr float kEnd = 0x1p31f;
-        const std::int32_t whole = c >= kEnd    ? std::numeric_limits<std::int32_t>::max()
-                                   : c >= -kEnd ? static_cast<std::int32_t>(c)
-                                                : std::numeric_limits<std::int32_t>::min();
-        return static_cast<std::uint32_t>(whole);
-    };
-    const std::uint32_t x0 = (lattice(cell.x) * particles::kHashX) ^ seed;
-    const std::uint32_t y0 = lattice(cell.y) * particles::kHashY;
-    const std::uint32_t z0 = lattice(cell.z) * particles::kHashZ;
-    const std::uint32_t x1 = ((lattice(cell.x) + 1) * particles::kHashX) ^ seed;
-    const std::uint32_t y1 = y0 + particles::kHashY;
-    const std::uint32_t z1 = z0 + particles::kHashZ;
-    const float v000 = lattice_value(x0, y0, z0);
-    const float v100 = lattice_value(x1, y0, z0);
-    const float v010 = lattice_value(x0, y1, z0);
-    const float v110 = lattice_value(x1, y1, z0);
-    const float v001 = lattice_value(x0, y0, z1);
-    const float v101 = lattice_value(x1, y0, z1);
-    const float v011 = lattice_value(x0, y1, z1);
-    const float v111 = lattice_value(x1, y1, z1);
-    const float x00 = blend(v000, v100, fx.weight);
-    const float x10 = blend(v010, v110, fx.weight);
-    const float x01 = blend(v001, v101, fx.weight);
-    const float x11 = blend(v011, v111, fx.weight);
-    const float y0w = blend(x00, x10, fy.weight);
-    const float y1w = blend(x01, x11, fy.weight);
-    const float dx0 = blend(v100 - v000, v110 - v010, fy.weight);
-    const float dx1 = blend(v101 - v001, v111 - v011, fy.weight);
-    return {
-        blend(dx0, dx1, fz.weight) * fx.slope, blend(x10 - x00, x11 - x01, fz.weight) * fy.slope,
-        (y1w - y0w) * fz.slope};
+    return raw_gradient(at, seed) * particles::kRawUnit;
 }
 
 namespace {
 
-/// grad a x grad b, not yet scaled.
-Vec3 curl(const Vec3& at, const Turbulence& t) {
+/// Of two raw gradients.
+Vec3 raw_curl(const Vec3& at, const Turbulence& t) {
     const Vec3 place = at * (1.0f / t.size);
-    const Vec3 p = noise_gradient(place + t.drift_a, t.seed);
-    const Vec3 q = noise_gradient(place + t.drift_b, t.seed ^ particles::kSeedB);
+    const Vec3 p = raw_gradient(place + t.drift_a, t.seed);
+    const Vec3 q = raw_gradient(place + t.drift_b, t.seed ^ particles::kSeedB);
     return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
 }
 
 }  // namespace
 
 Vec3 curl_noise(const Vec3& at, const Turbulence& turbulence) {
-    return curl(at, turbulence) * (turbulence.strength * particles::kCurlScale);
+    return raw_curl(at, turbulence) * particles::raw_curl_scale(turbulence);
 }
 
 void stir_particles_scalar(const ParticleBlock& b, const Turbulence& turbulence, float dt) {
-    const float scale = turbulence.strength * particles::kCurlScale * dt;
+    const float scale = particles::raw_curl_scale(turbulence) * dt;
     for (std::size_t i = 0; i < b.count; ++i) {
-        const Vec3 push = curl({b.x[i], b.y[i], b.z[i]}, turbulence) * scale;
+        const Vec3 push = raw_curl({b.x[i], b.y[i], b.z[i]}, turbulence) * scale;
         b.vx[i] += push.x;
         b.vy[i] += push.y;
         b.vz[i] += push.z;
@@ -516,51 +469,6 @@ void wrap_particles(const ParticleBlock& b, const Vec3& center, const Vec3& size
             wrap_axis(places[axis] + done, b.count - done, center[axis], size[axis]);
         }
     }
-}
-
-std::size_t remove_dead(ParticlePool& pool, std::size_t first) {
-    const Columns columns = columns_of(pool);
-    std::array<std::uint8_t, kCompacted + 8> masks;  // 8 more, which may be loaded and stored
-    std::array<bool, kCompacted> lives;              // of those beyond whole vectors
-    std::size_t kept = first;
-    for (std::size_t begin = first; begin < pool.size(); begin += kCompacted) {
-        const std::size_t count = std::min(pool.size() - begin, kCompacted);
-        const float* const age = pool.age.data() + begin;
-        const float* const life = pool.life.data() + begin;
-        const std::size_t whole =
-            HWY_DYNAMIC_DISPATCH(find_alive_vector)(age, life, count, masks.data());
-        for (std::size_t i = whole; i < count; ++i) {
-            lives[i] = age[i] < life[i];
-        }
-        std::size_t alive = 0;
-        for (std::size_t c = 0; c < columns.count; ++c) {
-            const std::uint32_t* const from = columns.begin[c] + begin;
-            std::uint32_t* const to = columns.begin[c] + kept;
-            alive = HWY_DYNAMIC_DISPATCH(compact_vector)(from, whole, masks.data(), to);
-            for (std::size_t i = whole; i < count; ++i) {
-                std::memcpy(to + alive, from + i, sizeof(*to));
-                alive += lives[i] ? 1 : 0;
-            }
-        }
-        kept += alive;
-    }
-    shrink(pool, kept);
-    return kept;
-}
-
-std::size_t remove_dead_scalar(ParticlePool& pool, std::size_t first) {
-    const Columns columns = columns_of(pool);
-    std::size_t kept = first;
-    for (std::size_t i = first; i < pool.size(); ++i) {
-        if (pool.age[i] < pool.life[i]) {
-            for (std::size_t c = 0; c < columns.count; ++c) {
-                std::memcpy(columns.begin[c] + kept, columns.begin[c] + i, sizeof(std::uint32_t));
-            }
-            ++kept;
-        }
-    }
-    shrink(pool, kept);
-    return kept;
 }
 
 }  // namespace limn

@@ -55,9 +55,4 @@ void steer_particles(const ParticleBlock& block, const Steering& steering);
 void wrap_particles(const ParticleBlock& block, const Vec3& center, const Vec3& size);
 void wrap_particles_scalar(const ParticleBlock& block, const Vec3& center, const Vec3& size);
 
-/// Removes the particles with age >= life from `first` on; the others keep their order. Returns how
-/// many are left.
-std::size_t remove_dead(ParticlePool& pool, std::size_t first);
-std::size_t remove_dead_scalar(ParticlePool& pool, std::size_t first);
-
 }  // namespace limn

@@ -6,6 +6,7 @@
 #include "systems/particles/force_fields.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_contacts.h"
+#include "systems/particles/particle_deaths.h"
 #include "systems/particles/particle_kernels.h"
 #include "systems/particles/particle_motion.h"
 #include "systems/particles/particle_sources.h"
@@ -35,6 +36,7 @@ struct Work {
     std::vector<ParticleHit> hits = {};
     std::vector<ParticleSpawn> spawns = {};
     ParticlePool* pool = nullptr;
+    OrderedBy order = {};
     EmitterPlace place;
     SurfaceSource surface = {};
     float scale = 1;  ///< of its rate
@@ -58,6 +60,14 @@ const SurfaceSource* surface_of(const Work& work) {
     return work.surface.surface != nullptr ? &work.surface : nullptr;
 }
 
+void remove_dead(const OrderedBy& order, ParticlePool& pool, std::size_t first) {
+    if (keeps_order(order)) {
+        remove_dead_in_order(pool, first);
+    } else {
+        remove_dead(pool, first);
+    }
+}
+
 /// The steps before the first one, at the places of that.
 void prewarm(const Work& work, std::uint64_t seed) {
     const ParticleEmitter& emitter = *work.emitter;
@@ -73,7 +83,7 @@ void prewarm(const Work& work, std::uint64_t seed) {
             emitter, work.place, work.motion.step, surface_of(work), seed, subject_of(work), births,
             pool);
         if (move_block(work.motion, particle_block(pool, 0, pool.size())) > 0) {
-            remove_dead(pool, 0);
+            remove_dead(work.order, pool, 0);
         }
     }
 }
@@ -112,6 +122,7 @@ struct Alone {
     const PreviousWorldTransform* previous = nullptr;
     const ParticleWrap* wrap = nullptr;
     ParticlePool* pool = nullptr;
+    OrderedBy order = {};
 };
 
 constexpr std::size_t kAloneJob = 64;  ///< emitters of one job
@@ -177,11 +188,12 @@ void step_alone(const Alone& alone, Motions& motions, const StepInputs& inputs) 
         work.motion = motion;
         work.scale = seen_share(*alone.emitter, alone.now->world, inputs.eye);
         work.pool = alone.pool;
+        work.order = alone.order;
         emit(work, inputs.seed, *inputs.time);
     }
     pool.stuck.clear();
     if (move_block(motion, particle_block(pool, 0, pool.size())) > 0) {
-        remove_dead(pool, 0);
+        remove_dead(alone.order, pool, 0);
     }
 }
 
@@ -191,6 +203,23 @@ std::vector<Entity> find_parents(const Query<const ParticleSource>& sources) {
     sources.each([&](const ParticleSource& source) { parents.push_back(source.emitter); });
     std::sort(parents.begin(), parents.end());
     return parents;
+}
+
+/// Emitters whose particles others take one after another, in order.
+std::vector<Entity>
+find_followed(const Query<const Trail>& trails, const std::vector<Entity>& parents) {
+    std::vector<Entity> followed = parents;
+    trails.each([&](Entity entity, const Trail& trail) {
+        if (trail.path != TrailPath::Entity) {
+            followed.push_back(trail.emitter.is_null() ? entity : trail.emitter);
+        }
+    });
+    std::sort(followed.begin(), followed.end());
+    return followed;
+}
+
+bool is_among(const std::vector<Entity>& sorted, Entity entity) {
+    return !sorted.empty() && std::binary_search(sorted.begin(), sorted.end(), entity);
 }
 
 /// Those whose particles are born where others are.
@@ -264,10 +293,11 @@ void update_particles(
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
         Optional<const ParticleSurface>, Optional<const ParticleMesh>,
-        Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
+        Optional<const ParticleCollision>, Optional<const ParticleWrap>,
+        Optional<const ParticleLook>, Optional<const ParticleLight>, ParticlePool>
         emitters,
-    Query<const ParticleSource> sources, MeshQuery meshes, Query<const Pose> poses,
-    Query<const MorphWeights> morphs, Res<const Assets> assets,
+    Query<const ParticleSource> sources, Query<const Trail> trails, MeshQuery meshes,
+    Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
     Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const ForceField, const WorldTransform> fields,
@@ -281,6 +311,7 @@ void update_particles(
     const std::vector<ParticleWater> wet = find_particle_waters(waters, colliders);
     const ParticleSurroundings around = {&obstacles->solid, wet};
     const std::vector<Entity> parents = find_parents(sources);
+    const std::vector<Entity> followed = find_followed(trails, parents);
     std::vector<Alone> alone;
     alone.reserve(emitters.count());
     std::vector<Work> works;
@@ -289,14 +320,19 @@ void update_particles(
                       const SprayDrops* drops, const ParticleSource* source,
                       const ParticleSurface* surface, const ParticleMesh* mesh,
                       const ParticleCollision* collision, const ParticleWrap* wrap,
-                      ParticlePool& pool) {
+                      const ParticleLook* look, const ParticleLight* light, ParticlePool& pool) {
+        const OrderedBy order = {
+            look, light, emitter.population == ParticlePopulation::Linear, mesh != nullptr,
+            is_among(followed, entity)};
+        if (pool.mixed && keeps_order(order)) {
+            restore_order(pool);
+        }
         const bool meets_nothing =
             collision == nullptr || wrap != nullptr
             || (around.is_empty() && collision->action != CollisionAction::Stick);
         if (pool.size() <= kParticleBlock && meets_nothing && drops == nullptr && source == nullptr
-            && surface == nullptr
-            && (parents.empty() || !std::binary_search(parents.begin(), parents.end(), entity))) {
-            alone.push_back({entity, &emitter, motion, &now, &previous, wrap, &pool});
+            && surface == nullptr && !is_among(parents, entity)) {
+            alone.push_back({entity, &emitter, motion, &now, &previous, wrap, &pool, order});
             return;
         }
         const EmitterPlace place = place_of(now, previous);
@@ -318,6 +354,7 @@ void update_particles(
             work.motion.wrap_center = eye.place;
         }
         work.pool = &pool;
+        work.order = order;
         works.push_back(std::move(work));
     });
 
@@ -385,7 +422,8 @@ void update_particles(
     }
     parallel_for(firsts.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            remove_dead(*works[firsts[i].work].pool, firsts[i].first);
+            const Work& work = works[firsts[i].work];
+            remove_dead(work.order, *work.pool, firsts[i].first);
         }
     });
     parallel_for(children.size(), 4, [&](std::size_t begin, std::size_t end) {

@@ -6,6 +6,7 @@
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
+#include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/water_ripples.h"
 #include "ecs/components/water_spray.h"
@@ -42,10 +43,11 @@ void update_particles(
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
         Optional<const ParticleSurface>, Optional<const ParticleMesh>,
-        Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
+        Optional<const ParticleCollision>, Optional<const ParticleWrap>,
+        Optional<const ParticleLook>, Optional<const ParticleLight>, ParticlePool>
         emitters,
-    Query<const ParticleSource> sources, MeshQuery meshes, Query<const Pose> poses,
-    Query<const MorphWeights> morphs, Res<const Assets> assets,
+    Query<const ParticleSource> sources, Query<const Trail> trails, MeshQuery meshes,
+    Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
     Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const ForceField, const WorldTransform> fields,

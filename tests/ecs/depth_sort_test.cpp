@@ -95,6 +95,32 @@ TEST_CASE("particle sort: 32-bit keys are sorted as by std::stable_sort") {
     check_equals_stable_sort<std::uint32_t>();
 }
 
+TEST_CASE(
+    "particle sort: 32-bit keys are sorted wherever they lie and however little they differ") {
+    SortScratch scratch;
+    constexpr std::uint32_t kEnd = 0xffffffff;
+    for (const std::uint32_t range : {1u, 0x3ffu, 0x7fbffffu, 0x8000000u, 0x8100000u, kEnd}) {
+        for (const std::uint32_t low : {0u, std::min(0x3dccccccu, kEnd - range), kEnd - range}) {
+            CAPTURE(range);
+            CAPTURE(low);
+            std::vector<std::uint32_t> keys(70000);
+            Random random(7, low, range, 0);
+            for (std::uint32_t& key : keys) {
+                key = low + random.below(range);
+            }
+            keys[1] = low;
+            keys[2] = low + range;
+            const std::vector<std::uint32_t> start = shuffled(keys.size(), 3);
+            const std::vector<std::uint32_t> expected = stable_order(keys, start);
+            for (const SortThreads threads : {SortThreads::One, SortThreads::All}) {
+                std::vector<std::uint32_t> order = start;
+                sort_by_depth(std::span<const std::uint32_t>(keys), order, scratch, threads);
+                CHECK(order == expected);
+            }
+        }
+    }
+}
+
 TEST_CASE("particle sort: any number of threads gives the same bits") {
     const std::vector<std::uint32_t> keys = random_keys<std::uint32_t>(300000, 1000);
     const std::vector<std::uint32_t> expected = stable_order(keys, first_to_last(keys.size()));

@@ -6,6 +6,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/time.h"
+#include "ecs/components/trail.h"
 #include "ecs/components/weather.h"
 #include "render/gpu_particle_pools.h"
 #include "render/passes/particle_pass.h"
@@ -51,6 +52,7 @@ struct Executors : Scene {
             emitter.executor = entity == &cpu ? ParticleExecutor::Cpu : ParticleExecutor::Gpu;
             *entity = world.create(emitter, motion, WorldTransform{at}, PreviousWorldTransform{at});
         }
+        world.create(Trail{.path = TrailPath::Births, .emitter = cpu});  // so: oldest first
         world.run(add_particle_pools);
         world.run(add_gpu_particles);
     }

@@ -134,6 +134,31 @@ TEST_CASE("particle collision: kernels push out and respond as one particle at a
     }
 }
 
+TEST_CASE("particle collision: kernels see who is just below the highest point of a field") {
+    // Almost level: many are near the highest point, some above and some below the surface.
+    std::vector<float> level(121);
+    Random random(5, 5, 5, 5);
+    for (float& height : level) {
+        height = random.uniform(99.99997f, 100.0f);
+    }
+    const HeightCollider field = {
+        .origin = {-3, -0.3f, -3},
+        .cell = {0.6f, 0.6f},
+        .width = 11,
+        .depth = 11,
+        .heights = level};
+    Arrays found(4000);
+    for (float& y : found.py) {
+        y = 99.7f + random.uniform(-3e-5f, 3e-5f);
+    }
+    Arrays expected = found;
+    const std::vector<std::uint32_t> before = found.bits();
+    collide_height_field(found.columns(), field, kResponse);
+    collide_height_field_scalar(expected.columns(), field, kResponse);
+    CHECK(found.bits() == expected.bits());
+    CHECK(found.bits() != before);
+}
+
 TEST_CASE("particle collision: kernels leave NaN alone") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const Case& each : make_cases()) {

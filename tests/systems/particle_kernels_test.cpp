@@ -5,8 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdint>
-#include <vector>
 
 using namespace limn;
 using namespace limn::test;
@@ -30,10 +28,6 @@ TEST_CASE("particles: vectors give the bits of the plain loops, for any number")
         const std::size_t dead = move_particles(particle_block(a, 0, count), step);
         CHECK(dead == move_particles_scalar(particle_block(b, 0, count), step));
         CHECK(same_bits(a, b));
-        CHECK(remove_dead(a, 0) == count - dead);
-        CHECK(remove_dead_scalar(b, 0) == count - dead);
-        CHECK(same_bits(a, b));
-        CHECK(a.size() == count - dead);
     }
 }
 
@@ -46,24 +40,6 @@ TEST_CASE("particles: moving a part of a pool leaves its neighbors as they are")
         const std::size_t dead = move_particles(particle_block(a, 9, count), step);
         CHECK(dead == move_particles_scalar(particle_block(b, 9, count), step));
         CHECK(same_bits(a, b));
-    }
-}
-
-TEST_CASE("particles: the dead leave in place, the others keep their order") {
-    ParticlePool pool = random_pool(500);
-    std::vector<std::uint32_t> expected(pool.look.begin(), pool.look.begin() + 100);
-    for (std::size_t i = 100; i < 500; ++i) {
-        if (pool.age[i] < pool.life[i]) {
-            expected.push_back(pool.look[i]);
-        }
-    }
-    REQUIRE(expected.size() < 450);
-    remove_dead(pool, 100);
-    CHECK(pool.look == expected);
-    CHECK(pool.x.size() == expected.size());
-    REQUIRE(pool.stuck.size() == expected.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-        CHECK(pool.stuck[i] == (pool.look[i] & 1));
     }
 }
 
