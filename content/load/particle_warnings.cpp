@@ -128,12 +128,12 @@ void check_surfaces(const ParticleCheck& check) {
     };
     world.query<const ParticleSurface>().each([&](Entity entity, const ParticleSurface& surface) {
         const Entity owner = surface.entity.is_null() ? entity : surface.entity;
+        const bool on_mesh = surface.on == BirthSurface::Mesh || surface.on == BirthSurface::Volume;
         if (world.has<ParticleSource>(entity)) {
             check.warn(entity, "particle_surface has no effect beside a particle_source");
-        } else if (
-            surface.on == BirthSurface::Mesh && !has_component(world, owner, "mesh_instance")) {
+        } else if (on_mesh && !has_component(world, owner, "mesh_instance")) {
             check.warn(entity, "particle_surface on a mesh needs an entity with mesh_instance");
-        } else if (surface.on == BirthSurface::Mesh && is_without_triangles(world, owner)) {
+        } else if (on_mesh && is_without_triangles(world, owner)) {
             check.warn(entity, "particle_surface is on a mesh without triangles: nothing is born");
         } else if (
             surface.on == BirthSurface::Path

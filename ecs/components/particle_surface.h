@@ -13,15 +13,18 @@ enum class BirthSurface : std::uint8_t {
     Mesh,    ///< a mesh as it is deformed and moved in this step, even by area
     Path,    ///< a path of the level in the emitter's space, even by arc length
     Pieces,  ///< the pieces of the emitter's ParticleMesh: birth n is piece n, again from the first
+    Volume,  ///< within a closed mesh, as it is deformed and moved in this step, even by volume
 };
 
-/// Particles of the emitter beside it are born on a surface instead of at its place: dust of a
-/// running animal, embers along a rope, the pieces of what bursts (engine.explode,
-/// particle.mesh-particles). The emitter's shape lies around each place, with +y along the normal:
-/// that of the triangle's front, up from the path with +z ahead, or away from `blast`; a piece at
-/// `blast` goes anywhere. What cannot be a place, as a triangle without area or with coordinates
-/// that are not finite, is left out; where nothing is left, no particle is born, and `dropped` of
-/// the emitter's clock counts it. On the CPU only, and not with a ParticleSource.
+/// Particles of the emitter beside it are born on a surface, or in what it encloses, instead of at
+/// its place: dust of a running animal, embers along a rope, the pieces of what bursts and what was
+/// in it (engine.explode, particle.mesh-particles). The emitter's shape lies around each place,
+/// with +y along the normal: that of the triangle's front, up from the path with +z ahead, or away
+/// from `blast`; a piece at `blast` goes anywhere; in a volume +y is the world's. Where seen from
+/// above a mesh is not closed, it has no volume. What cannot be a place, as a triangle without area
+/// or with coordinates that are not finite, is left out; where nothing is left, no particle is
+/// born, and `dropped` of the emitter's clock counts it. On the CPU only, and not with a
+/// ParticleSource.
 struct ParticleSurface {
     BirthSurface on = BirthSurface::Mesh;
     Entity entity{};
@@ -34,9 +37,11 @@ struct ParticleSurface {
 LIMN_FIELDS(ParticleSurface) {
     LIMN_FIELD(
         on,
-        .doc = "a mesh, even by area; a path, even by length; pieces of a mesh, one birth for each",
-        .values = "mesh path pieces");
-    LIMN_FIELD(entity, "whose mesh_instance; none: of the emitter itself");
+        .doc =
+            "a mesh, even by area; a path, even by length; pieces of a mesh, one birth for each; "
+            "the volume of a closed mesh",
+        .values = "mesh path pieces volume");
+    LIMN_FIELD(entity, "whose mesh_instance, for mesh and volume; none: of the emitter itself");
     LIMN_FIELD(path, "a path of the level, by name, placed as the emitter is");
     LIMN_FIELD(offset, "of places on a mesh or path, along the normal", "m", -1e3, 1e3);
     LIMN_FIELD(

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 namespace limn {
 namespace {
@@ -112,20 +113,23 @@ bool is_moving(const EmitterPlace& place) {
 }
 
 /// A birth on a surface. `draw.added` is not added but the surface's own velocity.
-Newborn draw_birth_on(
+std::optional<Newborn> draw_birth_on(
     const SurfaceSource& surface, const SurfaceTable& table, const BirthDraw& draw, float at,
     std::uint64_t number) {
     Random random = attributes_random(draw.seed, draw.subject, number);
     Random places = surface_random(draw.seed, draw.subject, number);
     const float dt = draw.rewind.step.dt;
-    const SurfacePoint point = surface_point(surface, table, number, at, dt, places);
-    const Affine world = turned_to(mix_places(draw.place, at), point.position, point.turn);
+    const std::optional<SurfacePoint> point = surface_point(surface, table, number, at, dt, places);
+    if (!point) {
+        return std::nullopt;
+    }
+    const Affine world = turned_to(mix_places(draw.place, at), point->position, point->turn);
     const BirthAttributes its = draw_attributes(*draw.emitter, world, random);
-    const Vec3 added = point.velocity * finite_or(surface.surface->inherit, 0);
+    const Vec3 added = point->velocity * finite_or(surface.surface->inherit, 0);
     Newborn born = {
         transform_point(world, its.local), its.velocity + added, -(at * dt), its.life, its.look};
     if (surface.surface->on == BirthSurface::Pieces) {
-        born.look = (born.look & ~kPieceMask) | point.piece;
+        born.look = (born.look & ~kPieceMask) | point->piece;
     }
     draw.rewind.apply(at, born.position, born.velocity);
     return born;
@@ -297,7 +301,12 @@ void add_particles(
             continue;
         }
         for (std::uint32_t i = 0; i < run.count; ++i) {
-            particles.add(draw_birth_on(*surface, table, draw, run.at(i), pool.clock.born++));
+            const std::uint64_t number = pool.clock.born++;
+            if (const auto born = draw_birth_on(*surface, table, draw, run.at(i), number)) {
+                particles.add(*born);
+            } else {
+                ++pool.clock.dropped;
+            }
         }
     }
 }

@@ -101,6 +101,14 @@ SurfacePoint piece_point(
     return point;
 }
 
+std::optional<SurfacePoint> volume_point(
+    const SurfaceSource& source, const SurfaceTable& table, const Affine& world, float dt,
+    Random& random) {
+    const std::optional<Vec3> local =
+        draw_in_volume(table.volume, table.positions, source.mesh.data->indices, random);
+    return local ? std::optional(follow(source, *local, world, dt)) : std::nullopt;
+}
+
 /// Sums of the areas; false if there is none.
 bool sum_areas(const SurfaceSource& source, SurfaceTable& table) {
     const MeshData& mesh = *source.mesh.data;
@@ -125,7 +133,8 @@ SurfaceSource find_surface_source(
     const Query<const MorphWeights>& morphs, const Assets& assets) {
     SurfaceSource source{.surface = &surface, .place = place};
     switch (surface.on) {
-    case BirthSurface::Mesh: {
+    case BirthSurface::Mesh:
+    case BirthSurface::Volume: {
         const Entity entity = surface.entity.is_null() ? emitter : surface.entity;
         const auto* const instance = meshes.find<const MeshInstance>(entity);
         if (instance != nullptr) {
@@ -155,11 +164,14 @@ SurfaceSource find_surface_source(
 bool fill_surface_table(const SurfaceSource& source, SurfaceTable& table) {
     switch (source.surface->on) {
     case BirthSurface::Mesh:
+    case BirthSurface::Volume:
         if (source.mesh.data == nullptr) {
             return false;
         }
         place_vertices(source.mesh, Affine{}, table.positions);
-        return sum_areas(source, table);
+        return source.surface->on == BirthSurface::Mesh
+                   ? sum_areas(source, table)
+                   : fill_mesh_volume(table.positions, source.mesh.data->indices, table.volume);
     case BirthSurface::Path:
         return source.path != nullptr;
     case BirthSurface::Pieces:
@@ -168,7 +180,7 @@ bool fill_surface_table(const SurfaceSource& source, SurfaceTable& table) {
     return false;
 }
 
-SurfacePoint surface_point(
+std::optional<SurfacePoint> surface_point(
     const SurfaceSource& source, const SurfaceTable& table, std::uint64_t number, float at,
     float dt, Random& random) {
     const Affine world = mix_places(source.place, at);
@@ -179,8 +191,10 @@ SurfacePoint surface_point(
         return path_point(source, world, dt, random);
     case BirthSurface::Pieces:
         return piece_point(source, number, world, dt, random);
+    case BirthSurface::Volume:
+        return volume_point(source, table, world, dt, random);
     }
-    return {};
+    return std::nullopt;
 }
 
 }  // namespace limn

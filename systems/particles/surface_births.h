@@ -8,16 +8,18 @@
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
 #include "systems/particles/mesh_source.h"
+#include "systems/particles/mesh_volume.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace limn {
 
-// Places of births on meshes, paths and pieces of meshes (ParticleSurface). A mesh is taken as it
-// is deformed at the end of the step; its entity moves during it. Points of a triangle are even by
-// area: (1 - sqrt(u)) a + sqrt(u) (1 - v) b + sqrt(u) v c (Turk 1990). A step with births takes
-// about 60 us for a skinned mesh of 3000 triangles.
+// Places of births on and in meshes, on paths and pieces of meshes (ParticleSurface). A mesh is
+// taken as it is deformed at the end of the step; its entity moves during it. Points of a triangle
+// are even by area: (1 - sqrt(u)) a + sqrt(u) (1 - v) b + sqrt(u) v c (Turk 1990). A step with
+// births takes about 60 us for a skinned mesh of 3000 triangles.
 
 /// A ParticleSurface in a step. Points to components and assets.
 struct SurfaceSource {
@@ -42,6 +44,7 @@ using MeshQuery = Query<
 struct SurfaceTable {
     std::vector<Vec3> positions{};  ///< of the vertices, in the mesh's space [m]
     std::vector<double> areas{};    ///< in world space, sum up to and with each triangle [m^2]
+    MeshVolume volume{};            ///< in the mesh's space
 };
 
 /// False if nothing can be born there.
@@ -58,7 +61,8 @@ struct SurfacePoint {
 };
 
 /// For birth `number` at the share `at` of a step of length `dt` [s]. The table must be filled.
-[[nodiscard]] SurfacePoint surface_point(
+/// None where no point of a volume was found (draw_in_volume).
+[[nodiscard]] std::optional<SurfacePoint> surface_point(
     const SurfaceSource& source, const SurfaceTable& table, std::uint64_t number, float at,
     float dt, Random& random);
 

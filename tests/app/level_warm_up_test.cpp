@@ -32,7 +32,7 @@ const std::map<std::string, int> kMaxPrograms = {
     {"lagoon", 70},    {"lights", 43},   {"million", 52},
     {"museum", 78},    {"ocean", 51},    {"phonglab", 47},
     {"pond", 60},      {"portrait", 48}, {"raceway", 74},
-    {"stilllife", 73}, {"storm", 60},    {"stress-instances", 41},
+    {"stilllife", 73}, {"storm", 64},    {"stress-instances", 41},
     {"vale", 80}};
 
 HeadlessRenderer& shared_headless() {

@@ -127,10 +127,13 @@ TEST_CASE("bad emitter: a flipbook with more frames than its image has pixels") 
 }
 
 TEST_CASE("bad emitter: a mesh without triangles") {
-    CHECK(
-        warnings_beside(R"(, "particle_surface": {"on": "mesh"})")
-        == Lines{
-            R"(entity "fire": particle_surface on a mesh needs an entity with mesh_instance)"});
+    for (const char* const beside :
+         {R"(, "particle_surface": {"on": "mesh"})", R"(, "particle_surface": {"on": "volume"})"}) {
+        CHECK(
+            warnings_beside(beside)
+            == Lines{
+                R"(entity "fire": particle_surface on a mesh needs an entity with mesh_instance)"});
+    }
     World world;
     world.insert_resource(Assets{}).meshes.emplace_back();
     world.create(

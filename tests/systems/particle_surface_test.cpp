@@ -4,6 +4,7 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/particle_surface.h"
+#include "systems/particles/mesh_volume.h"
 #include "systems/particles/particle_mesh_system.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -39,6 +41,70 @@ MeshData two_rectangles() {
     mesh.skin.first = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     mesh.skin.joints = {0, 0, 0, 0, 1, 1, 1, 1};
     mesh.skin.weights.assign(8, 1.0f);
+    return mesh;
+}
+
+/// A closed mesh from points at u and v, 0 .. 1: those at u = 0 and 1 are the same; at v = 0 and 1
+/// they are the same as well or do not depend on u.
+template <typename Point>
+MeshData closed_mesh(std::uint32_t columns, std::uint32_t rows, Point&& point) {
+    MeshData mesh;
+    for (std::uint32_t row = 0; row <= rows; ++row) {
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            mesh.positions.push_back(point(
+                static_cast<float>(column) / static_cast<float>(columns),
+                static_cast<float>(row) / static_cast<float>(rows)));
+            if (row < rows) {
+                const std::uint32_t first = row * columns;
+                const std::uint32_t next = (column + 1) % columns;
+                const std::uint32_t quad[] = {
+                    first + column,           first + next, first + columns + column,
+                    first + columns + column, first + next, first + columns + next};
+                mesh.indices.insert(mesh.indices.end(), std::begin(quad), std::end(quad));
+            }
+        }
+    }
+    return mesh;
+}
+
+Vec3 on_circle(float turns, float radius, float y) {
+    return {radius * std::cos(2 * kPi * turns), y, radius * std::sin(2 * kPi * turns)};
+}
+
+/// Around the origin.
+MeshData ball_mesh(float radius, std::uint32_t detail) {
+    return closed_mesh(2 * detail, detail, [&](float u, float v) {
+        const float ring = v == 0 || v == 1 ? 0 : radius * std::sin(kPi * v);
+        return on_circle(u, ring, radius * std::cos(kPi * v));
+    });
+}
+
+void append(MeshData& mesh, const MeshData& other, const Vec3& at) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3& position : other.positions) {
+        mesh.positions.push_back(position + at);
+    }
+    for (const std::uint32_t index : other.indices) {
+        mesh.indices.push_back(first + index);
+    }
+}
+
+/// From the origin to `size`, 12 triangles, those that face +y last.
+MeshData box_mesh(const Vec3& size) {
+    MeshData mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        mesh.positions.push_back(size * Vec3(corner & 1, corner >> 1 & 1, corner >> 2));
+    }
+    mesh.indices = {0, 1, 4, 1, 5, 4, 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6,
+                    0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5, 2, 6, 3, 3, 6, 7};
+    return mesh;
+}
+
+/// From (-1, 0, -1) to (1, 1, 1), and from (0, 2, 0) to (1, 2.5, 1).
+MeshData two_boxes() {
+    MeshData mesh;
+    append(mesh, box_mesh({2, 1, 2}), {-1, 0, -1});
+    append(mesh, box_mesh({1, 0.5f, 1}), {0, 2, 0});
     return mesh;
 }
 
@@ -291,6 +357,113 @@ TEST_CASE("particle surface: a triangle that is not finite is left out, the othe
     for (std::size_t i = 0; i < 3000; ++i) {
         const Vec3 born = scene.place(i);
         CHECK(born.x / 3 + born.z < 1.0001f);  // its neighbor's half of the rectangle
+    }
+}
+
+TEST_CASE("particle surface: births in a volume are even by volume, whatever encloses it") {
+    Surfaces scene;
+    const MeshId mesh = scene.add_mesh(two_boxes());
+    // Births are as even in the world as in the mesh.
+    const Quat turn = glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 3)));
+    const Affine at = affine_from(Vec3(5, 6, 7), turn, Vec3(2, 1, 3));
+    scene.emit(
+        resting(40000), {.on = BirthSurface::Volume, .entity = scene.add_instance(mesh, at)});
+    scene.run();
+    REQUIRE(scene.pool().size() == 40000);
+    CHECK(scene.pool().clock.dropped == 0);
+    // Cubes of 0.5 m: 32 in the first box, which reaches from -1 to 1 along x and z and from 0 to
+    // 1 along y; 4 in the second, which is within the first one's grid but apart from it.
+    std::vector<double> cells(36, 0);
+    for (std::size_t i = 0; i < 40000; ++i) {
+        const Vec3 local = glm::inverse(turn) * (scene.place(i) - Vec3(5, 6, 7)) / Vec3(2, 1, 3);
+        const bool is_first = local.y < 1.5f;
+        const Vec3 cube = glm::floor(2.0f * (local - (is_first ? Vec3(-1, 0, -1) : Vec3(0, 2, 0))));
+        const Vec3 cubes = is_first ? Vec3(4, 2, 4) : Vec3(2, 1, 2);
+        REQUIRE(cube == glm::clamp(cube, Vec3(0), cubes - 1.0f));
+        const auto number =
+            static_cast<std::size_t>(cube.x + cubes.x * (cube.y + cubes.y * cube.z));
+        cells[(is_first ? 0 : 32) + number] += 1;
+    }
+    double chi_square = 0;
+    for (const double count : cells) {
+        chi_square += (count - 40000.0 / 36) * (count - 40000.0 / 36) / (40000.0 / 36);
+    }
+    CHECK(chi_square > 11);  // 35 on average; one of 10,000 is outside
+    CHECK(chi_square < 76);
+}
+
+TEST_CASE("particle surface: births in a ball have the moments of a ball") {
+    Surfaces scene;
+    const MeshId mesh = scene.add_mesh(ball_mesh(2, 64));
+    const Entity ball = scene.add_instance(mesh, placed({1, 0, 0}));
+    ParticleEmitter emitter = resting(30000);
+    emitter.speed = 3;
+    emitter.cone = 0;
+    scene.emit(emitter, {.on = BirthSurface::Volume, .entity = ball, .offset = 100});
+    scene.run();
+    REQUIRE(scene.pool().size() == 30000);
+    Vec3 mean(0);
+    double square = 0;
+    for (std::size_t i = 0; i < 30000; ++i) {
+        CHECK(glm::distance(scene.velocity(i), Vec3(0, 3, 0)) < 1e-5f);
+        const Vec3 born = scene.place(i) - scene.velocity(i) * kStep - Vec3(1, 0, 0);
+        REQUIRE(glm::length(born) < 2.0001f);
+        mean += born / 30000.0f;
+        square += static_cast<double>(glm::dot(born, born)) / 30000;
+    }
+    CHECK(glm::length(mean) < 0.03f);
+    CHECK(square == near(0.6 * 4).epsilon(0.01));
+}
+
+TEST_CASE("particle surface: a mesh that is open above or below has no volume, and none is born") {
+    MeshData pot = box_mesh({2, 1, 2});
+    pot.indices.resize(30);  // without its lid
+    MeshData bell = box_mesh({2, 1, 2});
+    bell.indices.erase(bell.indices.begin(), bell.indices.begin() + 6);  // without its bottom
+    for (const MeshData& data : {two_rectangles(), pot, bell}) {
+        Surfaces scene;
+        const Entity mesh = scene.add_instance(scene.add_mesh(data), placed(Vec3(0)));
+        scene.emit(resting(200), {.on = BirthSurface::Volume, .entity = mesh});
+        scene.run();
+        CHECK(scene.pool().size() == 0);
+        CHECK(scene.pool().clock.dropped == 200);
+    }
+}
+
+TEST_CASE("particle surface: bodies that overlap or have holes enclose what is in any of them") {
+    MeshData mesh = closed_mesh(192, 96, [](float u, float v) {
+        const float tube = -2 * kPi * (v == 1 ? 0 : v);
+        return on_circle(u, 1 + 0.4f * std::cos(tube), 0.4f * std::sin(tube));
+    });
+    append(mesh, ball_mesh(0.8f, 96), {1, 0.1f, 0});
+    MeshVolume volume;
+    REQUIRE(fill_mesh_volume(mesh.positions, mesh.indices, volume));
+    Random random(5, 0, 0, 0);
+    int inside = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3 point = {
+            random.uniform(-1.5f, 2), random.uniform(-0.8f, 1), random.uniform(-1.5f, 1.5f)};
+        const float from_torus = std::hypot(std::hypot(point.x, point.z) - 1, point.y) - 0.4f;
+        const float distance = std::min(from_torus, glm::distance(point, Vec3(1, 0.1f, 0)) - 0.8f);
+        if (std::abs(distance) > 2e-3f) {  // beside the facets
+            CHECK(is_in_volume(volume, mesh.positions, mesh.indices, point) == (distance < 0));
+            inside += distance < 0 ? 1 : 0;
+        }
+    }
+    CHECK(inside > 4000);
+}
+
+TEST_CASE("particle surface: every column of a closed mesh is closed, through its vertices too") {
+    const MeshData mesh = ball_mesh(1, 32);
+    MeshVolume volume;
+    REQUIRE(fill_mesh_volume(mesh.positions, mesh.indices, volume));
+    for (const Vec3& vertex : mesh.positions) {
+        const Vec3 below = {0.999f * vertex.x, 0, 0.999f * vertex.z};
+        CHECK(is_in_volume(volume, mesh.positions, mesh.indices, below));
+        const Vec3 exactly = {vertex.x, 0, vertex.z};
+        if (std::hypot(vertex.x, vertex.z) < 0.98f) {
+            CHECK(is_in_volume(volume, mesh.positions, mesh.indices, exactly));
+        }
     }
 }
 

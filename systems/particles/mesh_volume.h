@@ -1,0 +1,50 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/rng.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Points within a closed mesh, even by volume, by rejection. The mesh is seen from above through a
+// grid of cells; over each cell a box reaches from the lowest to the highest of its triangles. A
+// point is drawn evenly from all boxes, and kept if it is inside: if the triangles above it
+// enclose it (nonzero winding along +y, so that bodies that overlap are one). A column whose
+// triangles do not close is left out. An edge that two triangles share belongs to exactly one of
+// them, as seen from above, so that a closed mesh is closed in every column.
+//
+// Filling takes a pass over the triangles, a point some tens of nanoseconds per triangle over its
+// cell: meshes that are deformed anew in each step need no hierarchy.
+
+/// Of a mesh: keep it for its memory.
+struct MeshVolume {
+    int side = 0;                        ///< cells along x and z
+    Vec3 low = {0, 0, 0};                ///< of the mesh [m]
+    Vec2 cell = {0, 0};                  ///< size along x and z [m]
+    std::vector<Vec2> heights{};         ///< lowest and highest y over each cell, x fastest [m]
+    std::vector<double> sums{};          ///< volumes of the boxes up to and with each cell [m^3]
+    std::vector<std::uint32_t> first{};  ///< of each cell in `triangles`, and their number
+    std::vector<std::uint32_t> triangles{};  ///< over the cells, one cell after another
+};
+
+/// Three indices per triangle; triangles with indices beyond `positions` or coordinates that are
+/// not finite are left out. False if the boxes have no volume.
+bool fill_mesh_volume(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices, MeshVolume& volume);
+
+/// `volume` was filled from the same mesh.
+[[nodiscard]] bool is_in_volume(
+    const MeshVolume& volume, std::span<const Vec3> positions,
+    std::span<const std::uint32_t> indices, const Vec3& point);
+
+/// None after 64 points that were not inside: the mesh encloses nothing, or less than a twentieth
+/// of its boxes and chance was against it. fill_mesh_volume has returned true.
+[[nodiscard]] std::optional<Vec3> draw_in_volume(
+    const MeshVolume& volume, std::span<const Vec3> positions,
+    std::span<const std::uint32_t> indices, Random& random);
+
+}  // namespace limn
