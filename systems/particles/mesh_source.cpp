@@ -5,8 +5,9 @@
 namespace limn {
 
 MeshSource find_mesh_source(
-    const MeshInstance& instance, const Deformed* deformed, const Query<const Pose>& poses,
-    const Query<const MorphWeights>& morphs, const Assets& assets) {
+    const MeshInstance& instance, const Deformed* deformed, const DeformerState* deformers,
+    const Query<const Pose>& poses, const Query<const MorphWeights>& morphs,
+    const Assets& assets) {
     MeshSource source{.mesh = instance.mesh};
     if (instance.mesh.index >= assets.meshes.size()) {
         return source;
@@ -19,6 +20,7 @@ MeshSource find_mesh_source(
                           : nullptr;
         source.pose = poses.find<const Pose>(deformed->character);
         source.morphs = morphs.find<const MorphWeights>(deformed->character);
+        source.deformers = deformers;
     }
     return source;
 }
@@ -26,8 +28,8 @@ MeshSource find_mesh_source(
 void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions) {
     if (source.deformed != nullptr) {
         deform_positions(
-            *source.data, *source.deformed, source.skin, source.pose, source.morphs, nullptr,
-            positions);
+            *source.data, *source.deformed, source.skin, source.pose, source.morphs,
+            source.deformers, positions);
     } else {
         positions = source.data->positions;
     }

@@ -17,12 +17,13 @@ struct MeshSource {
     const SkinData* skin = nullptr;
     const Pose* pose = nullptr;
     const MorphWeights* morphs = nullptr;
+    const DeformerState* deformers = nullptr;
 };
 
-/// `deformed` may be null.
+/// `deformed` and `deformers` may be null.
 [[nodiscard]] MeshSource find_mesh_source(
-    const MeshInstance& instance, const Deformed* deformed, const Query<const Pose>& poses,
-    const Query<const MorphWeights>& morphs, const Assets& assets);
+    const MeshInstance& instance, const Deformed* deformed, const DeformerState* deformers,
+    const Query<const Pose>& poses, const Query<const MorphWeights>& morphs, const Assets& assets);
 
 /// Its vertices as they are deformed, moved by `world`, to `positions`, which is resized.
 void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions);

@@ -102,7 +102,7 @@ HeightCollider make_field(const HeightField& field, const Vec3& center) {
 void find_particle_obstacles(
     Query<
         const ParticleCollider, const WorldTransform, Optional<const MeshInstance>,
-        Optional<const Deformed>, Optional<const HeightField>>
+        Optional<const Deformed>, Optional<const DeformerState>, Optional<const HeightField>>
         colliders,
     Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
     Res<ParticleObstacles> obstacles) {
@@ -113,7 +113,8 @@ void find_particle_obstacles(
     ++obstacles->frame;
     colliders.each([&](Entity entity, const ParticleCollider& collider,
                        const WorldTransform& transform, const MeshInstance* instance,
-                       const Deformed* deformed, const HeightField* field) {
+                       const Deformed* deformed, const DeformerState* deformers,
+                       const HeightField* field) {
         const Vec3 center = transform_point(transform.world, Vec3(0));
         const Axes axes = axes_of(transform.world);
         switch (collider.shape) {
@@ -130,7 +131,7 @@ void find_particle_obstacles(
         case ColliderShape::Mesh:
             if (instance != nullptr) {
                 const MeshSource source =
-                    find_mesh_source(*instance, deformed, poses, morphs, *assets);
+                    find_mesh_source(*instance, deformed, deformers, poses, morphs, *assets);
                 if (source.data != nullptr) {
                     followed.push_back({entity, &transform.world, source});
                 }

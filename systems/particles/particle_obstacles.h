@@ -38,7 +38,7 @@ struct ParticleObstacles {
 void find_particle_obstacles(
     Query<
         const ParticleCollider, const WorldTransform, Optional<const MeshInstance>,
-        Optional<const Deformed>, Optional<const HeightField>>
+        Optional<const Deformed>, Optional<const DeformerState>, Optional<const HeightField>>
         colliders,
     Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
     Res<ParticleObstacles> obstacles);

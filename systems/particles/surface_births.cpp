@@ -139,7 +139,8 @@ SurfaceSource find_surface_source(
         const auto* const instance = meshes.find<const MeshInstance>(entity);
         if (instance != nullptr) {
             source.mesh = find_mesh_source(
-                *instance, meshes.find<const Deformed>(entity), poses, morphs, assets);
+                *instance, meshes.find<const Deformed>(entity),
+                meshes.find<const DeformerState>(entity), poses, morphs, assets);
             source.place = place_of(
                 *meshes.find<const WorldTransform>(entity),
                 *meshes.find<const PreviousWorldTransform>(entity));

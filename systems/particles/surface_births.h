@@ -32,7 +32,7 @@ struct SurfaceSource {
 /// The entities that have a mesh, as a parameter of systems.
 using MeshQuery = Query<
     const MeshInstance, const WorldTransform, const PreviousWorldTransform,
-    Optional<const Deformed>>;
+    Optional<const Deformed>, Optional<const DeformerState>>;
 
 /// `mesh` may be null; `emitter` is the entity with the ParticleSurface and `place` its place.
 [[nodiscard]] SurfaceSource find_surface_source(
