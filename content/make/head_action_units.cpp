@@ -47,7 +47,8 @@ constexpr ActionUnit kUnits[] = {
      .sided = true,
      .pulls = {{
          {{3.9f, 0.9f, 9.4f}, {-1.2f, 4.6f, 1.2f}, {2.7f, 2.3f, 3}},
-         {{5.4f, 3.0f, 7.8f}, {-2.6f, 1.0f, 0}, {1.6f, 1.9f, 2.5f}, Lips::Both, kSlides},
+         {{5.5f, 2.0f, 7.8f}, {-1.6f, 3.6f, 0}, {1.9f, 1.9f, 2.5f}, Lips::Both, kSlides},
+         {{5.4f, 4.6f, 7.8f}, {-0.4f, -1.6f, 0}, {1.5f, 1.4f, 2.5f}, Lips::Both, kSlides},
      }},
      .lower_lid = 0.2f},
     {.name = "AU7",

@@ -13,7 +13,7 @@ namespace limn {
 namespace {
 
 constexpr float kMeters = 0.01f;     ///< per centimeter
-constexpr float kMinOffset = 1e-4f;  ///< [cm]: a micrometer is no movement
+constexpr float kMinOffset = 2e-5f;  ///< [cm]: a fifth of a micrometer is no movement
 enum class Side : std::uint8_t { Both, Left, Right };
 
 struct Expression {

@@ -1,5 +1,6 @@
 #include "content/make/patterns.h"
 
+#include "content/make/face_fold_pattern.h"
 #include "content/make/fold_pattern.h"
 #include "content/make/furrow_patterns.h"
 #include "content/make/mask_pattern.h"
@@ -381,6 +382,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<ConcretePattern, make_concrete>("concrete", "stained gray with pores"),
         pattern_kind<ConfettiPattern, make_confetti>(
             "confetti", "a flipbook of cut paper in bright colors"),
+        pattern_kind<FaceFoldsPattern, make_face_folds>(
+            "face_folds", "folds of a face, as a wrinkle map for the skin of a head"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
         pattern_kind<FirePattern, make_fire>(
             "fire", "a flipbook of fire from a simulation, in color, with its motion",

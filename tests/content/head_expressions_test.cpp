@@ -165,8 +165,8 @@ TEST_CASE("head expressions: both halves of a unit sum to the whole and are mirr
             const std::uint32_t other = head_layout().mirror[v];
             mirror_error = std::max(mirror_error, glm::length(left[v] - mirrored(right[other])));
         }
-        CHECK(sum_error < 2e-4f);  // [cm]; 1e-4 is left out of either half
-        CHECK(mirror_error < 2e-4f);
+        CHECK(sum_error < 1e-4f);  // [cm]; 2e-5 is left out of either half
+        CHECK(mirror_error < 1e-4f);
     }
 }
 
