@@ -61,6 +61,12 @@ enum class BlinnAxis : std::uint8_t {
     WorstCase,  ///< along the projected normal of each vertex: v = 0, no better than Gouraud
 };
 
+/// What is linear on the screen (fakephong.texmap).
+enum class Interpolation : std::uint8_t {
+    Perspective,  ///< coordinates on a triangle over w, and 1/w: right, at a division per pixel
+    Screen,       ///< the coordinates themselves: distorted where w varies
+};
+
 struct PhongScene {
     std::string name = {};
     PhongMesh mesh = {};
@@ -69,6 +75,7 @@ struct PhongScene {
     PhongCamera camera = {};
     Channels channels = Channels::Specular;
     BlinnAxis axis = BlinnAxis::CameraUp;
+    Interpolation interpolation = Interpolation::Perspective;
     double environment_exponent = 8;  ///< of the lobes baked in an environment map, about n / 4
     int texture_size = 256;           ///< 0: texture functions are evaluated exactly
     int row = 128;                    ///< the scanline that crosses the highlight

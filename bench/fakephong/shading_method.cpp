@@ -7,14 +7,14 @@ namespace {
 
 constexpr ShadingMethod kMethods[] = {
     {"phong", "Phong", 0, 6, prepare_phong, shade_phong},
-    {"gouraud", "Gouraud", 3, 3, prepare_gouraud, shade_gouraud},
+    {"gouraud", "Gouraud", 3, 3, prepare_gouraud, shade_gouraud, 1},
     {"gouraud-subdivided", "Gouraud, subdivided", 6, 6, prepare_subdivided, shade_subdivided},
-    {"quadratic", "quadratic", 6, 6, prepare_quadratic, shade_quadratic},
+    {"quadratic", "quadratic", 6, 6, prepare_quadratic, shade_quadratic, 2},
     {"envmap", "environment map", 3, 0, prepare_environment, shade_environment},
     {"blinn-map", "Blinn map", 3, 3, prepare_blinn_map, shade_blinn_map},
     {"quadratic-blinn", "quadratic Blinn map", 6, 6, prepare_quadratic_blinn,
      shade_quadratic_blinn},
-    {"cubic", "cubic", 10, 3, prepare_cubic, shade_cubic},
+    {"cubic", "cubic", 10, 3, prepare_cubic, shade_cubic, 3},
     {"taylor", "Taylor series", 0, 0, prepare_taylor, shade_taylor},
     {"phong-map", "Phong map (diffuse)", 3, 3, prepare_phong_map, shade_phong_map},
     {"normals-quadratic", "normals, quadratic", 0, 6, prepare_quadratic_normals,
