@@ -78,7 +78,7 @@ struct PhongScene {
     Interpolation interpolation = Interpolation::Perspective;
     double environment_exponent = 8;  ///< of the lobes baked in an environment map, about n / 4
     int texture_size = 256;           ///< 0: texture functions are evaluated exactly
-    int row = 128;                    ///< the scanline that crosses the highlight
+    int row = 128;                    ///< the scanline, which should cross the highlight
 };
 
 inline constexpr int kMaxLights = 8;

@@ -16,7 +16,7 @@ constexpr ShadingMethod kMethods[] = {
      shade_quadratic_blinn},
     {"cubic", "cubic", 10, 3, prepare_cubic, shade_cubic, 3},
     {"taylor", "Taylor series", 0, 0, prepare_taylor, shade_taylor},
-    {"phong-map", "Phong map (diffuse)", 3, 3, prepare_phong_map, shade_phong_map},
+    {"phong-map", "Phong map", 3, 3, prepare_phong_map, shade_phong_map, 0, true},
     {"normals-quadratic", "normals, quadratic", 0, 6, prepare_quadratic_normals,
      shade_quadratic_normals},
     {"normals-spherical", "normals, spherical", 0, 6, prepare_spherical_normals,

@@ -47,7 +47,8 @@ struct ShadingMethod {
     int exact_points;       ///< of 3 corners and 3 edge midpoints, those where it is exact
     void (*prepare)(const ShadingContext& context, const Facet& facet, FacetSetup& setup);
     Lit (*shade)(const ShadingContext& context, const FacetSetup& setup, Real s, Real t);
-    int degree = 0;  ///< of its light, if that is a polynomial in s and t; 0: it is none
+    int degree = 0;             ///< of its light, if that is a polynomial in s and t; 0: it is none
+    bool diffuse_only = false;  ///< it has no highlights, and is compared by diffuse light
 };
 
 /// All of them; the first is Phong shading, the reference, then the six columns of Table 6.1 in
