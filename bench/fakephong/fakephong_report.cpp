@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace limn::fakephong {
@@ -129,6 +130,23 @@ double weighted_operations(const Work& work) {
 
 double weighted_operations(const PhongImage& image) {
     return weighted_operations(image.setup) + weighted_operations(image.shading);
+}
+
+Efficiency efficiency_of(const PhongImage& image, const PhongImage& reference) {
+    const auto per = [](std::int64_t count, std::int64_t of) {
+        return static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(of, 1));
+    };
+    const auto per_pixel = [&](std::int64_t count) { return per(count, image.pixels); };
+    const Work& w = image.shading;
+    return {
+        .lightings = per(image.setup.lightings, image.triangles),
+        .additions = per_pixel(w.additions),
+        .multiplications = per_pixel(w.multiplications),
+        .divisions = per_pixel(w.divisions),
+        .roots = per_pixel(w.roots),
+        .powers = per_pixel(w.powers),
+        .fetches = per_pixel(w.fetches),
+        .work = weighted_operations(image) / std::max(weighted_operations(reference), 1.0)};
 }
 
 std::vector<std::string> rank_by_correctness(const SceneResult& result) {

@@ -52,6 +52,15 @@ inline constexpr std::size_t kMaxCheckedFacets = 20000;
 /// A frame, set-up included.
 [[nodiscard]] double weighted_operations(const PhongImage& image);
 
+/// A line of the efficiency table (fakephong.metric-efficiency).
+struct Efficiency {
+    double lightings = 0;  ///< per facet
+    double additions = 0, multiplications = 0, divisions = 0, roots = 0, powers = 0,
+           fetches = 0;  ///< per pixel
+    double work = 0;     ///< weighted operations of the frame over those of `reference`
+};
+[[nodiscard]] Efficiency efficiency_of(const PhongImage& image, const PhongImage& reference);
+
 /// Largest difference between the sine or cosine of 0 .. `angle` [rad] and the polynomial through
 /// the ends of that arc, or through its ends and middle: what Blinn coordinates lose along an edge
 /// whose normals turn by `angle` from H.

@@ -368,39 +368,29 @@ std::string work_section(const SceneResult& result) {
     HtmlTable table(
         {"method", "lightings", "additions", "multiplications", "divisions", "roots", "powers",
          "fetches", "of Phong's work"});
-    const auto per = [](double count, std::int64_t of) {
-        return of > 0 ? count / static_cast<double>(of) : 0;
-    };
-    const auto add = [&](std::string_view name, const PhongImage& image, double share) {
-        const Work& w = image.shading;
-        std::vector<std::string> cells = {
-            std::string(name),
-            fixed(per(static_cast<double>(image.setup.lightings), image.triangles), 0)};
-        for (const std::int64_t count :
-             {w.additions, w.multiplications, w.divisions, w.roots, w.powers, w.fetches}) {
-            cells.push_back(fixed(per(static_cast<double>(count), image.pixels), 1));
+    const auto add = [&table](std::string_view name, const Efficiency& e) {
+        std::vector<std::string> cells = {std::string(name), fixed(e.lightings, 0)};
+        for (const double count :
+             {e.additions, e.multiplications, e.divisions, e.roots, e.powers, e.fetches}) {
+            cells.push_back(fixed(count, 1));
         }
-        cells.push_back(fmt::format("{:.0f} %", 100 * share));
+        cells.push_back(fmt::format("{:.0f} %", 100 * e.work));
         table.add(cells);
     };
-    add("Phong", result.phong, 1);
+    add("Phong", efficiency_of(result.phong, result.phong));
     for (const MethodResult& one : result.methods) {
-        add(one.method->name, one.image, work_share(result, one));
+        add(one.method->name, efficiency_of(one.image, reference_of(result, one)));
     }
     HtmlTable steps(
         {"colors of", "additions, each pixel asked", "multiplications", "additions, stepped",
          "multiplications", "work, stepped / asked", "largest difference"});
     for (const SteppedMethod& one : step_scene(result.scene)) {
-        const auto cell = [&](std::int64_t count) {
-            return fixed(per(static_cast<double>(count), one.direct.pixels), 1);
-        };
+        const Efficiency direct = efficiency_of(one.direct, one.direct);
+        const Efficiency by_steps = efficiency_of(one.stepped, one.direct);
         steps.add(
-            {std::string(one.method->name), cell(one.direct.shading.additions),
-             cell(one.direct.shading.multiplications), cell(one.stepped.shading.additions),
-             cell(one.stepped.shading.multiplications),
-             fmt::format(
-                 "{:.0f} %", 100 * weighted_operations(one.stepped)
-                                 / std::max(weighted_operations(one.direct), 1.0)),
+            {std::string(one.method->name), fixed(direct.additions, 1),
+             fixed(direct.multiplications, 1), fixed(by_steps.additions, 1),
+             fixed(by_steps.multiplications, 1), fmt::format("{:.0f} %", 100 * by_steps.work),
              fmt::format("{:.2g}", one.difference)});
     }
     return fmt::format(
@@ -410,9 +400,11 @@ std::string work_section(const SceneResult& result) {
         "divisions and roots 8, powers 16.</p>\n{3}"
         "<h3>Forward differences: {0}</h3>\n<p>Without perspective, colors that are polynomials "
         "step from pixel to pixel by additions; samples of each facet and the walk along its left "
-        "edge, {4:.1f} pixels per facet, are among them.</p>\n{5}",
+        "edge, {4:.0f} pixels per facet, are among them.</p>\n{5}",
         result.scene.name, facet_count(result), result.phong.pixels, table.html(),
-        per(static_cast<double>(result.phong.pixels), result.phong.triangles), steps.html());
+        static_cast<double>(result.phong.pixels)
+            / static_cast<double>(std::max<std::int64_t>(result.phong.triangles, 1)),
+        steps.html());
 }
 
 // ---- edges
