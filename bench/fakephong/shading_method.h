@@ -36,7 +36,8 @@ struct FacetSetup {
     std::array<Lit, 10> lit;      ///< samples, or coefficients of a polynomial in s and t
     std::array<Vec3r, 6> normal;  ///< coefficients of normals
     std::array<std::array<Vec2r, 6>, kMaxLights> at;  ///< coefficients of texture coordinates
-    std::array<std::array<Real, 6>, kMaxLights> diffuse_series;   ///< of N.L
+    std::array<std::array<Vec2r, 6>, kMaxLights> diffuse_at;     ///< of PhongScene::diffuse_texture
+    std::array<std::array<Real, 6>, kMaxLights> diffuse_series;  ///< of N.L
     std::array<std::array<Real, 6>, kMaxLights> specular_series;  ///< of N.H
 };
 

@@ -42,13 +42,15 @@ void clear_stencil(gpu::Device& device, const gpu::Program& nothing) {
 /// What the shaders of a ShadingRate are compiled with.
 void add_definitions(
     Variant& variant, const ShadingRateRow& row, const LightingMethod& method, int lights) {
+    const bool diffuse = method.blinn_diffuse && row.reads_diffuse;
+    variant.add_if(diffuse, "BLINN_DIFFUSE");
     if (row.single_lights > 0) {
-        const auto kept = static_cast<unsigned>(std::clamp(lights, 1, row.single_lights));
+        const auto kept = static_cast<unsigned>(
+            std::clamp(lights, 1, diffuse ? kMaxDiffuseLights : row.single_lights));
         variant.add("SINGLE_LIGHTS", static_cast<int>(std::bit_ceil(kept)));
     }
-    if (row.map != HighlightMap::None) {
-        variant.add("BLINN_AXIS", static_cast<int>(method.blinn_axis));
-    }
+    variant.add_if(method.worst_blinn_axis && row.map == HighlightMap::Blinn, "WORST_AXIS");
+    variant.add_if(method.screen_interpolation, "SCREEN_LINEAR");
     const HardwareDefects& defects = method.hardware;
     const bool quadratic = row.rate == ShadingRate::HwQuadratic;
     const bool blinn = row.rate == ShadingRate::HwBlinn;
