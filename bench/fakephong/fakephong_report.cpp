@@ -118,6 +118,26 @@ std::array<double, kTableColumns> correctness_row(const PhongScene& scene) {
     return row;
 }
 
+std::array<double, kTableColumns> correctness_row(const SceneResult& result) {
+    std::array<double, kTableColumns> row;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        row[i] = result.methods[i].correctness;
+    }
+    return row;
+}
+
+int swapped_pairs(
+    const std::array<double, kTableColumns>& row,
+    const std::array<double, kTableColumns>& printed) {
+    int swapped = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        for (std::size_t j = 0; j < row.size(); ++j) {
+            swapped += printed[i] < printed[j] && !(row[i] < row[j]) ? 1 : 0;
+        }
+    }
+    return swapped;
+}
+
 const PhongImage& reference_of(const SceneResult& scene, const MethodResult& one) {
     return one.method->diffuse_only ? scene.phong_diffuse : scene.phong;
 }

@@ -42,6 +42,12 @@ inline constexpr std::size_t kMaxCheckedFacets = 20000;
 /// A row of Table 6.1 alone.
 [[nodiscard]] std::array<double, kTableColumns> correctness_row(const PhongScene& scene);
 
+/// Pairs of columns of a row, as many as `printed` orders, that are not in its order.
+[[nodiscard]] int swapped_pairs(
+    const std::array<double, kTableColumns>& row, const std::array<double, kTableColumns>& printed);
+/// Of a scene that has been evaluated.
+[[nodiscard]] std::array<double, kTableColumns> correctness_row(const SceneResult& result);
+
 /// The ids of Table 6.1's methods by a value, best first; equal ones keep the order of the table.
 [[nodiscard]] std::vector<std::string> rank_by_correctness(const SceneResult& result);
 /// By the counted operations of a frame: additions and multiplications 1, fetches 4, divisions and

@@ -19,7 +19,6 @@ using namespace fakephong;
 /// Each figure of the table, and whether the columns keep their printed order.
 void compare_with_printed(
     const SceneResult& result, const PrintedRow& row, double limit, QualityReport& report) {
-    int swapped = 0;
     for (std::size_t i = 0; i < kTableColumns; ++i) {
         const MethodResult& one = result.methods[i];
         report.inform(fmt::format("{}: {}", result.scene.name, one.method->name), one.correctness);
@@ -28,15 +27,10 @@ void compare_with_printed(
                 "{}: {}, from the printed {:.4f}", result.scene.name, one.method->name,
                 row.correctness[i]),
             std::abs(one.correctness - row.correctness[i]), limit);
-        for (std::size_t j = 0; j < kTableColumns; ++j) {
-            swapped += row.correctness[i] < row.correctness[j]
-                               && !(one.correctness < result.methods[j].correctness)
-                           ? 1
-                           : 0;
-        }
     }
     report.at_most(
-        fmt::format("{}: pairs not in the printed order", result.scene.name), swapped, 0);
+        fmt::format("{}: pairs not in the printed order", result.scene.name),
+        swapped_pairs(correctness_row(result), row.correctness), 0);
 }
 
 /// On coarse closed meshes: quadratic Blinn map, Blinn map, then all others of the table.

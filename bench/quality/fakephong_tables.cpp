@@ -98,16 +98,10 @@ std::string fit_text(const SceneResult& result, const PrintedRow& row) {
     const auto distance = [&](std::size_t i) {
         return std::abs(result.methods[i].correctness - row.correctness[i]);
     };
-    int swapped = 0;
-    for (std::size_t i = 0; i < kTableColumns; ++i) {
+    for (std::size_t i = 1; i < kTableColumns; ++i) {
         farthest = distance(i) > distance(farthest) ? i : farthest;
-        for (std::size_t j = 0; j < kTableColumns; ++j) {
-            swapped += row.correctness[i] < row.correctness[j]
-                               && !(result.methods[i].correctness < result.methods[j].correctness)
-                           ? 1
-                           : 0;
-        }
     }
+    const int swapped = swapped_pairs(correctness_row(result), row.correctness);
     return fmt::format(
         "The {} comes within {:.4f} of its row, farthest in the column {}; {}.\n", row.model,
         distance(farthest), result.methods[farthest].method->name,
@@ -157,6 +151,7 @@ std::string correctness_section(std::span<const SceneResult> results) {
 }
 
 std::string texture_section() {
+    constexpr int kPairs = kTableColumns * (kTableColumns - 1) / 2;
     const PrintedRow& printed = printed_table()[0];
     HtmlTable table(
         {"texels", "environment map", "Blinn map", "quadratic Blinn map",
@@ -167,21 +162,14 @@ std::string texture_section() {
     for (const int size : {8, 11, 13, 16, 32, 64, 256}) {
         scene.texture_size = size;
         const auto row = correctness_row(scene);
-        int kept = 0;
-        int pairs = 0;
-        for (std::size_t i = 0; i < kTableColumns; ++i) {
-            for (std::size_t j = 0; j < kTableColumns; ++j) {
-                pairs += printed.correctness[i] < printed.correctness[j] ? 1 : 0;
-                kept += printed.correctness[i] < printed.correctness[j] && row[i] < row[j] ? 1 : 0;
-            }
-        }
-        if (kept == pairs) {
+        const int kept = kPairs - swapped_pairs(row, printed.correctness);
+        if (kept == kPairs) {
             in_order += fmt::format("{}{}", in_order.empty() ? "" : ", ", size);
         }
         quadratic = row[2];
         table.add(
             {fmt::format("{0} x {0}", size), fixed(row[3], 4), fixed(row[4], 4), fixed(row[5], 4),
-             fmt::format("{} of {}", kept, pairs)});
+             fmt::format("{} of {}", kept, kPairs)});
     }
     return fmt::format(
                "<h3>Why the teapot's row needs coarse textures</h3>\n<p>The printed row has the "

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -170,6 +171,11 @@ TEST_CASE("fakephong: a row of the table is that of all methods") {
     for (std::size_t i = 0; i < kTableColumns; ++i) {
         CHECK(row[i] == result.methods[i].correctness);
     }
+    CHECK(correctness_row(result) == row);
+    const std::array<double, kTableColumns> rising = {1, 2, 3, 4, 5, 6};
+    CHECK(swapped_pairs(rising, rising) == 0);
+    CHECK(swapped_pairs({6, 5, 4, 3, 2, 1}, rising) == 15);
+    CHECK(swapped_pairs({1, 2, 2, 4, 5, 6}, rising) == 1);
 }
 
 }  // namespace limn::fakephong
