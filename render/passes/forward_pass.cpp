@@ -152,7 +152,7 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, Te
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::ObjectMajor) {
         bool by_facets = false;  // the depth was drawn through a geometry shader, as the rate is
-        const auto light = [&](const char* name, ShadingRate rate, TextureId into, int turn) {
+        const auto light = [&](const char* name, ShadingRate rate, const Use& into, int turn) {
             const bool facets = *row_of(rate).geometry != '\0';
             if (std::exchange(by_facets, facets) != facets) {
                 const Use depth[] = {cleared(view.gbuffer.depth)};
@@ -164,15 +164,20 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, Te
                         draw_depths(context, view, view.data.get<InstanceList>().opaque, programs);
                     });
             }
-            const Use writes[] = {cleared(into), view.gbuffer.depth};
+            const Use writes[] = {into, view.gbuffer.depth};
             graph.add_pass(
                 name, std::span(reads), writes, [&pass, &view, rate, turn](PassContext& context) {
                     draw_object_major(context, pass, view, rate, turn);
                 });
         };
-        light("objects", method.shading, view.radiance, 0);
+        light("objects", method.shading, cleared(view.radiance), 0);
         if (method.compared) {
-            light("objects, compared", *method.compared, compared, 1);
+            light("objects, compared", *method.compared, cleared(compared), 1);
+            if (view.frame->warm_up) {  // keys switch methods
+                for (const ShadingRateRow& row : kShadingRateRows) {
+                    light("objects, any method", row.rate, compared, 1);
+                }
+            }
         }
         return;
     }
