@@ -25,9 +25,11 @@ struct ShadingRateRow {
     const char* fragment;
     HighlightMap map = HighlightMap::None;
     int single_lights = 0;  ///< of how many lights it keeps terms at most (lib/single_lights.glsl)
+    bool reads_diffuse = false;  ///< as Rendering::blinn_diffuse says
 };
 
-inline constexpr int kMaxSingleLights = 8;  ///< what fits between shader stages
+inline constexpr int kMaxSingleLights = 8;   ///< what fits between shader stages
+inline constexpr int kMaxDiffuseLights = 4;  ///< the same with Rendering::blinn_diffuse
 
 /// In the order of ShadingRate.
 inline constexpr ShadingRateRow kShadingRateRows[] = {
@@ -43,9 +45,9 @@ inline constexpr ShadingRateRow kShadingRateRows[] = {
     {ShadingRate::Taylor, "sampled.vert", "taylor.geom", "taylor.frag", HighlightMap::None,
      kMaxSingleLights},
     {ShadingRate::BlinnMap, "blinn_map.vert", "", "blinn_map.frag", HighlightMap::Blinn,
-     kMaxSingleLights},
+     kMaxSingleLights, true},
     {ShadingRate::QuadraticBlinn, "sampled.vert", "quadratic_blinn.geom", "quadratic_blinn.frag",
-     HighlightMap::Blinn, kMaxSingleLights},
+     HighlightMap::Blinn, kMaxSingleLights, true},
     {ShadingRate::HwBlinn, "hw_blinn.vert", "", "blinn_map.frag", HighlightMap::Blinn,
      kMaxSingleLights},
     {ShadingRate::PhongMap, "phong_map.vert", "", "phong_map.frag", HighlightMap::Blinn,

@@ -15,11 +15,24 @@ Vec3r plane_axis(const PhongScene& scene, const Vec3r& normal, const Vec3r& proj
         global = {0, 1, 0};
     } else if (scene.axis == BlinnAxis::WorstCase) {
         global = projected;
+    } else if (scene.axis == BlinnAxis::Custom) {
+        global = normalize_or(Vec3r(scene.axis_vector), kZero);
     }
     // Where the global vector is parallel to the plane's normal, the camera's right is not.
     const Vec3r right = Vec3r(camera.right);
     const Vec3r other = normalize_or(right - dot(right, normal) * normal, kZero);
     return normalize_or(global - dot(global, normal) * normal, other);
+}
+
+/// Of unit `v` in the plane orthogonal to unit `normal`; on the rim where it points away from it.
+Vec2r plane_coordinates(const PhongScene& scene, const Vec3r& v, const Vec3r& normal) {
+    const Real cosine = dot(v, normal);
+    Vec3r projected = v - cosine * normal;
+    const Vec3r u = plane_axis(scene, normal, projected);
+    if (!(cosine > 0.0)) {
+        projected = normalize_or(projected, u);
+    }
+    return {dot(u, projected), dot(cross(normal, u), projected)};
 }
 
 }  // namespace
@@ -78,13 +91,17 @@ Vec2r blinn_coordinates(
     if (h.x.value == 0 && h.y.value == 0 && h.z.value == 0) {
         return {1, 0};
     }
-    const Real n_h = dot(point.normal, h);
-    Vec3r projected = point.normal - n_h * h;
-    const Vec3r u = plane_axis(scene, h, projected);
-    if (!(n_h > 0.0)) {
-        projected = normalize_or(projected, u);
+    return plane_coordinates(scene, point.normal, h);
+}
+
+Vec2r diffuse_coordinates(
+    const PhongScene& scene, const PhongLight& light, const SurfacePoint& point) {
+    ++counted_work.lightings;
+    const Vec3r l = to_light(light, point.position);
+    if (l.x.value == 0 && l.y.value == 0 && l.z.value == 0) {
+        return {1, 0};
     }
-    return {dot(u, projected), dot(cross(h, u), projected)};
+    return plane_coordinates(scene, point.normal, l);
 }
 
 Vec2r blinn_coordinates_as_printed(
@@ -100,14 +117,7 @@ Vec2r blinn_coordinates_as_printed(
 Vec2r phong_map_coordinates(
     const PhongScene& scene, const PhongLight& light, const SurfacePoint& point) {
     ++counted_work.lightings;
-    const Vec3r l = to_light(light, point.position);
-    const Real n_l = dot(point.normal, l);
-    Vec3r projected = l - n_l * point.normal;
-    const Vec3r u = plane_axis(scene, point.normal, projected);
-    if (!(n_l > 0.0)) {
-        projected = normalize_or(projected, u);
-    }
-    return {dot(u, projected), dot(cross(point.normal, u), projected)};
+    return plane_coordinates(scene, to_light(light, point.position), point.normal);
 }
 
 Vec2r sphere_map_coordinates(const PhongScene& scene, const SurfacePoint& point) {

@@ -57,6 +57,10 @@ illuminate(const PhongScene& scene, const PhongLight& light, const SurfacePoint&
 [[nodiscard]] Vec2r
 blinn_coordinates(const PhongScene& scene, const PhongLight& light, const SurfacePoint& point);
 
+/// The same along L in place of H: the diffuse value is sqrt(1 - u^2 - v^2).
+[[nodiscard]] Vec2r
+diffuse_coordinates(const PhongScene& scene, const PhongLight& light, const SurfacePoint& point);
+
 /// The same as the vertex program of appendix B, with its defects: the axis is not normalized, it
 /// is the world's up, and N.H < 0 is not handled.
 [[nodiscard]] Vec2r blinn_coordinates_as_printed(

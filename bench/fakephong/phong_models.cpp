@@ -18,6 +18,7 @@ constexpr double kTurn = 6.283185307179586;
 PhongScene ball_scene(const char* name, PhongMesh mesh, const PhongLight& light) {
     PhongScene scene = {.name = name, .mesh = std::move(mesh), .lights = {light}};
     scene.material.color = {0.2, 0.4, 1};
+    scene.row = 105;
     return scene;
 }
 
@@ -97,7 +98,7 @@ PhongScene triangle_scene() {
     scene.material.color = {0, 0, 1};
     scene.lights = {{.at = {0, -0.2, 0.6}}};
     scene.camera = {.eye = {0, 0, 20}, .target = dvec3(0), .half_size = 0.052, .size = 256};
-    scene.row = 133;
+    scene.row = 151;
     return scene;
 }
 
@@ -121,6 +122,7 @@ PhongScene printed_teapot_scene() {
     scene.material.exponent = 16;
     scene.environment_exponent = 4;
     scene.camera.half_size = 0.25;
+    scene.row = 140;
     return scene;
 }
 
@@ -133,6 +135,7 @@ PhongScene teapot_scene() {
     scene.material.color = {0.7, 0.3, 0.2};
     scene.lights = {{.directional = true, .at = {-1, 1, 1}}};
     scene.camera = {.eye = {0, 1.2, 5}, .target = dvec3(0), .half_size = 0.32, .size = 256};
+    scene.row = 138;
     return scene;
 }
 
@@ -145,8 +148,10 @@ PhongScene sphere_scene() {
 }
 
 PhongScene fine_sphere_scene() {
-    return ball_scene(
+    PhongScene scene = ball_scene(
         "fine sphere", make_coarse_sphere(75, 26), {.directional = true, .at = {-1, 1, 1}});
+    scene.row = 92;
+    return scene;
 }
 
 std::span<const PrintedRow> printed_table() {

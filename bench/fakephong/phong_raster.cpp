@@ -1,5 +1,8 @@
 #include "bench/fakephong/phong_raster.h"
 
+#include "bench/fakephong/forward_difference.h"
+#include "ecs/base/check.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +17,7 @@ struct ClipCorner {
     dvec2 st;
 };
 
-/// On the screen: pixels, rows downwards; s/w, t/w and 1/w are linear there.
+/// On the screen: pixels, rows downwards; s/w, t/w and 1/w are linear there, or s, t and 1/w.
 struct ScreenCorner {
     dvec2 at;
     dvec3 over_w;
@@ -63,9 +66,16 @@ bool owns_edge(const dvec2& a, const dvec2& b) {
     return a.y == b.y ? b.x < a.x : b.y > a.y;
 }
 
-/// Calls visit(x, y, over_w) for the pixels whose centers lie in the triangle.
+/// The pixels of a row whose centers lie in a triangle; over_w is that of the first.
+struct Span {
+    int y = 0;
+    int begin = 0, end = 0;
+    dvec3 over_w;
+};
+
+/// Calls visit(span, plane) for the rows of a triangle, from the top.
 template <typename Visit>
-void for_each_pixel(std::array<ScreenCorner, 3> p, int size, Visit visit) {
+void for_each_span(std::array<ScreenCorner, 3> p, int size, Visit visit) {
     double area = cross_2d(p[1].at - p[0].at, p[2].at - p[0].at);
     if (!std::isfinite(area) || area == 0) {
         return;
@@ -83,24 +93,74 @@ void for_each_pixel(std::array<ScreenCorner, 3> p, int size, Visit visit) {
     const auto end = [&](int k) {
         return static_cast<int>(std::ceil(std::clamp(high(k), 0.0, static_cast<double>(size))));
     };
+    const auto covers = [&p](int x, int y) {
+        const dvec2 center(x + 0.5, y + 0.5);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const dvec2& a = p[i].at;
+            const dvec2& b = p[(i + 1) % 3].at;
+            const double side = cross_2d(b - a, center - a);
+            if (!(side > 0 || (side == 0 && owns_edge(a, b)))) {
+                return false;
+            }
+        }
+        return true;
+    };
     for (int y = first(1); y < end(1); ++y) {
-        const int x0 = first(0);
-        dvec3 over_w = plane.value + (x0 + 0.5) * plane.dx + (y + 0.5) * plane.dy;
-        for (int x = x0; x < end(0); ++x, over_w += plane.dx) {
-            const dvec2 center(x + 0.5, y + 0.5);
-            bool inside = true;
-            for (std::size_t i = 0; i < 3; ++i) {
-                const dvec2& a = p[i].at;
-                const dvec2& b = p[(i + 1) % 3].at;
-                const double side = cross_2d(b - a, center - a);
-                inside = inside && (side > 0 || (side == 0 && owns_edge(a, b)));
-            }
-            if (inside) {
-                visit(x, y, over_w);
-            }
+        Span span = {.y = y, .begin = first(0), .end = 0, .over_w = {}};
+        while (span.begin < end(0) && !covers(span.begin, y)) {
+            ++span.begin;
+        }
+        span.end = span.begin;
+        while (span.end < end(0) && covers(span.end, y)) {
+            ++span.end;
+        }
+        if (span.begin < span.end) {
+            span.over_w = plane.value + (span.begin + 0.5) * plane.dx + (y + 0.5) * plane.dy;
+            visit(span, plane);
         }
     }
 }
+
+/// Colors of a triangle by forward differences: a table walks along its left edge, and each row
+/// starts with a copy.
+class ColorWalk {
+  public:
+    ColorWalk(const ShadingContext& context, const ShadingMethod& method, const FacetSetup& setup)
+        : context_(context), method_(method), setup_(setup) {}
+
+    [[nodiscard]] RowDifferences<Lit> start_row(const Span& span, const ScreenPlane& plane) {
+        if (!started_) {
+            started_ = true;
+            table_ =
+                difference_table<Lit>(static_cast<std::size_t>(method_.degree), [&](int x, int y) {
+                    const dvec3 at = span.over_w + static_cast<double>(x) * plane.dx
+                                     + static_cast<double>(y) * plane.dy;
+                    return method_.shade(context_, setup_, at.x, at.y);
+                });
+            x_ = span.begin;
+            y_ = span.y;
+        }
+        for (; y_ < span.y; ++y_) {
+            step_down(table_);
+        }
+        for (; x_ < span.begin; ++x_) {
+            step_right(table_);
+        }
+        for (; x_ > span.begin; --x_) {
+            step_left(table_);
+        }
+        return table_.rows[0];
+    }
+
+  private:
+    const ShadingContext& context_;
+    const ShadingMethod& method_;
+    const FacetSetup& setup_;
+    PixelDifferences<Lit> table_ = {};
+    bool started_ = false;
+    int x_ = 0;
+    int y_ = 0;
+};
 
 }  // namespace
 
@@ -136,7 +196,10 @@ dvec3 seen_color(const PhongScene& scene, const Lit& lit, const dvec2& uv) {
     return {clamp01(light.x).value, clamp01(light.y).value, clamp01(light.z).value};
 }
 
-PhongImage draw(const PhongScene& scene, const ShadingMethod& method) {
+PhongImage draw(const PhongScene& scene, const ShadingMethod& method, Evaluation evaluation) {
+    const bool stepped = evaluation == Evaluation::Differences;
+    const bool on_screen = scene.interpolation == Interpolation::Screen;
+    LIMN_CHECK(!stepped || (method.degree > 0 && on_screen));
     const int size = scene.camera.size;
     const auto count = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
     PhongImage image;
@@ -172,7 +235,9 @@ PhongImage draw(const PhongScene& scene, const ShadingMethod& method) {
         for (const ClipCorner& corner : clipped) {
             const double w = corner.at.z;
             const dvec2 ndc = dvec2(corner.at.x, -corner.at.y) / (w * scene.camera.half_size);
-            screen.push_back({0.5 * size * (ndc + 1.0), dvec3(corner.st, 1) / w});
+            screen.push_back(
+                {0.5 * size * (ndc + 1.0),
+                 on_screen ? dvec3(corner.st, 1 / w) : dvec3(corner.st, 1) / w});
         }
 
         const Work before = counted_work;
@@ -184,23 +249,39 @@ PhongImage draw(const PhongScene& scene, const ShadingMethod& method) {
             mesh.uvs.empty() ? dvec2(0) : mesh.uvs[mesh.triangles[i][1]],
             mesh.uvs.empty() ? dvec2(0) : mesh.uvs[mesh.triangles[i][2]]};
 
-        const auto shade = [&](int x, int y, const dvec3& over_w) {
-            const auto pixel = static_cast<std::size_t>(y) * size + x;
-            if (!(over_w.z > nearest[pixel])) {
-                return;
-            }
-            nearest[pixel] = over_w.z;
-            image.mask[pixel] = 1;
-            ++image.pixels;
-            const dvec2 st = dvec2(over_w) / over_w.z;
-            const Work unshaded = counted_work;
-            const Lit lit = method.shade(context, setup, st.x, st.y);
-            image.shading += counted_work - unshaded;
-            const dvec2 texture = (1 - st.x - st.y) * uv[0] + st.x * uv[1] + st.y * uv[2];
-            image.color.pixels[pixel] = Vec3(seen_color(scene, lit, texture));
+        const auto light_at = [&](const dvec2& st) {
+            return method.shade(context, setup, st.x, st.y);
+        };
+        const auto draw_triangle = [&](const std::array<ScreenCorner, 3>& triangle) {
+            ColorWalk walk(context, method, setup);
+            for_each_span(triangle, size, [&](const Span& span, const ScreenPlane& plane) {
+                const Work unshaded = counted_work;
+                RowDifferences<Lit> row;
+                if (stepped) {
+                    row = walk.start_row(span, plane);
+                }
+                dvec3 over_w = span.over_w;
+                for (int x = span.begin; x < span.end; ++x, over_w += plane.dx) {
+                    if (stepped && x > span.begin) {
+                        step(row);
+                    }
+                    const auto pixel = static_cast<std::size_t>(span.y) * size + x;
+                    if (over_w.z > nearest[pixel]) {
+                        nearest[pixel] = over_w.z;
+                        image.mask[pixel] = 1;
+                        ++image.pixels;
+                        const dvec2 st = on_screen ? dvec2(over_w) : dvec2(over_w) / over_w.z;
+                        const dvec2 texture =
+                            (1 - st.x - st.y) * uv[0] + st.x * uv[1] + st.y * uv[2];
+                        image.color.pixels[pixel] = Vec3(
+                            seen_color(scene, stepped ? row.of_order[0] : light_at(st), texture));
+                    }
+                }
+                image.shading += counted_work - unshaded;
+            });
         };
         for (std::size_t k = 2; k < screen.size(); ++k) {
-            for_each_pixel({screen[0], screen[k - 1], screen[k]}, size, shade);
+            draw_triangle({screen[0], screen[k - 1], screen[k]});
         }
     }
     return image;

@@ -11,9 +11,14 @@
 namespace limn::fakephong {
 
 // A rasterizer for reading: one triangle at a time, rows from the top, a depth buffer. It clips at
-// the eye's near plane and steps s/w, t/w and 1/w along a row by additions
-// (fakephong.forward-difference, .texmap); each pixel divides, and asks the method for light at (s,
-// t). Triangles that face away, have no area or hold NaN are left out.
+// the eye's near plane and steps s/w, t/w and 1/w along a row by additions (fakephong.texmap); each
+// pixel divides, and asks the method for light at (s, t). Triangles that face away, have no area or
+// hold NaN are left out.
+//
+// With Interpolation::Screen nothing is divided: s and t themselves are linear on the screen, so
+// that colors which are polynomials in s and t are such in x and y, too. These can then be stepped
+// by additions alone, down the left edge of a triangle and along each row
+// (fakephong.forward-difference).
 
 struct PhongImage {
     ColorImage color;                ///< 0 .. 1, not rounded
@@ -21,11 +26,19 @@ struct PhongImage {
     std::int64_t pixels = 0;         ///< shaded, including those that others hide later
     std::int64_t triangles = 0;      ///< drawn at least in part
     Work setup;                      ///< of all triangles, once each
-    Work shading;                    ///< of all pixels
+    Work shading;                    ///< of all pixels; of Differences, with the walk along edges
+};
+
+/// How colors get to pixels.
+enum class Evaluation : std::uint8_t {
+    Direct,       ///< the method is asked at each
+    Differences,  ///< forward differences; needs method.degree > 0 and Interpolation::Screen
 };
 
 /// The image of `scene` by `method`. The scene must pass check_scene.
-[[nodiscard]] PhongImage draw(const PhongScene& scene, const ShadingMethod& method);
+[[nodiscard]] PhongImage draw(
+    const PhongScene& scene, const ShadingMethod& method,
+    Evaluation evaluation = Evaluation::Direct);
 
 /// The facet of triangle `index`, with normals made valid; false if it has no area or no finite
 /// place.

@@ -59,6 +59,13 @@ enum class BlinnAxis : std::uint8_t {
     CameraUp,   ///< the thesis's choice: singular away from the center of the view
     WorldUp,    ///< +y, as in appendix B
     WorstCase,  ///< along the projected normal of each vertex: v = 0, no better than Gouraud
+    Custom,     ///< PhongScene::axis_vector
+};
+
+/// What is linear on the screen (fakephong.texmap).
+enum class Interpolation : std::uint8_t {
+    Perspective,  ///< coordinates on a triangle over w, and 1/w: right, at a division per pixel
+    Screen,       ///< the coordinates themselves: distorted where w varies
 };
 
 struct PhongScene {
@@ -69,9 +76,12 @@ struct PhongScene {
     PhongCamera camera = {};
     Channels channels = Channels::Specular;
     BlinnAxis axis = BlinnAxis::CameraUp;
+    dvec3 axis_vector = {0, 1, 0};  ///< of BlinnAxis::Custom, of any length
+    bool diffuse_texture = false;   ///< Blinn maps: diffuse light is read in a texture, too
+    Interpolation interpolation = Interpolation::Perspective;
     double environment_exponent = 8;  ///< of the lobes baked in an environment map, about n / 4
     int texture_size = 256;           ///< 0: texture functions are evaluated exactly
-    int row = 128;                    ///< the scanline that crosses the highlight
+    int row = 128;                    ///< the scanline, which should cross the highlight
 };
 
 inline constexpr int kMaxLights = 8;

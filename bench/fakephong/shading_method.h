@@ -36,7 +36,8 @@ struct FacetSetup {
     std::array<Lit, 10> lit;      ///< samples, or coefficients of a polynomial in s and t
     std::array<Vec3r, 6> normal;  ///< coefficients of normals
     std::array<std::array<Vec2r, 6>, kMaxLights> at;  ///< coefficients of texture coordinates
-    std::array<std::array<Real, 6>, kMaxLights> diffuse_series;   ///< of N.L
+    std::array<std::array<Vec2r, 6>, kMaxLights> diffuse_at;     ///< of PhongScene::diffuse_texture
+    std::array<std::array<Real, 6>, kMaxLights> diffuse_series;  ///< of N.L
     std::array<std::array<Real, 6>, kMaxLights> specular_series;  ///< of N.H
 };
 
@@ -47,6 +48,8 @@ struct ShadingMethod {
     int exact_points;       ///< of 3 corners and 3 edge midpoints, those where it is exact
     void (*prepare)(const ShadingContext& context, const Facet& facet, FacetSetup& setup);
     Lit (*shade)(const ShadingContext& context, const FacetSetup& setup, Real s, Real t);
+    int degree = 0;             ///< of its light, if that is a polynomial in s and t; 0: it is none
+    bool diffuse_only = false;  ///< it has no highlights, and is compared by diffuse light
 };
 
 /// All of them; the first is Phong shading, the reference, then the six columns of Table 6.1 in

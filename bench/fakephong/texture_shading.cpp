@@ -32,16 +32,27 @@ Vec3r shade_tinted(const ShadingContext& context, const FacetSetup& setup, Real 
                : setup.lit[0].tinted + s * setup.lit[1].tinted + t * setup.lit[2].tinted;
 }
 
-void prepare_linear(
-    const ShadingContext& context, const Facet& facet, FacetSetup& setup, Coordinates coordinates) {
-    prepare_tinted(context, facet, setup);
+/// Coefficients of the coordinates of each light; quadratic or linear.
+void prepare_coordinates(
+    const ShadingContext& context, const Facet& facet, Coordinates coordinates, bool quadratic,
+    std::array<std::array<Vec2r, 6>, kMaxLights>& coefficients) {
     const PhongScene& scene = *context.scene;
+    std::array<SurfacePoint, 6> points;
+    if (quadratic) {
+        points = six_points(facet);
+    }
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const auto at = [&](std::size_t corner) {
-            return coordinates(scene, scene.lights[i], facet.corners[corner]);
+        const auto at = [&](std::size_t k) {
+            return coordinates(
+                scene, scene.lights[i], quadratic ? points[k] : facet.corners[k / 2]);
         };
-        const auto c = linear_through(at(0), at(1), at(2));
-        std::copy(c.begin(), c.end(), setup.at[i].begin());
+        if (quadratic) {
+            coefficients[i] =
+                quadratic_through(std::array<Vec2r, 6>{at(0), at(1), at(2), at(3), at(4), at(5)});
+        } else {
+            const auto c = linear_through(at(0), at(2), at(4));
+            std::copy(c.begin(), c.end(), coefficients[i].begin());
+        }
     }
 }
 
@@ -57,16 +68,48 @@ Vec3r sum_lights(const ShadingContext& context, Real factor, Fetched fetched) {
     return sum;
 }
 
-Lit shade_highlights(
+/// By one fetch per light.
+Vec3r sum_fetches(
+    const ShadingContext& context, const LookupTexture& texture, Real factor, bool quadratic,
+    const std::array<std::array<Vec2r, 6>, kMaxLights>& coefficients, Real s, Real t) {
+    return sum_lights(context, factor, [&](std::size_t i) {
+        const auto& c = coefficients[i];
+        return fetch(texture, quadratic ? evaluate_quadratic(c, s, t) : evaluate_linear(c, s, t));
+    });
+}
+
+Vec3r shade_highlights(
     const ShadingContext& context, const FacetSetup& setup, Real s, Real t, bool quadratic) {
-    Lit lit = {shade_tinted(context, setup, s, t), {}};
-    if (context.scene->channels != Channels::Diffuse) {
-        lit.highlight = sum_lights(context, context.scene->material.specular, [&](std::size_t i) {
-            const auto& c = setup.at[i];
-            return fetch(
-                context.blinn, quadratic ? evaluate_quadratic(c, s, t) : evaluate_linear(c, s, t));
-        });
+    return context.scene->channels == Channels::Diffuse
+               ? Vec3r()
+               : sum_fetches(
+                   context, context.blinn, context.scene->material.specular, quadratic, setup.at, s,
+                   t);
+}
+
+/// Blinn maps: highlights by texture, and with PhongScene::diffuse_texture all light.
+void prepare_blinn(
+    const ShadingContext& context, const Facet& facet, FacetSetup& setup, bool quadratic) {
+    if (!context.scene->diffuse_texture) {
+        prepare_tinted(context, facet, setup);
+    } else if (context.scene->channels != Channels::Specular) {
+        prepare_coordinates(context, facet, diffuse_coordinates, quadratic, setup.diffuse_at);
     }
+    prepare_coordinates(context, facet, blinn_coordinates, quadratic, setup.at);
+}
+Lit shade_blinn(
+    const ShadingContext& context, const FacetSetup& setup, Real s, Real t, bool quadratic) {
+    const PhongScene& scene = *context.scene;
+    Lit lit;
+    if (!scene.diffuse_texture) {
+        lit.tinted = shade_tinted(context, setup, s, t);
+    } else if (scene.channels != Channels::Specular) {
+        lit.tinted = Vec3r(dvec3(scene.material.ambient))
+                     + sum_fetches(
+                         context, context.diffuse, scene.material.diffuse, quadratic,
+                         setup.diffuse_at, s, t);
+    }
+    lit.highlight = shade_highlights(context, setup, s, t, quadratic);
     return lit;
 }
 
@@ -95,14 +138,7 @@ Lit shade_environment(const ShadingContext& context, const FacetSetup& setup, Re
 // ---- Phong map: diffuse light only
 
 void prepare_phong_map(const ShadingContext& context, const Facet& facet, FacetSetup& setup) {
-    const PhongScene& scene = *context.scene;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const auto at = [&](std::size_t corner) {
-            return phong_map_coordinates(scene, scene.lights[i], facet.corners[corner]);
-        };
-        const auto c = linear_through(at(0), at(1), at(2));
-        std::copy(c.begin(), c.end(), setup.at[i].begin());
-    }
+    prepare_coordinates(context, facet, phong_map_coordinates, false, setup.at);
 }
 
 Lit shade_phong_map(const ShadingContext& context, const FacetSetup& setup, Real s, Real t) {
@@ -110,49 +146,40 @@ Lit shade_phong_map(const ShadingContext& context, const FacetSetup& setup, Real
     if (context.scene->channels == Channels::Specular) {
         return {};
     }
-    const Vec3r diffuse = sum_lights(context, material.diffuse, [&](std::size_t i) {
-        return fetch(context.diffuse, evaluate_linear(setup.at[i], s, t));
-    });
+    const Vec3r diffuse =
+        sum_fetches(context, context.diffuse, material.diffuse, false, setup.at, s, t);
     return {diffuse + Vec3r(dvec3(material.ambient)), {}};
 }
 
 // ---- Blinn map
 
 void prepare_blinn_map(const ShadingContext& context, const Facet& facet, FacetSetup& setup) {
-    prepare_linear(context, facet, setup, blinn_coordinates);
+    prepare_blinn(context, facet, setup, false);
 }
 
 Lit shade_blinn_map(const ShadingContext& context, const FacetSetup& setup, Real s, Real t) {
-    return shade_highlights(context, setup, s, t, false);
+    return shade_blinn(context, setup, s, t, false);
 }
 
 // ---- quadratic Blinn map: coordinates at the six points of quadratic shading
 
 void prepare_quadratic_blinn(const ShadingContext& context, const Facet& facet, FacetSetup& setup) {
-    prepare_tinted(context, facet, setup);
-    const PhongScene& scene = *context.scene;
-    const auto points = six_points(facet);
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        std::array<Vec2r, 6> at;
-        for (std::size_t k = 0; k < 6; ++k) {
-            at[k] = blinn_coordinates(scene, scene.lights[i], points[k]);
-        }
-        setup.at[i] = quadratic_through(at);
-    }
+    prepare_blinn(context, facet, setup, true);
 }
 
 Lit shade_quadratic_blinn(const ShadingContext& context, const FacetSetup& setup, Real s, Real t) {
-    return shade_highlights(context, setup, s, t, true);
+    return shade_blinn(context, setup, s, t, true);
 }
 
 // ---- appendix B
 
 void prepare_hardware_blinn(const ShadingContext& context, const Facet& facet, FacetSetup& setup) {
-    prepare_linear(context, facet, setup, blinn_coordinates_as_printed);
+    prepare_tinted(context, facet, setup);
+    prepare_coordinates(context, facet, blinn_coordinates_as_printed, false, setup.at);
 }
 
 Lit shade_hardware_blinn(const ShadingContext& context, const FacetSetup& setup, Real s, Real t) {
-    return shade_highlights(context, setup, s, t, false);
+    return {shade_tinted(context, setup, s, t), shade_highlights(context, setup, s, t, false)};
 }
 
 }  // namespace limn::fakephong

@@ -2,6 +2,7 @@
 
 #include "bench/fakephong/phong_models.h"
 #include "bench/quality/fakephong_page.h"
+#include "bench/quality/fakephong_tables.h"
 #include "content/app/progress.h"
 #include "content/app/stage.h"
 #include "ecs/base/text.h"
@@ -127,7 +128,7 @@ Status measure_fakephong_file(const std::string& path, QualityReport& report) {
         "  corners without a normal, that of the facet instead",
         static_cast<double>(counts.without_normal));
     Progress progress("method", static_cast<int>(shading_methods().size()));
-    const std::vector<SceneResult> results = {
+    std::vector<SceneResult> results = {
         evaluate_scene(scene, [&progress](int done) { progress.update(done); })};
     report.inform("pixels covered", static_cast<double>(results[0].phong.pixels));
     for (const MethodResult& one : results[0].methods) {
@@ -147,12 +148,12 @@ Status measure_fakephong_file(const std::string& path, QualityReport& report) {
         }
         report.inform(
             fmt::format("{}: work of a frame over Phong's", one.method->name),
-            (weighted_operations(one.image.setup) + weighted_operations(one.image.shading))
-                / std::max(
-                    weighted_operations(results[0].phong.setup)
-                        + weighted_operations(results[0].phong.shading),
-                    1.0));
+            work_share(results[0], one));
     }
+    const EdgePaths paths = edge_paths(scene);
+    report.inform("Blinn coordinates along edges, from linear, mean", paths.linear_mean);
+    report.inform("Blinn coordinates along edges, from quadratic, mean", paths.quadratic_mean);
+    results[0].scene.name = escape_html(path);
     report.html = LIMN_TRY(fakephong_html(results));
     return Done{};
 }

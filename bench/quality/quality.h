@@ -95,6 +95,9 @@ quality_json(std::span<const MeasuredQuality> measured, std::string_view gl_rend
 [[nodiscard]] Result<std::string>
 quality_html(std::span<const MeasuredQuality> measured, std::string_view gl_renderer);
 
+/// As the content of an element or an attribute.
+[[nodiscard]] std::string escape_html(std::string_view text);
+
 /// An element with a display-encoded image in it, as PNG, above its caption.
 [[nodiscard]] Result<std::string> image_tag(const ColorImage& image, std::string_view caption);
 

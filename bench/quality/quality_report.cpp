@@ -39,41 +39,20 @@ std::string limit_text(const QualityRow& row) {
 // ---- the page
 
 constexpr const char* kStyle = R"(
-body { background: #15171a; color: #d8dce2; font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 980px; }
+body { background: #15171a; color: #d8dce2; font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 1053px; }
 h1, h2 { font-weight: 600; }
 h2 { border-top: 1px solid #333a44; margin-top: 2.5rem; padding-top: 1rem; }
 p { color: #98a2b0; }
 table { border-collapse: collapse; margin: 1rem 0; width: 100%; }
 th, td { border-bottom: 1px solid #262b32; padding: .3rem .8rem .3rem 0; text-align: left; }
+em { color: #e8c98a; font-style: normal; } li { color: #98a2b0; }
+summary { color: #98a2b0; cursor: pointer; }
 td.number, th.number { font-variant-numeric: tabular-nums; text-align: right; }
 .yes { color: #7fd494; } .no { color: #ff7b72; font-weight: 600; }
 figure { margin: 1rem 0; } figcaption { color: #98a2b0; margin-bottom: .3rem; }
 .row { display: flex; gap: .6rem; } .row div { flex: 1; } .row img { width: 100%; image-rendering: pixelated; }
 small { color: #98a2b0; }
 )";
-
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '>':
-            out += "&gt;";
-            break;
-        case '"':
-            out += "&quot;";
-            break;
-        default:
-            out += c;
-        }
-    }
-    return out;
-}
 
 /// RFC 4648.
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -94,9 +73,24 @@ std::string base64(std::span<const std::uint8_t> bytes) {
     return text;
 }
 
+std::string number_table(const QualityReport& report) {
+    std::string html = "<table><tr><th>measured</th><th class=\"number\">found</th><th "
+                       "class=\"number\">must be</th><th></th></tr>\n";
+    for (const QualityRow& row : report.rows) {
+        const char* verdict = row.bound == QualityBound::None ? "<td></td>"
+                              : holds(row)                    ? "<td class=\"yes\">ok</td>"
+                                                              : "<td class=\"no\">violated</td>";
+        html += fmt::format(
+            "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>{}</tr>\n",
+            escape_html(row.name), escape_html(number_text(row.found, row.unit)),
+            escape_html(limit_text(row)), verdict);
+    }
+    return html + "</table>\n";
+}
+
 Result<std::string> figure(const QualityImage& picture) {
     std::string html = fmt::format(
-        "<figure><figcaption>{}</figcaption><div class=\"row\">\n", escaped(picture.title));
+        "<figure><figcaption>{}</figcaption><div class=\"row\">\n", escape_html(picture.title));
     const auto add = [&html](const ColorImage& image, std::string_view caption) -> Status {
         const Result<std::string> tag = image_tag(image, caption);
         if (!tag) {
@@ -121,6 +115,29 @@ Result<std::string> figure(const QualityImage& picture) {
 }
 
 }  // namespace
+
+std::string escape_html(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        switch (c) {
+        case '&':
+            out += "&amp;";
+            break;
+        case '<':
+            out += "&lt;";
+            break;
+        case '>':
+            out += "&gt;";
+            break;
+        case '"':
+            out += "&quot;";
+            break;
+        default:
+            out += c;
+        }
+    }
+    return out;
+}
 
 Result<std::string> image_tag(const ColorImage& image, std::string_view caption) {
     std::vector<std::uint8_t> bytes;
@@ -192,23 +209,21 @@ quality_html(std::span<const MeasuredQuality> measured, std::string_view gl_rend
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Limn: "
         "quality</title>\n<style>{}</style></head><body>\n<h1>Limn: effects vs their "
         "oracles</h1>\n<p>Written by <code>limn quality --html</code>; rendered by {}.</p>\n",
-        kStyle, escaped(gl_renderer));
+        kStyle, escape_html(gl_renderer));
     for (const MeasuredQuality& one : measured) {
         html += fmt::format(
-            "<h2 id=\"{0}\">{0}</h2>\n<p>Compared with "
-            "{1}.</p>\n<table><tr><th>measured</th><th>found"
-            "</th><th>must be</th><th></th></tr>\n",
-            escaped(one.effect->name), escaped(one.effect->oracle));
-        for (const QualityRow& row : one.report.rows) {
-            const char* verdict = row.bound == QualityBound::None ? "<td></td>"
-                                  : holds(row)                    ? "<td class=\"yes\">ok</td>"
-                                               : "<td class=\"no\">violated</td>";
+            "<h2 id=\"{0}\">{0}</h2>\n<p>Compared with {1}.</p>\n", escape_html(one.effect->name),
+            escape_html(one.effect->oracle));
+        const std::string numbers = number_table(one.report);
+        if (one.report.html.empty()) {
+            html += numbers;
+        } else {  // sections that hold most of the numbers, too
+            const bool all_hold =
+                std::all_of(one.report.rows.begin(), one.report.rows.end(), holds);
             html += fmt::format(
-                "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>{}</tr>\n",
-                escaped(row.name), escaped(number_text(row.found, row.unit)),
-                escaped(limit_text(row)), verdict);
+                "<details{}><summary>All {} numbers, with their bounds</summary>\n{}</details>\n",
+                all_hold ? "" : " open", one.report.rows.size(), numbers);
         }
-        html += "</table>\n";
         for (const QualityImage& image : one.report.images) {
             const Result<std::string> tag = figure(image);
             if (!tag) {

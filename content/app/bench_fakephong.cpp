@@ -1,5 +1,6 @@
 #include "content/app/bench_fakephong.h"
 
+#include "bench/fakephong/phong_models.h"
 #include "content/app/bench_command.h"
 #include "content/app/headless.h"
 #include "content/app/progress.h"
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace limn {
@@ -89,8 +91,30 @@ double ratio_to_pixel(const FakePhongPoint& point, std::size_t rate) {
 
 }  // namespace
 
+std::vector<FakePhongCount> count_fakephong() {
+    using namespace fakephong;
+    std::vector<FakePhongCount> counts;
+    for (const PhongScene& scene :
+         {teapot_scene(), triangle_scene(), dodecahedron_scene(), sphere_scene()}) {
+        const SceneResult result = evaluate_scene(scene);
+        const auto add = [&](std::string method, const Efficiency& efficiency) {
+            counts.push_back({scene.name, std::move(method), efficiency});
+        };
+        add("phong", efficiency_of(result.phong, result.phong));
+        for (const MethodResult& one : result.methods) {
+            add(std::string(one.method->id), efficiency_of(one.image, reference_of(result, one)));
+        }
+        for (const SteppedMethod& one : step_scene(scene)) {
+            add(std::string(one.method->id) + ", stepped",
+                efficiency_of(one.stepped, result.phong));
+        }
+    }
+    return counts;
+}
+
 Result<FakePhongBench> measure_fakephong(const BenchOptions& options, HeadlessRenderer& headless) {
     FakePhongBench bench;
+    bench.counts = count_fakephong();
     Progress progress("point", static_cast<int>(kModels.size() * kFakePhongLights.size()));
     for (const char* const model : kModels) {
         for (const int lights : kFakePhongLights) {
@@ -118,6 +142,38 @@ Result<FakePhongBench> measure_fakephong(const BenchOptions& options, HeadlessRe
     }
     return bench;
 }
+
+namespace {
+
+/// Operations per pixel on the first model, and the work of a frame on each.
+std::string count_table(std::span<const FakePhongCount> counts) {
+    const auto of_model =
+        static_cast<std::size_t>(std::count_if(counts.begin(), counts.end(), [&](const auto& one) {
+            return one.model == counts[0].model;
+        }));
+    std::string text = fmt::format(
+        "\nCounted on a processor under one light: lightings per facet, operations per pixel of "
+        "the "
+        "{},\nand the work of a frame over that of Phong shading, set-up "
+        "included:\n{:<28}{:>6}{:>8}"
+        "{:>8}{:>6}{:>6}{:>6}{:>6} ",
+        counts[0].model, "method", "lit", "add", "mul", "div", "root", "pow", "fetch");
+    for (std::size_t i = 0; i < counts.size(); i += of_model) {
+        text += fmt::format("{:>9}", counts[i].model.substr(0, 8));
+    }
+    for (std::size_t i = 0; i < of_model; ++i) {
+        const fakephong::Efficiency& e = counts[i].efficiency;
+        text += fmt::format(
+            "\n{:<28}{:>6.0f}{:>8.1f}{:>8.1f}{:>6.1f}{:>6.1f}{:>6.1f}{:>6.1f} ", counts[i].method,
+            e.lightings, e.additions, e.multiplications, e.divisions, e.roots, e.powers, e.fetches);
+        for (std::size_t k = i; k < counts.size(); k += of_model) {
+            text += fmt::format("{:>9.2f}", counts[k].efficiency.work);
+        }
+    }
+    return text + "\n";
+}
+
+}  // namespace
 
 std::string fakephong_bench_table(const FakePhongBench& bench) {
     std::string text;
@@ -147,7 +203,7 @@ std::string fakephong_bench_table(const FakePhongBench& bench) {
             return fmt::format("{:.2f}", ratio_to_pixel(bench.points[i], rate));
         });
     }
-    return text;
+    return bench.counts.empty() ? text : text + count_table(bench.counts);
 }
 
 std::string fakephong_bench_json(const FakePhongBench& bench) {
@@ -163,13 +219,29 @@ std::string fakephong_bench_json(const FakePhongBench& bench) {
         points.push_back(
             {{"model", point.model}, {"lights", point.lights}, {"methods", std::move(rates)}});
     }
+    nlohmann::ordered_json counts = nlohmann::ordered_json::array();
+    for (const FakePhongCount& count : bench.counts) {
+        const fakephong::Efficiency& e = count.efficiency;
+        counts.push_back(
+            {{"model", count.model},
+             {"method", count.method},
+             {"lightings", e.lightings},
+             {"additions", e.additions},
+             {"multiplications", e.multiplications},
+             {"divisions", e.divisions},
+             {"roots", e.roots},
+             {"powers", e.powers},
+             {"fetches", e.fetches},
+             {"work", e.work}});
+    }
     const nlohmann::ordered_json json = {
         {"scene", bench.machine.scene},
         {"size", {bench.machine.size.x, bench.machine.size.y}},
         {"frames", bench.machine.frames},
         {"threads", bench.machine.threads},
         {"gl", {{"renderer", bench.machine.gl_renderer}, {"version", bench.machine.gl_version}}},
-        {"points", std::move(points)}};
+        {"points", std::move(points)},
+        {"counts", std::move(counts)}};
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -182,6 +254,16 @@ std::string fakephong_bench_csv(const FakePhongBench& bench) {
                 rate_name(rate), bench.machine.frames, point.best_ms[rate],
                 ratio_to_pixel(point, rate));
         }
+    }
+    text +=
+        "\nmodel,method,lightings,additions,multiplications,divisions,roots,powers,fetches,work\n";
+    for (const FakePhongCount& count : bench.counts) {
+        const fakephong::Efficiency& e = count.efficiency;
+        fmt::format_to(
+            std::back_inserter(text),
+            "{},\"{}\",{:.0f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.4f}\n", count.model,
+            count.method, e.lightings, e.additions, e.multiplications, e.divisions, e.roots,
+            e.powers, e.fetches, e.work);
     }
     return text;
 }

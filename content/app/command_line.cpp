@@ -195,10 +195,14 @@ JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"effect
 CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms
 
 `limn bench fakephong` draws each model of the level `phonglab` under 1, 4 and 16 lights by every
-method of rendering.shading, in turns, --frames times each; the best counts.
+method of rendering.shading, in turns, --frames times each; the best counts. Beside these times
+stand the operations that the methods take on a processor: lightings per facet, all else per pixel,
+and the work of a frame over that of Phong shading.
 JSON: {"scene", "size", "frames", "threads", "gl", "points": [{"model", "lights",
-"methods": [{"shading", "best_ms", "ratio"}]}]}
-CSV: model,lights,shading,frames,best_ms,ratio
+"methods": [{"shading", "best_ms", "ratio"}]}], "counts": [{"model", "method", "lightings",
+"additions", "multiplications", "divisions", "roots", "powers", "fetches", "work"}]}
+CSV: model,lights,shading,frames,best_ms,ratio and, after an empty line,
+model,method,lightings,additions,multiplications,divisions,roots,powers,fetches,work
 
 `limn bench particles` holds particles to their gates, ratios to loops that people write by hand,
 and shows what a particle costs among a thousand to ten million. It draws nothing; --frames is how

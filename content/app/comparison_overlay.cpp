@@ -1,48 +1,21 @@
 #include "content/app/comparison_overlay.h"
 
 #include "ecs/components/shading_comparison.h"
-#include "ecs/field_access.h"
 #include "ecs/world.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <string>
 #include <utility>
 
 namespace limn {
 namespace {
 
 // As in shading_marks.frag.
-const ImVec4 kLeftColor = {0.98f, 0.66f, 0.26f, 1};
-const ImVec4 kRightColor = {0.36f, 0.70f, 1, 1};
 constexpr float kPlotPadding = 0.12f;
 
 constexpr ImGuiWindowFlags kBare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground
                                    | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings
                                    | ImGuiWindowFlags_NoBringToFrontOnFocus
                                    | ImGuiWindowFlags_NoFocusOnAppearing;
-
-std::string rate_name(ShadingRate rate) {
-    const FieldInfo* field = find_field(component_info<ShadingComparison>().fields, "right");
-    return std::string(get_enum(*field, &rate));
-}
-
-/// A name with its color, from `x` to the right (align 0), to the left (1) or about it (0.5).
-void draw_name(
-    const HudStyle& style, const std::string& text, const ImVec4& color, float x, float y,
-    float align) {
-    ImDrawList* const list = ImGui::GetBackgroundDrawList();
-    ImGui::PushFont(style.title);
-    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    const float pad = 7 * style.scale;
-    const float left = x - align * (size.x + 2 * pad);
-    list->AddRectFilled(
-        {left, y}, {left + size.x + 2 * pad, y + size.y + pad},
-        ImGui::GetColorU32({0.05f, 0.06f, 0.08f, 0.85f}), 5 * style.scale);
-    list->AddText({left + pad, y + 0.5f * pad}, ImGui::GetColorU32(color), text.c_str());
-    ImGui::PopFont();
-}
 
 /// Lets the pointer drag the divider.
 void drag_divider(const HudStyle& style, ShadingComparison& comparison, float bottom) {
@@ -89,24 +62,9 @@ void draw_comparison_overlay(const HudStyle& style, World& world) {
     if (comparison == nullptr) {
         return;
     }
-    const auto* rendering = std::as_const(world).find_resource<Rendering>();
-    const std::string left = rate_name(rendering != nullptr ? rendering->shading : ShadingRate{});
-    const std::string right = rate_name(comparison->right);
-    const float bottom = size.y * (1 - (plot != nullptr ? plot->height : 0));
-    const float y = bottom - 34 * style.scale;
-    if (comparison->image == ComparisonImage::Difference) {
-        const std::string power = comparison->exponent == 1
-                                      ? ""
-                                      : fmt::format(", to the power {:g}", comparison->exponent);
-        draw_name(
-            style, fmt::format("{} - {}{}", left, right, power), kHudText, 0.5f * size.x, y, 0.5f);
-        return;
+    if (comparison->image == ComparisonImage::Split) {
+        drag_divider(style, *comparison, size.y * (1 - (plot != nullptr ? plot->height : 0)));
     }
-    const float x = comparison->divider * size.x;
-    const float gap = 10 * style.scale;
-    draw_name(style, left, kLeftColor, x - gap, y, 1);
-    draw_name(style, right, kRightColor, x + gap, y, 0);
-    drag_divider(style, *comparison, bottom);
 }
 
 }  // namespace limn

@@ -6,8 +6,8 @@ namespace limn {
 
 class World;
 
-/// Where two methods of shading are compared: their names beside the divider, which the pointer can
-/// drag, and captions of the scanline's plot.
+/// Where two methods of shading are compared: the pointer can drag the divider, and the scanline's
+/// plot has captions.
 void draw_comparison_overlay(const HudStyle& style, World& world);
 
 }  // namespace limn

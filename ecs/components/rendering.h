@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/math.h"
 #include "ecs/reflect.h"
 
 #include <cstdint>
@@ -51,6 +52,7 @@ enum class BlinnAxis : std::uint8_t {
     CameraUp,   ///< the thesis's choice: singular away from the center of the view
     WorldUp,    ///< +y, as in appendix B
     WorstCase,  ///< along the projected normal of each vertex: v = 0, no better than Gouraud
+    Custom,     ///< Rendering::blinn_vector
 };
 
 /// What the thesis's programs for the hardware of 2002 get wrong. Without all of them HwQuadratic
@@ -96,6 +98,9 @@ struct Rendering {
     LightMethod lights = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;
     BlinnAxis blinn_axis = BlinnAxis::CameraUp;
+    Vec3 blinn_vector = {0, 1, 0};
+    bool blinn_diffuse = false;
+    bool screen_interpolation = false;
     HardwareDefects hardware = {};
     Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
@@ -118,7 +123,16 @@ LIMN_FIELDS(Rendering) {
         .values = kShadingRateNames);
     LIMN_FIELD(
         blinn_axis, .doc = "vector that fixes the texture coordinates of blinn_map and the like",
-        .values = "camera_up world_up worst_case");
+        .values = "camera_up world_up worst_case custom");
+    LIMN_FIELD(blinn_vector, "of blinn_axis custom, in world space, of any length");
+    LIMN_FIELD(
+        blinn_diffuse,
+        "blinn_map, quadratic_blinn: diffuse light is read in a texture, too; of four lights at "
+        "most, by further ones vertices are lit");
+    LIMN_FIELD(
+        screen_interpolation,
+        "forward shading interpolates on the screen, without the perspective divide, as hardware "
+        "and forward differences once did; colors and textures swim where triangles lean away");
     LIMN_FIELD(hardware, "defects of hw_quadratic and hw_blinn");
     LIMN_FIELD(
         antialiasing,

@@ -63,6 +63,24 @@ ClusterLists clear_clusters(FrameGraph& graph, ClusterPass& pass, const ClusterS
     return lists;
 }
 
+/// The global vector that fixes the axes of Blinn maps: unit, or zero.
+Vec3 blinn_axis(const Rendering& rendering, const RenderView& camera) {
+    const auto unit_or_zero = [](const Vec3& v) {
+        const float length = glm::length(v);
+        return length > 1e-6f && std::isfinite(length) ? v / length : Vec3(0);
+    };
+    switch (rendering.blinn_axis) {
+    case BlinnAxis::WorldUp:
+        return {0, 1, 0};
+    case BlinnAxis::Custom:
+        return unit_or_zero(rendering.blinn_vector);
+    default: {
+        const auto& r = camera.world_from_camera.row;
+        return unit_or_zero({r[0][1], r[1][1], r[2][1]});
+    }
+    }
+}
+
 }  // namespace
 
 Result<ClusterPass> create_cluster_pass(gpu::Device& device) {
@@ -154,7 +172,9 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     if (comparison != nullptr && view.is(kMainViews)) {
         method.compared = comparison->right;
     }
-    method.blinn_axis = rendering.blinn_axis;
+    method.worst_blinn_axis = rendering.blinn_axis == BlinnAxis::WorstCase;
+    method.blinn_diffuse = rendering.blinn_diffuse;
+    method.screen_interpolation = rendering.screen_interpolation;
     method.hardware = rendering.hardware;
     method.method = method.shading == ShadingRate::Pixel && !method.compared
                         ? rendering.lights
@@ -175,8 +195,10 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
             placed.dropped, lights.reach.size());
         dropped_reported = true;
     }
-    view.block = frame.ring->push_value(
-        make_view_block(view.camera, placed.shape, lights, method.infinite_viewer));
+    layout::ViewBlock block =
+        make_view_block(view.camera, placed.shape, lights, method.infinite_viewer);
+    block.blinn_axis = Vec4(blinn_axis(rendering, view.camera), 0);
+    view.block = frame.ring->push_value(block);
 
     Variant& variant = view.lighting.variant;
     variant.add_if(lights.directional > 0, "DIRECTIONAL_LIGHTS");

@@ -42,13 +42,15 @@ void clear_stencil(gpu::Device& device, const gpu::Program& nothing) {
 /// What the shaders of a ShadingRate are compiled with.
 void add_definitions(
     Variant& variant, const ShadingRateRow& row, const LightingMethod& method, int lights) {
+    const bool diffuse = method.blinn_diffuse && row.reads_diffuse;
+    variant.add_if(diffuse, "BLINN_DIFFUSE");
     if (row.single_lights > 0) {
-        const auto kept = static_cast<unsigned>(std::clamp(lights, 1, row.single_lights));
+        const auto kept = static_cast<unsigned>(
+            std::clamp(lights, 1, diffuse ? kMaxDiffuseLights : row.single_lights));
         variant.add("SINGLE_LIGHTS", static_cast<int>(std::bit_ceil(kept)));
     }
-    if (row.map != HighlightMap::None) {
-        variant.add("BLINN_AXIS", static_cast<int>(method.blinn_axis));
-    }
+    variant.add_if(method.worst_blinn_axis && row.map == HighlightMap::Blinn, "WORST_AXIS");
+    variant.add_if(method.screen_interpolation, "SCREEN_LINEAR");
     const HardwareDefects& defects = method.hardware;
     const bool quadratic = row.rate == ShadingRate::HwQuadratic;
     const bool blinn = row.rate == ShadingRate::HwBlinn;
@@ -150,7 +152,7 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, Te
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::ObjectMajor) {
         bool by_facets = false;  // the depth was drawn through a geometry shader, as the rate is
-        const auto light = [&](const char* name, ShadingRate rate, TextureId into, int turn) {
+        const auto light = [&](const char* name, ShadingRate rate, const Use& into, int turn) {
             const bool facets = *row_of(rate).geometry != '\0';
             if (std::exchange(by_facets, facets) != facets) {
                 const Use depth[] = {cleared(view.gbuffer.depth)};
@@ -162,15 +164,20 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, Te
                         draw_depths(context, view, view.data.get<InstanceList>().opaque, programs);
                     });
             }
-            const Use writes[] = {cleared(into), view.gbuffer.depth};
+            const Use writes[] = {into, view.gbuffer.depth};
             graph.add_pass(
                 name, std::span(reads), writes, [&pass, &view, rate, turn](PassContext& context) {
                     draw_object_major(context, pass, view, rate, turn);
                 });
         };
-        light("objects", method.shading, view.radiance, 0);
+        light("objects", method.shading, cleared(view.radiance), 0);
         if (method.compared) {
-            light("objects, compared", *method.compared, compared, 1);
+            light("objects, compared", *method.compared, cleared(compared), 1);
+            if (view.frame->warm_up) {  // keys switch methods
+                for (const ShadingRateRow& row : kShadingRateRows) {
+                    light("objects, any method", row.rate, compared, 1);
+                }
+            }
         }
         return;
     }

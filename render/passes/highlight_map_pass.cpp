@@ -25,18 +25,19 @@ constexpr unsigned kLightsUnit = 9;
 constexpr unsigned kMapsImage = 0;
 constexpr unsigned kGroup = 8;
 
-/// Whether a rate of the frame reads the map.
-bool is_in_use(const World& world, HighlightMap map) {
-    const auto* rendering = world.find_resource<Rendering>();
-    const auto* comparison = world.find_resource<ShadingComparison>();
-    return (rendering != nullptr && row_of(rendering->shading).map == map)
+/// Whether a rate of the frame reads the map; methods that are compared will be switched.
+bool is_in_use(const FrameData& frame, HighlightMap map) {
+    const auto* rendering = frame.world->find_resource<Rendering>();
+    const auto* comparison = frame.world->find_resource<ShadingComparison>();
+    return (frame.warm_up && comparison != nullptr)
+           || (rendering != nullptr && row_of(rendering->shading).map == map)
            || (comparison != nullptr && row_of(comparison->right).map == map);
 }
 
 /// Whether a rate of the view does.
 bool reads(const ViewData& view, HighlightMap map) {
     const auto& method = view.data.get<LightingMethod>();
-    return row_of(method.shading).map == map
+    return (view.frame->warm_up && method.compared) || row_of(method.shading).map == map
            || (method.compared && row_of(*method.compared).map == map);
 }
 
@@ -79,17 +80,16 @@ Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const
 }
 
 bool HighlightMapEffect::is_used(const FrameData& frame) {
-    return is_in_use(*frame.world, HighlightMap::Blinn)
-           || is_in_use(*frame.world, HighlightMap::Environment);
+    return is_in_use(frame, HighlightMap::Blinn) || is_in_use(frame, HighlightMap::Environment);
 }
 
 void HighlightMapEffect::collect(FrameData& frame) {
     const auto& materials = frame.assets->materials;
-    if (is_in_use(*frame.world, HighlightMap::Blinn)) {
+    if (is_in_use(frame, HighlightMap::Blinn)) {
         blinn.layers = layers_by_exponent(materials);
         blinn.layer_of_material.upload(*frame.ring, blinn.layers.of_record);
     }
-    if (is_in_use(*frame.world, HighlightMap::Environment)) {
+    if (is_in_use(frame, HighlightMap::Environment)) {
         environment.layers = layers_by_material(materials);
         environment.layer_of_material.upload(*frame.ring, environment.layers.of_record);
     }

@@ -1,11 +1,60 @@
 #include "render/passes/shading_marks_pass.h"
 
+#include "ecs/components/rendering.h"
+#include "ecs/field_access.h"
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/lighting.h"
 #include "render/settings.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
 namespace limn {
+namespace {
+
+constexpr std::size_t kMaxLabel = 48;  ///< glyphs
+
+/// As shading_marks.frag has it: a float holds three glyphs exactly.
+struct Label {
+    Mat4 glyphs = Mat4(0);
+    int length = 0;
+};
+Label make_label(const std::string& text) {
+    constexpr int kDash = 26;
+    constexpr int kBlank = 255;
+    Label label{.length = static_cast<int>(std::min(text.size(), kMaxLabel))};
+    for (int i = 0; i < label.length; ++i) {
+        const char c = text[static_cast<std::size_t>(i)];
+        const int glyph = c >= 'a' && c <= 'z' ? c - 'a' : c == '-' ? kDash : kBlank;
+        label.glyphs[i / 12][i / 3 % 4] += static_cast<float>(glyph << 8 * (i % 3));
+    }
+    return label;
+}
+
+/// "blinn map"
+std::string rate_name(ShadingRate rate) {
+    const FieldInfo* const field = find_field(component_info<ShadingComparison>().fields, "right");
+    std::string name(get_enum(*field, &rate));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+/// The methods left and right of the divider; of a difference, both in the first.
+std::array<Label, 2> make_labels(const World& world, const ShadingComparison& comparison) {
+    const auto* rendering = world.find_resource<Rendering>();
+    const std::string left = rate_name(rendering != nullptr ? rendering->shading : ShadingRate{});
+    const std::string right = rate_name(comparison.right);
+    if (comparison.image == ComparisonImage::Difference) {
+        return {make_label(fmt::format("{} - {}", left, right)), {}};
+    }
+    return {make_label(left), make_label(right)};
+}
+
+}  // namespace
 
 bool ShadingMarksEffect::is_used(const FrameData& frame) {
     return frame.world->find_resource<ScanlinePlot>() != nullptr
@@ -30,7 +79,12 @@ void ShadingMarksEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDat
          divider = comparison != nullptr && comparison->image == ComparisonImage::Split
                        ? within_ranges(*comparison).divider
                        : -1,
+         labels = comparison != nullptr ? make_labels(*frame.world, *comparison)
+                                        : std::array<Label, 2>{},
          curves = both != nullptr ? 2 : 1](PassContext&, const gpu::Program& to) {
+            to.set("left_label", labels[0].glyphs);
+            to.set("right_label", labels[1].glyphs);
+            to.set("label_lengths", IVec2(labels[0].length, labels[1].length));
             to.set("row", its.row);
             to.set("plot_height", its.height);
             to.set("divider", divider);

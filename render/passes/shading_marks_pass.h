@@ -5,7 +5,8 @@
 
 namespace limn {
 
-// Marks over the image: the divider of a comparison, a scanline, and the plot of its brightness.
+// Marks over the image: the divider of a comparison and the names of its methods, a scanline, and
+// the plot of its brightness.
 //
 // Reads    ComparedRadiance, or radiance where nothing is compared; ShadingComparison, ScanlinePlot
 // Writes   radiance

@@ -3,5 +3,5 @@
 #include "lib/map_pixel.glsl"
 
 void main() {
-    radiance = map_radiance(diffuse, specular + map_factor[0] * map_texel(0, highlight_layer));
+    radiance = map_radiance(diffuse, specular + map_factor[0] * map_texel(map_at[0].xy, highlight_layer));
 }

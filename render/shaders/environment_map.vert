@@ -1,5 +1,5 @@
 // Lit at vertices, but highlights by the coordinates of the mirrored view direction in a sphere map that holds all
-// lights (fakephong.envmap). Definitions SINGLE_LIGHTS, which is 1, and BLINN_AXIS, which plays no part.
+// lights (fakephong.envmap). Definition SINGLE_LIGHTS, which is 1.
 #version 450
 #include "lib/map_vertex.glsl"
 

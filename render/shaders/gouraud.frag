@@ -5,8 +5,8 @@
 #include "lib/material.glsl"
 #include "lib/radiance.glsl"
 
-layout(location = 0) in vec3 diffuse;
-layout(location = 1) in vec3 specular;
+layout(location = 0) INTERPOLATED in vec3 diffuse;
+layout(location = 1) INTERPOLATED in vec3 specular;
 
 layout(location = 0) out vec4 radiance;
 

@@ -2,12 +2,10 @@
 #version 450
 #include "lib/map_pixel.glsl"
 
-const float kDiffuseLayer = 0.0;
-
 void main() {
     vec3 tinted = diffuse;
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {
-        tinted += map_factor[k] * map_texel(k, kDiffuseLayer).r;
+        tinted += map_factor[k] * map_texel(map_at[k].xy, kDiffuseLayer).r;
     }
     radiance = map_radiance(tinted, specular);
 }

@@ -1,5 +1,5 @@
 // Diffuse light by coordinates in a texture, a pair per light: L on the plane orthogonal to N (fakephong.phong-map, after
-// H. Elias). Light from behind is on the rim. There are no highlights. Definitions SINGLE_LIGHTS and BLINN_AXIS:
+// H. Elias). Light from behind is on the rim. There are no highlights. Definitions SINGLE_LIGHTS and WORST_AXIS:
 // lib/single_lights.glsl, lib/highlight_map.glsl.
 #version 450
 #define MAP_DIFFUSE

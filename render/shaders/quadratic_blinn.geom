@@ -1,6 +1,6 @@
 // Coordinates in a Blinn map at corners and midpoints of each triangle, for each light (fakephong.quadratic-blinn). All
-// other light is that of the corners. Definitions SINGLE_LIGHTS and BLINN_AXIS: lib/single_lights.glsl,
-// lib/highlight_map.glsl.
+// other light is that of the corners. Definitions SINGLE_LIGHTS, WORST_AXIS and BLINN_DIFFUSE: lib/single_lights.glsl,
+// lib/highlight_map.glsl, lib/map_lights.glsl.
 #version 450
 #include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"
@@ -14,10 +14,20 @@ layout(location = 6) flat out float highlight_layer;
 layout(location = 8) out vec4 map_factor[SINGLE_LIGHTS];  // w: N.L
 // 16 bits a coordinate, six pairs a light.
 layout(location = 16) flat out uvec4 map_at[(6 * SINGLE_LIGHTS + 3) / 4];
+#ifdef BLINN_DIFFUSE
+layout(location = 12) out vec3 diffuse_factor[SINGLE_LIGHTS];
+layout(location = 22) flat out uvec4 diffuse_at[(6 * SINGLE_LIGHTS + 3) / 4];
+#endif
 
 void main() {
     uint at[6 * SINGLE_LIGHTS + 2];
     vec4 factors[3 * SINGLE_LIGHTS];
+#ifdef BLINN_DIFFUSE
+    uint at_diffuse[6 * SINGLE_LIGHTS + 2];
+    vec3 diffuse_factors[3 * SINGLE_LIGHTS];
+    at_diffuse[6 * SINGLE_LIGHTS] = 0u;
+    at_diffuse[6 * SINGLE_LIGHTS + 1] = 0u;
+#endif
     vec3 corner_diffuse[3];
     vec3 corner_specular[3];
     at[6 * SINGLE_LIGHTS] = 0u;  // fills the last vector
@@ -26,9 +36,13 @@ void main() {
         LitPoint p = lit_point(mesh_point(kSixPoints[i]));
         for (int k = 0; k < SINGLE_LIGHTS; ++k) {
             vec2 place = vec2(1.0, 0.0);
+            vec2 diffuse_place = vec2(1.0, 0.0);
+            vec3 albedo = vec3(0.0);
             vec4 factor = vec4(0.0);
             if (k < p.single) {
                 Incoming light = single_light(p, k);
+                diffuse_place = plane_coordinates(p.reflector.normal, light.to_light);
+                albedo = light.irradiance / kPi * p.reflector.diffuse;
                 place = blinn_coordinates(p.reflector.normal, light.to_light, p.reflector.to_camera);
                 factor = vec4(
                     light.irradiance / kPi * p.reflector.specular_0, dot(p.reflector.normal, light.to_light));
@@ -37,9 +51,19 @@ void main() {
             if (i % 2 == 0) {
                 factors[3 * k + i / 2] = factor;
             }
+#ifdef BLINN_DIFFUSE
+            at_diffuse[6 * k + i] = packSnorm2x16(diffuse_place);
+            if (i % 2 == 0) {
+                diffuse_factors[3 * k + i / 2] = albedo;
+            }
+#endif
         }
         if (i % 2 == 0) {
+#ifdef BLINN_DIFFUSE
+            Reflected light = light_from(p, p.single, p.single, kEveryLight);
+#else
             Reflected light = light_from(p, 0, p.single, kEveryLight);
+#endif
             corner_diffuse[i / 2] = light.diffuse;
             corner_specular[i / 2] = light.specular;
         }
@@ -54,7 +78,16 @@ void main() {
         }
         for (int k = 0; k < map_at.length(); ++k) {
             map_at[k] = uvec4(at[4 * k], at[4 * k + 1], at[4 * k + 2], at[4 * k + 3]);
+#ifdef BLINN_DIFFUSE
+            diffuse_at[k] =
+                uvec4(at_diffuse[4 * k], at_diffuse[4 * k + 1], at_diffuse[4 * k + 2], at_diffuse[4 * k + 3]);
+#endif
         }
+#ifdef BLINN_DIFFUSE
+        for (int k = 0; k < SINGLE_LIGHTS; ++k) {
+            diffuse_factor[k] = diffuse_factors[3 * k + i];
+        }
+#endif
         EmitVertex();
     }
     EndPrimitive();

@@ -1,5 +1,6 @@
 // The divider of a comparison, a scanline and the plot of its brightness, over the image (shading_marks_pass.h).
 #version 450
+#include "lib/small_text.glsl"
 #include "lib/tone.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
@@ -10,6 +11,9 @@ uniform float row;          // 0 .. 1 from below
 uniform float plot_height;  // of the image; 0: no plot
 uniform float divider;      // of the width; negative: none
 uniform int curves;         // 1: of the left image alone
+uniform mat4 left_label;    // glyphs of lib/small_text.glsl, three in each number, lowest byte first
+uniform mat4 right_label;
+uniform ivec2 label_lengths;  // left, right; without a divider the left one alone, in the middle
 
 layout(location = 0) out vec4 radiance;
 
@@ -92,6 +96,43 @@ void paint_divider(vec2 p, vec2 size, float unit) {
     paint(kPaper, clamp(arrow * unit + 0.5, 0.0, 1.0));
 }
 
+// One glyph of a label.
+int glyph_of(bool of_right, int i) {
+    vec4 twelve = of_right ? right_label[i / 12] : left_label[i / 12];
+    return int(twelve[i / 3 % 4]) >> 8 * (i % 3) & 255;
+}
+
+// A label on a dark plate; `from` is its upper left corner [px], `dot` the side of a dot.
+void paint_label(bool of_right, vec2 from, float dot_size, vec3 srgb) {
+    int count = of_right ? label_lengths.y : label_lengths.x;
+    vec2 at = (gl_FragCoord.xy - from) * vec2(1.0, -1.0) / dot_size;  // y down [dots]
+    vec2 extent = vec2(float(count), 1.0) * kGlyphCell - 1.0;
+    vec2 outside = max(-at, at - extent);
+    if (count > 0 && max(outside.x, outside.y) < 3.0) {
+        paint(kPaper, 0.85);
+        ivec2 dot = ivec2(floor(at));
+        int i = dot.x / int(kGlyphCell.x);
+        if (dot.x >= 0 && i < count
+            && has_dot(glyph_of(of_right, i), ivec2(dot.x % int(kGlyphCell.x), dot.y))) {
+            paint(srgb, 1.0);
+        }
+    }
+}
+
+void paint_labels(vec2 size, float plot, float unit) {
+    float dot_size = max(floor(2.0 * unit), 1.0);
+    float top = plot + 16.0 * dot_size;
+    vec2 widths = vec2(label_lengths) * kGlyphCell.x * dot_size;
+    float gap = 10.0 * dot_size;
+    if (divider < 0.0) {
+        paint_label(false, floor(vec2(0.5 * (size.x - widths.x), top)), dot_size, kMark);
+        return;
+    }
+    float x = floor(divider * size.x);
+    paint_label(false, floor(vec2(x - gap - widths.x, top)), dot_size, kLeft);
+    paint_label(true, floor(vec2(x + gap, top)), dot_size, kRight);
+}
+
 void main() {
     vec2 p = gl_FragCoord.xy;
     vec2 size = vec2(textureSize(scene_radiance, 0));
@@ -110,5 +151,6 @@ void main() {
     if (p.y < plot) {
         paint_plot(p, plot, unit);
     }
+    paint_labels(size, plot, unit);
     radiance = vec4(image_color, scene.a);
 }

@@ -6,8 +6,8 @@
 #include "lib/light_at.glsl"
 #include "lib/single_lights.glsl"
 
-layout(location = 1) in vec3 diffuse;
-layout(location = 5) in vec3 specular;
+layout(location = 1) INTERPOLATED in vec3 diffuse;
+layout(location = 5) INTERPOLATED in vec3 specular;
 layout(location = 6) flat in vec3 to_camera;
 layout(location = 8) flat in vec3 normal_series[6];
 layout(location = 14) flat in vec4 light_vector[SINGLE_LIGHTS];

@@ -18,9 +18,10 @@ struct ViewBlock {
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first point or
                                // spot light with a shadow or a cookie
     vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
+    vec4 blinn_axis;           // world: fixes the axes of Blinn maps, unit or zero (lib/highlight_map.glsl)
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 256);
+static_assert(sizeof(ViewBlock) == 272);
 }  // namespace limn::layout
 #endif

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace limn {
 
@@ -31,6 +32,31 @@ TEST_CASE("bench_fakephong: costs are ratios to per-pixel shading of the same mo
     CHECK(fakephong_bench_table(bench).find("vertex") != std::string::npos);
 }
 
+TEST_CASE("bench_fakephong: counted lightings are the thesis's, and Phong shading's work is 1") {
+    const std::vector<FakePhongCount> counts = count_fakephong();
+    const auto of = [&](const char* model, const char* method) {
+        return std::find_if(
+                   counts.begin(), counts.end(),
+                   [&](const FakePhongCount& one) {
+                       return one.model == model && one.method == method;
+                   })
+            ->efficiency;
+    };
+    REQUIRE(counts.size() == 4 * (14 + 3));
+    for (const char* model : {"teapot", "triangle", "dodecahedron", "sphere"}) {
+        CHECK(of(model, "phong").work == 1);
+        CHECK(of(model, "gouraud").lightings == 3);
+        CHECK(of(model, "gouraud-subdivided").lightings == 6);
+        CHECK(of(model, "quadratic").lightings == 6);
+        CHECK(of(model, "blinn-map").lightings == 3);
+        CHECK(of(model, "quadratic-blinn").lightings == 6);
+        CHECK(of(model, "blinn-map").fetches == 1);
+        CHECK(of(model, "envmap").work < of(model, "blinn-map").work);
+    }
+    CHECK(of("triangle", "quadratic, stepped").multiplications < 0.1);
+    CHECK(of("triangle", "quadratic, stepped").work < of("triangle", "quadratic").work);
+}
+
 TEST_CASE("bench_fakephong: every method is timed on every model under 1, 4 and 16 lights") {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(
@@ -38,9 +64,12 @@ TEST_CASE("bench_fakephong: every method is timed on every model under 1, 4 and 
     CAPTURE(run.err);
     REQUIRE(run.exit_code == 0);
     const std::string csv = test::read_text(folder.file("b.csv"));
-    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 4 * 3 * kShadingRates);
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 4 * 3 * kShadingRates + 2 + 4 * (14 + 3));
     CHECK(csv.find("nan") == std::string::npos);
     CHECK(csv.find("sphere,16,quadratic_blinn,1,") != std::string::npos);
+    CHECK(csv.find("sphere,\"quadratic-blinn\",6,") != std::string::npos);
+    CHECK(csv.find("triangle,\"cubic, stepped\",10,") != std::string::npos);
+    CHECK(run.out.find("Counted on a processor") != std::string::npos);
 }
 
 }  // namespace limn

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -102,6 +103,79 @@ TEST_CASE("fakephong: chords and quadratics miss an arc by the derived distances
     CHECK(d60.linear_cosine / d30.linear_cosine == near(3.5).epsilon(0.02));
     CHECK(d60.quadratic_sine / d30.quadratic_sine == near(7.3).epsilon(0.1));
     CHECK(path_deviation(1e-3).linear_cosine < 1e-6);
+}
+
+TEST_CASE("fakephong: Blinn coordinates stray from their chords as those of the derived corners") {
+    // Edges of the canonical triangle: the mean of two corners' coordinates against the midpoint's.
+    const EdgePaths triangle = edge_paths(triangle_scene());
+    CHECK(triangle.edges == 3);
+    CHECK(triangle.turn == 0);
+    const double side = std::hypot(0.27498 - 0.5 * (0.54681 - 0.14759), 0.29454 - 0.5 * 0.47458);
+    CHECK(triangle.linear >= side - 1e-4);
+    CHECK(triangle.linear < 1.1 * side);
+    CHECK(triangle.quadratic < 0.8 * triangle.linear);  // the light is near: H turns along an edge
+}
+
+TEST_CASE("fakephong: without a turn of normals and with all far away, coordinates are straight") {
+    PhongScene far = triangle_scene();
+    far.lights = {{.directional = true, .at = {0.3, 0.2, 1}}};
+    far.camera.eye = {0, 0, 1e7};
+    const EdgePaths paths = edge_paths(far);
+    CHECK(paths.edges == 3);
+    CHECK(paths.linear < 1e-6);
+    CHECK(paths.from_h == near(0.5 * std::acos(1 / std::sqrt(1.13))).epsilon(1e-3));
+}
+
+TEST_CASE("fakephong: facets half as large stray a quarter as far, and quadratics an eighth") {
+    PhongScene scene = sphere_scene();
+    scene.mesh = make_coarse_sphere(16, 16);
+    const EdgePaths coarse = edge_paths(scene);
+    scene.mesh = make_coarse_sphere(32, 32);
+    const EdgePaths fine = edge_paths(scene);
+    CHECK(coarse.turn == near(2 * fine.turn).epsilon(0.02));
+    CHECK(coarse.linear_mean / fine.linear_mean == near(4).epsilon(0.1));
+    CHECK(coarse.quadratic_mean / fine.quadratic_mean == near(8).epsilon(0.1));
+    CHECK(fine.quadratic < fine.linear);
+}
+
+TEST_CASE("fakephong: a Phong map is compared by diffuse light, in which it is exact at corners") {
+    const SceneResult result = evaluate_scene(sphere_scene());
+    const auto map =
+        std::find_if(result.methods.begin(), result.methods.end(), [](const MethodResult& one) {
+            return one.method->diffuse_only;
+        });
+    REQUIRE(map != result.methods.end());
+    CHECK(&reference_of(result, *map) == &result.phong_diffuse);
+    CHECK(&reference_of(result, result.methods[0]) == &result.phong);
+    CHECK(map->error_at_samples < 1e-9);
+    CHECK(map->error_inside > 0.01);
+    CHECK(map->correctness > 0.8);
+    CHECK(map->correctness < 1);
+}
+
+TEST_CASE("fakephong: stepped colors are those asked at each pixel, and on one facet cost less") {
+    for (const SteppedMethod& one : step_scene(triangle_scene())) {
+        CAPTURE(std::string(one.method->id));
+        CHECK(one.difference < 1e-6);
+        CHECK(weighted_operations(one.stepped) < 0.6 * weighted_operations(one.direct));
+        CHECK(one.correctness > 0.999);  // seen from far away
+    }
+    PhongScene near_eye = triangle_scene();
+    near_eye.camera = {.eye = {0, 1.2, 1}, .target = {0, 0, 0}, .half_size = 1};
+    CHECK(step_scene(near_eye)[1].correctness < 0.999);
+}
+
+TEST_CASE("fakephong: a row of the table is that of all methods") {
+    const SceneResult result = evaluate_scene(dodecahedron_scene());
+    const auto row = correctness_row(dodecahedron_scene());
+    for (std::size_t i = 0; i < kTableColumns; ++i) {
+        CHECK(row[i] == result.methods[i].correctness);
+    }
+    CHECK(correctness_row(result) == row);
+    const std::array<double, kTableColumns> rising = {1, 2, 3, 4, 5, 6};
+    CHECK(swapped_pairs(rising, rising) == 0);
+    CHECK(swapped_pairs({6, 5, 4, 3, 2, 1}, rising) == 15);
+    CHECK(swapped_pairs({1, 2, 2, 4, 5, 6}, rising) == 1);
 }
 
 }  // namespace limn::fakephong

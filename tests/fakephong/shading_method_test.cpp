@@ -196,6 +196,29 @@ TEST_CASE("fakephong: a Phong map has the diffuse light of the corners") {
     }
 }
 
+TEST_CASE("fakephong: diffuse light from a Blinn texture is exact at the samples, by either map") {
+    PhongScene scene = bent_triangle();
+    scene.channels = Channels::Full;
+    scene.diffuse_texture = true;
+    scene.lights.push_back({.directional = true, .at = {0.5, 1, 0.3}});
+    const ShadingContext context = make_shading_context(scene);
+    const Facet facet = facet_of(scene);
+    const auto points = six_points(facet);
+    for (const char* id : {"blinn-map", "quadratic-blinn"}) {
+        const ShadingMethod& method = *find_method(id);
+        FacetSetup setup;
+        const Work before = counted_work;
+        method.prepare(context, facet, setup);
+        CHECK((counted_work - before).lightings == 2 * 2 * method.lightings);
+        for (std::size_t i = 0; i < 6; i += method.lightings == 3 ? 2 : 1) {
+            const Lit wanted = illuminate(scene, points[i]);
+            const Lit found = method.shade(context, setup, kSixPoints[i][0], kSixPoints[i][1]);
+            CHECK(found.tinted.x.value == near(wanted.tinted.x.value).epsilon(1e-9));
+            CHECK(found.highlight.x.value == near(wanted.highlight.x.value).epsilon(1e-9));
+        }
+    }
+}
+
 TEST_CASE("fakephong: a quadratic goes through its samples and reproduces quadratic fields") {
     const auto field = [](double s, double t) {
         return 1 + 2 * s - 3 * t + 4 * s * s - s * t + t * t;

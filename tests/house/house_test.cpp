@@ -76,7 +76,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"bench/fakephong/", {"ecs/base/", "ecs/", "ecs/components/", "content/"}},
         {"content/app/",
          {"ecs/base/", "ecs/", "ecs/components/", "systems/", "render/", "content/",
-          "content/game/"}},
+          "content/game/", "bench/fakephong/"}},
         {"tests/", kAll},
         {"bench/", kAll},
     };

@@ -108,6 +108,18 @@ TEST_CASE("quality: the page has effect, oracle and difference of each image wit
     CHECK(page->find("<x>") == std::string::npos);
 }
 
+TEST_CASE("quality: numbers beside sections of their own are folded, unless a bound is violated") {
+    MeasuredQuality one = measured();
+    one.report.html = "<h3>own</h3>\n";
+    const std::string violated = quality_html({&one, 1}, "GPU").value();
+    CHECK(count_of(violated, "<details open>") == 1);
+    CHECK(count_of(violated, "<h3>own</h3>") == 1);
+    one.report.rows.erase(one.report.rows.begin() + 1);
+    CHECK(count_of(quality_html({&one, 1}, "GPU").value(), "<details>") == 1);
+    one.report.html.clear();
+    CHECK(count_of(quality_html({&one, 1}, "GPU").value(), "<details") == 0);
+}
+
 TEST_CASE("quality: without its program beside it, limn says what is missing and how to build it") {
     const TemporaryFolder folder;
     const std::string alone = folder.file("limn");
@@ -146,9 +158,20 @@ TEST_CASE(
     const TemporaryFolder folder;
     measured_rows("fakephong", folder);
     const std::string page = read_text(folder.file("q.html"));
-    CHECK(count_of(page, "It holds best on") == 12);
-    CHECK(count_of(page, "<svg") == 12 * 7);
-    CHECK(count_of(page, "as printed</td>") == 2);
+    CHECK(count_of(page, "It holds best on") == 13);
+    CHECK(count_of(page, "<svg") == 13 * 7);
+    CHECK(count_of(page, "<polyline") == 2 * 13 * 7);
+    CHECK(count_of(page, "<img") == 3 * 13 * 7);
+    CHECK(count_of(page, "as printed</em></td>") == 2);
+    CHECK(count_of(page, "<b>teapot, fitted</b>: correctness 0.9884;") == 1);  // the Blinn map
+    CHECK(count_of(page, ">its distance from the print<") == 2);
+    CHECK(count_of(page, "all six columns are in the printed order") == 2);
+    CHECK(count_of(page, "15 of 15") == 3);  // sizes of textures
+    CHECK(
+        count_of(page, "0.0063 behind it on the teapot and 0.0853 behind it on the triangle") == 1);
+    CHECK(count_of(page, "Forward differences: ") == 2);
+    CHECK(count_of(page, "<details>") == 1);  // closed: all bounds hold
+    CHECK(page.find(">nan") == std::string::npos);
 }
 
 TEST_CASE("quality: fakephong measures a given model, whatever its normals and facets are like") {
@@ -179,6 +202,13 @@ TEST_CASE("quality: fakephong measures a given model, whatever its normals and f
     CHECK(
         found(corners + "vn 0 0 1\nvn 0 0 -1\nf 1//1 2//2 3//1\n", "quadratic: color correctness")
         > 0);
+    CHECK(found(front, "Blinn coordinates along edges, from linear, mean") > 0);
+    const ProgramRun odd = [&] {
+        test::write_text(folder.file("<b>&.obj"), front);
+        return run_limn(folder, {"quality", "fakephong", "<b>&.obj", "--html", "q.html"});
+    }();
+    CHECK(odd.exit_code == 0);
+    CHECK(read_text(folder.file("q.html")).find("<b>&.obj") == std::string::npos);
     const std::string twice = front + "f 1//1 1//1 2//1\nf 2//1 3//1 3//1\n";
     CHECK(found(twice, "  without an area, left out") == 2);
 }

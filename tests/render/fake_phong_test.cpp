@@ -1,4 +1,5 @@
 #include "render/highlight_layers.h"
+#include "tests/near.h"
 #include "tests/render/laboratory_fixture.h"
 
 #include <cmath>
@@ -94,9 +95,11 @@ TEST_CASE_FIXTURE(
     point_light({0.6f, 1.5f, 3});
     constexpr fakephong::BlinnAxis kTheirs[] = {
         fakephong::BlinnAxis::CameraUp, fakephong::BlinnAxis::WorldUp,
-        fakephong::BlinnAxis::WorstCase};
+        fakephong::BlinnAxis::WorstCase, fakephong::BlinnAxis::Custom};
     std::vector<gpu::FloatImage> images;
-    for (int axis = 0; axis < 3; ++axis) {
+    rendering.blinn_vector = {3, -1, 0.5f};
+    laboratory.axis_vector = {3, -1, 0.5};
+    for (int axis = 0; axis < 4; ++axis) {
         rendering.blinn_axis = static_cast<BlinnAxis>(axis);
         laboratory.axis = kTheirs[axis];
         CHECK(largest_distance({ShadingRate::BlinnMap, "blinn-map"}) < kStep);
@@ -105,6 +108,123 @@ TEST_CASE_FIXTURE(
         images.push_back(drawn(ShadingRate::BlinnMap));
     }
     CHECK(largest_difference(images[0], images[2]) > 0.05f);
+    CHECK(largest_difference(images[0], images[3]) > kStep);
+    // A multiple of the world's up is that; none at all leaves the camera's right.
+    rendering.blinn_vector = {0, 7, 0};
+    CHECK(largest_difference(drawn(ShadingRate::BlinnMap), images[1]) < 1e-5f);
+    rendering.hardware.world_up = false;  // but not its length, which the projected axis keeps
+    const gpu::FloatImage long_axis = drawn(ShadingRate::HwBlinn);
+    rendering.blinn_axis = BlinnAxis::WorldUp;
+    CHECK(largest_difference(drawn(ShadingRate::HwBlinn), long_axis) < 1e-5f);
+    rendering.blinn_axis = BlinnAxis::Custom;
+    rendering.blinn_vector = {0, 0, 0};
+    laboratory.axis_vector = {0, 0, 0};
+    CHECK(largest_distance({ShadingRate::BlinnMap, "blinn-map"}) < kStep);
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: diffuse light from a Blinn texture is as the laboratory has it") {
+    show(make_ball(5));
+    point_light({0.6f, 1.5f, 3});
+    directional_light({-0.5f, 0.1f, 1});
+    laboratory.lights[0].color = laboratory.lights[1].color = glm::dvec3(0.5);
+    world.query<PointLight>().each([](PointLight& light) { light.intensity = kPi / 2; });
+    world.query<DirectionalLight>().each(
+        [](DirectionalLight& light) { light.illuminance = kPi / 2; });
+    for (const NamedRate& named :
+         {NamedRate{ShadingRate::BlinnMap, "blinn-map"},
+          NamedRate{ShadingRate::QuadraticBlinn, "quadratic-blinn"}}) {
+        rendering.blinn_diffuse = laboratory.diffuse_texture = false;
+        const gpu::FloatImage per_vertex = drawn(named.rate);
+        rendering.blinn_diffuse = laboratory.diffuse_texture = true;
+        CHECK_MESSAGE(largest_distance(named) < kStep, std::string(named.method));
+        CHECK(largest_difference(drawn(named.rate), per_vertex) > 0.02f);
+    }
+    const gpu::FloatImage hardware = drawn(ShadingRate::HwBlinn);  // which has none
+    rendering.blinn_diffuse = false;
+    CHECK(largest_difference(drawn(ShadingRate::HwBlinn), hardware) == 0);
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory,
+    "fake phong: four of seven lights have diffuse terms, vertices are lit by the rest") {
+    show(make_ball(5));
+    rendering.blinn_diffuse = true;
+    std::vector<Entity> lights;
+    for (int i = 0; i < 7; ++i) {
+        lights.push_back(
+            shine(DirectionalLight{.illuminance = 0.3f}, look_at({0, 0, 0}, -kAround[i])));
+    }
+    const auto only = [&](std::size_t first, std::size_t end, ShadingRate rate) {
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            world.get<DirectionalLight>(lights[i]).enabled = i >= first && i < end;
+        }
+        return drawn(rate);
+    };
+    const gpu::FloatImage others = only(4, 7, ShadingRate::Vertex);
+    for (const ShadingRate rate : {ShadingRate::BlinnMap, ShadingRate::QuadraticBlinn}) {
+        const gpu::FloatImage first = only(0, 4, rate);
+        CHECK(largest_difference(only(0, 7, rate), sum(first, others)) < 1e-3f);
+        CHECK(largest_difference(sum(only(0, 2, rate), only(2, 4, rate)), first) < 1e-3f);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory,
+    "fake phong: without the perspective divide methods are as the laboratory has them") {
+    show(make_spread_triangle());
+    // The triangle leans away, within the image: Mesa 22.3 clips at its border with perspective.
+    eye = {1.4f, 0.9f, 2.1f};
+    laboratory.camera.eye = glm::dvec3(eye);
+    point_light({0.3f, 0.2f, 2});
+    const gpu::FloatImage right = drawn(ShadingRate::Quadratic);
+    rendering.screen_interpolation = true;
+    laboratory.interpolation = fakephong::Interpolation::Screen;
+    for (const NamedRate& named : kRates) {
+        if (named.rate != ShadingRate::Pixel) {  // which has positions from the depth
+            rendering.hardware.first_light = named.rate == ShadingRate::HwQuadratic;
+            CHECK_MESSAGE(largest_distance(named) < kStep, std::string(named.method));
+        }
+    }
+    CHECK(largest_difference(drawn(ShadingRate::Quadratic), right) > 0.02f);
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: without the perspective divide a texture lies where the screen says") {
+    // Along the lower edge w grows from 1 to 3 and u from 0 to 1; the left half of the texture is
+    // black. In perspective that is up to a half of u, at 3/4 of the edge on the screen.
+    std::vector<std::uint8_t> pixels;
+    for (int x = 0; x < 64; ++x) {
+        const std::uint8_t value = x < 32 ? 0 : 255;
+        pixels.insert(pixels.end(), {value, value, value, 255});
+    }
+    auto& material = world.resource<Assets>().materials[shiny.index];
+    material.base_color_texture.image =
+        add(ImageData{.name = "halves", .width = 64, .height = 1, .pixels = pixels});
+    material.specular = Vec3(0);
+    MeshData mesh;
+    mesh.positions = {{-1, -1, 0}, {3, -3, -2}, {-1, 1, 0}};
+    mesh.normals.assign(3, {0, 0, 1});
+    mesh.tangents.assign(3, {1, 0, 0, 1});
+    mesh.uvs = {{0.01f, 0.5f}, {0.99f, 0.5f}, {0.01f, 0.5f}};
+    mesh.indices = {0, 1, 2};
+    for (const Vec3& p : mesh.positions) {
+        grow(mesh.bounds, p);
+    }
+    show(mesh);
+    eye = {0, 0, 1};
+    directional_light({0, 0, 1});
+    const auto first_lit = [&] {  // of the width, just above the lower edge
+        const gpu::FloatImage image = drawn(ShadingRate::Vertex);
+        int x = 0;
+        while (x < kSide - 1 && image.at(x, kSide - 2, 0) < 0.1f) {
+            ++x;
+        }
+        return static_cast<float>(x) / kSide;
+    };
+    CHECK(first_lit() == near(0.75).epsilon(0.04));
+    rendering.screen_interpolation = true;
+    CHECK(first_lit() == near(0.5).epsilon(0.04));
 }
 
 TEST_CASE_FIXTURE(

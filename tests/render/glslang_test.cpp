@@ -36,8 +36,7 @@ const std::vector<KnownDefine>& known_defines() {
         {"DEFORM_FLAGS", {"0", "7", "63"}},
         {"RADIUS", {"3", "15"}},
         {"SIZE", {"32u", "256u"}},
-        {"SINGLE_LIGHTS", {"1", "8"}},
-        {"BLINN_AXIS", {"0", "2"}},
+        {"SINGLE_LIGHTS", {"1", "4"}},
     };
     return known;
 }

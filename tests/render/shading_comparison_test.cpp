@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kWidth = 96;
 constexpr int kHeight = 64;
+constexpr int kLabelRows = 20;  ///< of the names at the lower border, of dots of one pixel
 
 /// A coarse ball with a highlight, which each method of shading shows otherwise.
 struct ComparisonScene : Scene {
@@ -75,7 +76,7 @@ TEST_CASE_FIXTURE(
             const gpu::FloatImage both = compared({.right = other, .divider = divider}, one);
             const int edge = static_cast<int>(divider * kWidth);
             float largest = 0;
-            for (int y = 8; y < kHeight; ++y) {
+            for (int y = 8; y < kHeight - kLabelRows; ++y) {
                 for (int x = 0; x < kWidth; ++x) {
                     if (std::abs(x - edge) > 16) {  // the divider with its handle
                         const gpu::FloatImage& side = x < edge ? left : right;
@@ -103,7 +104,7 @@ TEST_CASE_FIXTURE(
         const gpu::FloatImage alone = by(right);
         const gpu::FloatImage both = compared({.right = right, .divider = 0}, left);
         int different = 0;
-        for (int y = 8; y < view.height; ++y) {
+        for (int y = 8; y < view.height - kLabelRows; ++y) {
             for (int x = 24; x < view.width; ++x) {  // right of the divider with its handle
                 different += both.at(x, y, 0) == alone.at(x, y, 0) ? 0 : 1;
             }
@@ -129,7 +130,7 @@ TEST_CASE_FIXTURE(
         const gpu::FloatImage found = compared(comparison, ShadingRate::Quadratic);
         const ColorImage wanted = enhanced_difference(left, right);
         float largest = 0;
-        for (int y = 0; y < kHeight; ++y) {
+        for (int y = 0; y < kHeight - kLabelRows; ++y) {
             for (int x = 0; x < kWidth; ++x) {
                 const float difference = wanted.pixels[static_cast<std::size_t>(y * kWidth + x)].y;
                 const float shown = std::min(1.0f, difference * std::pow(gain, 0.1f));
@@ -148,13 +149,47 @@ TEST_CASE_FIXTURE(
         const gpu::FloatImage found =
             compared({.right = rate, .image = ComparisonImage::Difference}, rate);
         float largest = 0;
-        for (int y = 0; y < kHeight; ++y) {
+        for (int y = 0; y < kHeight - kLabelRows; ++y) {
             for (int x = 0; x < kWidth; ++x) {
                 largest = std::max(largest, found.at(x, y, 0));
             }
         }
         CHECK(largest == 0);
     }
+}
+
+TEST_CASE_FIXTURE(
+    ComparisonScene, "shading comparison: the names of both methods stand beside the divider") {
+    view = look({0, 0, 2}, {0, 0, 0}, 256, kHeight);
+    struct Columns {
+        int first = 256, last = -1, dots = 0;
+    };
+    // Orange on the left and blue on the right are the colors of no surface here.
+    const auto labeled = [&](ShadingRate left, ShadingRate right, bool orange) {
+        const gpu::FloatImage image = compared({.right = right}, left);
+        Columns columns;
+        for (int y = kHeight - kLabelRows; y < kHeight; ++y) {
+            for (int x = 0; x < 256; ++x) {
+                const float redness = image.at(x, y, 0) - image.at(x, y, 2);
+                if (orange ? redness > 0.5f : redness < -0.5f) {
+                    columns.first = std::min(columns.first, x);
+                    columns.last = std::max(columns.last, x);
+                    ++columns.dots;
+                }
+            }
+        }
+        return columns;
+    };
+    const Columns vertex = labeled(ShadingRate::Vertex, ShadingRate::Taylor, true);
+    CHECK(vertex.last < 128 - 8);
+    CHECK(vertex.last - vertex.first + 1 == 6 * 6 - 1);  // v e r t e x
+    const Columns taylor = labeled(ShadingRate::Vertex, ShadingRate::Taylor, false);
+    CHECK(taylor.first > 128 + 8);
+    CHECK(taylor.dots == 11 + 14 + 14 + 10 + 12 + 9);  // t a y l o r
+    // A name on either side has as many dots, and another name has others.
+    CHECK(labeled(ShadingRate::Taylor, ShadingRate::Pixel, true).dots == taylor.dots);
+    CHECK(labeled(ShadingRate::Pixel, ShadingRate::Vertex, true).dots != taylor.dots);
+    CHECK(labeled(ShadingRate::NormalsSpherical, ShadingRate::Pixel, true).first > 0);
 }
 
 TEST_CASE_FIXTURE(

@@ -3,7 +3,7 @@
 #include "lib/facet_pixel.glsl"
 #include "lib/light_at.glsl"
 
-layout(location = 1) in vec3 position_ws;
+layout(location = 1) INTERPOLATED in vec3 position_ws;
 layout(location = 6) flat in uint object;
 layout(location = 9) flat in vec3 facet_normals[7];
 

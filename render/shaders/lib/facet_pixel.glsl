@@ -3,7 +3,7 @@
 #include "lib/material.glsl"
 #include "lib/radiance.glsl"
 
-layout(location = 0) in vec2 st;
+layout(location = 0) INTERPOLATED in vec2 st;
 
 layout(location = 0) out vec4 radiance;
 

@@ -1,6 +1,5 @@
 // Where light is read in textures over the unit disc, whose address is 0.5 + 0.5 (x, y). Definition:
-//   BLINN_AXIS  the global vector of plane_axis(): 0 the camera's up, 1 the world's up, 2 the projected normal itself,
-//               the worst choice, with which all of v is 0
+//   WORST_AXIS  axes along the projected normal itself, with which all of v is 0, in place of view.blinn_axis
 
 #include "lib/view.glsl"
 
@@ -12,12 +11,10 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
 // Unit, in the plane orthogonal to unit `normal`; the camera's right in it where the global vector is parallel to the
 // normal (fakephong.blinn-axis).
 vec3 plane_axis(vec3 normal, vec3 projected) {
-#if BLINN_AXIS == 2
+#ifdef WORST_AXIS
     vec3 global = projected;
-#elif BLINN_AXIS == 1
-    vec3 global = vec3(0.0, 1.0, 0.0);
 #else
-    vec3 global = normalize(view.ray_up.xyz);
+    vec3 global = view.blinn_axis.xyz;
 #endif
     vec3 right = normalize(view.ray_right.xyz);
     vec3 other = unit_or(right - dot(right, normal) * normal, vec3(0.0));
@@ -56,8 +53,7 @@ vec2 hardware_blinn_coordinates(vec3 normal, vec3 to_light, vec3 to_camera) {
 #else
     vec3 axis = plane_axis(h, projected);
 #ifdef HW_AXIS
-    vec3 up = normalize(view.ray_up.xyz);
-    axis = up - dot(up, h) * h;
+    axis = view.blinn_axis.xyz - dot(view.blinn_axis.xyz, h) * h;
 #endif
 #endif
 #ifndef HW_BACKS

@@ -2,6 +2,7 @@
 //     vec2 map_coordinates(LitPoint p, vec3 to_light)
 // Definitions:
 //   MAP_DIFFUSE     the texture holds diffuse light in place of highlights, which there are none of
+//   BLINN_DIFFUSE   diffuse light, too, is read in a texture: the normal on the plane orthogonal to L
 //   HW_FIRST_LIGHT  no lights but the first
 void main() {
     LitPoint p = put_vertex();
@@ -12,6 +13,10 @@ void main() {
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {
         map_at[k] = vec3(1.0, 0.0, 0.0);
         map_factor[k] = vec3(0.0);
+#ifdef BLINN_DIFFUSE
+        diffuse_at[k] = vec2(1.0, 0.0);
+        diffuse_factor[k] = vec3(0.0);
+#endif
         if (k < min(p.single, end)) {
             Incoming light = single_light(p, k);
             map_at[k] = vec3(map_coordinates(p, light.to_light), dot(p.reflector.normal, light.to_light));
@@ -20,10 +25,16 @@ void main() {
 #else
             map_factor[k] = light.irradiance / kPi * p.reflector.specular_0;
 #endif
+#ifdef BLINN_DIFFUSE
+            diffuse_at[k] = plane_coordinates(p.reflector.normal, light.to_light);
+            diffuse_factor[k] = light.irradiance / kPi * p.reflector.diffuse;
+#endif
         }
     }
 #ifdef MAP_DIFFUSE
     Reflected light = light_from(p, p.single, p.single > 0 ? kEveryLight : 0, end);
+#elif defined(BLINN_DIFFUSE)
+    Reflected light = light_from(p, p.single, p.single, end);
 #else
     Reflected light = light_from(p, 0, p.single, end);
 #endif

@@ -5,17 +5,22 @@
 
 layout(binding = 5) uniform sampler2DArray highlight_maps;
 
-layout(location = 0) in vec3 diffuse;
-layout(location = 1) in vec3 specular;
+layout(location = 0) INTERPOLATED in vec3 diffuse;
+layout(location = 1) INTERPOLATED in vec3 specular;
 layout(location = 6) flat in float highlight_layer;
-layout(location = 8) in vec3 map_at[SINGLE_LIGHTS];  // in the unit disc; z: N.L
-layout(location = 16) in vec3 map_factor[SINGLE_LIGHTS];
+layout(location = 8) INTERPOLATED in vec3 map_at[SINGLE_LIGHTS];  // in the unit disc; z: N.L
+layout(location = 16) INTERPOLATED in vec3 map_factor[SINGLE_LIGHTS];
+#ifdef BLINN_DIFFUSE
+layout(location = 12) INTERPOLATED in vec2 diffuse_at[SINGLE_LIGHTS];
+layout(location = 20) INTERPOLATED in vec3 diffuse_factor[SINGLE_LIGHTS];
+#endif
+
+const float kDiffuseLayer = 0.0;  // of exponent 1: sqrt(1 - x^2 - y^2)
 
 layout(location = 0) out vec4 radiance;
 
-// What is read for light `k`.
-vec3 map_texel(int k, float layer) {
-    return texture(highlight_maps, vec3(0.5 + 0.5 * map_at[k].xy, layer)).rgb;
+vec3 map_texel(vec2 at, float layer) {
+    return texture(highlight_maps, vec3(0.5 + 0.5 * at, layer)).rgb;
 }
 
 // `tinted`: still to be multiplied by the base color map.

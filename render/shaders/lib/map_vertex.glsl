@@ -21,6 +21,10 @@ layout(location = 7) flat out vec4 map_layers;
 #endif
 layout(location = 8) out vec3 map_at[SINGLE_LIGHTS];       // in the unit disc; z: N.L
 layout(location = 16) out vec3 map_factor[SINGLE_LIGHTS];  // of what is read there
+#ifdef BLINN_DIFFUSE
+layout(location = 12) out vec2 diffuse_at[SINGLE_LIGHTS];
+layout(location = 20) out vec3 diffuse_factor[SINGLE_LIGHTS];
+#endif
 invariant gl_Position;  // the depth must equal that of depth_first.frag
 
 // All but the light; the point to be lit.

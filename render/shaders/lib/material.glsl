@@ -16,6 +16,7 @@
 //   WRINKLE_FLAT   strengths are those of one vertex of each triangle
 
 #include "lib/gbuffer.glsl"
+#include "lib/interpolation.glsl"
 #include "lib/material_maps.glsl"
 #include "lib/wrinkle.glsl"
 
@@ -24,8 +25,8 @@
 #endif
 
 #ifndef LIT_AT_VERTICES
-layout(location = 0) in vec3 normal_ws;
-layout(location = 1) in vec4 tangent_ws;
+layout(location = 0) INTERPOLATED in vec3 normal_ws;
+layout(location = 1) INTERPOLATED in vec4 tangent_ws;
 #endif
 #if defined(WRINKLES) || (defined(WRINKLE_VIEW) && !defined(LIT_AT_VERTICES))
 #ifdef WRINKLE_FLAT
@@ -33,8 +34,8 @@ flat
 #endif
 layout(location = 8) in vec4 wrinkle_strength;  // x, y: of slopes, as they are and lifted; z, w: of shade
 #endif
-layout(location = 2) in vec4 uv;
-layout(location = 3) in vec4 vertex_color;
+layout(location = 2) INTERPOLATED in vec4 uv;
+layout(location = 3) INTERPOLATED in vec4 vertex_color;
 layout(location = 4) flat in uvec2 material_and_flags;
 #ifdef MAP_LAYERS
 layout(location = 7) flat in vec4 map_layers;
