@@ -156,6 +156,10 @@ Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, floa
     vec3 right = normalize(view.ray_right.xyz);
     vec3 up = normalize(cross(to_camera, right));
     right = cross(up, to_camera);
+    if (facing == kFacingPixels) {  // in the plane of the image, where its extent is the same everywhere
+        right = normalize(view.ray_right.xyz);
+        up = normalize(view.ray_up.xyz);
+    }
     if (facing == kFacingGround) {
         right = vec3(1.0, 0.0, 0.0);
         up = vec3(0.0, 0.0, -1.0);

@@ -137,6 +137,30 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: a point sprite is as large in a corner of the image as in the middle") {
+    ParticleLook point = disc({1, 1, 1}, 1, 1);
+    ImageData white;
+    white.width = white.height = 1;
+    white.pixels = {255, 255, 255, 255};
+    point.image = add(white);
+    point.facing = ParticleFacing::Pixels;
+    point.size = 16;
+    point.turn_spread = 0;
+    for (const float shift : {0.0f, 1.0f, 1.9f}) {  // of 2.31 m from the middle to the edge
+        CAPTURE(shift);
+        const Entity sprite = emit({{shift, shift, -4}}, point);
+        const gpu::FloatImage image = radiance(look({0, 0, 0}, {0, 0, -1}, 96, 96));
+        int lit = 0;
+        for (int i = 0; i < 96 * 96; ++i) {
+            lit += rgb_at(image, i % 96, i / 96).x > 0.5f ? 1 : 0;
+        }
+        CHECK(lit == 16 * 16);
+        world.destroy(sprite);
+    }
+}
+
+TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: a disc drawn as a point is that drawn as a quad, to a tenth") {
     // Seen at a right angle, 7.5 to 30 pixels wide.
     for (const float size : {0.25f, 0.5f, 1.0f}) {
