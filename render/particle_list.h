@@ -4,6 +4,7 @@
 #include "ecs/components/particles.h"
 #include "render/buffer_texture.h"
 #include "render/particle_packing.h"
+#include "render/render_view.h"
 #include "render/shaders/particle_gpu.h"
 #include "render/variant.h"
 
@@ -45,6 +46,10 @@ void append_particles(
 /// streak.
 [[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
 
+/// Diameter of its quad in the image at least [px]; 0 where it may be seen at an angle.
+[[nodiscard]] float
+least_pixels(const ParticleInstance& instance, const LookRecord& look, const RenderView& view);
+
 /// Where the images of a look are, in ImagePool; 0: it has none.
 struct ParticleArrays {
     std::uint32_t images = 0;
@@ -73,6 +78,7 @@ struct SpriteFeatures {
 struct ParticleRun {
     ParticleArrays arrays{};
     bool points = false;
+    bool magnified = false;  ///< none is smaller than a frame of its image
     int first = 0;
     int count = 0;
 };

@@ -241,6 +241,8 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
         device.caps().software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
     effect.image_sampler =
         gpu::Sampler("particle images", {.minify = minify, .wrap = GL_CLAMP_TO_EDGE});
+    effect.finest_sampler =
+        gpu::Sampler("finest particle images", {.minify = GL_LINEAR, .wrap = GL_CLAMP_TO_EDGE});
     effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
     return effect;
 }
@@ -270,6 +272,13 @@ std::uint32_t ParticleEffect::add_look(
          .negative_lights = is_six_way ? negative.array : 0});
     places.push_back(place);
     extents.push_back(make_look_extent(look));
+    extents.back().texels = 0;
+    if (has_image) {
+        const ImageData& its = frame.assets->images[look.image.index];
+        extents.back().texels = std::max(
+            static_cast<float>(its.width) / static_cast<float>(look.columns),
+            static_cast<float>(its.height) / static_cast<float>(look.rows));
+    }
     layers.push_back(layer_of(look));
     has_halves = has_halves || layers.back() == LookLayer::Half;
     has_weighted = has_weighted || layers.back() == LookLayer::Weighted;
@@ -518,17 +527,18 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     std::size_t middle = 0;
     if (has_halves) {
         middle = middle_half();
-        append_runs(LookLayer::Full, 0, middle, seen);
+        append_runs(view.camera, LookLayer::Full, 0, middle, seen);
         seen.half_begin = seen.runs.size();
-        append_runs(LookLayer::Half, 0, sorted.size(), seen);
+        append_runs(view.camera, LookLayer::Half, 0, sorted.size(), seen);
         for (const auto& [entity, pool] : gpu.pools()) {
             grow(seen.half_bounds, layers[pool->look] == LookLayer::Half ? kAnywhere : Bounds{});
         }
     }
     seen.half_end = seen.runs.size();
-    append_runs(LookLayer::Full, middle, sorted.size(), seen);
+    append_runs(view.camera, LookLayer::Full, middle, sorted.size(), seen);
     seen.weighted_begin = seen.runs.size();
-    append_runs(LookLayer::Weighted, sorted.size() - weighted.size(), sorted.size(), seen);
+    append_runs(
+        view.camera, LookLayer::Weighted, sorted.size() - weighted.size(), sorted.size(), seen);
     for (const auto& [entity, pool] : gpu.pools()) {
         grow(
             seen.weighted_bounds,
@@ -571,7 +581,9 @@ bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
 
 /// Those of this layer in [first, last) that are visible, from back to front.
 void ParticleEffect::append_runs(
-    LookLayer layer, std::size_t first, std::size_t last, ViewParticles& seen) {
+    const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
+    ViewParticles& seen) {
+    const float scale = layer == LookLayer::Half ? 0.5f : 1.0f;
     const std::size_t first_run = seen.runs.size();
     for (std::size_t i = first; i < last; ++i) {
         const std::uint32_t look = sorted[i].look_and_share >> 16;
@@ -582,10 +594,17 @@ void ParticleEffect::append_runs(
             seen.runs.push_back(
                 {.arrays = arrays[look],
                  .points = is_point(looks[look]),
+                 .magnified = true,
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
         }
-        ++seen.runs.back().count;
+        ParticleRun& run = seen.runs.back();
+        const float texels = extents[look].texels;
+        run.magnified =
+            run.magnified
+            && (texels == 0
+                || scale * least_pixels(sorted[i], looks[look], camera) > 0.999f * texels);
+        ++run.count;
         seen.instances.push_back(sorted[i]);
         if (layer == LookLayer::Half) {
             grow(seen.half_bounds, bounds_of(sorted[i], looks[look]));
@@ -740,17 +759,17 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
     look_texels.bind(device, kLooksUnit);
     ribbon_texels.bind(device, kRibbonsUnit);
     billboard_texels.bind(device, kBillboardsUnit);
-    const auto bind_images = [&](const ParticleArrays& its) {
+    const auto bind_images = [&](const ParticleArrays& its, bool magnified) {
         const ImagePool& pool = view.frame->materials->images();
+        const gpu::Sampler& sampler = magnified ? finest_sampler : image_sampler;
         if (features.images) {
-            device.bind_texture(kImagesUnit, pool.array(its.images), &image_sampler);
+            device.bind_texture(kImagesUnit, pool.array(its.images), &sampler);
         }
         if (features.motions) {
-            device.bind_texture(kMotionsUnit, pool.array(its.motions), &image_sampler);
+            device.bind_texture(kMotionsUnit, pool.array(its.motions), &finest_sampler);
         }
         if (features.six_way) {
-            device.bind_texture(
-                kNegativeLightsUnit, pool.array(its.negative_lights), &image_sampler);
+            device.bind_texture(kNegativeLightsUnit, pool.array(its.negative_lights), &sampler);
         }
     };
     const std::span<const ParticleRun> all(seen.runs);
@@ -762,22 +781,22 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
                                  : all;
     const gpu::Program* program = nullptr;
     std::optional<bool> as_points;
-    const auto draw_some = [&](const ParticleArrays& its, bool points, int first, int count) {
-        program = as_points == points ? program : use(points);
-        as_points = points;
+    const auto draw_run = [&](const ParticleRun& run) {
+        program = as_points == run.points ? program : use(run.points);
+        as_points = run.points;
         if (program == nullptr) {
             return;
         }
-        program->set("first", first);
-        bind_images(its);
-        if (points) {
-            device.draw_points(count);
+        program->set("first", run.first);
+        bind_images(run.arrays, run.magnified);
+        if (run.points) {
+            device.draw_points(run.count);
         } else {
-            device.draw_quads(count);
+            device.draw_quads(run.count);
         }
     };
     for (const ParticleRun& run : runs) {
-        draw_some(run.arrays, run.points, run.first, run.count);
+        draw_run(run);
     }
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     for (const auto& [entity, pool] : gpu.pools()) {
@@ -789,7 +808,10 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         if (count > 0 && (its == part || part == Part::All)
             && is_group_in_view(extents[pool->look], frustum)) {
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
-            draw_some(arrays[pool->look], is_point(looks[pool->look]), 0, static_cast<int>(count));
+            draw_run(
+                {.arrays = arrays[pool->look],
+                 .points = is_point(looks[pool->look]),
+                 .count = static_cast<int>(count)});
         }
     }
 }

@@ -5,9 +5,12 @@
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
+//   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
+#define VARYING out
 #include "lib/particle.glsl"
+#include "lib/particle_varyings.glsl"
 #include "lib/view.glsl"
 #ifdef LIT
 #include "lib/lighting.glsl"
@@ -29,17 +32,14 @@ layout(location = 6) out vec3 previous_clip;  // clip x, y, w
 
 uniform int first;  // of the particles to draw
 
-layout(location = 0) out vec3 corner;                  // -1 .. 1; y is multiplied by z, so that it stays straight
-layout(location = 1) out vec4 light;                   // radiance of the middle, premultiplied by a: its opacity
-layout(location = 2) flat out vec4 frames;             // texture coordinates: scale xy, offset of the frame zw
-layout(location = 3) flat out vec4 blend;              // cover, softness [m], share of the next frame, layer
-layout(location = 4) flat out vec4 next_frame;         // its offset; layer of the motion map, its full value
-layout(location = 5) out float distance_ahead;         // along the view axis [m]
-#ifdef SIX_WAY
-layout(location = 7) out vec4 positive_side[3];   // of what comes from the right, above and behind: premultiplied
-                                                       // radiance of a white particle; w: layer of their map, -1: none
-layout(location = 10) out vec3 negative_side[3];  // likewise from the left, from below and from the camera
-layout(location = 13) out vec3 glow_color;        // radiance by itself, premultiplied
+#ifdef WEIGHTED
+uniform vec2 weight_range;  // nearest distance ahead [m], 1 / (farthest - nearest)
+
+const float kWeightFall = 8.0;  // optical depth of the cloud that the weights suit
+
+float weight_at(float ahead) {
+    return exp(-kWeightFall * clamp((ahead - weight_range.x) * weight_range.y, 0.0, 1.0));
+}
 #endif
 
 const int kFacingVelocity = 1;
@@ -325,6 +325,9 @@ void main() {
     vec3 corner_ws = p.position + offset;
     gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
     distance_ahead = gl_Position.w;
+#ifdef WEIGHTED
+    weight = weight_at(distance_ahead);
+#endif
 #ifdef VELOCITY
     vec3 velocity = p.velocity;
     float age = p.age;

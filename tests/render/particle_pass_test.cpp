@@ -161,6 +161,45 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: a chessboard is gray where it is small, alone and behind a large one") {
+    ParticleLook board = disc({1, 1, 1}, 1, 1);
+    ImageData image;
+    image.width = image.height = 64;
+    for (int i = 0; i < 64 * 64; ++i) {
+        const std::uint8_t value = ((i % 64 + i / 64) & 1) != 0 ? 255 : 0;
+        image.pixels.insert(image.pixels.end(), {value, value, value, 255});
+    }
+    board.image = add(image);
+    board.facing = ParticleFacing::Pixels;
+    board.turn_spread = 0;
+    const auto range_of = [&](const gpu::FloatImage& drawn, int middle) {  // of 6 x 6 pixels
+        float least = INFINITY;
+        float most = 0;
+        for (int i = 0; i < 36; ++i) {
+            const float value = rgb_at(drawn, middle - 3 + i % 6, 48 - 3 + i / 6).x;
+            least = std::min(least, value);
+            most = std::max(most, value);
+        }
+        return Vec2(least, most);
+    };
+    const auto drawn = [&] { return radiance(look({0, 0, 0}, {0, 0, -1}, 192, 96)); };
+    board.size = 9;
+    emit({{1, 0, -3}}, board);
+    const Vec2 alone = range_of(drawn(), 112);  // 96 + 48 (1 m / 3 m)
+    CHECK(alone.x > 0.4f);
+    CHECK(alone.y < 0.6f);
+    board.size = 64;
+    emit({{-1, 0, -2}}, board);
+    const gpu::FloatImage both = drawn();
+    const Vec2 small = range_of(both, 112);
+    CHECK(small.x > 0.4f);
+    CHECK(small.y < 0.6f);
+    const Vec2 large = range_of(both, 72);
+    CHECK(large.y - large.x > 0.5f);
+}
+
+TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: a disc drawn as a point is that drawn as a quad, to a tenth") {
     // Seen at a right angle, 7.5 to 30 pixels wide.
     for (const float size : {0.25f, 0.5f, 1.0f}) {
