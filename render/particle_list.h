@@ -73,11 +73,15 @@ struct SpriteFeatures {
     }
 };
 
+/// What of the GPU draws a particle. A triangle about its disc takes half the set-up of a quad, and
+/// more pixels: for small discs without light, which would differ from corner to corner.
+enum class SpriteShape : std::uint8_t { Quad, Triangle, Point };
+
 /// Particles that follow one another in the order, have images of the same texture arrays and are
-/// all points or all quads.
+/// drawn as the same shape.
 struct ParticleRun {
     ParticleArrays arrays{};
-    bool points = false;
+    SpriteShape shape = SpriteShape::Quad;
     bool magnified = false;  ///< none is smaller than a frame of its image
     int first = 0;
     int count = 0;

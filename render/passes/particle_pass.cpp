@@ -39,6 +39,7 @@ constexpr unsigned kRibbonsUnit = 8;
 constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
 constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
+constexpr float kMaxTriangle = 10;          // [px] across, above which a disc is drawn as a quad
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
 
 float max_width(const ParticleLook& look) {
@@ -573,7 +574,7 @@ bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
     const Vec4& its = looks[look][layout::kLookMotion];
     const bool is_still = its.x < 0;
     const bool is_flat = its.w < 0;
-    return run.points == is_point(looks[look])
+    return (run.shape == SpriteShape::Point) == is_point(looks[look])
            && (is_disc || run.arrays.images == arrays[look].images)
            && (is_still || run.arrays.motions == arrays[look].motions)
            && (is_flat || run.arrays.negative_lights == arrays[look].negative_lights);
@@ -593,17 +594,20 @@ void ParticleEffect::append_runs(
         if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
             seen.runs.push_back(
                 {.arrays = arrays[look],
-                 .points = is_point(looks[look]),
+                 .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::Triangle,
                  .magnified = true,
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
         }
         ParticleRun& run = seen.runs.back();
         const float texels = extents[look].texels;
-        run.magnified =
-            run.magnified
-            && (texels == 0
-                || scale * least_pixels(sorted[i], looks[look], camera) > 0.999f * texels);
+        const float pixels = scale * least_pixels(sorted[i], looks[look], camera);
+        const bool is_small_disc =
+            texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxTriangle;
+        run.magnified = run.magnified && (texels == 0 || pixels > 0.999f * texels);
+        if (run.shape == SpriteShape::Triangle && !is_small_disc) {
+            run.shape = SpriteShape::Quad;
+        }
         ++run.count;
         seen.instances.push_back(sorted[i]);
         if (layer == LookLayer::Half) {
@@ -685,12 +689,12 @@ void ParticleEffect::create_layer_programs(gpu::Device& device) {
     }
 }
 
-Variant ParticleEffect::sprite_variant(const ViewData& view, bool points) const {
+Variant ParticleEffect::sprite_variant(const ViewData& view, SpriteShape shape) const {
     Variant variant;
     variant.add_if(is_clipped(view), "CLIPPED");
     variant.add_if(soft, "SOFT");
-    if (points) {
-        variant.add("POINTS");
+    if (shape != SpriteShape::Quad) {
+        variant.add(shape == SpriteShape::Point ? "POINTS" : "TRIANGLES");
         return variant;
     }
     features.add_to(variant);
@@ -709,9 +713,9 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
     const bool crosses = time + back > 0.999f * step;  // the beginning of the step
     const float bend = crosses ? step * (back + time - 0.5f * step) : 0.0f;
     bind_view(context, view);
-    draw_runs(context, view, Part::All, [&](bool points) {
+    draw_runs(context, view, Part::All, [&](SpriteShape shape) {
         Variant variant("VELOCITY");
-        variant.add(sprite_variant(view, points));
+        variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = velocity_programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{
@@ -732,12 +736,12 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     }
     state.clip = is_clipped(view);
     bind_lighting(context, view);
-    draw_runs(context, view, part, [&](bool points) {
+    draw_runs(context, view, part, [&](SpriteShape shape) {
         Variant variant = view.lighting.variant;
-        variant.add_if(lit, "LIT");
-        variant.add_if(features.six_way && !points, "SIX_WAY");
+        variant.add_if(lit && shape != SpriteShape::Triangle, "LIT");
+        variant.add_if(features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
-        variant.add(sprite_variant(view, points));
+        variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, state});
@@ -750,7 +754,7 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     });
 }
 
-/// `use(points)` uses the program for points or quads and returns it, or null.
+/// `use(shape)` uses the program for it and returns it, or null.
 template <typename Use>
 void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use) {
     gpu::Device& device = context.device();
@@ -780,23 +784,31 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         : part == Part::Weighted ? all.subspan(seen.weighted_begin)
                                  : all;
     const gpu::Program* program = nullptr;
-    std::optional<bool> as_points;
+    std::optional<SpriteShape> shape;
     const auto draw_run = [&](const ParticleRun& run) {
-        program = as_points == run.points ? program : use(run.points);
-        as_points = run.points;
+        program = shape == run.shape ? program : use(run.shape);
+        shape = run.shape;
         if (program == nullptr) {
             return;
         }
         program->set("first", run.first);
         bind_images(run.arrays, run.magnified);
-        if (run.points) {
+        if (run.shape == SpriteShape::Point) {
             device.draw_points(run.count);
+        } else if (run.shape == SpriteShape::Triangle) {
+            device.draw_ids(3 * run.count);
         } else {
             device.draw_quads(run.count);
         }
     };
     for (const ParticleRun& run : runs) {
         draw_run(run);
+        if (view.frame->warm_up && run.shape != SpriteShape::Point) {
+            ParticleRun other = run;
+            other.shape =
+                run.shape == SpriteShape::Quad ? SpriteShape::Triangle : SpriteShape::Quad;
+            draw_run(other);
+        }
     }
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     for (const auto& [entity, pool] : gpu.pools()) {
@@ -810,7 +822,7 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
             draw_run(
                 {.arrays = arrays[pool->look],
-                 .points = is_point(looks[pool->look]),
+                 .shape = is_point(looks[pool->look]) ? SpriteShape::Point : SpriteShape::Quad,
                  .count = static_cast<int>(count)});
         }
     }

@@ -152,7 +152,7 @@ struct ParticleEffect {
         ViewParticles& seen);
     void create_layer_programs(gpu::Device& device);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
-    [[nodiscard]] Variant sprite_variant(const ViewData& view, bool points) const;
+    [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape) const;
     void draw_sprites(PassContext& context, const ViewData& view, Part part);
     void draw_velocity(PassContext& context, const ViewData& view);
     template <typename Use>

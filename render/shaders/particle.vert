@@ -2,6 +2,7 @@
 //   LIT      some particle scatters light
 //   SIX_WAY  some have images of the light from six sides
 //   POINTS   all are discs that face the camera: one vertex each, a point
+//   TRIANGLES  all are discs without light: a triangle about each
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
@@ -247,6 +248,9 @@ void main() {
 #ifdef POINTS
     int index = gl_VertexID;
     int vertex = 0;
+#elif defined(TRIANGLES)
+    int index = gl_VertexID / 3;
+    int vertex = gl_VertexID - 3 * index;
 #else
     int index = gl_VertexID >> 2;
     int vertex = gl_VertexID & 3;
@@ -260,6 +264,8 @@ void main() {
     vec4 more = look_texel(look, kLookMore);
 #ifdef POINTS
     corner = vec3(0.0, 0.0, 1.0);
+#elif defined(TRIANGLES)
+    corner = vec3(1.7320508 * (float(vertex) - 1.0), vertex == 1 ? 2.0 : -1.0, 1.0);
 #else
     corner = vec3(corner_of(vertex), 1.0);
 #endif

@@ -233,6 +233,27 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a disc has its profile in every pixel, small or large") {
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    for (const int diameter : {8, 10, 12, 40}) {  // [px]; small ones are triangles
+        CAPTURE(diameter);
+        look.size = static_cast<float>(diameter) / 30;
+        const Entity one = emit({{0, 0, 0}}, look);
+        const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 60, 60));
+        world.destroy(one);
+        float largest = 0;
+        for (int i = 0; i < 3600; ++i) {
+            const Vec2 at =
+                (Vec2(i % 60, i / 60) + 0.5f - 30.0f) * (2.0f / static_cast<float>(diameter));
+            const float inside = std::max(1 - glm::dot(at, at), 0.0f);
+            const float found = rgb_at(image, i % 60, i / 60).x;
+            largest = std::max(largest, std::abs(found - inside * inside));
+        }
+        CHECK(largest <= 0.001f);
+    }
+}
+
+TEST_CASE_FIXTURE(
     ParticleScene,
     "particle pass: a point smaller than a pixel is fainter, wherever it lies in the pixel") {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
