@@ -296,7 +296,8 @@ void GpuParticlePools::move(
     device.bind_storage(kStateBinding, pool.state);
     device.bind_storage(kBitsBinding, pool.bits);
     device.bind_storage(kInstancesBinding, pool.instances);
-    const auto dispatch = [&](const gpu::Program& program, std::uint32_t begin, std::uint32_t end) {
+    const auto dispatch = [&](const gpu::Program& program, std::uint32_t begin, std::uint32_t end,
+                              std::uint32_t first_slot) {
         if (begin >= end) {
             return;
         }
@@ -306,8 +307,7 @@ void GpuParticlePools::move(
         program.set("end", end);
         program.set("stride", pool.stride);
         program.set("offset", offset_of(pool));
-        program.set("first_slot", pool.first % pool.capacity);
-        program.set("capacity", pool.capacity);
+        program.set("first_slot", first_slot);
         program.set("step_count", pool.layout.steps);
         program.set("runs", pool.layout.runs);
         program.set("forces", pool.layout.forces);
@@ -319,17 +319,29 @@ void GpuParticlePools::move(
         program.set("thickness", pool.collide_depth);
         if (pool.plain) {
             const ParticleStep& step = *pool.plain;
-            program.set("push_dt", Vec4(step.gravity * step.dt, step.dt));
-            program.set("air", Vec4(step.air, step.keep));
-            program.set("old_share", step.old_share);
+            const float old_way = step.dt * step.old_share;
+            const Vec3 added = step.air + (step.gravity * step.dt - step.air) * step.keep;
+            program.set("added_dt", Vec4(added, step.dt));
+            program.set("kept", step.keep);
+            program.set("ways", Vec2(old_way, step.dt - old_way));
         }
         device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
     };
     const gpu::Program* const old = is_plain_step ? programs_.plain
                                     : meets       ? programs_.seen_old
                                                   : programs_.old;
-    dispatch(*old, 0, pool.old);
-    dispatch(*(meets ? programs_.seen_births : programs_.births), pool.old, pool.count);
+    // The slots are a ring: what lies beyond its end is at its beginning.
+    const std::uint32_t first_slot = pool.first % pool.capacity + offset_of(pool);
+    const std::uint32_t room = pool.capacity - std::min(first_slot, pool.capacity);
+    const std::uint32_t wrap = room / pool.stride + (room % pool.stride > 0 ? 1 : 0);
+    const auto dispatch_parts = [&](const gpu::Program& program, std::uint32_t begin,
+                                    std::uint32_t end) {
+        const std::uint32_t middle = std::clamp(wrap, begin, end);
+        dispatch(program, begin, middle, first_slot);
+        dispatch(program, middle, end, first_slot - pool.capacity);
+    };
+    dispatch_parts(*old, 0, pool.old);
+    dispatch_parts(*(meets ? programs_.seen_births : programs_.births), pool.old, pool.count);
 }
 
 void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {

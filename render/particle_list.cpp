@@ -1,9 +1,11 @@
 #include "render/particle_list.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace limn {
 namespace {
@@ -60,20 +62,45 @@ bool is_point(const LookRecord& look) {
                || facing == static_cast<float>(ParticleFacing::Pixels));
 }
 
+/// On the diameter, at its share of the life.
+float size_factor(const ParticleInstance& instance, const LookRecord& look) {
+    const float share = static_cast<float>(instance.look_and_share & 0xffffu) / 65535.0f;
+    const float at = share * static_cast<float>(layout::kLookSamples - 1);
+    const auto i = std::min(static_cast<std::uint32_t>(at), layout::kLookSamples - 2);
+    const auto sample = [&](std::uint32_t n) {
+        return look[layout::kLookSizes + n / 4][static_cast<int>(n % 4)];
+    };
+    return glm::mix(sample(i), sample(i + 1), at - static_cast<float>(i));
+}
+
 bool moves_pixels(const LookRecord& look) {
     return look[2].z > look[layout::kLookMotion].z;  // no opacity is above 1
 }
 
 float reach_of(const ParticleInstance& instance, const LookRecord& look) {
-    const float share = static_cast<float>(instance.look_and_share & 0xffffu) / 65535.0f;
-    const float at = share * static_cast<float>(layout::kLookSamples - 1);
-    const auto i = std::min(static_cast<std::uint32_t>(at), layout::kLookSamples - 2);
-    const auto factor = [&](std::uint32_t n) {
-        return look[layout::kLookSizes + n / 4][static_cast<int>(n % 4)];
-    };
-    const float size =
-        (look[0].x + look[0].y) * glm::mix(factor(i), factor(i + 1), at - static_cast<float>(i));
+    const float size = (look[0].x + look[0].y) * size_factor(instance, look);
     return 0.7072f * size;  // half the diagonal of the quad, however it is turned
+}
+
+float least_pixels(
+    const ParticleInstance& instance, const LookRecord& look, const RenderView& view) {
+    const float facing = look[2].w;
+    const bool in_pixels = facing == static_cast<float>(ParticleFacing::Pixels);
+    const bool tumbles = look[layout::kLookMore].w > 0;
+    if (tumbles || !(in_pixels || facing == static_cast<float>(ParticleFacing::Camera))) {
+        return 0;
+    }
+    const float size = (look[0].x - look[0].y) * size_factor(instance, look);
+    const Affine& camera = view.world_from_camera;
+    const Vec3 to_middle = instance.position - transform_point(camera, Vec3(0));
+    if (in_pixels) {
+        const Vec4& fall = look[layout::kLookMore + 1];
+        const float away = glm::length(to_middle);
+        return size / std::sqrt(std::max(fall.x + away * (fall.y + away * fall.z), 1e-12f));
+    }
+    const float ahead = glm::dot(to_middle, transform_vector(camera, Vec3(0, 0, -1)));
+    return size * static_cast<float>(view.height)
+           / (2 * view.tangent.y * std::max(ahead, view.near));
 }
 
 void append_particles(

@@ -4,6 +4,7 @@
 #include "ecs/components/particles.h"
 #include "render/buffer_texture.h"
 #include "render/particle_packing.h"
+#include "render/render_view.h"
 #include "render/shaders/particle_gpu.h"
 #include "render/variant.h"
 
@@ -45,6 +46,10 @@ void append_particles(
 /// streak.
 [[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
 
+/// Diameter of its quad in the image at least [px]; 0 where it may be seen at an angle.
+[[nodiscard]] float
+least_pixels(const ParticleInstance& instance, const LookRecord& look, const RenderView& view);
+
 /// Where the images of a look are, in ImagePool; 0: it has none.
 struct ParticleArrays {
     std::uint32_t images = 0;
@@ -68,11 +73,16 @@ struct SpriteFeatures {
     }
 };
 
+/// What of the GPU draws a particle. A triangle about its disc takes half the set-up of a quad, and
+/// more pixels: for small discs without light, which would differ from corner to corner.
+enum class SpriteShape : std::uint8_t { Quad, Triangle, Point };
+
 /// Particles that follow one another in the order, have images of the same texture arrays and are
-/// all points or all quads.
+/// drawn as the same shape.
 struct ParticleRun {
     ParticleArrays arrays{};
-    bool points = false;
+    SpriteShape shape = SpriteShape::Quad;
+    bool magnified = false;  ///< none is smaller than a frame of its image
     int first = 0;
     int count = 0;
 };

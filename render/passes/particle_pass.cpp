@@ -39,6 +39,7 @@ constexpr unsigned kRibbonsUnit = 8;
 constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
 constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
+constexpr float kMaxTriangle = 10;          // [px] across, above which a disc is drawn as a quad
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
 
 float max_width(const ParticleLook& look) {
@@ -241,6 +242,8 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
         device.caps().software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
     effect.image_sampler =
         gpu::Sampler("particle images", {.minify = minify, .wrap = GL_CLAMP_TO_EDGE});
+    effect.finest_sampler =
+        gpu::Sampler("finest particle images", {.minify = GL_LINEAR, .wrap = GL_CLAMP_TO_EDGE});
     effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
     return effect;
 }
@@ -270,6 +273,13 @@ std::uint32_t ParticleEffect::add_look(
          .negative_lights = is_six_way ? negative.array : 0});
     places.push_back(place);
     extents.push_back(make_look_extent(look));
+    extents.back().texels = 0;
+    if (has_image) {
+        const ImageData& its = frame.assets->images[look.image.index];
+        extents.back().texels = std::max(
+            static_cast<float>(its.width) / static_cast<float>(look.columns),
+            static_cast<float>(its.height) / static_cast<float>(look.rows));
+    }
     layers.push_back(layer_of(look));
     has_halves = has_halves || layers.back() == LookLayer::Half;
     has_weighted = has_weighted || layers.back() == LookLayer::Weighted;
@@ -518,17 +528,18 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     std::size_t middle = 0;
     if (has_halves) {
         middle = middle_half();
-        append_runs(LookLayer::Full, 0, middle, seen);
+        append_runs(view.camera, LookLayer::Full, 0, middle, seen);
         seen.half_begin = seen.runs.size();
-        append_runs(LookLayer::Half, 0, sorted.size(), seen);
+        append_runs(view.camera, LookLayer::Half, 0, sorted.size(), seen);
         for (const auto& [entity, pool] : gpu.pools()) {
             grow(seen.half_bounds, layers[pool->look] == LookLayer::Half ? kAnywhere : Bounds{});
         }
     }
     seen.half_end = seen.runs.size();
-    append_runs(LookLayer::Full, middle, sorted.size(), seen);
+    append_runs(view.camera, LookLayer::Full, middle, sorted.size(), seen);
     seen.weighted_begin = seen.runs.size();
-    append_runs(LookLayer::Weighted, sorted.size() - weighted.size(), sorted.size(), seen);
+    append_runs(
+        view.camera, LookLayer::Weighted, sorted.size() - weighted.size(), sorted.size(), seen);
     for (const auto& [entity, pool] : gpu.pools()) {
         grow(
             seen.weighted_bounds,
@@ -563,7 +574,7 @@ bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
     const Vec4& its = looks[look][layout::kLookMotion];
     const bool is_still = its.x < 0;
     const bool is_flat = its.w < 0;
-    return run.points == is_point(looks[look])
+    return (run.shape == SpriteShape::Point) == is_point(looks[look])
            && (is_disc || run.arrays.images == arrays[look].images)
            && (is_still || run.arrays.motions == arrays[look].motions)
            && (is_flat || run.arrays.negative_lights == arrays[look].negative_lights);
@@ -571,7 +582,9 @@ bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
 
 /// Those of this layer in [first, last) that are visible, from back to front.
 void ParticleEffect::append_runs(
-    LookLayer layer, std::size_t first, std::size_t last, ViewParticles& seen) {
+    const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
+    ViewParticles& seen) {
+    const float scale = layer == LookLayer::Half ? 0.5f : 1.0f;
     const std::size_t first_run = seen.runs.size();
     for (std::size_t i = first; i < last; ++i) {
         const std::uint32_t look = sorted[i].look_and_share >> 16;
@@ -581,11 +594,21 @@ void ParticleEffect::append_runs(
         if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
             seen.runs.push_back(
                 {.arrays = arrays[look],
-                 .points = is_point(looks[look]),
+                 .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::Triangle,
+                 .magnified = true,
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
         }
-        ++seen.runs.back().count;
+        ParticleRun& run = seen.runs.back();
+        const float texels = extents[look].texels;
+        const float pixels = scale * least_pixels(sorted[i], looks[look], camera);
+        const bool is_small_disc =
+            texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxTriangle;
+        run.magnified = run.magnified && (texels == 0 || pixels > 0.999f * texels);
+        if (run.shape == SpriteShape::Triangle && !is_small_disc) {
+            run.shape = SpriteShape::Quad;
+        }
+        ++run.count;
         seen.instances.push_back(sorted[i]);
         if (layer == LookLayer::Half) {
             grow(seen.half_bounds, bounds_of(sorted[i], looks[look]));
@@ -666,12 +689,12 @@ void ParticleEffect::create_layer_programs(gpu::Device& device) {
     }
 }
 
-Variant ParticleEffect::sprite_variant(const ViewData& view, bool points) const {
+Variant ParticleEffect::sprite_variant(const ViewData& view, SpriteShape shape) const {
     Variant variant;
     variant.add_if(is_clipped(view), "CLIPPED");
     variant.add_if(soft, "SOFT");
-    if (points) {
-        variant.add("POINTS");
+    if (shape != SpriteShape::Quad) {
+        variant.add(shape == SpriteShape::Point ? "POINTS" : "TRIANGLES");
         return variant;
     }
     features.add_to(variant);
@@ -690,9 +713,9 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
     const bool crosses = time + back > 0.999f * step;  // the beginning of the step
     const float bend = crosses ? step * (back + time - 0.5f * step) : 0.0f;
     bind_view(context, view);
-    draw_runs(context, view, Part::All, [&](bool points) {
+    draw_runs(context, view, Part::All, [&](SpriteShape shape) {
         Variant variant("VELOCITY");
-        variant.add(sprite_variant(view, points));
+        variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = velocity_programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{
@@ -713,12 +736,12 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     }
     state.clip = is_clipped(view);
     bind_lighting(context, view);
-    draw_runs(context, view, part, [&](bool points) {
+    draw_runs(context, view, part, [&](SpriteShape shape) {
         Variant variant = view.lighting.variant;
-        variant.add_if(lit, "LIT");
-        variant.add_if(features.six_way && !points, "SIX_WAY");
+        variant.add_if(lit && shape != SpriteShape::Triangle, "LIT");
+        variant.add_if(features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
-        variant.add(sprite_variant(view, points));
+        variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, state});
@@ -731,7 +754,7 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     });
 }
 
-/// `use(points)` uses the program for points or quads and returns it, or null.
+/// `use(shape)` uses the program for it and returns it, or null.
 template <typename Use>
 void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use) {
     gpu::Device& device = context.device();
@@ -740,17 +763,17 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
     look_texels.bind(device, kLooksUnit);
     ribbon_texels.bind(device, kRibbonsUnit);
     billboard_texels.bind(device, kBillboardsUnit);
-    const auto bind_images = [&](const ParticleArrays& its) {
+    const auto bind_images = [&](const ParticleArrays& its, bool magnified) {
         const ImagePool& pool = view.frame->materials->images();
+        const gpu::Sampler& sampler = magnified ? finest_sampler : image_sampler;
         if (features.images) {
-            device.bind_texture(kImagesUnit, pool.array(its.images), &image_sampler);
+            device.bind_texture(kImagesUnit, pool.array(its.images), &sampler);
         }
         if (features.motions) {
-            device.bind_texture(kMotionsUnit, pool.array(its.motions), &image_sampler);
+            device.bind_texture(kMotionsUnit, pool.array(its.motions), &finest_sampler);
         }
         if (features.six_way) {
-            device.bind_texture(
-                kNegativeLightsUnit, pool.array(its.negative_lights), &image_sampler);
+            device.bind_texture(kNegativeLightsUnit, pool.array(its.negative_lights), &sampler);
         }
     };
     const std::span<const ParticleRun> all(seen.runs);
@@ -761,23 +784,31 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         : part == Part::Weighted ? all.subspan(seen.weighted_begin)
                                  : all;
     const gpu::Program* program = nullptr;
-    std::optional<bool> as_points;
-    const auto draw_some = [&](const ParticleArrays& its, bool points, int first, int count) {
-        program = as_points == points ? program : use(points);
-        as_points = points;
+    std::optional<SpriteShape> shape;
+    const auto draw_run = [&](const ParticleRun& run) {
+        program = shape == run.shape ? program : use(run.shape);
+        shape = run.shape;
         if (program == nullptr) {
             return;
         }
-        program->set("first", first);
-        bind_images(its);
-        if (points) {
-            device.draw_points(count);
+        program->set("first", run.first);
+        bind_images(run.arrays, run.magnified);
+        if (run.shape == SpriteShape::Point) {
+            device.draw_points(run.count);
+        } else if (run.shape == SpriteShape::Triangle) {
+            device.draw_ids(3 * run.count);
         } else {
-            device.draw_quads(count);
+            device.draw_quads(run.count);
         }
     };
     for (const ParticleRun& run : runs) {
-        draw_some(run.arrays, run.points, run.first, run.count);
+        draw_run(run);
+        if (view.frame->warm_up && run.shape != SpriteShape::Point) {
+            ParticleRun other = run;
+            other.shape =
+                run.shape == SpriteShape::Quad ? SpriteShape::Triangle : SpriteShape::Quad;
+            draw_run(other);
+        }
     }
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     for (const auto& [entity, pool] : gpu.pools()) {
@@ -789,7 +820,10 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         if (count > 0 && (its == part || part == Part::All)
             && is_group_in_view(extents[pool->look], frustum)) {
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
-            draw_some(arrays[pool->look], is_point(looks[pool->look]), 0, static_cast<int>(count));
+            draw_run(
+                {.arrays = arrays[pool->look],
+                 .shape = is_point(looks[pool->look]) ? SpriteShape::Point : SpriteShape::Quad,
+                 .count = static_cast<int>(count)});
         }
     }
 }

@@ -63,6 +63,7 @@ struct LookExtent {
     ParticleCulling culling = ParticleCulling::Particles;
     float radius = INFINITY;  ///< about a particle's middle, beside what its speed adds [m]
     float stretch = 0;        ///< half the time whose way a streak is as long as [s]
+    float texels = INFINITY;  ///< of the longer side of a frame of its image, 0: it has none
     Bounds group{};           ///< of all of them, unless each counts by itself
     Bounds ways{};            ///< of weighted ones that the GPU moves: where they are, roughly
 };
@@ -124,7 +125,8 @@ struct ParticleEffect {
     const gpu::Program* resolve = nullptr;  ///< of weighted ones, created with the first
     const gpu::Program* depth_copy = nullptr;
     gpu::Sampler image_sampler = {};
-    DepthMemory seen_depth = {};  ///< while some on the GPU meet what the camera sees
+    gpu::Sampler finest_sampler = {};  ///< without mip levels
+    DepthMemory seen_depth = {};       ///< while some on the GPU meet what the camera sees
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
     BufferTexture billboard_texels = BufferTexture("billboards", GL_RGBA32F);
@@ -145,10 +147,12 @@ struct ParticleEffect {
     void collect_billboards(const FrameData& frame, float back);
     [[nodiscard]] std::size_t middle_half() const;
     [[nodiscard]] bool fits(const ParticleRun& run, std::uint32_t look) const;
-    void append_runs(LookLayer layer, std::size_t first, std::size_t last, ViewParticles& seen);
+    void append_runs(
+        const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
+        ViewParticles& seen);
     void create_layer_programs(gpu::Device& device);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
-    [[nodiscard]] Variant sprite_variant(const ViewData& view, bool points) const;
+    [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape) const;
     void draw_sprites(PassContext& context, const ViewData& view, Part part);
     void draw_velocity(PassContext& context, const ViewData& view);
     template <typename Use>

@@ -2,12 +2,16 @@
 //   LIT      some particle scatters light
 //   SIX_WAY  some have images of the light from six sides
 //   POINTS   all are discs that face the camera: one vertex each, a point
+//   TRIANGLES  all are discs without light: a triangle about each
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
+//   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
+#define VARYING out
 #include "lib/particle.glsl"
+#include "lib/particle_varyings.glsl"
 #include "lib/view.glsl"
 #ifdef LIT
 #include "lib/lighting.glsl"
@@ -29,17 +33,14 @@ layout(location = 6) out vec3 previous_clip;  // clip x, y, w
 
 uniform int first;  // of the particles to draw
 
-layout(location = 0) out vec3 corner;                  // -1 .. 1; y is multiplied by z, so that it stays straight
-layout(location = 1) out vec4 light;                   // radiance of the middle, premultiplied by a: its opacity
-layout(location = 2) flat out vec4 frames;             // texture coordinates: scale xy, offset of the frame zw
-layout(location = 3) flat out vec4 blend;              // cover, softness [m], share of the next frame, layer
-layout(location = 4) flat out vec4 next_frame;         // its offset; layer of the motion map, its full value
-layout(location = 5) out float distance_ahead;         // along the view axis [m]
-#ifdef SIX_WAY
-layout(location = 7) out vec4 positive_side[3];   // of what comes from the right, above and behind: premultiplied
-                                                       // radiance of a white particle; w: layer of their map, -1: none
-layout(location = 10) out vec3 negative_side[3];  // likewise from the left, from below and from the camera
-layout(location = 13) out vec3 glow_color;        // radiance by itself, premultiplied
+#ifdef WEIGHTED
+uniform vec2 weight_range;  // nearest distance ahead [m], 1 / (farthest - nearest)
+
+const float kWeightFall = 8.0;  // optical depth of the cloud that the weights suit
+
+float weight_at(float ahead) {
+    return exp(-kWeightFall * clamp((ahead - weight_range.x) * weight_range.y, 0.0, 1.0));
+}
 #endif
 
 const int kFacingVelocity = 1;
@@ -156,6 +157,10 @@ Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, floa
     vec3 right = normalize(view.ray_right.xyz);
     vec3 up = normalize(cross(to_camera, right));
     right = cross(up, to_camera);
+    if (facing == kFacingPixels) {  // in the plane of the image, where its extent is the same everywhere
+        right = normalize(view.ray_right.xyz);
+        up = normalize(view.ray_up.xyz);
+    }
     if (facing == kFacingGround) {
         right = vec3(1.0, 0.0, 0.0);
         up = vec3(0.0, 0.0, -1.0);
@@ -243,6 +248,9 @@ void main() {
 #ifdef POINTS
     int index = gl_VertexID;
     int vertex = 0;
+#elif defined(TRIANGLES)
+    int index = gl_VertexID / 3;
+    int vertex = gl_VertexID - 3 * index;
 #else
     int index = gl_VertexID >> 2;
     int vertex = gl_VertexID & 3;
@@ -256,6 +264,8 @@ void main() {
     vec4 more = look_texel(look, kLookMore);
 #ifdef POINTS
     corner = vec3(0.0, 0.0, 1.0);
+#elif defined(TRIANGLES)
+    corner = vec3(1.7320508 * (float(vertex) - 1.0), vertex == 1 ? 2.0 : -1.0, 1.0);
 #else
     corner = vec3(corner_of(vertex), 1.0);
 #endif
@@ -321,6 +331,9 @@ void main() {
     vec3 corner_ws = p.position + offset;
     gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
     distance_ahead = gl_Position.w;
+#ifdef WEIGHTED
+    weight = weight_at(distance_ahead);
+#endif
 #ifdef VELOCITY
     vec3 velocity = p.velocity;
     float age = p.age;

@@ -26,8 +26,7 @@ uniform uint begin;       // of those to move, from the oldest of them on
 uniform uint end;         // one after the last
 uniform uint stride;      // every so many are moved
 uniform uint offset;      // from the oldest particle to the oldest that is moved
-uniform uint first_slot;  // of the oldest
-uniform uint capacity;    // slots
+uniform uint first_slot;  // of the oldest that is moved, in this round of the ring: it wraps
 uniform int step_count;   // steps to do
 uniform int runs;         // texel of the first run of births
 uniform int forces;       // texel of the first force of a field
@@ -36,9 +35,9 @@ uniform uint look;
 uniform int closed_form;  // states are those of birth
 uniform vec3 gravity;
 #ifdef PLAIN
-uniform vec4 push_dt;     // texels of the step
-uniform vec4 air;
-uniform float old_share;
+uniform vec4 added_dt;  // to the share of the velocity that is kept; length of the step
+uniform float kept;
+uniform vec2 ways;      // time at the old velocity and at the new one [s]
 #endif
 uniform float back;       // how long before the end of the last step the particles are seen [s]
 
@@ -62,12 +61,11 @@ struct Particle {
 
 void move(inout Particle p) {
     if (p.life > 0.0) {  // does not stick
-        vec3 start = p.velocity;
-        vec3 old = old_share == 1.0 ? start : p.velocity;
-        p.velocity = air.xyz + (p.velocity + push_dt.xyz - air.xyz) * air.w;
-        p.place += old * (push_dt.w * old_share) + p.velocity * (push_dt.w - push_dt.w * old_share);
+        vec3 old = p.velocity;
+        p.velocity = old * kept + added_dt.xyz;
+        p.place += old * ways.x + p.velocity * ways.y;
     }
-    p.age += push_dt.w;
+    p.age += added_dt.w;
 }
 
 #else
@@ -385,9 +383,7 @@ void main() {
     if (moved >= end) {
         return;
     }
-    uint index = offset + moved * stride;
-    uint slot = first_slot + index;
-    slot -= slot >= capacity ? capacity : 0u;
+    uint slot = first_slot + moved * stride;
     vec4 place_age = state[2u * slot];
     vec4 velocity_life = state[2u * slot + 1u];
     Particle p = Particle(place_age.xyz, place_age.w, velocity_life.xyz, velocity_life.w, bits[slot]);
@@ -397,7 +393,7 @@ void main() {
     for (int i = 0; i < step_count; ++i) {
         int texel = int(kEmitterTexels) + i * int(kStepTexels);
 #ifndef OLD
-        uint number = first + index;
+        uint number = first + offset + moved * stride;
         uvec4 births = floatBitsToUint(texelFetch(steps, texel));
         int since = int(number - births.x);  // wraps
         if (since >= int(births.y)) {

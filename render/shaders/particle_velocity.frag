@@ -1,6 +1,8 @@
 // Motion of pixels that particles cover, as gbuffer.frag writes it of surfaces: where opacity times cover is above what
 // the look states. Definitions: those of lib/sprite.glsl, and SOFT as in particle.frag.
 #version 450
+#define VARYING in
+#include "lib/particle_varyings.glsl"
 #include "lib/sprite.glsl"
 #include "lib/velocity.glsl"
 #include "lib/view.glsl"
@@ -9,12 +11,6 @@
 layout(binding = 4) uniform sampler2D scene_depth;
 #endif
 
-layout(location = 0) in vec3 corner;
-layout(location = 1) in vec4 light;
-layout(location = 2) flat in vec4 frames;
-layout(location = 3) flat in vec4 blend;  // x: cover, as a multiple of the least that counts
-layout(location = 4) flat in vec4 next_frame;
-layout(location = 5) in float distance_ahead;
 layout(location = 6) in vec3 previous_clip;
 
 layout(location = 0) out vec2 velocity;
@@ -30,7 +26,7 @@ void main() {
 #endif
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
     velocity = velocity_from(now_ndc, previous_clip);
-    if (light.a * s.a * fade * blend.x <= 1.0) {
+    if (light.a * s.a * fade * blend.x <= 1.0) {  // blend.x: cover, as a multiple of the least that counts
         discard;
     }
 }

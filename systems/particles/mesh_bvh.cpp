@@ -15,6 +15,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/particles/mesh_bvh.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 // after foreach_target
 #include <hwy/highway.h>
@@ -45,15 +46,26 @@ struct Ray {
 };
 
 /// Whether there is something to trace.
-inline bool make_ray(const Segment& segment, float reach, Ray& ray) {
+HWY_INLINE bool is_traceable(const Segment& segment) {
+    const Vec3 from = glm::abs(segment.from);
+    const Vec3 size = glm::abs(segment.to - segment.from);
+    const float longest =
+        size.x > size.y ? (size.x > size.z ? size.x : size.z) : (size.y > size.z ? size.y : size.z);
+    return std::isfinite(from.x + from.y + from.z + (size.x + size.y + size.z))
+           && longest >= 1e-30f;
+}
+
+HWY_INLINE float padding(const Segment& segment, float reach) {
+    const Vec3 from = glm::abs(segment.from);
+    return kRounding * (std::max(std::max(from.x, from.y), from.z) + reach);
+}
+
+/// Of a traceable segment.
+inline Ray make_ray(const Segment& segment, float pad) {
     const Vec3 way = segment.to - segment.from;
     const Vec3 size = glm::abs(way);
     const int longest = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    if (!is_finite(segment.from) || !is_finite(way) || size[longest] < 1e-30f) {
-        return false;
-    }
-    const Vec3 from = glm::abs(segment.from);
-    const float pad = kRounding * (std::max({from.x, from.y, from.z}) + reach);
+    Ray ray;
     ray.axis[0] = (longest + 1) % 3;
     ray.axis[1] = (longest + 2) % 3;
     ray.axis[2] = longest;
@@ -68,8 +80,31 @@ inline bool make_ray(const Segment& segment, float reach, Ray& ray) {
         ray.origin[1][i] = segment.from[i] + (down ? pad : -pad);
         ray.inverse[i] = 1.0f / (down ? std::min(way[i], -1e-30f) : std::max(way[i], 1e-30f));
     }
-    return true;
+    return ray;
 }
+
+/// A segment on its way through the tree: most short ones meet few boxes, which their own box finds
+/// out, so that the ray is made when it is needed first.
+struct Path {
+    const Segment& segment;
+    float pad;
+    Vec3 low;   ///< of the segment's box, padded
+    Vec3 high;  ///< likewise
+    Ray its_ray;
+    bool has_ray = false;
+
+    Path(const Segment& its_segment, float reach)
+        : segment(its_segment), pad(padding(its_segment, reach)),
+          low(glm::min(segment.from, segment.to) - pad),
+          high(glm::max(segment.from, segment.to) + pad) {}
+    const Ray& ray() {
+        if (!has_ray) {
+            its_ray = make_ray(segment, pad);
+            has_ray = true;
+        }
+        return its_ray;
+    }
+};
 
 /// The test of triangle `lane`, with exact signs: products of floats are exact in double. The
 /// share, or NaN if it is not hit. For rays through an edge as far as float can tell.
@@ -98,6 +133,15 @@ inline float exact_share(const MeshBvh::Leaf& leaf, std::size_t lane, const Ray&
         (u * double{p[0][2]} + v * double{p[1][2]} + w * double{p[2][2]}) / sum);
 }
 
+/// So that misses of the cache overlap.
+template <typename T>
+inline void prefetch(const T& object) {
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(&object);
+    for (std::size_t i = 0; i < sizeof(T); i += 64) {
+        hwy::Prefetch(bytes + i);
+    }
+}
+
 }  // namespace limn::mesh_bvh
 #endif
 
@@ -107,11 +151,26 @@ namespace limn::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using mesh_bvh::Ray;
 
-/// Calls hit(lane, near) for each child whose box the ray meets within `limit`.
+/// Calls hit(lane, near) for each child whose box the path may meet within `limit`.
 template <typename Hit>
-HWY_INLINE void meet_boxes(const MeshBvh::Node& node, const Ray& ray, float limit, Hit hit) {
+HWY_INLINE void meet_boxes(const MeshBvh::Node& node, mesh_bvh::Path& path, float limit, Hit hit) {
     const hn::CappedTag<float, MeshBvh::kChildren> d;
     for (std::size_t first = 0; first < MeshBvh::kChildren; first += hn::Lanes(d)) {
+        const auto overlap = [&](int i) {
+            return hn::And(
+                hn::Le(hn::LoadU(d, node.bounds[0][i] + first), hn::Set(d, path.high[i])),
+                hn::Ge(hn::LoadU(d, node.bounds[1][i] + first), hn::Set(d, path.low[i])));
+        };
+        const auto overlaps = hn::And(hn::And(overlap(0), overlap(1)), overlap(2));
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, overlaps, bits);
+        if ((bits[0] & (bits[0] - 1)) == 0) {  // at most one: not worth the test that orders them
+            if (bits[0] != 0) {
+                hit(first + static_cast<std::size_t>(std::countr_zero(bits[0])), 0.0f);
+            }
+            continue;
+        }
+        const Ray& ray = path.ray();
         auto near = hn::Zero(d);
         auto far = hn::Set(d, limit * (1 + mesh_bvh::kRounding));
         for (int i = 0; i < 3; ++i) {
@@ -127,7 +186,6 @@ HWY_INLINE void meet_boxes(const MeshBvh::Node& node, const Ray& ray, float limi
             near = hn::Max(near, enter);
             far = hn::Min(far, leave);
         }
-        std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, hn::Le(near, far), bits);
         if (bits[0] != 0) {
             HWY_ALIGN float nears[MeshBvh::kChildren];
@@ -209,11 +267,11 @@ HWY_INLINE MeshHit trace(const MeshBvh& bvh, const Segment& segment) {
         std::uint32_t child;
         float near;
     };
-    Ray ray;
-    MeshHit best = {.share = 1};
-    if (bvh.nodes.empty() || !mesh_bvh::make_ray(segment, bvh.reach, ray)) {
+    if (bvh.nodes.empty() || !mesh_bvh::is_traceable(segment)) {
         return {};
     }
+    mesh_bvh::Path path(segment, bvh.reach);
+    MeshHit best = {.share = 1};
     const MeshBvh::Leaf* best_leaf = nullptr;
     std::size_t best_lane = 0;
     Open stack[mesh_bvh::kStack];
@@ -226,7 +284,7 @@ HWY_INLINE MeshHit trace(const MeshBvh& bvh, const Segment& segment) {
         }
         if ((next.child & MeshBvh::kLeafBit) != 0) {
             const MeshBvh::Leaf& leaf = bvh.leaves[next.child & ~MeshBvh::kLeafBit];
-            meet_triangles(leaf, ray, [&](std::size_t lane, float share) {
+            meet_triangles(leaf, path.ray(), [&](std::size_t lane, float share) {
                 const std::uint32_t triangle = leaf.triangle[lane];
                 if (share < best.share || (share == best.share && triangle < best.triangle)) {
                     best = {.share = share, .triangle = triangle};
@@ -238,12 +296,18 @@ HWY_INLINE MeshHit trace(const MeshBvh& bvh, const Segment& segment) {
         }
         const MeshBvh::Node& node = bvh.nodes[next.child];
         const std::size_t begin = open;
-        meet_boxes(node, ray, best.share, [&](std::size_t lane, float near) {
+        meet_boxes(node, path, best.share, [&](std::size_t lane, float near) {
             std::size_t at = open++;  // nearest last
             for (; at > begin && stack[at - 1].near < near; --at) {
                 stack[at] = stack[at - 1];
             }
-            stack[at] = {node.child[lane], near};
+            const std::uint32_t child = node.child[lane];
+            stack[at] = {child, near};
+            if ((child & MeshBvh::kLeafBit) != 0) {
+                mesh_bvh::prefetch(bvh.leaves[child & ~MeshBvh::kLeafBit]);
+            } else {
+                mesh_bvh::prefetch(bvh.nodes[child]);
+            }
         });
     }
     if (best_leaf == nullptr) {
@@ -261,8 +325,13 @@ HWY_INLINE MeshHit trace(const MeshBvh& bvh, const Segment& segment) {
 void trace_all(
     const MeshBvh& bvh, const Segment* segments, std::span<const std::uint32_t> order,
     MeshHit* hits) {
-    for (const std::uint32_t i : order) {
-        hits[i] = trace(bvh, segments[i]);
+    constexpr std::size_t kAhead = 4;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i + kAhead < order.size()) {
+            hwy::Prefetch(segments + order[i + kAhead]);
+            hwy::Prefetch(hits + order[i + kAhead]);
+        }
+        hits[order[i]] = trace(bvh, segments[order[i]]);
     }
 }
 

@@ -44,7 +44,7 @@ struct MeshBvh {
         float bounds[2][3][kChildren];  ///< minima, maxima of x, y, z; +-infinity without a child
         std::uint32_t child[kChildren];
     };
-    struct alignas(16) Leaf {
+    struct alignas(32) Leaf {
         float corner[3][3][kTriangles];      ///< x, y, z of each corner; NaN: never hit
         std::uint32_t triangle[kTriangles];  ///< kNoTriangle: fewer
     };

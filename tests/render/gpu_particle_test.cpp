@@ -393,6 +393,21 @@ TEST_CASE("gpu particles: a ring keeps order, refuses births when full and count
     CHECK(both.recorded().cohorts.size() <= 32);
 }
 
+TEST_CASE("gpu particles: across the end of the ring they go where the CPU's go") {
+    ParticleEmitter emitter = fountain();
+    emitter.capacity = 1000;  // 800 live, 2,000 are born
+    emitter.life = 2;
+    for (const float drag : {0.0f, 0.4f}) {
+        Executors both(emitter, {.gravity = 0.3f, .drag = drag});
+        for (int i = 0; i < 300; ++i) {
+            both.step();
+            const std::vector<GpuParticle> gpu = both.read();
+            REQUIRE(gpu.size() == both.pool().size());
+            CHECK(largest_difference(gpu, both.pool(), 6) <= 1e-4f);
+        }
+    }
+}
+
 TEST_CASE("gpu particles: when the GPU begins anew they are where they were") {
     ParticleEmitter emitter = fountain();
     emitter.prewarm = 1;

@@ -137,6 +137,69 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: a point sprite is as large in a corner of the image as in the middle") {
+    ParticleLook point = disc({1, 1, 1}, 1, 1);
+    ImageData white;
+    white.width = white.height = 1;
+    white.pixels = {255, 255, 255, 255};
+    point.image = add(white);
+    point.facing = ParticleFacing::Pixels;
+    point.size = 16;
+    point.turn_spread = 0;
+    for (const float shift : {0.0f, 1.0f, 1.9f}) {  // of 2.31 m from the middle to the edge
+        CAPTURE(shift);
+        const Entity sprite = emit({{shift, shift, -4}}, point);
+        const gpu::FloatImage image = radiance(look({0, 0, 0}, {0, 0, -1}, 96, 96));
+        int lit = 0;
+        for (int i = 0; i < 96 * 96; ++i) {
+            lit += rgb_at(image, i % 96, i / 96).x > 0.5f ? 1 : 0;
+        }
+        CHECK(lit == 16 * 16);
+        world.destroy(sprite);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: a chessboard is gray where it is small, alone and behind a large one") {
+    ParticleLook board = disc({1, 1, 1}, 1, 1);
+    ImageData image;
+    image.width = image.height = 64;
+    for (int i = 0; i < 64 * 64; ++i) {
+        const std::uint8_t value = ((i % 64 + i / 64) & 1) != 0 ? 255 : 0;
+        image.pixels.insert(image.pixels.end(), {value, value, value, 255});
+    }
+    board.image = add(image);
+    board.facing = ParticleFacing::Pixels;
+    board.turn_spread = 0;
+    const auto range_of = [&](const gpu::FloatImage& drawn, int middle) {  // of 6 x 6 pixels
+        float least = INFINITY;
+        float most = 0;
+        for (int i = 0; i < 36; ++i) {
+            const float value = rgb_at(drawn, middle - 3 + i % 6, 48 - 3 + i / 6).x;
+            least = std::min(least, value);
+            most = std::max(most, value);
+        }
+        return Vec2(least, most);
+    };
+    const auto drawn = [&] { return radiance(look({0, 0, 0}, {0, 0, -1}, 192, 96)); };
+    board.size = 9;
+    emit({{1, 0, -3}}, board);
+    const Vec2 alone = range_of(drawn(), 112);  // 96 + 48 (1 m / 3 m)
+    CHECK(alone.x > 0.4f);
+    CHECK(alone.y < 0.6f);
+    board.size = 64;
+    emit({{-1, 0, -2}}, board);
+    const gpu::FloatImage both = drawn();
+    const Vec2 small = range_of(both, 112);
+    CHECK(small.x > 0.4f);
+    CHECK(small.y < 0.6f);
+    const Vec2 large = range_of(both, 72);
+    CHECK(large.y - large.x > 0.5f);
+}
+
+TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: a disc drawn as a point is that drawn as a quad, to a tenth") {
     // Seen at a right angle, 7.5 to 30 pixels wide.
     for (const float size : {0.25f, 0.5f, 1.0f}) {
@@ -166,6 +229,27 @@ TEST_CASE_FIXTURE(
             CHECK(sum > 10);
             CHECK(difference < 0.1 * sum);
         }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a disc has its profile in every pixel, small or large") {
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    for (const int diameter : {8, 10, 12, 40}) {  // [px]; small ones are triangles
+        CAPTURE(diameter);
+        look.size = static_cast<float>(diameter) / 30;
+        const Entity one = emit({{0, 0, 0}}, look);
+        const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 60, 60));
+        world.destroy(one);
+        float largest = 0;
+        for (int i = 0; i < 3600; ++i) {
+            const Vec2 at =
+                (Vec2(i % 60, i / 60) + 0.5f - 30.0f) * (2.0f / static_cast<float>(diameter));
+            const float inside = std::max(1 - glm::dot(at, at), 0.0f);
+            const float found = rgb_at(image, i % 60, i / 60).x;
+            largest = std::max(largest, std::abs(found - inside * inside));
+        }
+        CHECK(largest <= 0.001f);
     }
 }
 

@@ -61,6 +61,8 @@ vec4 book_at(
 vec2 sprite_place(vec3 corner) {
 #ifdef POINTS
     return vec2(2.0, -2.0) * (gl_PointCoord - 0.5);
+#elif !defined(RIBBONS)
+    return corner.xy;
 #else
     return vec2(corner.x, corner.y / max(corner.z, 1e-6));
 #endif
