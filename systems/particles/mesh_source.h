@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
 #include "ecs/query.h"
 

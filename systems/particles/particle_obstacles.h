@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
 #include "ecs/components/height_field.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/surface.h"

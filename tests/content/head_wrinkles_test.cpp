@@ -29,7 +29,7 @@ std::vector<Vec3> posed(const std::vector<std::string_view>& names, float weight
         weights.weights[expression_index(name)] = weight;
     }
     std::vector<Vec3> positions;
-    CHECK(deform_positions(head(), {}, nullptr, nullptr, &weights, positions));
+    CHECK(deform_positions(head(), {}, nullptr, nullptr, &weights, nullptr, positions));
     return positions;
 }
 
