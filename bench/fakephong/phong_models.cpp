@@ -12,8 +12,6 @@
 namespace limn::fakephong {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
-
 /// A view of the unit sphere at the origin, lit by `light`.
 PhongScene ball_scene(const char* name, PhongMesh mesh, const PhongLight& light) {
     PhongScene scene = {.name = name, .mesh = std::move(mesh), .lights = {light}};

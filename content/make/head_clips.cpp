@@ -191,7 +191,8 @@ ClipData make_talk(std::string_view says) {
         sheet.morphing.push_back(static_cast<std::uint16_t>(link.shape));
     }
     std::ranges::sort(sheet.morphing);
-    sheet.morphing.erase(std::ranges::unique(sheet.morphing).begin(), sheet.morphing.end());
+    sheet.morphing.erase(
+        std::unique(sheet.morphing.begin(), sheet.morphing.end()), sheet.morphing.end());
     const auto frames = static_cast<int>(std::ceil(track.duration() * kRate));
     for (int frame = 0; frame <= frames; ++frame) {
         const float time = static_cast<float>(frame) / kRate;

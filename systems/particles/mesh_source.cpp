@@ -6,8 +6,7 @@ namespace limn {
 
 MeshSource find_mesh_source(
     const MeshInstance& instance, const Deformed* deformed, const DeformerState* deformers,
-    const Query<const Pose>& poses, const Query<const MorphWeights>& morphs,
-    const Assets& assets) {
+    const Query<const Pose>& poses, const Query<const MorphWeights>& morphs, const Assets& assets) {
     MeshSource source{.mesh = instance.mesh};
     if (instance.mesh.index >= assets.meshes.size()) {
         return source;

@@ -122,8 +122,10 @@ TEST_CASE_FIXTURE(
     point.size = 16;
     point.turn_spread = 0;
     point.attenuation = {1, 0, 0.01f};
-    for (const auto& [distance, size] :
+    for (const auto& seen :
          {std::pair(0.1f, 15.9992f), std::pair(10.0f, 11.313708f), std::pair(100.0f, 1.592060f)}) {
+        const float distance = seen.first;
+        const float size = seen.second;
         CAPTURE(distance);
         const Entity sprite = emit({{0, 0, -distance}}, point);
         const gpu::FloatImage image = radiance(look({0, 0, 0}, {0, 0, -1}, 96, 96));
