@@ -190,10 +190,10 @@ TEST_CASE_FIXTURE(
         discs.push_back({.middle = place, .diameter = 0.8, .opacity = 0.3});
     }
     add_sun();
-    for (const auto& wall :
+    for (const auto& placed :
          {std::pair(0.0f, 0.002), std::pair(1.4f, 0.03), std::pair(2.0f, 0.03)}) {
-        const float z = wall.first;
-        const double limit = wall.second;
+        const float z = placed.first;
+        const double limit = placed.second;
         CAPTURE(z);
         put_wall(z);
         world.query<const ParticlePool>().each(
