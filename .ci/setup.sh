@@ -8,7 +8,7 @@ packages=(
     doctest-dev libbenchmark-dev libkissfft-dev
     glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick
 )
-ci_packages=(clang clang-format libclang-rt-14-dev mesa-vulkan-drivers)
+ci_packages=(clang clang-format libclang-rt-14-dev mesa-vulkan-drivers espeak-ng)
 
 say() { printf '%s\n' "$*" >&2; }
 die() { say "$(basename "$0"): $*"; exit 1; }

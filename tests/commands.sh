@@ -19,7 +19,7 @@ found() {
 # The same, quickly; nothing for what is no whole command.
 quick() {
     case $1 in
-    *SCENE* | *LEVEL* | *FILE* | *FOLDER* | *ID* | *COMMAND* | 'limn play' | 'limn quality' | 'limn info' | 'limn check' | 'limn hash') return ;;
+    *SCENE* | *LEVEL* | *TEXT* | *FILE* | *FOLDER* | *ID* | *COMMAND* | 'limn play' | 'limn quality' | 'limn info' | 'limn check' | 'limn hash') return ;;
     esac
     local command=$1
     command=$(sed -E 's/--size [0-9x]+//; s/--spp [0-9]+/--spp 2/; s/--frames [0-9]+:[0-9]+/--frames 0:1/; s/--frames [0-9]+( |$)/ /; s/--warmup [0-9]+//' <<<"$command")
@@ -31,7 +31,7 @@ quick() {
     'limn view'*) command="$command -o viewed.png" ;;
     'limn bench'*) command="$command --size 64x36 --frames 2 --warmup 1" ;;
     'limn hash'*) command="$command --frames 20" ;;
-    'limn import'*) [ -d ../shared/assets ] || return ;;
+    'limn import'* | 'limn speak'*) [ -d ../shared/assets ] || return ;;
     'limn quality --html'*) command=${command/quality/quality surfaces} ;;
     esac
     echo "$command"
@@ -45,10 +45,15 @@ if [ -d ../shared/assets ]; then
     ln -s "$(realpath ../shared/assets)/ict-facekit" "$folder/ICT-FaceKit"
     ln -s "$(realpath ../shared/assets)/makehuman" "$folder/makehuman"
 fi
-for name in model.glb helmet.glb face.glb; do cp content/levels/lagoon_lantern.gltf "$folder/$name"; done
+for name in model.glb helmet.glb face.glb clock.glb; do cp content/levels/lagoon_lantern.gltf "$folder/$name"; done
 for name in a.png b.png before.png after.png model.exr memorial.exr museum.exr; do
     "$limn" render "$folder/model.glb" -o "$folder/$name" --size 64x36 >/dev/null || exit 1
 done
+
+if [ -d ../shared/assets ]; then
+    (cd "$folder" && "$limn" import ict-facekit ICT-FaceKit -o face.glb \
+        && "$limn" speak "exactly one" --face face.glb -o one.glb --record clock.json) >/dev/null || exit 1
+fi
 
 mapfile -t commands < <(found | tr -s ' ' | sort -u | while read -r command; do quick "$command"; done | tr -s ' ' | sort -u)
 failed=0

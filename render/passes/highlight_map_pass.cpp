@@ -62,9 +62,11 @@ std::vector<Vec3> layer_centers(const FrameData& frame, const HighlightLayers& l
 
 bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Source& b) {
     return a.layers == b.layers && a.lights.size() == b.lights.size()
-           && std::memcmp(
-                  a.lights.data(), b.lights.data(), a.lights.size() * sizeof(layout::LightRecord))
-                  == 0
+           && (a.lights.empty()
+               || std::memcmp(
+                      a.lights.data(), b.lights.data(),
+                      a.lights.size() * sizeof(layout::LightRecord))
+                      == 0)
            && a.directional == b.directional
            && std::equal(
                std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row));
