@@ -7,7 +7,7 @@
 
 namespace limn {
 
-/// Mouth shapes that can be told apart by eye (face.viseme): those of MPEG-4, by their numbers.
+/// Visually distinct mouth shapes (face.viseme), in the order of MPEG-4.
 enum class Viseme : std::uint8_t {
     Silence,
     P,   ///< p b m: lips shut
