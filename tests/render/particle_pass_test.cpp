@@ -52,6 +52,19 @@ ParticleLook disc(const Vec3& color, float opacity, float cover) {
     return look;
 }
 
+/// White without an edge, 16 pixels wide in an image of 96 lines.
+ParticleLook add_point_sprite(Scene& scene) {
+    ParticleLook point = disc({1, 1, 1}, 1, 1);
+    ImageData white;
+    white.width = white.height = 1;
+    white.pixels = {255, 255, 255, 255};
+    point.image = scene.add(white);
+    point.facing = ParticleFacing::Pixels;
+    point.size = 16;
+    point.turn_spread = 0;
+    return point;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -112,15 +125,8 @@ TEST_CASE("particle pass: whoever counts as one thing is ordered by its place") 
 
 TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: point sprites have the sizes of the book's table") {
-    // Seen in an image of 96 lines, white without an edge: psize (1, 0, 0.01, 16).
-    ParticleLook point = disc({1, 1, 1}, 1, 1);
-    ImageData white;
-    white.width = white.height = 1;
-    white.pixels = {255, 255, 255, 255};
-    point.image = add(white);
-    point.facing = ParticleFacing::Pixels;
-    point.size = 16;
-    point.turn_spread = 0;
+    // psize (1, 0, 0.01, 16)
+    ParticleLook point = add_point_sprite(*this);
     point.attenuation = {1, 0, 0.01f};
     for (const auto& seen :
          {std::pair(0.1f, 15.9992f), std::pair(10.0f, 11.313708f), std::pair(100.0f, 1.592060f)}) {
@@ -141,14 +147,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     ParticleScene,
     "particle pass: a point sprite is as large in a corner of the image as in the middle") {
-    ParticleLook point = disc({1, 1, 1}, 1, 1);
-    ImageData white;
-    white.width = white.height = 1;
-    white.pixels = {255, 255, 255, 255};
-    point.image = add(white);
-    point.facing = ParticleFacing::Pixels;
-    point.size = 16;
-    point.turn_spread = 0;
+    ParticleLook point = add_point_sprite(*this);
     for (const float shift : {0.0f, 1.0f, 1.9f}) {  // of 2.31 m from the middle to the edge
         CAPTURE(shift);
         const Entity sprite = emit({{shift, shift, -4}}, point);
