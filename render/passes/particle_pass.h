@@ -1,13 +1,12 @@
 #pragma once
 
-#include "ecs/base/depth_sort.h"
 #include "ecs/components/particles.h"
 #include "render/billboard_list.h"
 #include "render/buffer_texture.h"
-#include "render/culling.h"
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
+#include "render/particle_culling.h"
 #include "render/particle_layer.h"
 #include "render/particle_list.h"
 #include "render/ribbon_list.h"
@@ -44,37 +43,6 @@ namespace limn {
 
 /// Of an entity in the last step [m/s]; 0 where it jumped.
 [[nodiscard]] Vec3 entity_velocity(const World& world, Entity entity, float step);
-
-/// Keeps its memory from frame to frame.
-struct DistanceOrder {
-    std::vector<std::uint32_t> indices{};  ///< of instances, from back to front
-    std::vector<std::uint32_t> keys{};
-    SortScratch scratch{};
-};
-/// As seen from `eye` along `forward`; equal distances keep their order, NaN comes first
-/// (particle.distance-sort). `places`: of each look, where all of its particles count as being, if
-/// they are one thing (ParticleSort::Births).
-void order_by_distance(
-    std::span<const ParticleInstance> instances, std::span<const std::optional<Vec3>> places,
-    const Vec3& eye, const Vec3& forward, DistanceOrder& order);
-
-/// What is known of the particles of a look before they are drawn (particle.visibility).
-struct LookExtent {
-    ParticleCulling culling = ParticleCulling::Particles;
-    float radius = INFINITY;  ///< about a particle's middle, beside what its speed adds [m]
-    float stretch = 0;        ///< half the time whose way a streak is as long as [s]
-    float texels = INFINITY;  ///< of the longer side of a frame of its image, 0: it has none
-    Bounds group{};           ///< of all of them, unless each counts by itself
-    Bounds ways{};            ///< of weighted ones that the GPU moves: where they are, roughly
-};
-
-/// Without a group; pixels and ribbons have no extent in meters and are always drawn.
-[[nodiscard]] LookExtent make_look_extent(const ParticleLook& look);
-
-/// visible[i] = 1 if instance i may be seen within the frustum.
-void cull_particles(
-    const std::vector<ParticleInstance>& instances, const std::vector<LookExtent>& extents,
-    const Frustum& frustum, std::vector<std::uint8_t>& visible);
 
 /// What the particles of a look are drawn into.
 enum class LookLayer : std::uint8_t { Full, Half, Weighted };
