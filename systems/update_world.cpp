@@ -6,6 +6,7 @@
 #include "ecs/components/weather.h"
 #include "systems/animation/clip_player_system.h"
 #include "systems/animation/deformer_system.h"
+#include "systems/animation/driven_shapes_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/autofocus_system.h"
@@ -74,6 +75,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_wrinkle_tracks>(Move, Both);
     systems.add<advance_clips>(Animate);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
+    systems.add<update_driven_shapes>(Animate, Both);  // after poses: follows their weights
     systems.add<update_deformers>(Animate, Both);
     systems.add<update_attachments>(Animate, Both);
     systems.add<prepare_wrinkles>(Create, Both);

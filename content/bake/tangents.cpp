@@ -296,6 +296,7 @@ void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothG
     MorphTarget result;
     result.name = std::move(morph.name);
     result.action_unit = std::move(morph.action_unit);
+    result.drivers = std::move(morph.drivers);
     for (std::uint32_t v = 0; v < moved.size(); ++v) {
         const std::uint32_t group = groups.group_of[v];
         const Vec3 turn(direction(sums[group]) - direction(groups.sums[group]));

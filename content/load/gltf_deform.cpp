@@ -214,6 +214,48 @@ Result<Differences> read_differences(
     return all;
 }
 
+/// One driver of a target of `targets`; `place` is that of `source`.
+Result<ShapeDriver> read_driver(
+    const JsonValue& source, std::span<const MorphTarget> targets, const JsonValue& driven,
+    const std::string& place) {
+    const JsonValue& name = source["target"];
+    const auto target = std::ranges::find(targets, name.text, &MorphTarget::name);
+    if (name.kind != JsonKind::String || target == targets.end()) {
+        return fail(
+            "{}.target: found {}, expected the name of a morph target", place, describe(name));
+    }
+    if (driven.find(target->name) != nullptr) {
+        return fail(
+            "{}.target: found {}, expected a morph target without drivers", place, describe(name));
+    }
+    const JsonValue* const peak = source.find("peak");
+    if (peak != nullptr
+        && (peak->kind != JsonKind::Number || !(peak->number > 0 && peak->number <= 1))) {
+        return fail(
+            "{}.peak: found {}, expected a number above 0 and at most 1", place, describe(*peak));
+    }
+    return ShapeDriver{
+        static_cast<std::uint16_t>(target - targets.begin()),
+        peak != nullptr ? static_cast<float>(peak->number) : 1.0f};
+}
+
+Status read_drivers(
+    const JsonValue& drivers, const std::string& place, std::vector<MorphTarget>& targets) {
+    for (const JsonMember& member : drivers.members) {
+        const auto driven = std::ranges::find(targets, member.key, &MorphTarget::name);
+        if (driven == targets.end()) {
+            return fail(
+                "{}: found {}, expected names of morph targets", place, in_quotes(member.key));
+        }
+        for (std::size_t i = 0; i < member.value.items.size(); ++i) {
+            driven->drivers.push_back(LIMN_TRY(read_driver(
+                member.value.items[i], targets, drivers,
+                fmt::format("{}.{}[{}]", place, member.key, i))));
+        }
+    }
+    return Done{};
+}
+
 }  // namespace
 
 Result<SkinWeights>
@@ -271,6 +313,8 @@ read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const J
         targets.back().name = i < names.size() ? names[i].text : fmt::format("target {}", i);
         targets.back().action_unit = i < units.size() ? units[i].text : "";
     }
+    const std::string mesh = vertices.place.substr(0, vertices.place.find(".primitives"));
+    LIMN_TRY(read_drivers(extras["targetDrivers"], mesh + ".extras.targetDrivers", targets));
     return targets;
 }
 

@@ -143,7 +143,10 @@ struct GltfVertices {
 read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::size_t joints);
 
 /// The morph targets of the primitive with the vertices that they move. Their names and action
-/// units are the lists targetNames and actionUnits of `extras`, which may be shorter or missing.
+/// units are the lists targetNames and actionUnits of `extras`, which may be shorter or missing;
+/// targetDrivers has {"target": name, "peak": weight} of those that follow others, by name. Fails
+/// where a driver is unknown or has drivers itself, and on a peak that is not above 0 and at
+/// most 1.
 [[nodiscard]] Result<std::vector<MorphTarget>>
 read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const JsonValue& extras);
 

@@ -70,6 +70,24 @@ void set(JsonValue& object, std::string_view key, JsonValue value) {
     object.members.push_back({std::string(key), {}, std::move(value)});
 }
 
+/// By name of the driven target; see read_morph_targets.
+JsonValue drivers_of(const std::vector<MorphTarget>& targets) {
+    JsonValue all = json_object();
+    for (const MorphTarget& target : targets) {
+        JsonValue drivers = json_array();
+        for (const ShapeDriver& driver : target.drivers) {
+            JsonValue one = json_object();
+            set(one, "target", json_of(targets[driver.target].name));
+            set(one, "peak", json_of(driver.peak));
+            drivers.items.push_back(std::move(one));
+        }
+        if (!drivers.items.empty()) {
+            set(all, target.name, std::move(drivers));
+        }
+    }
+    return all;
+}
+
 template <typename T>
 JsonValue json_vector(const T& vector) {
     JsonValue array = json_array();
@@ -231,6 +249,9 @@ class GlbWriter {
             set(extras, "targetNames", std::move(names));
             if (has_units) {
                 set(extras, "actionUnits", std::move(units));
+            }
+            if (JsonValue drivers = drivers_of(first.morphs); !drivers.members.empty()) {
+                set(extras, "targetDrivers", std::move(drivers));
             }
             set(mesh, "extras", std::move(extras));
         }

@@ -1,12 +1,17 @@
 #include "content/make/head_expressions.h"
 
+#include "content/make/head_correctives.h"
 #include "content/make/head_visemes.h"
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace limn {
 
@@ -16,27 +21,51 @@ constexpr float kMeters = 0.01f;     ///< per centimeter
 constexpr float kMinOffset = 2e-5f;  ///< [cm]: a fifth of a micrometer is no movement
 enum class Side : std::uint8_t { Both, Left, Right };
 
+/// One of the three.
 struct Expression {
     std::string name;
     const ActionUnit* unit = nullptr;
     const HeadViseme* viseme = nullptr;
+    const HeadCorrective* corrective = nullptr;
     Side side = Side::Both;
 };
+
+/// Names of `unit` on `side`.
+std::string sided_name(std::string_view unit, Side side) {
+    const char* const end = side == Side::Left ? "_L" : side == Side::Right ? "_R" : "";
+    return std::string(unit) + end;
+}
+
+/// "AU43_L", in the list.
+std::string driver_name(std::string_view unit, Side side) {
+    return sided_name(unit, action_unit(unit).sided ? side : Side::Both);
+}
+
+std::string name_of(const HeadCorrective& corrective, Side side) {
+    return driver_name(corrective.unit, side) + "_"
+           + (corrective.other.empty() ? "half" : driver_name(corrective.other, side));
+}
+
+std::span<const Side> sides_of(const ActionUnit& unit) {
+    static constexpr Side kSides[] = {Side::Both, Side::Left, Side::Right};
+    return unit.sided ? std::span(kSides).subspan(1) : std::span(kSides).first(1);
+}
 
 const std::vector<Expression>& expressions() {
     static const std::vector<Expression> list = [] {
         std::vector<Expression> made;
         for (const ActionUnit& unit : action_units()) {
-            const std::string name(unit.name);
-            if (unit.sided) {
-                made.push_back({name + "_L", &unit, nullptr, Side::Left});
-                made.push_back({name + "_R", &unit, nullptr, Side::Right});
-            } else {
-                made.push_back({name, &unit, nullptr, Side::Both});
+            for (const Side side : sides_of(unit)) {
+                made.push_back({sided_name(unit.name, side), &unit, nullptr, nullptr, side});
             }
         }
         for (const HeadViseme& viseme : head_visemes()) {
-            made.push_back({std::string(viseme.name), nullptr, &viseme, Side::Both});
+            made.push_back({std::string(viseme.name), nullptr, &viseme, nullptr, Side::Both});
+        }
+        for (const HeadCorrective& corrective : head_correctives()) {
+            for (const Side side : sides_of(action_unit(corrective.unit))) {
+                made.push_back({name_of(corrective, side), nullptr, nullptr, &corrective, side});
+            }
         }
         return made;
     }();
@@ -51,7 +80,24 @@ Vec3 offset_of(const Expression& expression, const HeadPoint& point, const HeadS
     const float share = expression.side == Side::Both   ? 1
                         : expression.side == Side::Left ? left
                                                         : 1 - left;
-    return share > 0 ? share * action_offset(*expression.unit, point, shape) : Vec3(0);
+    if (share <= 0) {
+        return Vec3(0);
+    }
+    return share
+           * (expression.unit != nullptr ? action_offset(*expression.unit, point, shape)
+                                         : corrective_offset(*expression.corrective, point, shape));
+}
+
+std::vector<ShapeDriver> drivers_of(const Expression& expression) {
+    if (expression.corrective == nullptr) {
+        return {};
+    }
+    const HeadCorrective& corrective = *expression.corrective;
+    const std::uint16_t unit = expression_index(driver_name(corrective.unit, expression.side));
+    if (corrective.other.empty()) {
+        return {{unit, 0.5f}};
+    }
+    return {{unit, 1}, {expression_index(driver_name(corrective.other, expression.side)), 1}};
 }
 
 }  // namespace
@@ -65,6 +111,7 @@ make_expressions(std::span<const HeadPoint> points, const HeadShape& shape) {
             MorphTarget& target = targets[i];
             target.name = expression.name;
             target.action_unit = expression.unit != nullptr ? expression.name : std::string();
+            target.drivers = drivers_of(expression);
             for (std::uint32_t v = 0; v < points.size(); ++v) {
                 const Vec3 offset = offset_of(expression, points[v], shape);
                 if (glm::dot(offset, offset) > square(kMinOffset)) {
@@ -80,7 +127,9 @@ make_expressions(std::span<const HeadPoint> points, const HeadShape& shape) {
 std::vector<std::string> expression_names() {
     std::vector<std::string> names;
     for (const Expression& expression : expressions()) {
-        names.push_back(expression.name);
+        if (expression.corrective == nullptr) {
+            names.push_back(expression.name);
+        }
     }
     return names;
 }

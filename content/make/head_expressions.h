@@ -11,14 +11,15 @@
 namespace limn {
 
 // The expressions of a head as morph targets: halves of action units that are sided, other units as
-// a whole, then visemes. All parts of a head have the same list.
+// a whole, then visemes; last what follows these (head_correctives.h), as "AU43_L_half" and
+// "AU43_L_AU7_L". All parts of a head have the same list.
 
 /// One target for each shape; a target without vertices moves none. `points`: one per vertex.
 /// Normals are left to generate_morph_normals.
 [[nodiscard]] std::vector<MorphTarget>
 make_expressions(std::span<const HeadPoint> points, const HeadShape& shape);
 
-/// Of all targets, in their order.
+/// Of all targets that have no drivers, in their order, from the first on.
 [[nodiscard]] std::vector<std::string> expression_names();
 
 /// Index of the target called `name`, which must exist.

@@ -99,15 +99,25 @@ struct SkinWeights {
     [[nodiscard]] bool empty() const { return first.empty(); }
 };
 
+/// A morph target that another one follows: an in-between or a corrective (J. Lewis et al.,
+/// "Practice and Theory of Blendshape Facial Models", 2014).
+struct ShapeDriver {
+    std::uint16_t target = 0;  ///< index in the same list; has no drivers itself
+    float peak = 1;            ///< its weight at which the follower is whole, > 0 and <= 1
+
+    bool operator==(const ShapeDriver&) const = default;
+};
+
 /// A morph target: sparse differences from the base mesh (char.morph-target). Facial action units:
 /// P. Ekman and W. Friesen, "Facial Action Coding System", 1978.
 struct MorphTarget {
     std::string name;
     std::string action_unit;  ///< of FACS that it shows: "AU12", a half as "AU12_L"; empty: none
-    std::vector<std::uint32_t> vertices;  ///< indices of affected vertices, increasing
-    std::vector<Vec3> positions;          ///< one per entry of `vertices` [m]
-    std::vector<Vec3> normals;            ///< the same, or empty
-    std::vector<Vec3> tangents;           ///< the same, or empty
+    std::vector<std::uint32_t> vertices;    ///< indices of affected vertices, increasing
+    std::vector<Vec3> positions;            ///< one per entry of `vertices` [m]
+    std::vector<Vec3> normals;              ///< the same, or empty
+    std::vector<Vec3> tangents;             ///< the same, or empty
+    std::vector<ShapeDriver> drivers = {};  ///< its weight follows theirs; empty: it is set
 };
 
 /// Fails with one line: arrays of different length, a parent that is not an earlier joint, a second

@@ -204,6 +204,44 @@ TEST_CASE("gltf deform: morph targets hold the vertices that move, dense or spar
     CHECK(none.morph_weights == std::vector<float>{0, 0});
 }
 
+TEST_CASE("gltf deform: a morph target has the drivers that the file names") {
+    const auto drivers = [](const std::string& list) {
+        return R"("extras": {"targetNames": ["rise", "pull"], "targetDrivers": {)" + list + "}},";
+    };
+    const GltfScene scene = loaded([&](Flag& f) {
+        f.normals.clear();  // targets are made anew with their normals
+        f.extras = drivers(R"("pull": [{"target": "rise", "peak": 0.5}, {"target": "rise"}])");
+    });
+    CHECK(scene.meshes[0].morphs[0].drivers.empty());
+    const std::vector<ShapeDriver>& read = scene.meshes[0].morphs[1].drivers;
+    REQUIRE(read.size() == 2);
+    CHECK(read[0].target == 0);
+    CHECK(read[0].peak == 0.5f);
+    CHECK(read[1].peak == 1);
+
+    const auto error = [&](const std::string& list) {
+        return error_of([&](Flag& f) { f.extras = drivers(list); });
+    };
+    const std::string place = "flag.glb: meshes[0].extras.targetDrivers";
+    CHECK(error(R"("push": [])") == place + ": found \"push\", expected names of morph targets");
+    CHECK(
+        error(R"("pull": [{"target": "sink"}])")
+        == place
+               + ".pull[0].target: found the string \"sink\", expected the name of a morph target");
+    CHECK(
+        error(R"("pull": [{"target": "pull"}])")
+        == place
+               + ".pull[0].target: found the string \"pull\", expected a morph target without "
+                 "drivers");
+    for (const char* const peak : {"0", "-1", "1.5", "\"all\""}) {
+        CAPTURE(peak);
+        const std::string found =
+            error(fmt::format(R"("pull": [{{"target": "rise", "peak": {}}}])", peak));
+        CHECK(found.find(place + ".pull[0].peak: found") == 0);
+        CHECK(found.find("expected a number above 0 and at most 1") != std::string::npos);
+    }
+}
+
 TEST_CASE("gltf deform: normals that were made turn with their morph targets, tangents follow") {
     const GltfScene scene = loaded([](Flag& f) { f.normals.clear(); });
     const MeshData& mesh = scene.meshes[0];

@@ -36,6 +36,7 @@ MeshData make_strip() {
     rise.tangents = {{0, 0, 0}, {0.1f, 0, 0}};
     MorphTarget nothing;
     nothing.name = "nothing";
+    nothing.drivers = {{0, 0.3f}};
     mesh.morphs = {rise, nothing};
     VertexRegion brow;
     brow.name = "brow_2";
@@ -114,6 +115,7 @@ void check_equal(const MeshData& a, const MeshData& b) {
         CHECK(a.morphs[i].positions == b.morphs[i].positions);
         CHECK(a.morphs[i].normals == b.morphs[i].normals);
         CHECK(a.morphs[i].tangents == b.morphs[i].tangents);
+        CHECK(a.morphs[i].drivers == b.morphs[i].drivers);
     }
     check_equal(a.regions, b.regions);
 }

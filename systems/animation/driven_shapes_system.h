@@ -1,0 +1,28 @@
+#pragma once
+
+#include "ecs/components/animation.h"
+#include "ecs/components/surface.h"
+#include "ecs/query.h"
+#include "ecs/system.h"
+
+#include <span>
+
+namespace limn {
+
+// Weights of morph targets that follow from those of others. Targets add up in straight lines; an
+// in-between bends the way of one of them (a lid that turns about the eye), a corrective mends what
+// several do together (two units that close the same eye).
+
+/// Weight of a target with `drivers` while the targets of its list have `weights`: the product of
+/// one factor per driver. A peak of 1 gives its weight, from 0 to 1; a lower one a tent that is 0
+/// at weights 0 and 1, and 1 at the peak. 0 where a weight is missing or NaN.
+[[nodiscard]] float
+driven_weight(std::span<const ShapeDriver> drivers, std::span<const float> weights);
+
+/// Writes the weights of all targets with drivers, of this step and of the previous one. After
+/// update_poses.
+void update_driven_shapes(
+    Query<const Deformed, const MeshInstance> meshes, Query<MorphWeights> faces,
+    Res<const Assets> assets);
+
+}  // namespace limn
