@@ -224,9 +224,9 @@ TEST_CASE("patterns: a glow is half as bright at its core, falls by the square a
         return light(static_cast<int>(std::lround(0.5f * kSide * (1.0f + away) - 0.5f)), kSide / 2);
     };
     CHECK(at(0) > 0.97f);
-    CHECK(at(0.1f) == doctest::Approx(0.5f).epsilon(0.06));
+    CHECK(at(0.1f) == test::near(0.5).epsilon(0.06));
     // 1 / (1 + 16) and 1 / (1 + 4), times the end of 0.84^2 and 0.96^2.
-    CHECK(at(0.4f) / at(0.2f) == doctest::Approx(0.2251f).epsilon(0.06));
+    CHECK(at(0.4f) / at(0.2f) == test::near(0.2251).epsilon(0.06));
     for (int x = kSide / 2; x + 1 < kSide; ++x) {
         CAPTURE(x);
         CHECK(light(x + 1, kSide / 2) <= light(x, kSide / 2));
