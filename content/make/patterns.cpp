@@ -1,8 +1,10 @@
 #include "content/make/patterns.h"
 
+#include "content/make/crown_pattern.h"
 #include "content/make/face_fold_pattern.h"
 #include "content/make/fold_pattern.h"
 #include "content/make/furrow_patterns.h"
+#include "content/make/glow_pattern.h"
 #include "content/make/mask_pattern.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
@@ -382,6 +384,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<ConcretePattern, make_concrete>("concrete", "stained gray with pores"),
         pattern_kind<ConfettiPattern, make_confetti>(
             "confetti", "a flipbook of cut paper in bright colors"),
+        pattern_kind<CrownPattern, make_crown>(
+            "crown", "a flipbook of what a drop throws up where it hits, from the side"),
         pattern_kind<FaceFoldsPattern, make_face_folds>(
             "face_folds", "folds of a face, as a wrinkle map for the skin of a head"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
@@ -396,6 +400,9 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<FoldsPattern, make_folds>("folds", "folds of skin along u, as a wrinkle map"),
         pattern_kind<FurrowsPattern, make_furrows>(
             "furrows", "skin with wrinkle furrows that grow along two vector fields"),
+        pattern_kind<GlowPattern, make_glow>(
+            "glow",
+            "light without a rim around what is too bright to see, for what only adds light"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<MasksPattern, make_masks>(

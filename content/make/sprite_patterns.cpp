@@ -1,5 +1,6 @@
 #include "content/make/sprite_patterns.h"
 
+#include "content/make/flipbook.h"
 #include "content/make/pattern_tools.h"
 #include "content/make/sprite_fluid.h"
 
@@ -12,39 +13,6 @@
 
 namespace limn {
 namespace {
-
-/// A point of a flipbook: -1 .. 1 in its frame, y upwards, and the frame's share of the sequence.
-struct FramePoint {
-    Vec2 p;
-    float time;
-};
-
-/// `texel`: color and opacity of a FramePoint.
-template <typename Texel>
-PatternMaps make_shaded_flipbook(const PatternSize& image, int frames, Texel&& texel) {
-    const float side = static_cast<float>(frames);
-    return make_pattern_maps(image.size, [&](const Vec2& uv) {
-        const Vec2 cell = glm::floor(uv * side);
-        const Vec2 inside = 2.0f * (uv * side - cell) - 1.0f;
-        const FramePoint at = {
-            {inside.x, -inside.y}, (cell.y * side + cell.x) / std::max(side * side - 1.0f, 1.0f)};
-        // Nothing at the border, over which filters read the neighboring frames.
-        const float edge = std::max(std::abs(inside.x), std::abs(inside.y));
-        PatternTexel t = texel(at);
-        t.opacity = std::clamp(t.opacity, 0.0f, 1.0f) * glm::smoothstep(0.97f, 0.85f, edge);
-        return t;
-    });
-}
-
-template <typename Opacity>
-PatternMaps make_flipbook(const PatternSize& image, int frames, Opacity&& opacity) {
-    return make_shaded_flipbook(image, frames, [&](const FramePoint& at) {
-        PatternTexel t;
-        t.color = {1, 1, 1};
-        t.opacity = opacity(at);
-        return t;
-    });
-}
 
 /// Noise that changes with time: two layers that drift apart.
 float moving_noise(const Vec2& p, const Vec2& drift, std::uint32_t seed, int octaves) {
@@ -341,20 +309,6 @@ PatternMaps make_flame(const FlamePattern& pattern) {
 
 namespace {
 
-std::uint32_t frame_number(const FramePoint& at, int frames) {
-    return static_cast<std::uint32_t>(
-        std::floor(at.time * static_cast<float>(frames * frames - 1) + 0.5f));
-}
-
-/// 0 .. 1, of a frame.
-float frame_random(const FramePoint& at, int frames, std::uint32_t seed, std::uint32_t index) {
-    const std::uint32_t number = frame_number(at, frames);
-    std::uint32_t h = (number * 64u + index + seed) * 0x9e3779b9u;
-    h = (h ^ (h >> 16)) * 0x7feb352du;
-    h = (h ^ (h >> 15)) * 0x846ca68bu;
-    return static_cast<float>((h ^ (h >> 16)) >> 8) * 0x1p-24f;
-}
-
 float length_of(const Vec2& p) {
     return glm::length(p);
 }
@@ -367,12 +321,6 @@ Vec2 fold_sixfold(Vec2 p) {
     p -= 2.0f * beyond * kNormal;
     p.y = std::abs(p.y);
     return p;
-}
-
-float line_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 along = b - a;
-    const float t = std::clamp(glm::dot(p - a, along) / glm::dot(along, along), 0.0f, 1.0f);
-    return length_of(p - a - t * along);
 }
 
 }  // namespace

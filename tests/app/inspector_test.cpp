@@ -5,6 +5,7 @@
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/ripple.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
@@ -17,6 +18,7 @@
 #include <imgui.h>
 
 #include <string>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -152,6 +154,71 @@ TEST_CASE("inspector: a drag of a slider sets the component and is one step of u
     CHECK(strength() == kStrength);
     CHECK_FALSE(inspector.undo_stack().redo(world).empty());
     CHECK(strength() == dragged);
+}
+
+TEST_CASE(
+    "inspector: keys of a curve are added by a double click and dragged, a step of undo each") {
+    const OffscreenHud hud;
+    World world;
+    register_all_components();
+    world.insert_resource(Assets{});
+    const std::vector<CurveKey> ends = {{0, 1}, {1, 0}};
+    const Entity entity = world.create(ParticleLight{.curve = ends});
+    Inspector inspector;
+    inspector.open = true;
+    inspector.select(entity);
+    const auto draw = [&] { inspector.draw(hud.style, world, Schedule()); };
+    for (int i = 0; i < 3; ++i) {
+        hud.frame(draw);
+    }
+    const auto curve = [&] { return world.get<const ParticleLight>(entity).curve; };
+    // Look for it: double clicks at every height until one adds a key.
+    const float x = 1130.0f;
+    const auto double_click = [&](float y) {
+        for (int i = 0; i < 40; ++i) {
+            hud.frame(draw, {x, y});  // later than a third click of the last one
+        }
+        for (const bool pressed : {true, false, true, false}) {
+            hud.frame(draw, {x, y}, pressed);
+        }
+    };
+    float y = 150.0f;
+    for (; y < 700.0f; y += 8.0f) {
+        double_click(y);
+        if (curve().size() != 2) {
+            break;
+        }
+    }
+    REQUIRE(curve().size() == 3);
+    // That was at its upper edge, above the scale; one lower down leaves the scale alone.
+    static_cast<void>(inspector.undo_stack().undo(world));
+    CHECK(curve().size() == 2);
+    y += 40.0f;
+    double_click(y);
+    REQUIRE(curve().size() == 3);
+    const std::vector<CurveKey> added = curve();
+    const std::size_t steps = inspector.undo_stack().undo_count();
+    CHECK(added[1].at > 0);
+    CHECK(added[1].at < 1);
+    CHECK(added[1].value > 0);
+
+    for (int i = 0; i < 40; ++i) {
+        hud.frame(draw, {x, y});
+    }
+    for (int i = 0; i <= 10; ++i) {
+        hud.frame(draw, {x + 2.0f * static_cast<float>(i), y + static_cast<float>(i)}, true);
+    }
+    hud.frame(draw, {x + 20.0f, y + 10.0f});
+    const std::vector<CurveKey> dragged = curve();
+    REQUIRE(dragged.size() == 3);
+    CHECK(dragged[1].at > added[1].at);
+    CHECK(dragged[1].value < added[1].value);
+    CHECK(dragged[0].value == ends[0].value);
+    CHECK(dragged[2].value == ends[1].value);
+    CHECK(inspector.undo_stack().undo_count() == steps + 1);
+    CHECK(inspector.undo_stack().undo(world).find("particle_light.curve") != std::string::npos);
+    CHECK(curve()[1].at == added[1].at);
+    CHECK(curve()[1].value == added[1].value);
 }
 
 TEST_CASE("inspector: a color has the numbers of the file, and its swatch says that it is sRGB") {

@@ -1,9 +1,13 @@
+#include "content/make/crown_pattern.h"
+#include "content/make/glow_pattern.h"
 #include "content/make/mask_pattern.h"
 #include "content/make/patterns.h"
 #include "content/make/sprite_fluid.h"
 #include "content/make/sprite_patterns.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
+#include "ecs/base/math.h"
+#include "ecs/base/srgb.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>
@@ -63,7 +67,7 @@ std::uint64_t bits(const PatternMaps& maps) {
 }  // namespace
 
 TEST_CASE("patterns: every kind makes three whole images of the size asked for") {
-    REQUIRE(pattern_kinds().size() == 32);
+    REQUIRE(pattern_kinds().size() == 34);
     for (const PatternKind& kind : pattern_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 64);
@@ -81,9 +85,9 @@ TEST_CASE("patterns: every kind makes three whole images of the size asked for")
 
 TEST_CASE("patterns: frames of a flipbook end before their border, and differ") {
     for (const PatternKind& kind : pattern_kinds()) {
-        const std::vector<std::string> flipbooks = {"confetti",  "fire",   "fireball", "flame",
-                                                    "leaf",      "ring",   "shard",    "smoke",
-                                                    "snowflake", "splash", "tree"};
+        const std::vector<std::string> flipbooks = {"confetti", "crown",     "fire",   "fireball",
+                                                    "flame",    "leaf",      "ring",   "shard",
+                                                    "smoke",    "snowflake", "splash", "tree"};
         if (std::find(flipbooks.begin(), flipbooks.end(), kind.name) == flipbooks.end()) {
             continue;
         }
@@ -205,6 +209,96 @@ TEST_CASE("patterns: a crystal of snow looks alike after a sixth of a turn") {
         different += std::abs(a - b) > 60 ? 1 : 0;
     }
     CHECK(different < 40);
+}
+
+TEST_CASE("patterns: a glow is half as bright at its core, falls by the square and has no rim") {
+    constexpr int kSide = 256;
+    const PatternMaps maps = make_glow({.image = {.size = kSide}, .core = 0.1f, .rays = 0});
+    const auto light = [&](int x, int y) {
+        const std::uint8_t* const p =
+            maps.base_color.pixels.data() + static_cast<std::ptrdiff_t>(y * kSide + x) * 4;
+        return linear_from_srgb(static_cast<float>(p[0]) / 255.0f) * static_cast<float>(p[3])
+               / 255.0f;
+    };
+    const auto at = [&](float away) {
+        return light(static_cast<int>(std::lround(0.5f * kSide * (1.0f + away) - 0.5f)), kSide / 2);
+    };
+    CHECK(at(0) > 0.97f);
+    CHECK(at(0.1f) == test::near(0.5).epsilon(0.06));
+    // 1 / (1 + 16) and 1 / (1 + 4), times the end of 0.84^2 and 0.96^2.
+    CHECK(at(0.4f) / at(0.2f) == test::near(0.2251).epsilon(0.06));
+    for (int x = kSide / 2; x + 1 < kSide; ++x) {
+        CAPTURE(x);
+        CHECK(light(x + 1, kSide / 2) <= light(x, kSide / 2));
+        CHECK(std::abs(light(x, kSide / 2) - light(kSide / 2, x)) < 0.01f);  // all around alike
+        if (x > kSide * 85 / 100) {                                          // over the last third
+            CHECK(light(x, kSide / 2) < 0.006f);
+        }
+    }
+    // Rays are light beside shade, around a middle that is whole.
+    const PatternMaps star = make_glow({.image = {.size = kSide}, .core = 0.1f, .rays = 1});
+    const auto opacity = [&](float away, float angle) {
+        const float x = 0.5f * kSide * (1.0f + away * std::cos(angle));
+        const float y = 0.5f * kSide * (1.0f + away * std::sin(angle));
+        return star.base_color
+            .pixels[(static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x)) * 4 + 3];
+    };
+    int bright = 0;
+    int dark = 0;
+    for (int i = 0; i < 360; ++i) {
+        const float angle = radians(static_cast<float>(i));
+        bright += opacity(0.4f, angle) > 70 ? 1 : 0;
+        dark += opacity(0.4f, angle) < 30 ? 1 : 0;
+        CHECK(opacity(0.01f, angle) > 220);
+    }
+    CHECK(bright > 10);
+    CHECK(dark > 90);
+}
+
+TEST_CASE("patterns: a crown widens from frame to frame, rises, and falls back to its foot") {
+    constexpr int kFrames = 4;
+    constexpr int kFrame = 128;
+    const PatternMaps maps = make_crown({.image = {.size = kFrame * kFrames}, .frames = kFrames});
+    std::vector<int> tops;
+    std::vector<int> widths;
+    for (int frame = 0; frame < kFrames * kFrames; ++frame) {
+        int top = kFrame;
+        int bottom = 0;
+        int left = kFrame;
+        int right = 0;
+        for (int y = 0; y < kFrame; ++y) {
+            for (int x = 0; x < kFrame; ++x) {
+                const int row = frame / kFrames * kFrame + y;
+                const int column = frame % kFrames * kFrame + x;
+                if (maps.base_color.pixels
+                        [(static_cast<std::size_t>(row) * kFrame * kFrames
+                          + static_cast<std::size_t>(column))
+                             * 4
+                         + 3]
+                    > 40) {
+                    top = std::min(top, y);
+                    bottom = std::max(bottom, y);
+                    left = std::min(left, x);
+                    right = std::max(right, x);
+                }
+            }
+        }
+        tops.push_back(kFrame - top);
+        widths.push_back(right - left);
+        if (frame < 6) {  // the foot: a tenth of the frame above its lower edge
+            CHECK(bottom > kFrame * 82 / 100);
+            CHECK(bottom < kFrame * 98 / 100);
+        }
+    }
+    for (std::size_t i = 1; i < widths.size(); ++i) {
+        CAPTURE(i);
+        CHECK(widths[i] >= widths[i - 1] - 3);
+    }
+    const auto highest = std::max_element(tops.begin(), tops.end());
+    CHECK(highest > tops.begin() + 4);
+    CHECK(highest < tops.end() - 2);
+    CHECK(tops.front() < *highest / 2);
+    CHECK(tops.back() < *highest - 8);
 }
 
 TEST_CASE("fluid: pressure takes out the divergence, heat rises, cools and spreads by expansion") {
