@@ -26,6 +26,21 @@ bool may_be_in_view(const Frustum& frustum, const Vec3& middle, const Vec3& half
         });
 }
 
+/// With planes of unit normals.
+Frustum normalized(Frustum frustum) {
+    for (Vec4& plane : frustum.planes) {
+        plane /= std::max(glm::length(Vec3(plane)), 1e-30f);
+    }
+    return frustum;
+}
+
+/// Likewise of a ball; `frustum` is normalized.
+bool may_be_in_view(const Frustum& frustum, const Vec3& middle, float radius) {
+    return std::none_of(
+        std::begin(frustum.planes), std::end(frustum.planes),
+        [&](const Vec4& plane) { return glm::dot(Vec3(plane), middle) + plane.w < -radius; });
+}
+
 }  // namespace
 
 float max_width(const ParticleLook& look) {
@@ -98,6 +113,7 @@ void cull_particles(
     for (std::size_t i = 0; i < extents.size(); ++i) {
         group_visible[i] = is_group_in_view(extents[i], frustum) ? 1 : 0;
     }
+    const Frustum planes = normalized(frustum);
     visible.resize(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const std::uint32_t look = instances[i].look_and_share >> 16;
@@ -111,7 +127,7 @@ void cull_particles(
             radius += extent.stretch
                       * glm::length(Vec3(glm::unpackHalf4x16(instances[i].velocity_and_age)));
         }
-        visible[i] = may_be_in_view(frustum, instances[i].position, Vec3(0), radius);
+        visible[i] = may_be_in_view(planes, instances[i].position, radius);
     }
 }
 

@@ -35,7 +35,7 @@ constexpr unsigned kRibbonsUnit = 8;
 constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
 constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
-constexpr float kMaxTriangle = 10;          // [px] across, above which a disc is drawn as a quad
+constexpr float kMaxPoint = 4;              // [px] across, above which a disc is drawn as a quad
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
 constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 
@@ -475,7 +475,7 @@ void ParticleEffect::append_runs(
         if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
             seen.runs.push_back(
                 {.arrays = arrays[look],
-                 .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::Triangle,
+                 .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::SmallDisc,
                  .magnified = true,
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
@@ -484,9 +484,9 @@ void ParticleEffect::append_runs(
         const float texels = extents[look].texels;
         const float pixels = scale * least_pixels(sorted[i], looks[look], camera);
         const bool is_small_disc =
-            texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxTriangle;
+            texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxPoint;
         run.magnified = run.magnified && (texels == 0 || pixels > 0.999f * texels);
-        if (run.shape == SpriteShape::Triangle && !is_small_disc) {
+        if (run.shape == SpriteShape::SmallDisc && !is_small_disc) {
             run.shape = SpriteShape::Quad;
         }
         ++run.count;
@@ -575,7 +575,7 @@ Variant ParticleEffect::sprite_variant(const ViewData& view, SpriteShape shape) 
     variant.add_if(is_clipped(view), "CLIPPED");
     variant.add_if(soft, "SOFT");
     if (shape != SpriteShape::Quad) {
-        variant.add(shape == SpriteShape::Point ? "POINTS" : "TRIANGLES");
+        variant.add("POINTS");
         return variant;
     }
     features.add_to(variant);
@@ -619,7 +619,7 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     bind_lighting(context, view);
     draw_runs(context, view, part, [&](SpriteShape shape) {
         Variant variant = view.lighting.variant;
-        variant.add_if(lit && shape != SpriteShape::Triangle, "LIT");
+        variant.add_if(lit && shape != SpriteShape::SmallDisc, "LIT");
         variant.add_if(features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
         variant.add(sprite_variant(view, shape));
@@ -673,13 +673,12 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
             return;
         }
         program->set("first", run.first);
+        program->set("resolution", part == Part::Half ? 0.5f : 1.0f);
         bind_images(run.arrays, run.magnified);
-        if (run.shape == SpriteShape::Point) {
-            device.draw_points(run.count);
-        } else if (run.shape == SpriteShape::Triangle) {
-            device.draw_ids(3 * run.count);
-        } else {
+        if (run.shape == SpriteShape::Quad) {
             device.draw_quads(run.count);
+        } else {
+            device.draw_points(run.count);
         }
     };
     for (const ParticleRun& run : runs) {
@@ -687,7 +686,7 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         if (view.frame->warm_up && run.shape != SpriteShape::Point) {
             ParticleRun other = run;
             other.shape =
-                run.shape == SpriteShape::Quad ? SpriteShape::Triangle : SpriteShape::Quad;
+                run.shape == SpriteShape::Quad ? SpriteShape::SmallDisc : SpriteShape::Quad;
             draw_run(other);
         }
     }
