@@ -4,7 +4,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -124,8 +123,7 @@ void cull_particles(
         }
         float radius = extent.radius;
         if (extent.stretch > 0) {
-            radius += extent.stretch
-                      * glm::length(Vec3(glm::unpackHalf4x16(instances[i].velocity_and_age)));
+            radius += extent.stretch * glm::length(Vec3(instances[i].motion()));
         }
         visible[i] = may_be_in_view(planes, instances[i].position, radius);
     }

@@ -17,7 +17,7 @@ namespace limn {
 
 // Particles and their looks as shaders read them (particle_gpu.h).
 
-static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
+static_assert(sizeof(ParticleInstance) == 4 * layout::kParticleWords);
 
 /// The record of a look in particle_gpu.h.
 using LookRecord = std::array<Vec4, layout::kLookTexels>;

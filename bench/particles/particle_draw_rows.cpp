@@ -380,7 +380,7 @@ void add_move_row(ParticleBench& bench, gpu::Device& device) {
 layout(local_size_x = 128) in;
 layout(std430, binding = 0) buffer State { vec4 state[]; };
 layout(std430, binding = 1) buffer Bits { uint bits[]; };
-layout(std430, binding = 2) writeonly buffer Instances { uvec4 instances[]; };
+layout(std430, binding = 2) writeonly buffer Instances { uint instances[]; };
 uniform uint count;
 uniform vec4 shift;  // so that no compiler leaves out what is written
 void main() {
@@ -391,8 +391,13 @@ void main() {
         uint word = bits[i];
         state[2u * i] = place;
         state[2u * i + 1u] = velocity;
-        instances[2u * i] = floatBitsToUint(place);
-        instances[2u * i + 1u] = uvec4(floatBitsToUint(velocity.xyz), word);
+        instances[7u * i] = floatBitsToUint(place.x);
+        instances[7u * i + 1u] = floatBitsToUint(place.y);
+        instances[7u * i + 2u] = floatBitsToUint(place.z);
+        instances[7u * i + 3u] = floatBitsToUint(place.w);
+        instances[7u * i + 4u] = floatBitsToUint(velocity.x);
+        instances[7u * i + 5u] = floatBitsToUint(velocity.y);
+        instances[7u * i + 6u] = word;
     }
 }
 )");

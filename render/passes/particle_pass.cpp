@@ -196,7 +196,7 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
             const Vec3 middle =
                 0.5f * (ribbons.points[before + 1].position + ribbons.points[before + 2].position);
             instances.push_back(
-                {.position = middle, .look_and_share = index << 16, .velocity_and_age = before});
+                {.position = middle, .look_and_share = index << 16, .velocity_xy = before});
         }
         ribbons.segments.clear();
     };
@@ -273,8 +273,8 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
             instances.push_back(
                 {.position = place.position,
                  .look_and_share = index << 16 | static_cast<std::uint32_t>(place.share * 65535.0f),
-                 .velocity_and_age =
-                     std::uint64_t{std::bit_cast<std::uint32_t>(place.opacity)} << 32 | i,
+                 .velocity_xy = static_cast<std::uint32_t>(i),
+                 .velocity_z_age = std::bit_cast<std::uint32_t>(std::max(place.opacity, 0.0f)),
                  .random = random});
         }
     });

@@ -62,7 +62,7 @@ struct ParticleEffect {
         Bounds half_bounds{};            ///< of those
         std::size_t weighted_begin = 0;  ///< of the runs that are weighted, to the end
         Bounds weighted_bounds{};        ///< of those
-        BufferTexture texels = BufferTexture("particles in view", GL_RGBA32UI);
+        BufferTexture texels = BufferTexture("particles in view", GL_R32UI);
     };
 
     ProgramVariants programs;

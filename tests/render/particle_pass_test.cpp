@@ -8,7 +8,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -452,7 +451,7 @@ TEST_CASE(
     std::vector<ParticleInstance> instances;
     append_particles(pool, 0, 0, instances, {0, 0, -10});
     REQUIRE(instances.size() == 1);
-    CHECK(glm::unpackHalf4x16(instances[0].velocity_and_age).z == near(11));
+    CHECK(instances[0].motion().z == near(11));
     CHECK(instances[0].position.z == 1);
 }
 
