@@ -10,9 +10,11 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
+#include "render/instance_list.h"
 #include "render/lighting.h"
 #include "render/material_pool.h"
 #include "render/particle_weighted.h"
+#include "render/surface_draws.h"
 #include "render/view_block.h"
 
 #include <glm/geometric.hpp>
@@ -32,6 +34,7 @@ constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
 constexpr unsigned kRibbonsUnit = 8;
+constexpr unsigned kVeilUnit = 23;
 constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
 constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
@@ -116,7 +119,8 @@ Vec3 entity_velocity(const World& world, Entity entity, float step) {
 Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
     ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
-        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"})};
+        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"}),
+        ProgramVariants::of_meshes(device, "depth_first.frag")};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
     // As of materials: between mip levels only where that costs nothing.
     const GLenum minify =
@@ -511,16 +515,63 @@ void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) 
     }
 }
 
-void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+void ParticleEffect::add_sprites(
+    FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
+    std::span<const Use> targets, std::span<const Part> parts, std::optional<TextureId> veil,
+    bool behind) {
+    std::vector<Use> reads =
+        lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+    if (veil) {
+        reads.push_back(sampled(*veil, kVeilUnit));
+    }
+    add_pool_reads(graph, reads);
+    graph.add_pass(
+        name, std::span<const Use>(reads), targets,
+        [this, &view, veiled = veil.has_value(), behind,
+         all = std::vector(parts.begin(), parts.end())](PassContext& context) {
+            for (const Part part : all) {
+                draw_sprites(context, view, part, veiled, behind);
+            }
+        });
+}
+
+void ParticleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    auto& front = view.data.publish<ParticlesInFront>();
+    front.effect = this;
+    front.veil.reset();
+    const std::vector<DrawRun>& blended = view.data.get<InstanceList>().blended;
+    if (blended.empty() || is_clipped(view)) {
+        return;
+    }
+    front.veil = create_target(graph, "particles.veil", GL_DEPTH_COMPONENT32F, view.size());
+    const std::vector<Use> meshes = mesh_reads(graph, *view.frame);
+    const Use veil[] = {cleared(*front.veil)};
+    graph.add_pass(
+        "particles.veil", std::span<const Use>(meshes), veil,
+        [this, &view, &blended](PassContext& context) {
+            draw_depths(context, view, blended, veil_programs);
+        });
+    const Use targets[] = {view.radiance};
+    const Part parts[] = {Part::Behind, Part::Front};
+    add_sprites(
+        graph, view, "particles.veiled", view.gbuffer.depth, targets, parts, front.veil, true);
+}
+
+void ParticleFrontEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    if (const auto* const front = view.data.find<ParticlesInFront>()) {
+        front->effect->draw_front(graph, frame, view);
+    }
+}
+
+void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view) {
     const auto& seen = view.data.get<ViewParticles>();
+    const std::optional<TextureId> veil = view.data.get<ParticlesInFront>().veil;
     const auto add_pass = [&](const char* name, TextureId depth, std::initializer_list<Use> targets,
                               Part part) {
-        std::vector<Use> reads =
-            lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
-        add_pool_reads(graph, reads);
-        graph.add_pass(
-            name, std::span(reads), std::span(targets.begin(), targets.size()),
-            [this, part, &view](PassContext& context) { draw_sprites(context, view, part); });
+        const bool whole = part == Part::Behind || part == Part::Front;
+        add_sprites(
+            graph, view, name, depth, std::span(targets.begin(), targets.size()), {&part, 1},
+            whole ? veil : std::nullopt);
     };
     create_layer_programs(*frame.device);
     if (seen.half_begin > 0) {
@@ -608,7 +659,8 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
 }
 
 /// What the GPU moves at full resolution is in front.
-void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Part part) {
+void ParticleEffect::draw_sprites(
+    PassContext& context, const ViewData& view, Part part, bool veiled, bool behind) {
     const bool is_weighted = part == Part::Weighted;
     gpu::PipelineState state = kWeightedState;
     if (!is_weighted) {
@@ -622,10 +674,12 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
         variant.add_if(lit && shape != SpriteShape::SmallDisc, "LIT");
         variant.add_if(features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
+        variant.add_if(veiled, "VEILED");
         variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, state});
+            program->set("behind", behind ? 1 : 0);
         }
         if (program != nullptr && is_weighted) {
             const auto& seen = view.data.get<ViewParticles>();
