@@ -107,7 +107,7 @@ void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
     pool.bits =
         gpu::Buffer("particle bits", slots * sizeof(std::uint32_t), gpu::BufferUse::GpuOnly);
     pool.instances = gpu::Buffer(
-        "particle instances", slots * layout::kParticleTexels * sizeof(Vec4),
+        "particle instances", slots * layout::kParticleWords * sizeof(std::uint32_t),
         gpu::BufferUse::GpuOnly);
     pool.texels.set(pool.instances);
     pool.capacity = static_cast<std::uint32_t>(slots);

@@ -43,7 +43,7 @@ struct GpuParticlePool {
     gpu::Buffer bits{};       ///< a word a slot
     gpu::Buffer instances{};  ///< as ParticleInstance
     BufferTexture steps = BufferTexture("particle steps", GL_RGBA32F);
-    BufferTexture texels = BufferTexture("particles", GL_RGBA32UI);  ///< of `instances`
+    BufferTexture texels = BufferTexture("particles", GL_R32UI);  ///< of `instances`
     std::uint32_t capacity = 0;
     std::uint64_t done = 0;  ///< number of the first step that is not done
 

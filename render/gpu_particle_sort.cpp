@@ -27,7 +27,7 @@ void make_buffers(std::uint32_t size, GpuParticleSort& sort) {
     }
     // Those that have died during a sort keep their places until the next one.
     sort.instances = gpu::Buffer(
-        "sorted particles", std::size_t{2} * size * layout::kParticleTexels * sizeof(Vec4),
+        "sorted particles", std::size_t{2} * size * layout::kParticleWords * sizeof(std::uint32_t),
         gpu::BufferUse::GpuOnly);
     sort.texels.set(sort.instances);
     sort.capacity = size;

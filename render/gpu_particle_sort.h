@@ -48,8 +48,8 @@ struct ParticleSortPlan {
 struct GpuParticleSort {
     gpu::Buffer entries[2]{};  ///< being sorted; to be shown
     gpu::Buffer instances{};   ///< in order, as ParticleInstance
-    BufferTexture texels = BufferTexture("sorted particles", GL_RGBA32UI);  ///< of `instances`
-    std::uint32_t capacity = 0;                                             ///< entries
+    BufferTexture texels = BufferTexture("sorted particles", GL_R32UI);  ///< of `instances`
+    std::uint32_t capacity = 0;                                          ///< entries
     std::uint32_t next_pass = 0;             ///< 0: the next frame reads keys
     ParticleWindow sorting{};                ///< when keys were read
     std::optional<ParticleWindow> shown{};   ///< when the keys of the order to be shown were read

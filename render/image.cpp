@@ -64,8 +64,9 @@ constexpr EffectEntry kImage[] = {
     effect<MirrorCausticEffect>(kSceneViews),
     effect<WaterEffect>(kSceneViews),      // over all that is opaque
     effect<WaterVeilEffect>(kSceneViews),  // what lies between a camera in the water and all else
+    effect<ParticleEffect>(kSceneViews),   // what is behind blended surfaces
     effect<BlendEffect>(kSceneViews),      // after sky and water, which are seen through it
-    effect<ParticleEffect>(kSceneViews),   // over all surfaces
+    effect<ParticleFrontEffect>(kSceneViews),  // over all surfaces
     effect<SpeedLineEffect>(kMainViews),
 
     // Where views end that are not the camera's.

@@ -4,7 +4,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +23,21 @@ bool may_be_in_view(const Frustum& frustum, const Vec3& middle, const Vec3& half
             const float reach = glm::dot(glm::abs(normal), half) + margin * glm::length(normal);
             return glm::dot(normal, middle) + plane.w < -reach;
         });
+}
+
+/// With planes of unit normals.
+Frustum normalized(Frustum frustum) {
+    for (Vec4& plane : frustum.planes) {
+        plane /= std::max(glm::length(Vec3(plane)), 1e-30f);
+    }
+    return frustum;
+}
+
+/// Likewise of a ball; `frustum` is normalized.
+bool may_be_in_view(const Frustum& frustum, const Vec3& middle, float radius) {
+    return std::none_of(
+        std::begin(frustum.planes), std::end(frustum.planes),
+        [&](const Vec4& plane) { return glm::dot(Vec3(plane), middle) + plane.w < -radius; });
 }
 
 }  // namespace
@@ -98,6 +112,7 @@ void cull_particles(
     for (std::size_t i = 0; i < extents.size(); ++i) {
         group_visible[i] = is_group_in_view(extents[i], frustum) ? 1 : 0;
     }
+    const Frustum planes = normalized(frustum);
     visible.resize(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const std::uint32_t look = instances[i].look_and_share >> 16;
@@ -108,10 +123,9 @@ void cull_particles(
         }
         float radius = extent.radius;
         if (extent.stretch > 0) {
-            radius += extent.stretch
-                      * glm::length(Vec3(glm::unpackHalf4x16(instances[i].velocity_and_age)));
+            radius += extent.stretch * glm::length(Vec3(instances[i].motion()));
         }
-        visible[i] = may_be_in_view(frustum, instances[i].position, Vec3(0), radius);
+        visible[i] = may_be_in_view(planes, instances[i].position, radius);
     }
 }
 

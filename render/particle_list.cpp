@@ -2,7 +2,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>

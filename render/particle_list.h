@@ -17,7 +17,7 @@ namespace limn {
 
 // Particles and their looks as shaders read them (particle_gpu.h).
 
-static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
+static_assert(sizeof(ParticleInstance) == 4 * layout::kParticleWords);
 
 /// The record of a look in particle_gpu.h.
 using LookRecord = std::array<Vec4, layout::kLookTexels>;
@@ -73,9 +73,9 @@ struct SpriteFeatures {
     }
 };
 
-/// What of the GPU draws a particle. A triangle about its disc takes half the set-up of a quad, and
-/// more pixels: for small discs without light, which would differ from corner to corner.
-enum class SpriteShape : std::uint8_t { Quad, Triangle, Point };
+/// What of the GPU draws a particle. A disc of a few pixels without light, which would differ from
+/// corner to corner, is a point unless it follows something that needs a quad.
+enum class SpriteShape : std::uint8_t { Quad, SmallDisc, Point };
 
 /// Particles that follow one another in the order, have images of the same texture arrays and are
 /// drawn as the same shape.

@@ -1,8 +1,9 @@
 #include "render/particle_packing.h"
 
-#include <glm/gtc/packing.hpp>
+#include <glm/packing.hpp>
 
 #include <algorithm>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/particle_packing.cpp"
@@ -25,7 +26,7 @@ pack_particles_vector(const ParticlePool&, const ParticlePacking&, std::size_t, 
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Pairs = hn::ScalableTag<std::uint64_t>;  // an instance is four of them
+using Pairs = hn::ScalableTag<std::uint64_t>;  // an instance is three and a half of them
 constexpr Pairs dp;
 constexpr hn::Rebind<std::uint32_t, Pairs> dw;
 constexpr hn::Rebind<std::int32_t, Pairs> di;
@@ -76,10 +77,13 @@ std::size_t pack_particles_vector(
             hn::Or(
                 high(half(hn::Sub(vz, hn::Set(df, packing.observer.z)))),
                 hn::ShiftLeft<48>(half(age))));
+        alignas(64) std::uint64_t wide[4 * hn::MaxLanes(dp)];
         hn::StoreInterleaved4(
             hn::Or(low(x), high(low(y))), hn::Or(hn::Or(low(z), high(steps)), look), moves,
-            hn::PromoteTo(dp, hn::LoadU(dw, &pool.look[i])), dp,
-            reinterpret_cast<std::uint64_t*>(out));
+            hn::PromoteTo(dp, hn::LoadU(dw, &pool.look[i])), dp, wide);
+        for (std::size_t k = 0; k < n; ++k) {
+            std::memcpy(static_cast<void*>(out + k), wide + 4 * k, sizeof(ParticleInstance));
+        }
     }
     return i - first;
 }
@@ -112,13 +116,18 @@ std::size_t pack_each(
         out[packed++] = {
             .position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * packing.back,
             .look_and_share = packing.look << 16 | static_cast<std::uint32_t>(share * 65535.0f),
-            .velocity_and_age = glm::packHalf4x16(Vec4(velocity - packing.observer, age)),
+            .velocity_xy = glm::packHalf2x16(Vec2(velocity) - Vec2(packing.observer)),
+            .velocity_z_age = glm::packHalf2x16(Vec2(velocity.z - packing.observer.z, age)),
             .random = pool.look[i]};
     }
     return packed;
 }
 
 }  // namespace
+
+Vec4 ParticleInstance::motion() const {
+    return {glm::unpackHalf2x16(velocity_xy), glm::unpackHalf2x16(velocity_z_age)};
+}
 
 std::size_t pack_particles(
     const ParticlePool& pool, const ParticlePacking& packing, std::span<ParticleInstance> out) {

@@ -9,16 +9,19 @@
 
 namespace limn {
 
-// Instances of particles, for the vertex shader: 32 bytes from nine arrays, every frame. A SIMD
+// Instances of particles, for the vertex shader: 28 bytes from nine arrays, every frame. A SIMD
 // version for the machine's widest vectors (Highway, dispatched at run time) beside a plain one.
 
-/// Layout of two texels in particle_gpu.h.
+/// The words of kParticleWords in particle_gpu.h.
 struct ParticleInstance {
     Vec3 position;
-    std::uint32_t look_and_share = 0;    ///< look in the high half; share of the life, of 65,535
-    std::uint64_t velocity_and_age = 0;  ///< four halfs, the first in the lowest bits
+    std::uint32_t look_and_share = 0;  ///< look in the high half; share of the life, of 65,535
+    std::uint32_t velocity_xy = 0;     ///< two halfs, the first in the low bits
+    std::uint32_t velocity_z_age = 0;  ///< likewise; a negative age: dead
     std::uint32_t random = 0;
-    std::uint32_t unused = 0;
+
+    /// Velocity [m/s] and age [s].
+    [[nodiscard]] Vec4 motion() const;
 };
 
 /// What is the same for all particles of a pool.

@@ -520,7 +520,7 @@ LIMN_FIELDS(ParticlePool) {
 /// with what draws them there (render/gpu_particle_pools.h).
 [[nodiscard]] inline std::uint64_t particle_bytes(const ParticleEmitter& emitter) {
     constexpr std::uint64_t kPool = 8 * sizeof(float) + sizeof(std::uint32_t);
-    constexpr std::uint64_t kGpu = (2 + 2) * sizeof(Vec4) + sizeof(std::uint32_t);
+    constexpr std::uint64_t kGpu = 2 * sizeof(Vec4) + (1 + 7) * sizeof(std::uint32_t);
     return emitter.capacity * (runs_on_gpu(emitter) ? kGpu : kPool);
 }
 

@@ -10,9 +10,11 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
+#include "render/instance_list.h"
 #include "render/lighting.h"
 #include "render/material_pool.h"
 #include "render/particle_weighted.h"
+#include "render/surface_draws.h"
 #include "render/view_block.h"
 
 #include <glm/geometric.hpp>
@@ -32,10 +34,11 @@ constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
 constexpr unsigned kRibbonsUnit = 8;
+constexpr unsigned kVeilUnit = 23;
 constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
 constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
-constexpr float kMaxTriangle = 10;          // [px] across, above which a disc is drawn as a quad
+constexpr float kMaxPoint = 4;              // [px] across, above which a disc is drawn as a quad
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
 constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 
@@ -116,7 +119,8 @@ Vec3 entity_velocity(const World& world, Entity entity, float step) {
 Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
     ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
-        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"})};
+        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"}),
+        ProgramVariants::of_meshes(device, "depth_first.frag")};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
     // As of materials: between mip levels only where that costs nothing.
     const GLenum minify =
@@ -196,7 +200,7 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
             const Vec3 middle =
                 0.5f * (ribbons.points[before + 1].position + ribbons.points[before + 2].position);
             instances.push_back(
-                {.position = middle, .look_and_share = index << 16, .velocity_and_age = before});
+                {.position = middle, .look_and_share = index << 16, .velocity_xy = before});
         }
         ribbons.segments.clear();
     };
@@ -273,8 +277,8 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
             instances.push_back(
                 {.position = place.position,
                  .look_and_share = index << 16 | static_cast<std::uint32_t>(place.share * 65535.0f),
-                 .velocity_and_age =
-                     std::uint64_t{std::bit_cast<std::uint32_t>(place.opacity)} << 32 | i,
+                 .velocity_xy = static_cast<std::uint32_t>(i),
+                 .velocity_z_age = std::bit_cast<std::uint32_t>(std::max(place.opacity, 0.0f)),
                  .random = random});
         }
     });
@@ -475,7 +479,7 @@ void ParticleEffect::append_runs(
         if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
             seen.runs.push_back(
                 {.arrays = arrays[look],
-                 .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::Triangle,
+                 .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::SmallDisc,
                  .magnified = true,
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
@@ -484,9 +488,9 @@ void ParticleEffect::append_runs(
         const float texels = extents[look].texels;
         const float pixels = scale * least_pixels(sorted[i], looks[look], camera);
         const bool is_small_disc =
-            texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxTriangle;
+            texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxPoint;
         run.magnified = run.magnified && (texels == 0 || pixels > 0.999f * texels);
-        if (run.shape == SpriteShape::Triangle && !is_small_disc) {
+        if (run.shape == SpriteShape::SmallDisc && !is_small_disc) {
             run.shape = SpriteShape::Quad;
         }
         ++run.count;
@@ -511,16 +515,63 @@ void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) 
     }
 }
 
-void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+void ParticleEffect::add_sprites(
+    FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
+    std::span<const Use> targets, std::span<const Part> parts, std::optional<TextureId> veil,
+    bool behind) {
+    std::vector<Use> reads =
+        lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+    if (veil) {
+        reads.push_back(sampled(*veil, kVeilUnit));
+    }
+    add_pool_reads(graph, reads);
+    graph.add_pass(
+        name, std::span<const Use>(reads), targets,
+        [this, &view, veiled = veil.has_value(), behind,
+         all = std::vector(parts.begin(), parts.end())](PassContext& context) {
+            for (const Part part : all) {
+                draw_sprites(context, view, part, veiled, behind);
+            }
+        });
+}
+
+void ParticleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    auto& front = view.data.publish<ParticlesInFront>();
+    front.effect = this;
+    front.veil.reset();
+    const std::vector<DrawRun>& blended = view.data.get<InstanceList>().blended;
+    if (blended.empty() || is_clipped(view)) {
+        return;
+    }
+    front.veil = create_target(graph, "particles.veil", GL_DEPTH_COMPONENT32F, view.size());
+    const std::vector<Use> meshes = mesh_reads(graph, *view.frame);
+    const Use veil[] = {cleared(*front.veil)};
+    graph.add_pass(
+        "particles.veil", std::span<const Use>(meshes), veil,
+        [this, &view, &blended](PassContext& context) {
+            draw_depths(context, view, blended, veil_programs);
+        });
+    const Use targets[] = {view.radiance};
+    const Part parts[] = {Part::Behind, Part::Front};
+    add_sprites(
+        graph, view, "particles.veiled", view.gbuffer.depth, targets, parts, front.veil, true);
+}
+
+void ParticleFrontEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    if (const auto* const front = view.data.find<ParticlesInFront>()) {
+        front->effect->draw_front(graph, frame, view);
+    }
+}
+
+void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view) {
     const auto& seen = view.data.get<ViewParticles>();
+    const std::optional<TextureId> veil = view.data.get<ParticlesInFront>().veil;
     const auto add_pass = [&](const char* name, TextureId depth, std::initializer_list<Use> targets,
                               Part part) {
-        std::vector<Use> reads =
-            lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
-        add_pool_reads(graph, reads);
-        graph.add_pass(
-            name, std::span(reads), std::span(targets.begin(), targets.size()),
-            [this, part, &view](PassContext& context) { draw_sprites(context, view, part); });
+        const bool whole = part == Part::Behind || part == Part::Front;
+        add_sprites(
+            graph, view, name, depth, std::span(targets.begin(), targets.size()), {&part, 1},
+            whole ? veil : std::nullopt);
     };
     create_layer_programs(*frame.device);
     if (seen.half_begin > 0) {
@@ -575,7 +626,7 @@ Variant ParticleEffect::sprite_variant(const ViewData& view, SpriteShape shape) 
     variant.add_if(is_clipped(view), "CLIPPED");
     variant.add_if(soft, "SOFT");
     if (shape != SpriteShape::Quad) {
-        variant.add(shape == SpriteShape::Point ? "POINTS" : "TRIANGLES");
+        variant.add("POINTS");
         return variant;
     }
     features.add_to(variant);
@@ -608,7 +659,8 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
 }
 
 /// What the GPU moves at full resolution is in front.
-void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Part part) {
+void ParticleEffect::draw_sprites(
+    PassContext& context, const ViewData& view, Part part, bool veiled, bool behind) {
     const bool is_weighted = part == Part::Weighted;
     gpu::PipelineState state = kWeightedState;
     if (!is_weighted) {
@@ -619,13 +671,15 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     bind_lighting(context, view);
     draw_runs(context, view, part, [&](SpriteShape shape) {
         Variant variant = view.lighting.variant;
-        variant.add_if(lit && shape != SpriteShape::Triangle, "LIT");
+        variant.add_if(lit && shape != SpriteShape::SmallDisc, "LIT");
         variant.add_if(features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
+        variant.add_if(veiled, "VEILED");
         variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, state});
+            program->set("behind", behind ? 1 : 0);
         }
         if (program != nullptr && is_weighted) {
             const auto& seen = view.data.get<ViewParticles>();
@@ -673,13 +727,12 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
             return;
         }
         program->set("first", run.first);
+        program->set("resolution", part == Part::Half ? 0.5f : 1.0f);
         bind_images(run.arrays, run.magnified);
-        if (run.shape == SpriteShape::Point) {
-            device.draw_points(run.count);
-        } else if (run.shape == SpriteShape::Triangle) {
-            device.draw_ids(3 * run.count);
-        } else {
+        if (run.shape == SpriteShape::Quad) {
             device.draw_quads(run.count);
+        } else {
+            device.draw_points(run.count);
         }
     };
     for (const ParticleRun& run : runs) {
@@ -687,7 +740,7 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         if (view.frame->warm_up && run.shape != SpriteShape::Point) {
             ParticleRun other = run;
             other.shape =
-                run.shape == SpriteShape::Quad ? SpriteShape::Triangle : SpriteShape::Quad;
+                run.shape == SpriteShape::Quad ? SpriteShape::SmallDisc : SpriteShape::Quad;
             draw_run(other);
         }
     }

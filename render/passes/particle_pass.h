@@ -22,19 +22,22 @@ namespace limn {
 // (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
 // among them, as quads that share their corners (engine.trail).
 //
-// Reads    depth, light clusters, environment; ParticlePool, Trail, Beam, Billboard with
-//          ParticleLook
+// Reads    depth, light clusters, environment, InstanceList; ParticlePool, Trail, Beam, Billboard
+//          with ParticleLook
 // Writes   radiance; velocity, where they cover more than their look states
-// Order    after blended surfaces, before the lens
+// Order    what is behind blended surfaces before these, the rest after them and before the lens
 // Shaders  particle.vert, particle.frag, particle_velocity.frag, particle_weighted.frag; layout in
 // particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
-// format. Sorted by distance of their centers; blended surfaces are all behind. Looks of half the
-// resolution are sorted among themselves, in a layer (particle_layer.h) behind all others. Each
-// view leaves out what it does not see; of particles on the GPU, emitters whose shape alone counts.
-// Looks that are weighted instead of sorted (particle_weighted.h) are one layer before all others.
+// format. Sorted by distance of their centers. Where blended surfaces are seen, each pixel of a
+// particle is drawn before them if the nearest of them hides it, and is seen through all of them:
+// also through one that is behind it. Looks of half the resolution are sorted among themselves, in
+// a layer (particle_layer.h) behind all others. Each view leaves out what it does not see; of
+// particles on the GPU, emitters whose shape alone counts. Looks that are weighted instead of
+// sorted (particle_weighted.h) are one layer before all others. Such layers, and views of mirrors,
+// have all blended surfaces behind them.
 
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
@@ -62,11 +65,12 @@ struct ParticleEffect {
         Bounds half_bounds{};            ///< of those
         std::size_t weighted_begin = 0;  ///< of the runs that are weighted, to the end
         Bounds weighted_bounds{};        ///< of those
-        BufferTexture texels = BufferTexture("particles in view", GL_RGBA32UI);
+        BufferTexture texels = BufferTexture("particles in view", GL_R32UI);
     };
 
     ProgramVariants programs;
     ProgramVariants velocity_programs;
+    ProgramVariants veil_programs;  ///< depth of blended surfaces
     std::vector<LookRecord> looks = {};
     std::vector<ParticleArrays> arrays = {};  ///< of each look
     std::vector<LookLayer> layers = {};       ///< of each look
@@ -104,7 +108,10 @@ struct ParticleEffect {
     void collect(FrameData& frame);
     bool prepare(const FrameData& frame, ViewData& view);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
+    /// What is behind blended surfaces.
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+    /// The rest, after these.
+    void draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
   private:
     std::uint32_t add_look(
@@ -118,13 +125,32 @@ struct ParticleEffect {
     void append_runs(
         const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
         ViewParticles& seen);
+    void add_sprites(
+        FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
+        std::span<const Use> targets, std::span<const Part> parts,
+        std::optional<TextureId> veil = std::nullopt, bool behind = false);
     void create_layer_programs(gpu::Device& device);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
     [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape) const;
-    void draw_sprites(PassContext& context, const ViewData& view, Part part);
+    void
+    draw_sprites(PassContext& context, const ViewData& view, Part part, bool veiled, bool behind);
     void draw_velocity(PassContext& context, const ViewData& view);
     template <typename Use>
     void draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use);
+};
+
+/// Published by ParticleEffect::draw().
+struct ParticlesInFront {
+    ParticleEffect* effect = nullptr;
+    std::optional<TextureId> veil{};  ///< depth of the nearest blended surface, if one may be seen
+};
+
+struct ParticleFrontEffect {
+    [[nodiscard]] static Result<ParticleFrontEffect> create(gpu::Device&, const RenderSettings&) {
+        return ParticleFrontEffect{};
+    }
+    static bool is_used(const FrameData& frame) { return ParticleEffect::is_used(frame); }
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 };
 
 }  // namespace limn

@@ -72,7 +72,7 @@ struct ParticleShadowEffect {
     gpu::Buffer fitted_record;  ///< to these
     BufferTexture record = BufferTexture("particle shadow", GL_RGBA32F);
     BufferTexture fitted = BufferTexture("fitted particle shadow", GL_RGBA32F);
-    BufferTexture texels = BufferTexture("particles that cast shadows", GL_RGBA32UI);
+    BufferTexture texels = BufferTexture("particles that cast shadows", GL_R32UI);
 
     // Of the frame.
     std::vector<ParticleInstance> casters = {};

@@ -2,6 +2,7 @@
 //   SOFT  some fade where they meet a surface
 //   SIX_WAY  some have images of the light from six sides
 //   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   VEILED  only what is behind the blended surfaces of the view, or only what is not
 #version 450
 #if defined(SIX_WAY) && !defined(IMAGES)
 #define IMAGES
@@ -20,12 +21,23 @@ layout(binding = 4) uniform sampler2D scene_depth;
 layout(binding = 27) uniform sampler2DArray negative_lights;
 #endif
 
+#ifdef VEILED
+layout(binding = 23) uniform sampler2D veil;  // depth of the nearest blended surface, 0: none
+uniform int behind;                           // 1: what is behind it; 0: the rest
+#endif
+
 layout(location = 0) out vec4 radiance;
 #ifdef WEIGHTED
 layout(location = 1) out float opacity;
 #endif
 
 void main() {
+#ifdef VEILED
+    bool is_behind = gl_FragCoord.z < texelFetch(veil, ivec2(gl_FragCoord.xy), 0).r;
+    if (is_behind != (behind != 0)) {
+        discard;
+    }
+#endif
     vec2 place = sprite_place(corner);
     vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
     vec3 shown = light.rgb * s.rgb;

@@ -2,7 +2,6 @@
 //   LIT      some particle scatters light
 //   SIX_WAY  some have images of the light from six sides
 //   POINTS   all are discs that face the camera: one vertex each, a point
-//   TRIANGLES  all are discs without light: a triangle about each
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
@@ -31,7 +30,8 @@ layout(binding = 26) uniform samplerBuffer billboard_quads;
 layout(location = 6) out vec3 previous_clip;  // clip x, y, w
 #endif
 
-uniform int first;  // of the particles to draw
+uniform int first;         // of the particles to draw
+uniform float resolution;  // of the image, as a share of the view's
 
 #ifdef WEIGHTED
 uniform vec2 weight_range;  // nearest distance ahead [m], 1 / (farthest - nearest)
@@ -43,6 +43,7 @@ float weight_at(float ahead) {
 }
 #endif
 
+const int kFacingCamera = 0;
 const int kFacingVelocity = 1;
 const int kFacingGround = 2;
 const int kFacingPixels = 3;
@@ -248,9 +249,6 @@ void main() {
 #ifdef POINTS
     int index = gl_VertexID;
     int vertex = 0;
-#elif defined(TRIANGLES)
-    int index = gl_VertexID / 3;
-    int vertex = gl_VertexID - 3 * index;
 #else
     int index = gl_VertexID >> 2;
     int vertex = gl_VertexID & 3;
@@ -264,8 +262,6 @@ void main() {
     vec4 more = look_texel(look, kLookMore);
 #ifdef POINTS
     corner = vec3(0.0, 0.0, 1.0);
-#elif defined(TRIANGLES)
-    corner = vec3(1.7320508 * (float(vertex) - 1.0), vertex == 1 ? 2.0 : -1.0, 1.0);
 #else
     corner = vec3(corner_of(vertex), 1.0);
 #endif
@@ -295,8 +291,12 @@ void main() {
     }
 #endif
 #ifdef POINTS
-    // Less than a pixel: fainter instead of smaller.
-    float diameter = size / pixel_extent(p.position);
+    // One that faces the camera is an oval off the image's middle: a disc as large. Less than a pixel: fainter instead of
+    // smaller.
+    float diameter = size * resolution / pixel_extent(p.position);
+    if (int(glow.w) == kFacingCamera) {
+        diameter *= sqrt(away / max(dot(p.position - view.camera_ws.xyz, view.ray_forward.xyz), 1e-4));
+    }
     gl_PointSize = max(diameter, 1.0);
     color.a *= min(diameter * diameter, 1.0);
     Quad quad = Quad(vec3(0.0), vec3(0.0));

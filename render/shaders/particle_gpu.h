@@ -6,14 +6,17 @@
 namespace limn::layout {
 #endif
 
-// A particle: texels of four words.
-//   0  position xyz [m] as floats; share of the life (16 bits) below the index of its look
-//   1  velocity [m/s] and age [s] as four halfs; random bits; 1: dead
-const uint kParticleTexels = 2u;
+// A particle: words.
+//   0  position xyz [m] as floats
+//   3  share of the life (16 bits) below the index of its look
+//   4  velocity [m/s] and age [s] as four halfs; a negative age: dead
+//   6  random bits
+const uint kParticleWords = 7u;
+const uint kDeadAge = 0xbc000000u;  // word 5 of one that is not there
 
 // A segment of a ribbon, in place of a particle: its look is one of facing kFacingRibbon.
-//   0  its middle; index of its look in the upper 16 bits
-//   1  index of the point before it
+//   0  its middle
+//   4  index of the point before it
 // Points of ribbons (RibbonList): texels of four floats.
 //   0  position xyz [m]; texture coordinate along the ribbon
 //   1  from edge to edge xyz [m], 0: faces the camera; share of the curves
@@ -22,7 +25,7 @@ const uint kFacingRibbon = 5u;  // after those of ParticleFacing
 
 // A billboard, in place of a particle: its look is one of facing kFacingBillboard, its share of the life is that of its
 // colors.
-//   1  index of its quad; its opacity as a float
+//   4  index of its quad; its opacity as a float
 // Quads of billboards (BillboardList): texels of four floats.
 //   0  half the extent to the right xyz [m]; BillboardAlignment
 //   1  half the extent upward xyz [m]; frame of the flipbook

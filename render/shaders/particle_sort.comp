@@ -4,6 +4,7 @@
 //   LOCAL   all passes of the runs `run` .. `last_run` whose partners are less than 1,024 apart, in shared memory
 //   none    writes the particles in their order
 #version 450
+#include "particle_gpu.h"
 
 layout(local_size_x = 512) in;  // kSortGroup
 
@@ -13,12 +14,12 @@ layout(std430, binding = 0) buffer Entries {
 };
 #if defined(KEYS) || !(defined(PASS) || defined(LOCAL))
 layout(std430, binding = 1) readonly buffer Instances {
-    uvec4 instances[];
+    uint instances[];
 };
 #endif
 #if !(defined(KEYS) || defined(PASS) || defined(LOCAL))
 layout(std430, binding = 2) writeonly buffer Sorted {
-    uvec4 in_order[];
+    uint in_order[];
 };
 #endif
 
@@ -55,8 +56,10 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     uint key = kPad;
     if (i < count) {
-        bool is_dead = instances[2u * i + 1u].w != 0u;
-        key = is_dead ? kDead : min(depth_key(dot(uintBitsToFloat(instances[2u * i].xyz) - eye, forward)), kDead - 1u);
+        uint word = kParticleWords * i;
+        vec3 place = uintBitsToFloat(uvec3(instances[word], instances[word + 1u], instances[word + 2u]));
+        bool is_dead = unpackHalf2x16(instances[word + 5u]).y < 0.0;
+        key = is_dead ? kDead : min(depth_key(dot(place - eye, forward)), kDead - 1u);
     }
     if (i < size) {
         entries[i] = uvec2(key, i);
@@ -105,7 +108,9 @@ void main() {
     // Those born since are last, in the order of births.
     uint index = (i < sorted_count ? entries[i].y : i) - died;
     bool is_there = index < count;  // and not less than 0
-    in_order[2u * i] = is_there ? instances[2u * index] : uvec4(0u);
-    in_order[2u * i + 1u] = is_there ? instances[2u * index + 1u] : uvec4(0u, 0u, 0u, 1u);
+    for (uint word = 0u; word < kParticleWords; ++word) {
+        uint absent = word == 5u ? kDeadAge : 0u;
+        in_order[kParticleWords * i + word] = is_there ? instances[kParticleWords * index + word] : absent;
+    }
 }
 #endif

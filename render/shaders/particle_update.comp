@@ -18,7 +18,7 @@ layout(std430, binding = 1) buffer Bits {
     uint bits[];  // of each slot: random
 };
 layout(std430, binding = 2) writeonly buffer Instances {
-    uvec4 instances[];  // of each particle that is moved, oldest first: as particle.vert reads them
+    uint instances[];  // of each particle that is moved, oldest first: as particle.vert reads them
 };
 
 uniform uint first;       // number of the oldest particle, low word
@@ -423,7 +423,12 @@ void main() {
         p.velocity += gravity * age;
     }
 #endif
-    instances[2u * moved] = uvec4(floatBitsToUint(place), look << 16 | uint(share * 65535.0));
-    instances[2u * moved + 1u] =
-        uvec4(packHalf2x16(p.velocity.xy), packHalf2x16(vec2(p.velocity.z, age)), p.look_bits, is_alive ? 0u : 1u);
+    uint word = kParticleWords * moved;
+    instances[word] = floatBitsToUint(place.x);
+    instances[word + 1u] = floatBitsToUint(place.y);
+    instances[word + 2u] = floatBitsToUint(place.z);
+    instances[word + 3u] = look << 16 | uint(share * 65535.0);
+    instances[word + 4u] = packHalf2x16(p.velocity.xy);
+    instances[word + 5u] = is_alive ? packHalf2x16(vec2(p.velocity.z, age)) : kDeadAge;
+    instances[word + 6u] = p.look_bits;
 }

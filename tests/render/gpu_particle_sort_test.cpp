@@ -36,6 +36,12 @@ std::vector<ParticleInstance> cloud(std::uint32_t first, std::uint32_t count) {
     return instances;
 }
 
+constexpr std::uint32_t kDead = 0xbc000000;  // an age of -1 s
+
+bool is_alive(const ParticleInstance& one) {
+    return one.velocity_z_age != kDead;
+}
+
 float depth_of(const ParticleInstance& one, const ParticleSortView& view = {kEye, kForward}) {
     return glm::dot(one.position - view.eye, view.forward);
 }
@@ -69,7 +75,7 @@ struct Sorter : RenderTest {
 std::vector<std::uint32_t> numbers_of(const std::vector<ParticleInstance>& drawn) {
     std::vector<std::uint32_t> numbers;
     for (const ParticleInstance& one : drawn) {
-        if (one.unused == 0) {  // alive
+        if (is_alive(one)) {
             numbers.push_back(one.random);
         }
     }
@@ -103,14 +109,14 @@ TEST_CASE_FIXTURE(Sorter, "gpu particle sort: back to front, equal ones in the o
         for (std::uint32_t i = 0; i < count; ++i) {
             // In steps, so that many are equally far; a tenth of them dead.
             instances[i].position = glm::floor(instances[i].position);
-            instances[i].unused = i % 10 == 3 ? 1 : 0;
+            instances[i].velocity_z_age = i % 10 == 3 ? kDead : 0;
         }
         const std::vector<ParticleInstance> drawn = frame(instances, 0, 0);
         REQUIRE(drawn.size() == count);
         CHECK(numbers_of(drawn) == stable_order(instances));
         // The dead are last.
         CHECK(std::is_sorted(drawn.begin(), drawn.end(), [](const auto& a, const auto& b) {
-            return a.unused < b.unused;
+            return a.velocity_z_age < b.velocity_z_age;
         }));
     }
 }

@@ -118,6 +118,18 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(LayerScene, "particle layer: points are as large as in the whole resolution") {
+    for (const auto facing : {ParticleFacing::Point, ParticleFacing::Pixels}) {
+        ParticleLook point = puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f);
+        point.facing = facing;
+        point.size = facing == ParticleFacing::Pixels ? 24.0f : 0.5f;
+        const Entity smoke = emit({{0.1f, -0.2f, 0}}, point);
+        const gpu::FloatImage full = drawn(ParticleResolution::Full);
+        CHECK(decibels(drawn(ParticleResolution::Half), full) >= 40);
+        world.destroy(smoke);
+    }
+}
+
 TEST_CASE_FIXTURE(LayerScene, "particle layer: smoke does not spill over what stands before it") {
     add_bars();
     const gpu::FloatImage bare = drawn(ParticleResolution::Full);

@@ -8,7 +8,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -236,7 +235,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: a disc has its profile in every pixel, small or large") {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
-    for (const int diameter : {8, 10, 12, 40}) {  // [px]; small ones are triangles
+    for (const int diameter : {2, 4, 8, 10, 12, 40}) {  // [px]; small ones are points
         CAPTURE(diameter);
         look.size = static_cast<float>(diameter) / 30;
         const Entity one = emit({{0, 0, 0}}, look);
@@ -251,6 +250,35 @@ TEST_CASE_FIXTURE(
             largest = std::max(largest, std::abs(found - inside * inside));
         }
         CHECK(largest <= 0.001f);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a small disc gives the light of its solid angle, to 2 %") {
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    constexpr int kShifts = 8;                         // in a pixel, each way
+    for (const float diameter : {0.5f, 1.5f, 3.0f}) {  // [px], of 30 a meter in the middle
+        for (const float aside : {0.0f, 0.8f}) {       // to the right and up [m], a meter ahead
+            CAPTURE(diameter);
+            CAPTURE(aside);
+            look.size = diameter / 30;
+            double sum = 0;
+            for (int i = 0; i < kShifts * kShifts; ++i) {
+                const Vec2 shift = Vec2(i % kShifts, i / kShifts) / (30.0f * kShifts);
+                const Entity one = emit({Vec3(Vec2(aside) + shift, 0)}, look);
+                const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 60, 60));
+                world.destroy(one);
+                for (int pixel = 0; pixel < 3600; ++pixel) {
+                    sum += static_cast<double>(rgb_at(image, pixel % 60, pixel / 60).x);
+                }
+            }
+            // Its profile integrates to a third of its area, and a pixel off the middle spans less.
+            const float cosine = 1 / glm::length(Vec3(aside, aside, 1));
+            const float expected = kPi / 3 * square(0.5f * diameter) / cosine;
+            CHECK(
+                sum / (kShifts * kShifts)
+                == test::near(static_cast<double>(expected)).epsilon(0.02));
+        }
     }
 }
 
@@ -423,7 +451,7 @@ TEST_CASE(
     std::vector<ParticleInstance> instances;
     append_particles(pool, 0, 0, instances, {0, 0, -10});
     REQUIRE(instances.size() == 1);
-    CHECK(glm::unpackHalf4x16(instances[0].velocity_and_age).z == near(11));
+    CHECK(instances[0].motion().z == near(11));
     CHECK(instances[0].position.z == 1);
 }
 

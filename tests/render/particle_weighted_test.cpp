@@ -23,7 +23,7 @@ struct WeightedScene : Scene {
     /// A particle at rest on the view axis, of a look of its own.
     void emit(float z, const Vec3& color, float opacity, ParticleSort sort, float cover = 1) {
         ParticleLook look;
-        look.size = 1;
+        look.size = 4;
         look.colors = {{.at = 0, .color = color, .opacity = opacity}};
         look.emission = 1;
         look.lit = 0;

@@ -22,13 +22,15 @@ struct Particle {
 };
 
 Particle read_particle(int index) {
-    uvec4 place = texelFetch(particles, index * int(kParticleTexels));
-    uvec4 rest = texelFetch(particles, index * int(kParticleTexels) + 1);
-    vec2 velocity_xy = unpackHalf2x16(rest.x);
-    vec2 velocity_z_age = unpackHalf2x16(rest.y);
-    return Particle(uintBitsToFloat(place.xyz), vec3(velocity_xy, velocity_z_age.x), velocity_z_age.y,
-                    float(place.w & 0xffffu) / 65535.0, int(place.w >> 16), rest.z, rest.w != 0u, int(rest.x),
-                    uintBitsToFloat(rest.y));
+    uint words[kParticleWords];
+    for (int i = 0; i < int(kParticleWords); ++i) {
+        words[i] = texelFetch(particles, index * int(kParticleWords) + i).x;
+    }
+    vec3 place = uintBitsToFloat(uvec3(words[0], words[1], words[2]));
+    vec2 velocity_xy = unpackHalf2x16(words[4]);
+    vec2 velocity_z_age = unpackHalf2x16(words[5]);
+    return Particle(place, vec3(velocity_xy, velocity_z_age.x), velocity_z_age.y, float(words[3] & 0xffffu) / 65535.0,
+                    int(words[3] >> 16), words[6], velocity_z_age.y < 0.0, int(words[4]), uintBitsToFloat(words[5]));
 }
 
 // Of the quad's vertices, -1 .. 1, as a strip.

@@ -1,0 +1,130 @@
+#include "ecs/components/all.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "ecs/components/water.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+
+#include <cmath>
+
+// Particles among surfaces that are seen through: panes, media and water.
+
+namespace limn::test {
+namespace {
+
+struct OrderScene : Scene {
+    OrderScene() { world.insert_resource(FrameTime{}); }
+
+    /// A disc of 4 m at rest.
+    Entity emit(const Vec3& place, const Vec3& color, float opacity = 1) {
+        ParticleLook look;
+        look.size = 4;
+        look.colors = {{.at = 0, .color = color, .opacity = opacity}};
+        look.emission = 1;
+        look.lit = 0;
+        look.softness = 0;
+        ParticlePool pool;
+        pool.x = {place.x};
+        pool.y = {place.y};
+        pool.z = {place.z};
+        pool.vx = pool.vy = pool.vz = {0};
+        pool.age = {0.5f};
+        pool.life = {1};
+        pool.look = {7};
+        return world.create(ParticleEmitter{}, look, pool);
+    }
+    /// A square of 6 m that gives off `color` and hides `opacity` of what is behind it.
+    void add_pane(float z, const Vec3& color, float opacity) {
+        place(
+            add(make_square()),
+            add(Material{
+                .shading = ShadingModel::Unlit,
+                .alpha_mode = AlphaMode::Blend,
+                .base_color = Vec4(color, opacity)}),
+            affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(3)));
+    }
+    Vec3 middle() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33)), 16, 16); }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(
+    OrderScene,
+    "particle order: behind a pane a sprite is seen through it, before it it hides it") {
+    add_pane(0, {0, 0, 1}, 0.25f);
+    const Entity behind = emit({0, 0, -1}, {1, 0, 0});
+    Vec3 seen = middle();
+    CHECK(seen.x == test::near(0.75).epsilon(0.01));
+    CHECK(seen.z == test::near(0.25).epsilon(0.01));
+    world.destroy(behind);
+    emit({0, 0, 0.5f}, {1, 0, 0});
+    seen = middle();
+    CHECK(seen.x == test::near(1).epsilon(0.01));
+    CHECK(seen.z < 0.01f);
+}
+
+TEST_CASE_FIXTURE(
+    OrderScene, "particle order: sprites before and behind a pane mix as sorted layers do") {
+    add_pane(0, {0, 0, 1}, 0.5f);
+    emit({0, 0, -1}, {1, 0, 0}, 0.8f);
+    emit({0, 0, 0.3f}, {0, 1, 0}, 0.5f);
+    const Vec3 seen = middle();
+    CHECK(seen.x == test::near(0.8 * 0.5 * 0.5).epsilon(0.02));
+    CHECK(seen.z == test::near(0.5 * 0.5).epsilon(0.02));
+    CHECK(seen.y == test::near(0.5).epsilon(0.02));
+}
+
+TEST_CASE_FIXTURE(
+    OrderScene, "particle order: a sprite that a pane cuts is behind it in part of its pixels") {
+    // From the lower left of the image away to the upper right.
+    place(
+        add(make_square()),
+        add(Material{
+            .shading = ShadingModel::Unlit,
+            .alpha_mode = AlphaMode::Blend,
+            .double_sided = true,
+            .base_color = {0, 0, 1, 0.5f}}),
+        affine_from({0, 0, 0}, Quat(std::cos(0.4f), 0, std::sin(0.4f), 0), Vec3(3)));
+    emit({0, 0, 0}, {1, 0, 0});
+    const gpu::FloatImage image = radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33));
+    const Vec3 left = rgb_at(image, 10, 16);
+    const Vec3 right = rgb_at(image, 22, 16);
+    const Vec3& open = left.z < right.z ? left : right;
+    const Vec3& veiled = left.z < right.z ? right : left;
+    CHECK(open.z < 0.3f * veiled.z);
+    CHECK(veiled.z > 0.4f);
+    CHECK(veiled.x == test::near(0.5f * open.x).epsilon(0.05));
+}
+
+TEST_CASE_FIXTURE(
+    OrderScene,
+    "particle order: behind clear glass a sprite is seen, before it it hides the glass") {
+    const Material glass = {
+        .base_color = {1, 1, 1, 1}, .roughness = 0, .transmission = 1, .thickness = 0.1f};
+    place(add(make_square()), add(glass), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(3)));
+    for (const float z : {-1.0f, 0.5f}) {
+        CAPTURE(z);
+        const Entity one = emit({0, 0, z}, {1, 0, 0});
+        const Vec3 seen = middle();
+        CHECK(seen.x > 0.85f);
+        CHECK(seen.y < 0.05f);
+        world.destroy(one);
+    }
+    CHECK(middle().x < 0.05f);
+}
+
+TEST_CASE_FIXTURE(
+    OrderScene, "particle order: above water a sprite hides it, below black water it is not seen") {
+    world.create(
+        Water{.absorption = {100, 100, 100}, .scattering = Vec3(0)}, WorldTransform{at({0, 0, 0})});
+    const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
+    const auto red = [&] { return rgb_at(radiance(view), 16, 16).x; };
+    const float bare = red();
+    const Entity above = emit({0, 0.5f, 0}, {1, 0, 0});
+    CHECK(red() == test::near(1).epsilon(0.01));
+    world.destroy(above);
+    emit({0, -1, 0}, {1, 0, 0});
+    CHECK(red() == test::near(bare).epsilon(0.01));
+}
+
+}  // namespace limn::test
