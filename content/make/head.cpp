@@ -3,6 +3,7 @@
 #include "content/bake/face_regions.h"
 #include "content/bake/tangents.h"
 #include "content/make/head_clips.h"
+#include "content/make/head_ear.h"
 #include "content/make/head_expressions.h"
 #include "content/make/head_layout.h"
 #include "content/make/head_parts.h"
@@ -38,7 +39,7 @@ Vec3 skin_color(const HeadVertex& vertex, const Vec3& point) {
     Vec3 color = Vec3(1);
     const float flush = std::min(
         1.0f, 0.8f * spot(p, {4.4f, -0.2f, 8.6f}, 2.4f) + spot(p, {0, 0.2f, 12}, 1.5f)
-                  + (vertex.loops == HeadLoops::Ear ? 0.9f : 0.0f)
+                  + (vertex.loops == HeadLoops::Ear ? 0.9f * (1 - ear_on_cheek(vertex)) : 0.0f)
                   + 0.4f * spot(p, {0, -6.3f, 10.2f}, 1.6f));
     color = glm::mix(color, Vec3(1.0f, 0.80f, 0.76f), flush);
     color = glm::mix(color, Vec3(0.83f, 0.76f, 0.78f), 0.6f * spot(p, {2.6f, 2.0f, 9.2f}, 0.9f));
@@ -51,6 +52,10 @@ Vec3 skin_color(const HeadVertex& vertex, const Vec3& point) {
         if (vertex.loop > kLipLoop + 1) {
             color = Vec3(0.45f, 0.2f, 0.2f);
         }
+    }
+    if (vertex.loops == HeadLoops::Nostril && vertex.loop > kNostrilRim) {
+        const float deep = static_cast<float>(vertex.loop - kNostrilRim) / 2;
+        color = glm::mix(color, Vec3(0.3f, 0.12f, 0.1f), std::min(deep, 1.0f));
     }
     if (vertex.loops == HeadLoops::Eye) {
         if (vertex.loop >= kLidLoop) {
@@ -101,6 +106,7 @@ HeadPart make_skin(const HeadShape& shape) {
     for (const HeadPoint& point : part.points) {
         const bool face = point.loops == HeadLoops::None
                           || (point.loops == HeadLoops::Eye && point.loop <= kLidLoop)
+                          || (point.loops == HeadLoops::Nostril && point.loop <= kNostrilRim)
                           || (point.loops == HeadLoops::Mouth && point.loop <= kLipLoop);
         reference.push_back(face ? point.rest : Vec3(std::numeric_limits<float>::quiet_NaN()));
     }

@@ -86,6 +86,73 @@ TEST_CASE("head: lids do not enter the ball of the eye") {
     }
 }
 
+/// Vertices of the left part that loops `from` to `to` make up.
+std::vector<std::uint32_t> left_loops(HeadLoops loops, int from, int to) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t v = 0; v < wrapped().size(); ++v) {
+        const HeadVertex& vertex = head_layout().vertices[v];
+        if (vertex.left && vertex.loops == loops && vertex.loop >= from && vertex.loop <= to) {
+            found.push_back(v);
+        }
+    }
+    return found;
+}
+
+Vec3 mean_place(const std::vector<std::uint32_t>& vertices) {
+    Vec3 sum = Vec3(0);
+    for (const std::uint32_t v : vertices) {
+        sum += wrapped()[v];
+    }
+    return sum / static_cast<float>(vertices.size());
+}
+
+/// Of the quads between `vertices`: their areas times their normals.
+Vec3 facing(const std::vector<std::uint32_t>& vertices) {
+    Vec3 sum = Vec3(0);
+    for (const auto& quad : head_layout().quads) {
+        if (std::ranges::all_of(
+                quad, [&](std::uint32_t v) { return std::ranges::binary_search(vertices, v); })) {
+            sum += glm::cross(
+                wrapped()[quad[2]] - wrapped()[quad[0]], wrapped()[quad[3]] - wrapped()[quad[1]]);
+        }
+    }
+    return glm::normalize(sum);
+}
+
+TEST_CASE("head: a nostril opens downwards and ends 8 mm or more up, within the nose") {
+    const auto rim = left_loops(HeadLoops::Nostril, kNostrilRim, kNostrilRim);
+    const auto cavity = left_loops(HeadLoops::Nostril, kNostrilRim, kNostrilLoops);
+    const auto end = left_loops(HeadLoops::Nostril, kNostrilLoops, kNostrilLoops);
+    REQUIRE(rim.size() >= 16);
+    CHECK(facing(cavity).y < -0.8f);
+    CHECK(mean_place(end).y - mean_place(rim).y > 0.8f);
+    for (const std::uint32_t v : left_loops(HeadLoops::Nostril, kNostrilRim + 2, kNostrilLoops)) {
+        CHECK(head_distance(wrapped()[v], HeadShape{}, 1) < 0);
+    }
+    for (const std::uint32_t v : rim) {  // a column stays between the nostrils
+        CHECK(wrapped()[v].x > 0.2f);
+    }
+}
+
+TEST_CASE(
+    "head: an ear is as long and wide as an adult's, and its concha a hollow that faces out") {
+    constexpr int kConcha = 22;
+    const auto front = left_loops(HeadLoops::Ear, 6, kEarLoops);
+    Vec3 low = Vec3(100);
+    Vec3 high = Vec3(-100);
+    for (const std::uint32_t v : front) {
+        low = glm::min(low, wrapped()[v]);
+        high = glm::max(high, wrapped()[v]);
+    }
+    CHECK(high.y - low.y > 5.5f);  // 62.4 mm, two deviations 7.4
+    CHECK(high.y - low.y < 7.0f);
+    CHECK(facing(front).x > 0.7f);
+    const Vec3 concha = mean_place(left_loops(HeadLoops::Ear, kConcha, kEarLoops));
+    CHECK(high.x - concha.x > 0.8f);  // the helix stands out from it
+    const Vec3 head = project_to_head(concha, HeadShape{}, 1);
+    CHECK(glm::distance(head, concha) < 0.6f);
+}
+
 TEST_CASE("head: no number of a made mesh is NaN at the ends of all parameters") {
     for (const float end : {0.0f, 1.0f}) {
         const MeshData mesh =
