@@ -44,17 +44,21 @@ Vec3 lid_point(const HeadVertex& vertex) {
                      std::cos(angle));
 }
 
+bool on_nose(const HeadVertex& vertex) {
+    const Vec3& start = vertex.start;
+    return vertex.loops == HeadLoops::None && start.z > 8 && std::abs(start.x) < 2.4f
+           && start.y > -2 && start.y < 5;
+}
+
 /// Onto the surface.
 Vec3 project(
     const HeadVertex& vertex, const Vec3& p, const HeadShape& shape, float detail, int steps = 3) {
-    const Vec3& start = vertex.start;
     if (vertex.loops == HeadLoops::Nostril && (detail < 1 || vertex.loop > kNostrilRim - 3)) {
         return p;  // a membrane from the rim to the grid until the nose is there; then, a rounded
                    // rim
     }
-    const bool nose = vertex.loops == HeadLoops::None && start.z > 8 && std::abs(start.x) < 2.4f
-                      && start.y > -2 && start.y < 5;
-    return nose ? project_forwards(p, shape, detail) : project_to_head(p, shape, detail, steps);
+    return on_nose(vertex) ? project_forwards(p, shape, detail)
+                           : project_to_head(p, shape, detail, steps);
 }
 
 /// From where the lips touch to the back of the mouth.
@@ -150,7 +154,10 @@ class HeadWrap {
                 positions_[v] = to_side(vertex, nostril_point(vertex, shape_, detail));
                 free_[v] = false;
             } else if (vertex.chart.y >= kHeadRows) {
-                positions_[v] = project_to_head(positions_[v], shape_, detail);
+                for (int step = 0; step < 2; ++step) {  // a plane ring, where a body begins
+                    positions_[v] = project_to_head(positions_[v], shape_, detail);
+                    positions_[v].y = vertex.start.y;
+                }
             }
         }
     }
@@ -209,7 +216,9 @@ class HeadWrap {
             const std::vector<Vec3> before = positions_;
             for (std::size_t v = 0; v < positions_.size(); ++v) {
                 if (free_[v] && ring[v] <= kRings) {
-                    positions_[v] = glm::mix(before[v], mean_around(before, v), 0.5f);
+                    const Vec3 smoothed = glm::mix(before[v], mean_around(before, v), 0.5f);
+                    const bool nose = round >= 5 && on_nose(layout_.vertices[v]);
+                    positions_[v] = nose ? project_to_head(smoothed, shape_, 1, 1) : smoothed;
                 }
             }
         }

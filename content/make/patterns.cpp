@@ -3,6 +3,7 @@
 #include "content/make/face_fold_pattern.h"
 #include "content/make/fold_pattern.h"
 #include "content/make/furrow_patterns.h"
+#include "content/make/hair_pattern.h"
 #include "content/make/mask_pattern.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
@@ -396,6 +397,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<FoldsPattern, make_folds>("folds", "folds of skin along u, as a wrinkle map"),
         pattern_kind<FurrowsPattern, make_furrows>(
             "furrows", "skin with wrinkle furrows that grow along two vector fields"),
+        pattern_kind<HairPattern, make_hair>(
+            "hair", "strands of hair along v with gaps, for the cards of a head"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<MasksPattern, make_masks>(
