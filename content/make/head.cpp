@@ -3,6 +3,7 @@
 #include "content/bake/face_regions.h"
 #include "content/bake/tangents.h"
 #include "content/make/head_clips.h"
+#include "content/make/head_ear.h"
 #include "content/make/head_expressions.h"
 #include "content/make/head_layout.h"
 #include "content/make/head_parts.h"
@@ -33,12 +34,14 @@ float spot(const Vec3& p, const Vec3& center, float radius) {
 }
 
 /// Factor of the material's color at rest position `p` [cm].
-Vec3 skin_color(const HeadVertex& vertex, const Vec3& point) {
+Vec3 skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& shape) {
     const Vec3 p = {std::abs(point.x), point.y, point.z};
     Vec3 color = Vec3(1);
+    color *=
+        glm::mix(Vec3(1), Vec3(0.16f, 0.15f, 0.16f), shape.scalp_shade * scalp_hair_cover(point));
     const float flush = std::min(
         1.0f, 0.8f * spot(p, {4.4f, -0.2f, 8.6f}, 2.4f) + spot(p, {0, 0.2f, 12}, 1.5f)
-                  + (vertex.loops == HeadLoops::Ear ? 0.9f : 0.0f)
+                  + (vertex.loops == HeadLoops::Ear ? 0.9f * (1 - ear_on_cheek(vertex)) : 0.0f)
                   + 0.4f * spot(p, {0, -6.3f, 10.2f}, 1.6f));
     color = glm::mix(color, Vec3(1.0f, 0.80f, 0.76f), flush);
     color = glm::mix(color, Vec3(0.83f, 0.76f, 0.78f), 0.6f * spot(p, {2.6f, 2.0f, 9.2f}, 0.9f));
@@ -51,6 +54,10 @@ Vec3 skin_color(const HeadVertex& vertex, const Vec3& point) {
         if (vertex.loop > kLipLoop + 1) {
             color = Vec3(0.45f, 0.2f, 0.2f);
         }
+    }
+    if (vertex.loops == HeadLoops::Nostril && vertex.loop > kNostrilRim) {
+        const float deep = static_cast<float>(vertex.loop - kNostrilRim) / 2;
+        color = glm::mix(color, Vec3(0.3f, 0.12f, 0.1f), std::min(deep, 1.0f));
     }
     if (vertex.loops == HeadLoops::Eye) {
         if (vertex.loop >= kLidLoop) {
@@ -77,7 +84,7 @@ HeadPart make_skin(const HeadShape& shape) {
             part.mesh.positions.push_back(positions[v]);
             part.mesh.uvs.push_back(
                 {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)});
-            part.mesh.colors.emplace_back(skin_color(vertex, positions[v]), 1.0f);
+            part.mesh.colors.emplace_back(skin_color(vertex, positions[v], shape), 1.0f);
         }
         return found->second;
     };
@@ -101,6 +108,7 @@ HeadPart make_skin(const HeadShape& shape) {
     for (const HeadPoint& point : part.points) {
         const bool face = point.loops == HeadLoops::None
                           || (point.loops == HeadLoops::Eye && point.loop <= kLidLoop)
+                          || (point.loops == HeadLoops::Nostril && point.loop <= kNostrilRim)
                           || (point.loops == HeadLoops::Mouth && point.loop <= kLipLoop);
         reference.push_back(face ? point.rest : Vec3(std::numeric_limits<float>::quiet_NaN()));
     }
@@ -122,6 +130,8 @@ HeadPart make_part(const HeadShape& shape) {
         return make_mouth();
     case HeadPartKind::Hair:
         return make_face_hair(shape);
+    case HeadPartKind::Scalp:
+        return make_scalp_hair(shape);
     }
     return {};
 }
@@ -161,7 +171,9 @@ MeshData make_head(const HeadShape& shape) {
         for (std::size_t v = 0; v < part.points.size(); ++v) {
             mesh.positions[v] = skew_head(mesh.positions[v], shape);
         }
-        generate_normals(mesh);
+        if (shape.part != HeadPartKind::Scalp) {
+            generate_normals(mesh);
+        }
     }
     for (Vec3& p : mesh.positions) {
         p *= kMeters;

@@ -19,13 +19,14 @@ namespace limn {
 // with a material of its own, and has the same morph targets:
 //
 //     skin      with regions that fold
-//     eyes      white, iris and pupil, in vertex colors
-//     corneas   clear shells before them, for a material that is nearly transparent
+//     eyes      white, iris, pupil and caruncle, in vertex colors
+//     corneas   clear shells before them and tear lines, for a material that refracts
 //     teeth     of both jaws
 //     mouth     gums and tongue
 //     hair      brows and lashes: ribbons, for a material with two sides
+//     scalp     a short cut: cards for a material with the images of HairPattern
 
-enum class HeadPartKind : std::uint8_t { Skin, Eyes, Corneas, Teeth, Mouth, Hair };
+enum class HeadPartKind : std::uint8_t { Skin, Eyes, Corneas, Teeth, Mouth, Hair, Scalp };
 
 struct HeadShape {
     HeadPartKind part = HeadPartKind::Skin;
@@ -33,15 +34,18 @@ struct HeadShape {
     float sex = 0.0f;
     float build = 0.0f;
     float asymmetry = 0.0f;
+    float scalp_shade = 0.0f;
     std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
 
 LIMN_FIELDS(HeadShape) {
-    LIMN_FIELD(part, .doc = "part of the head", .values = "skin eyes corneas teeth mouth hair");
+    LIMN_FIELD(
+        part, .doc = "part of the head", .values = "skin eyes corneas teeth mouth hair scalp");
     LIMN_FIELD(age, "0: twenty years, 1: seventy; lips thin, tissue sags", "", 0, 1);
     LIMN_FIELD(sex, "-1: a woman's features, 1: a man's", "", -1, 1);
     LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);
     LIMN_FIELD(asymmetry, "of the left and right half; 0: mirror images", "", 0, 1);
+    LIMN_FIELD(scalp_shade, "of the skin: how much it is darkened where hair grows", "", 0, 1);
     LIMN_FIELD(says, "what it says in its clip talk, English");
 }
 

@@ -190,6 +190,13 @@ constexpr ActionUnit kUnits[] = {
     {.name = "AU36",
      .sided = true,
      .pulls = {{{{1.5f, -5.0f, 11}, {1.2f, 0, 6.4f}, {1.7f, 1.5f, 2.2f}}}}},
+    {.name = "AU37",  // the tongue wipes the lower lip
+     .pulls = {{
+         {{0, -3.8f, 11.5f}, {0, -1.6f, 3.0f}, {2.0f, 1.6f, 2.4f}, kLower},
+         {{0, -2.9f, 11.6f}, {0, 1.6f, 0.4f}, {2.2f, 1.5f, 2.4f}, kUpper},
+     }},
+     .jaw = 4,
+     .tongue = 24},
     {.name = "AU38",
      .sided = true,
      .pulls = {{{{1.7f, -0.1f, 11.2f}, {2.2f, 0.6f, 0.2f}, {1.1f, 1.1f, 1.5f}}}}},
@@ -205,6 +212,14 @@ constexpr ActionUnit kUnits[] = {
      .upper_lid = 0.26f,
      .lower_lid = 0.36f},
     {.name = "AU45", .sided = true, .upper_lid = 0.82f, .lower_lid = 0.18f},
+    {.name = "AU46",  // a wink: cheek and brow help the lids
+     .sided = true,
+     .pulls = {{
+         {{3.9f, 0.5f, 9.4f}, {-0.8f, 3.2f, 0.8f}, {2.5f, 1.9f, 3}},
+         {{3.6f, 5.6f, 9.8f}, {-0.5f, -1.8f, 0}, {2.2f, 1.3f, 3}, Lips::Both, kSlides},
+     }},
+     .upper_lid = 0.74f,
+     .lower_lid = 0.26f},
     {.name = "AU63", .sided = true, .upper_lid = -0.3f, .lower_lid = 0.05f},
     {.name = "AU64", .sided = true, .upper_lid = 0.55f, .lower_lid = -0.12f},
 };

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -50,6 +51,7 @@ Vec3 iris_tint(float radius, float angle) {
         Vec3(0.20f, 0.105f, 0.035f), Vec3(0.085f, 0.10f, 0.075f),
         glm::smoothstep(0.12f, 0.5f, t + 0.18f * (broad - 0.5f)));
     color *= 0.55f + 0.75f * fine * (0.5f + broad);
+    color *= glm::mix(1.0f, 0.45f, glm::smoothstep(0.2f, 0.6f, std::sin(angle) * radius));
     color *= glm::mix(0.55f, 1.0f, glm::smoothstep(0.0f, 0.12f, t));  // the pupil's dark border
     return color * glm::mix(1.0f, 0.16f, glm::smoothstep(0.72f, 1.0f, t));  // the limbal ring
 }
@@ -88,6 +90,70 @@ void append_shell(HeadPart& part, std::span<const Ring> rings, bool left, const 
 
 float ball_z(float radius) {
     return std::sqrt(square(kBallRadius) - square(radius));
+}
+
+/// The pink flesh in the inner corner of an eye, fixed to the skull.
+void append_caruncle(HeadPart& part, bool left) {
+    constexpr Vec3 kPlace = {-1.2f, -0.1f, 0.5f};  // from the center of the ball [cm]
+    constexpr Vec3 kRadii = {0.2f, 0.15f, 0.15f};
+    constexpr std::uint32_t kRows = 9;
+    constexpr std::uint32_t kColumns = 16;
+    const float side = left ? 1.0f : -1.0f;
+    for (std::uint32_t row = 0; row < kRows; ++row) {
+        const float polar = kPi * (0.01f + 0.98f * static_cast<float>(row) / (kRows - 1));
+        for (std::uint32_t i = 0; i < kColumns; ++i) {
+            const float angle = 2 * kPi * static_cast<float>(i) / kColumns;
+            const Vec3 out = {
+                std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
+                std::cos(polar)};
+            const Vec3 p = kEyeCenter + kPlace + kRadii * out;
+            part.points.push_back(bone_point(p * Vec3(side, 1, 1), 0));
+            part.mesh.positions.push_back(part.points.back().rest);
+            part.mesh.uvs.emplace_back(0.5f + 0.5f * out.x, 0.5f - 0.5f * out.y);
+            part.mesh.colors.emplace_back(0.62f, 0.27f, 0.24f, 1.0f);
+        }
+    }
+    append_grid(part.mesh, kRows, kColumns, true, left);
+}
+
+/// The wet line where the lower lid touches the ball: a hollow film that moves with the lid.
+void append_tear_line(HeadPart& part, bool left) {
+    struct Row {
+        float reach;  // from the center of the ball [cm]
+        float rise;   // above the edge of the lid [rad]
+    };
+    constexpr std::array<Row, 5> kProfile = {{
+        {kEyeRadius + 0.05f, 0},
+        {kEyeRadius + 0.02f, 0.022f},
+        {kEyeRadius - 0.005f, 0.04f},
+        {kEyeRadius - 0.02f, 0.062f},
+        {kBallRadius - 0.003f, 0.1f},
+    }};
+    constexpr std::uint32_t kColumns = 40;
+    const float side = left ? 1.0f : -1.0f;
+    for (const Row& row : kProfile) {
+        for (std::uint32_t i = 0; i < kColumns; ++i) {
+            const float share = static_cast<float>(i) / (kColumns - 1);
+            const float angle = -kPi * glm::mix(0.12f, 0.86f, share);
+            const Vec3 out = glm::normalize(lid_margin(angle) - kEyeCenter);
+            // Towards its ends it runs out.
+            const float rise = row.rise * glm::smoothstep(0.0f, 0.2f, std::min(share, 1 - share));
+            const float c = std::cos(rise);
+            const float s = std::sin(rise);
+            const Vec3 p =
+                kEyeCenter + row.reach * Vec3(out.x, c * out.y + s * out.z, c * out.z - s * out.y);
+            HeadPoint point;
+            point.rest = p * Vec3(side, 1, 1);
+            point.loops = HeadLoops::Eye;
+            point.loop = kLidLoop + 1;
+            point.angle = angle;
+            part.points.push_back(point);
+            part.mesh.positions.push_back(point.rest);
+            part.mesh.uvs.emplace_back(share, row.rise);
+            part.mesh.colors.emplace_back(Vec3(1), 1.0f);
+        }
+    }
+    append_grid(part.mesh, static_cast<std::uint32_t>(kProfile.size()), kColumns, false, !left);
 }
 
 }  // namespace
@@ -135,6 +201,7 @@ HeadPart make_eye_balls() {
             return radius < kLimbus - 0.005f && z > 0 ? iris_tint(radius, angle)
                                                       : sclera_tint(radius, angle, z);
         });
+        append_caruncle(part, left);
     }
     return part;
 }
@@ -156,6 +223,7 @@ HeadPart make_corneas() {
     part.mesh.name = "corneas";
     for (const bool left : {true, false}) {
         append_shell(part, rings, left, [](float, float, float) { return Vec3(1); });
+        append_tear_line(part, left);
     }
     return part;
 }

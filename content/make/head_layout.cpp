@@ -76,9 +76,11 @@ struct Block {
     int count;                         ///< of loops
 };
 
-constexpr std::array<Block, 5> kBlocks = {{
+constexpr std::array<Block, 7> kBlocks = {{
     {HeadLoops::Eye, 4, 16, 24, 34, kEyeLoops},
     {HeadLoops::Eye, -16, -4, 24, 34, kEyeLoops},
+    {HeadLoops::Nostril, 1, 6, 38, 42, kNostrilLoops},
+    {HeadLoops::Nostril, -6, -1, 38, 42, kNostrilLoops},
     {HeadLoops::Mouth, -11, 11, 44, 56, kMouthLoops},
     {HeadLoops::Ear, 29, 34, 27, 43, kEarLoops},
     {HeadLoops::Ear, -34, -29, 27, 43, kEarLoops},
@@ -86,12 +88,24 @@ constexpr std::array<Block, 5> kBlocks = {{
 
 /// The loop whose place is known, or 0.
 int edge_loop(HeadLoops loops) {
-    return loops == HeadLoops::Eye ? kLidLoop : loops == HeadLoops::Mouth ? kLipLoop : 0;
+    switch (loops) {
+    case HeadLoops::Eye:
+        return kLidLoop;
+    case HeadLoops::Nostril:
+        return kNostrilRim;
+    case HeadLoops::Mouth:
+        return kLipLoop;
+    default:
+        return 0;
+    }
 }
 
 Vec3 edge_point(HeadLoops loops, float angle, bool left) {
-    return loops == HeadLoops::Mouth ? lip_line(angle)
-                                     : lid_margin(angle) * Vec3(left ? 1 : -1, 1, 1);
+    if (loops == HeadLoops::Mouth) {
+        return lip_line(angle);
+    }
+    const Vec3 point = loops == HeadLoops::Nostril ? nostril_rim(angle) : lid_margin(angle);
+    return point * Vec3(left ? 1 : -1, 1, 1);
 }
 
 bool inside(const Block& block, int column, int row, int margin) {

@@ -11,13 +11,13 @@ namespace limn {
 // Which vertices the skin of a head has and how quads connect them. kHeadColumns columns run around
 // the head, column 0 down the middle of the face, then to the left; kHeadRows rows of quads from
 // the rim of the crown to the end of the neck. A square cap closes the crown: its corners are poles
-// of valence 3. A block of the grid around each eye, the mouth and each ear is replaced by loops of
-// as many vertices as the block has on its border: its corners become poles of valence 5.
+// of valence 3. A block of the grid around each eye, nostril and ear and the mouth is replaced by
+// loops of as many vertices as the block has on its border: its corners become poles of valence 5.
 
 inline constexpr int kHeadColumns = 96;
 inline constexpr int kHeadRows = 86;
 
-enum class HeadLoops : std::uint8_t { None, Eye, Mouth, Ear };
+enum class HeadLoops : std::uint8_t { None, Eye, Nostril, Mouth, Ear };
 
 struct HeadVertex {
     Vec3 start = {};  ///< where it begins, before it is wrapped [cm]
@@ -39,7 +39,9 @@ inline constexpr int kEyeLoops = 14;
 inline constexpr int kLidLoop = 9;  ///< outer edge of the lids' margin; the next is the inner edge
 inline constexpr int kMouthLoops = 17;
 inline constexpr int kLipLoop = 11;  ///< where the lips touch
-inline constexpr int kEarLoops = 18;
+inline constexpr int kNostrilLoops = 10;
+inline constexpr int kNostrilRim = 5;  ///< from there on loops line the cavity
+inline constexpr int kEarLoops = 28;
 
 [[nodiscard]] const HeadLayout& head_layout();
 

@@ -15,10 +15,10 @@ struct HeadPart {
 };
 
 /// Both balls, of the radius kBallRadius, with an iris that lies as deep behind the cornea as in a
-/// real eye, and a pupil of 3 mm.
+/// real eye, and a pupil of 3 mm; and the caruncles in their inner corners.
 [[nodiscard]] HeadPart make_eye_balls();
 
-/// The clear shells before them.
+/// The clear shells before them, and the tear lines along the lower lids.
 [[nodiscard]] HeadPart make_corneas();
 
 /// 14 teeth in each jaw.
@@ -29,6 +29,13 @@ struct HeadPart {
 
 /// Brows and lashes: ribbons, visible from both sides.
 [[nodiscard]] HeadPart make_face_hair(const HeadShape& shape);
+
+/// The hair of the scalp in a short cut: cards in layers, v from roots to tips, normals those of
+/// the scalp so that cards catch light as one body.
+[[nodiscard]] HeadPart make_scalp_hair(const HeadShape& shape);
+
+/// How much hair grows at `p` on a head, 0 .. 1.
+[[nodiscard]] float scalp_hair_cover(const Vec3& p);
 
 /// Radius of an eye without its cornea [cm]: the lids lie on a ball that is a little larger.
 inline constexpr float kBallRadius = 1.27f;

@@ -58,15 +58,15 @@ constexpr std::array<Solid, 7> kFeatures = {{
     {{0, 0.24f, 12.12f}, {0, 0.6f, 11.84f}, {1.12f, 0.96f, 0.95f}, {1.08f, 0.87f, 0.91f}, 0.7f},
     {{1.52f, -0.01f, 10.8f},
      {1.29f, 0.08f, 11.33f},
-     {0.21f, 0.89f, 0.83f},
-     {0.34f, 0.56f, 0.72f},
-     0.8f},
+     {0.24f, 0.86f, 0.83f},
+     {0.38f, 0.62f, 0.76f},
+     0.6f},
     {{0, -0.48f, 11.56f}, {0, -0.9f, 10.97f}, {0.24f, 0.37f, 0.45f}, {1.02f, 0.75f, 0.72f}, 0.6f},
     // chin
     {{0, -6.25f, 9.31f}, {0.65f, -6.15f, 8.9f}, {1.11f, 1.04f, 1.21f}, {0.98f, 0.96f, 0.98f}, 1.2f},
 }};
 
-constexpr std::array<Stroke, 33> kStrokes = {{
+constexpr std::array<Stroke, 32> kStrokes = {{
     // Brow ridge, glabella, temple, frontal eminence.
     {{1.07f, 5.26f, 9.77f}, {3.49f, 5.9f, 9.85f}, {5.46f, 4.62f, 8.08f}, 1.11f, 0.48f, 0.12f},
     {{0, 5.21f, 10.06f}, {0.4f, 5.3f, 10.11f}, {0.83f, 5.17f, 10.09f}, 0.87f, -0.21f, 0.1f},
@@ -133,9 +133,8 @@ constexpr std::array<Stroke, 33> kStrokes = {{
     // Root of the nose, its back.
     {{0, 4, 9.77f}, {0, 3.91f, 9.78f}, {0.48f, 3.8f, 9.74f}, 0.83f, -0.37f, 0.02f},
     {{0, 2.31f, 10.51f}, {0, 2.1f, 10.6f}, {0, 1.9f, 10.7f}, 0.6f, 0.06f, 0.07f, 0, 0.1f},
-    // Groove around the wing, nostril, its edge.
-    {{1.3f, 0.95f, 10.55f}, {1.95f, 0.7f, 9.9f}, {1.75f, -0.5f, 9.8f}, 0.22f, 0},
-    {{0.41f, -0.42f, 11.05f}, {0.62f, -0.49f, 10.58f}, {0.71f, -0.53f, 10.23f}, 0.21f, -0.16f},
+    // Groove around the wing, dimple before it.
+    {{1.3f, 0.95f, 11.3f}, {1.95f, 0.75f, 10.6f}, {1.85f, -0.5f, 10.75f}, 0.22f, -0.13f},
     {{0.5f, 0.95f, 11.5f}, {0.74f, 0.6f, 11.2f}, {0.85f, 0.44f, 11}, 0.3f, -0.04f},
     // Nasolabial fold, and the roll beside it.
     {{1.85f, -0.1f, 9.7f},
@@ -219,12 +218,28 @@ float join(float distance, const Solid& solid, const Vec3& p) {
 
 constexpr float kFar = 100;  // [cm]
 
-/// Whether a stroke counts at `p`: exp(-9) of it does not.
-bool reaches(const Stroke& stroke, const Vec3& p) {
-    const Vec3 low = glm::min(stroke.a, glm::min(stroke.b, stroke.c)) - 3 * stroke.radius;
-    const Vec3 high = glm::max(stroke.a, glm::max(stroke.b, stroke.c)) + 3 * stroke.radius;
-    return p.x > low.x && p.y > low.y && p.z > low.z && p.x < high.x && p.y < high.y
-           && p.z < high.z;
+/// Where a stroke counts: exp(-9) of it, beyond, does not.
+struct StrokeBox {
+    Vec3 low, high;
+};
+
+const std::array<StrokeBox, kStrokes.size()>& stroke_boxes() {
+    static const auto boxes = [] {
+        std::array<StrokeBox, kStrokes.size()> made;
+        for (std::size_t i = 0; i < made.size(); ++i) {
+            const Stroke& stroke = kStrokes[i];
+            made[i] = {
+                glm::min(stroke.a, glm::min(stroke.b, stroke.c)) - 3 * stroke.radius,
+                glm::max(stroke.a, glm::max(stroke.b, stroke.c)) + 3 * stroke.radius};
+        }
+        return made;
+    }();
+    return boxes;
+}
+
+bool contains(const StrokeBox& box, const Vec3& p) {
+    return p.x > box.low.x && p.y > box.low.y && p.z > box.low.z && p.x < box.high.x
+           && p.y < box.high.y && p.z < box.high.z;
 }
 
 /// To the curve, by its nearest of a few chords [cm].
@@ -264,10 +279,12 @@ float head_distance(const Vec3& point, const HeadShape& shape, float detail) {
     for (const Solid& solid : kFeatures) {
         distance = join(distance, solid, p);
     }
-    for (const Stroke& stroke : kStrokes) {
-        if (!reaches(stroke, p)) {
+    const std::array<StrokeBox, kStrokes.size()>& boxes = stroke_boxes();
+    for (std::size_t i = 0; i < kStrokes.size(); ++i) {
+        if (!contains(boxes[i], p)) {
             continue;
         }
+        const Stroke& stroke = kStrokes[i];
         const float amount = stroke.amount + stroke.sex * shape.sex + stroke.build * shape.build
                              + stroke.age * (shape.age - 0.3f);
         distance -= amount * std::exp(-square(stroke_distance(stroke, p) / stroke.radius));
@@ -275,20 +292,30 @@ float head_distance(const Vec3& point, const HeadShape& shape, float detail) {
     return glm::mix(base, distance, detail);
 }
 
-Vec3 head_gradient(const Vec3& p, const HeadShape& shape, float detail) {
+namespace {
+
+/// `distance`: at `p`.
+Vec3 gradient_at(const Vec3& p, float distance, const HeadShape& shape, float detail) {
     constexpr float kStep = 0.01f;
-    const float distance = head_distance(p, shape, detail);
     const auto slope = [&](const Vec3& axis) {
         return (head_distance(p + kStep * axis, shape, detail) - distance) / kStep;
     };
     return {slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
 }
 
-Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail) {
-    const Vec3 gradient = head_gradient(p, shape, detail);
+}  // namespace
+
+Vec3 head_gradient(const Vec3& p, const HeadShape& shape, float detail) {
+    return gradient_at(p, head_distance(p, shape, detail), shape, detail);
+}
+
+Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail, int steps) {
+    float distance = head_distance(p, shape, detail);
+    const Vec3 gradient = gradient_at(p, distance, shape, detail);
     const float slope2 = std::max(glm::dot(gradient, gradient), 0.15f);
-    for (int i = 0; i < 3; ++i) {
-        p -= glm::clamp(head_distance(p, shape, detail) / slope2, -0.5f, 0.5f) * gradient;
+    for (int i = 0; i < steps; ++i) {
+        distance = i == 0 ? distance : head_distance(p, shape, detail);
+        p -= glm::clamp(distance / slope2, -0.5f, 0.5f) * gradient;
     }
     return p;
 }
@@ -315,6 +342,15 @@ Vec3 lid_margin(float angle) {
     const float depth = std::sqrt(std::max(square(reach) - x * x - y * y, 0.0f));
     const float inner = 0.35f * glm::smoothstep(-0.75f, -1.0f, c);
     return kEyeCenter + Vec3(x, y, std::max(depth, 0.45f) + inner);
+}
+
+Vec3 nostril_rim(float angle) {
+    // An oval that points to the tip, wider behind; its outer side lies higher.
+    const float c = std::cos(angle);
+    const float s = std::sin(angle);
+    const float width = 1 - 0.22f * s;
+    return Vec3(0.70f, -0.6f, 11.95f) + width * c * Vec3(0.34f, 0.05f, -0.12f)
+           + s * Vec3(-0.2f, 0.08f, 0.48f);
 }
 
 float across_mouth(float angle) {

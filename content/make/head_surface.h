@@ -26,14 +26,19 @@ inline constexpr Vec2 kJawAxis = {-0.55f, 1.82f};
 /// Of head_distance: about unit, outwards.
 [[nodiscard]] Vec3 head_gradient(const Vec3& p, const HeadShape& shape, float detail);
 
-/// Moves `p` along the gradient onto the surface.
-[[nodiscard]] Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail);
+/// Moves `p` along the gradient onto the surface, by so many steps of Newton's method; one is
+/// enough for a point that is on it but for a little.
+[[nodiscard]] Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail, int steps = 3);
 
 /// Likewise along z, to the foremost point: for the nose, where gradients would fold the mesh.
 [[nodiscard]] Vec3 project_forwards(Vec3 p, const HeadShape& shape, float detail);
 
 /// Of the left lids: outer edge of the margin at `angle` [rad], 0 lateral, pi / 2 up.
 [[nodiscard]] Vec3 lid_margin(float angle);
+
+/// Of the left nostril: its rim at `angle`, 0 lateral, pi / 2 towards the tip of the nose; near the
+/// surface.
+[[nodiscard]] Vec3 nostril_rim(float angle);
 
 /// From 1 at the left corner of the mouth, where `angle` is 0, to -1 at the right one: even steps,
 /// as its corners are sharp.

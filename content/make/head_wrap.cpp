@@ -1,5 +1,6 @@
 #include "content/make/head_wrap.h"
 
+#include "content/make/head_ear.h"
 #include "content/make/head_layout.h"
 #include "content/make/head_surface.h"
 #include "ecs/base/jobs.h"
@@ -43,12 +44,21 @@ Vec3 lid_point(const HeadVertex& vertex) {
                      std::cos(angle));
 }
 
-/// Onto the surface.
-Vec3 project(const HeadVertex& vertex, const Vec3& p, const HeadShape& shape, float detail) {
+bool on_nose(const HeadVertex& vertex) {
     const Vec3& start = vertex.start;
-    const bool nose = vertex.loops == HeadLoops::None && start.z > 8 && std::abs(start.x) < 2.4f
-                      && start.y > -2 && start.y < 5;
-    return nose ? project_forwards(p, shape, detail) : project_to_head(p, shape, detail);
+    return vertex.loops == HeadLoops::None && start.z > 8 && std::abs(start.x) < 2.4f
+           && start.y > -2 && start.y < 5;
+}
+
+/// Onto the surface.
+Vec3 project(
+    const HeadVertex& vertex, const Vec3& p, const HeadShape& shape, float detail, int steps = 3) {
+    if (vertex.loops == HeadLoops::Nostril && (detail < 1 || vertex.loop > kNostrilRim - 3)) {
+        return p;  // a membrane from the rim to the grid until the nose is there; then, a rounded
+                   // rim
+    }
+    return on_nose(vertex) ? project_forwards(p, shape, detail)
+                           : project_to_head(p, shape, detail, steps);
 }
 
 /// From where the lips touch to the back of the mouth.
@@ -72,84 +82,25 @@ Vec3 mouth_point(const HeadVertex& vertex, const HeadShape& shape, float detail)
         project_forwards({line.x, line.y, 0}, shape, detail).z - profile.depth};
 }
 
-struct EarProfile {
-    float out;     ///< share of the outline's radius
-    float height;  ///< above the plane of the ear [cm]
-};
-
-// From the head over the back of the ear, the helix, the scapha and the antihelix to the concha;
-// in front, from the cheek over the tragus.
-constexpr std::array<EarProfile, kEarLoops> kFreeEar = {{
-    {0.60f, -1.05f},
-    {0.66f, -0.65f},
-    {0.80f, -0.36f},
-    {0.93f, -0.22f},
-    {0.995f, -0.05f},
-    {1.0f, 0.10f},
-    {0.96f, 0.20f},
-    {0.90f, 0.19f},
-    {0.865f, 0.06f},
-    {0.82f, -0.07f},
-    {0.75f, -0.04f},
-    {0.67f, 0.09f},
-    {0.58f, 0.15f},
-    {0.51f, 0.03f},
-    {0.47f, -0.25f},
-    {0.42f, -0.52f},
-    {0.25f, -0.62f},
-    {0.08f, -0.66f},
-}};
-constexpr std::array<EarProfile, kEarLoops> kFrontEar = {{
-    {1.36f, 0.14f},
-    {1.28f, 0.14f},
-    {1.20f, 0.13f},
-    {1.12f, 0.12f},
-    {1.04f, 0.12f},
-    {0.96f, 0.14f},
-    {0.88f, 0.20f},
-    {0.80f, 0.27f},
-    {0.72f, 0.28f},
-    {0.66f, 0.20f},
-    {0.61f, 0.03f},
-    {0.57f, -0.18f},
-    {0.52f, -0.36f},
-    {0.47f, -0.48f},
-    {0.41f, -0.55f},
-    {0.33f, -0.60f},
-    {0.2f, -0.64f},
-    {0.08f, -0.66f},
-}};
-
-/// Of the ear's outline from the concha [cm]; angle 0 backwards, pi / 2 up.
-float ear_radius(float angle) {
-    const float c = std::cos(angle);
-    const float s = std::sin(angle);
-    const Vec2 radii = {c > 0 ? 2.0f : 1.15f, s > 0 ? 2.75f : 2.95f};
-    const float lobe = s < 0 ? 1 - 0.16f * s * s * std::abs(c) * 2 : 1.0f;  // narrower below
-    return lobe / std::sqrt(square(c / radii.x) + square(s / radii.y));
-}
-
-Vec3 ear_point(const HeadVertex& vertex, const Vec3& root) {
-    // The ear leans back, and stands out from the head.
-    const Vec3 up = glm::normalize(Vec3(0.10f, std::cos(0.28f), -std::sin(0.28f)));
-    const Vec3 back =
-        glm::normalize(Vec3(0.48f, -std::sin(0.28f) * 0.88f, -std::cos(0.28f) * 0.88f));
-    const Vec3 out = glm::normalize(glm::cross(up, back));
-    const float c = std::cos(vertex.angle);
-    const float s = std::sin(vertex.angle);
-    const float front =
-        glm::smoothstep(-0.1f, -0.75f, c) * (1 - 0.5f * glm::smoothstep(0.7f, 0.95f, s));
-    const EarProfile& free = kFreeEar[vertex.loop - 1];
-    EarProfile profile = {
-        glm::mix(free.out, kFrontEar[vertex.loop - 1].out, front),
-        glm::mix(free.height, kFrontEar[vertex.loop - 1].height, front)};
-    const float lobe = glm::smoothstep(-0.55f, -0.9f, s);  // no folds, but a pillow
-    if (vertex.loop > 6 && vertex.loop < 15) {
-        profile.height =
-            glm::mix(profile.height, 0.12f - 0.02f * (static_cast<float>(vertex.loop) - 7), lobe);
-    }
-    const float radius = ear_radius(vertex.angle) * profile.out;
-    return root + radius * (c * back + s * up) + profile.height * out;
+/// The rim of a nostril, and its cavity, up into the nose.
+Vec3 nostril_point(const HeadVertex& vertex, const HeadShape& shape, float detail) {
+    struct Profile {
+        float depth;  // [cm]
+        float width;  // share of the rim's
+    };
+    constexpr std::array<Profile, kNostrilLoops - kNostrilRim + 1> kProfile = {{
+        {0, 1},
+        {0.06f, 0.88f},
+        {0.2f, 0.76f},
+        {0.45f, 0.84f},
+        {0.8f, 0.78f},
+        {1.15f, 0.35f},
+    }};
+    const Vec3 inwards = glm::normalize(Vec3(-0.2f, 0.9f, -0.05f));
+    const Profile& profile = kProfile[vertex.loop - kNostrilRim];
+    const Vec3 rim = project_to_head(nostril_rim(vertex.angle), shape, detail);
+    const Vec3 opposite = project_to_head(nostril_rim(vertex.angle + kPi), shape, detail);
+    return glm::mix(opposite, rim, 0.5f + 0.5f * profile.width) + profile.depth * inwards;
 }
 
 class HeadWrap {
@@ -173,6 +124,7 @@ class HeadWrap {
         for (int step = 0; step <= kSteps; ++step) {
             const float detail = static_cast<float>(step) / kSteps;
             set_curves(detail);
+            stretch_nostrils();
             for (int round = 0; round < (step == kSteps ? 6 : 2); ++round) {
                 relax(detail);
             }
@@ -198,8 +150,25 @@ class HeadWrap {
             } else if (vertex.loops == HeadLoops::Mouth && vertex.loop >= kLipLoop) {
                 positions_[v] = mouth_point(vertex, shape_, detail);
                 free_[v] = false;
+            } else if (vertex.loops == HeadLoops::Nostril && vertex.loop >= kNostrilRim) {
+                positions_[v] = to_side(vertex, nostril_point(vertex, shape_, detail));
+                free_[v] = false;
             } else if (vertex.chart.y >= kHeadRows) {
-                positions_[v] = project_to_head(positions_[v], shape_, detail);
+                for (int step = 0; step < 2; ++step) {  // a plane ring, where a body begins
+                    positions_[v] = project_to_head(positions_[v], shape_, detail);
+                    positions_[v].y = vertex.start.y;
+                }
+            }
+        }
+    }
+
+    /// Between the grid and the rims, which have moved.
+    void stretch_nostrils() {
+        for (int round = 0; round < 30; ++round) {
+            for (std::size_t v = 0; v < positions_.size(); ++v) {
+                if (free_[v] && layout_.vertices[v].loops == HeadLoops::Nostril) {
+                    positions_[v] = mean_around(positions_, v);
+                }
             }
         }
     }
@@ -210,7 +179,7 @@ class HeadWrap {
             for (std::size_t v = begin; v < end; ++v) {
                 if (free_[v]) {
                     const Vec3 moved = glm::mix(before[v], mean_around(before, v), 0.35f);
-                    positions_[v] = project(layout_.vertices[v], moved, shape_, detail);
+                    positions_[v] = project(layout_.vertices[v], moved, shape_, detail, 1);
                 }
             }
         });
@@ -247,7 +216,9 @@ class HeadWrap {
             const std::vector<Vec3> before = positions_;
             for (std::size_t v = 0; v < positions_.size(); ++v) {
                 if (free_[v] && ring[v] <= kRings) {
-                    positions_[v] = glm::mix(before[v], mean_around(before, v), 0.5f);
+                    const Vec3 smoothed = glm::mix(before[v], mean_around(before, v), 0.5f);
+                    const bool nose = round >= 5 && on_nose(layout_.vertices[v]);
+                    positions_[v] = nose ? project_to_head(smoothed, shape_, 1, 1) : smoothed;
                 }
             }
         }
@@ -275,7 +246,9 @@ class HeadWrap {
         for (std::size_t v = 0; v < positions_.size(); ++v) {
             const HeadVertex& vertex = layout_.vertices[v];
             if (vertex.loops == HeadLoops::Ear) {
-                positions_[v] = to_side(vertex, ear_point(vertex, root));
+                const Vec3 p = ear_point(vertex, root);
+                const float cheek = ear_on_cheek(vertex);
+                positions_[v] = to_side(vertex, glm::mix(p, project_to_head(p, shape_, 1), cheek));
             }
         }
     }

@@ -5,6 +5,7 @@
 #include "content/make/fold_pattern.h"
 #include "content/make/furrow_patterns.h"
 #include "content/make/glow_pattern.h"
+#include "content/make/hair_pattern.h"
 #include "content/make/mask_pattern.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
@@ -403,6 +404,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<GlowPattern, make_glow>(
             "glow",
             "light without a rim around what is too bright to see, for what only adds light"),
+        pattern_kind<HairPattern, make_hair>(
+            "hair", "strands of hair along v with gaps, for the cards of a head"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<MasksPattern, make_masks>(

@@ -101,9 +101,11 @@ constexpr Expected kExpected[] = {
     {"AU31_L", {5.8f, -3.4f, 4.6f}, 3, 2, 3, {1, 0, 0}},
     {"AU34_L", {3.5f, -2, 10}, 4.5f, 10, 15, {0.4f, 0.2f, 0.9f}},
     {"AU35_L", {4.2f, -2.2f, 9.2f}, 3.5f, 5, 8, {-0.7f, 0, -0.7f}},
+    {"AU37", {0, -4.5f, 11.2f}, 15, 5, 10, {0, -0.8f, -0.2f}},
     {"AU38_L", {1.7f, -0.1f, 11.2f}, 2, 1, 3, {1, 0, 0}},
     {"AU39_L", {1.7f, -0.1f, 11.2f}, 2, 1, 3, {-1, 0, 0}},
     {"AU43_L", {3.1f, 3.9f, 9.3f}, 2, 6, 11, {0, -1, 0}},
+    {"AU46_L", {3.3f, 3.2f, 9.3f}, 4, 6, 11, {0, -1, 0}},
 };
 
 TEST_CASE("head expressions: each unit moves what FACS says, as far as that says") {
@@ -190,25 +192,37 @@ TEST_CASE("head expressions: every shape but silence moves something, and silenc
     }
 }
 
-TEST_CASE("head expressions: AU43 leaves no gap between the lids") {
-    const std::vector<Vec3> offsets = offsets_of(shape_called("AU43_L"));
-    std::vector<Vec3> margin;  // in the order of angles
-    for (std::size_t v = 0; v < offsets.size(); ++v) {
-        const HeadPoint& point = skin()[v];
-        if (point.loops == HeadLoops::Eye && point.loop == kLidLoop && point.rest.x > 0) {
-            margin.push_back(point.rest + offsets[v]);
+TEST_CASE("head expressions: AU43 and AU46 leave no gap between the lids") {
+    for (const char* const name : {"AU43_L", "AU46_L"}) {
+        CAPTURE(name);
+        const std::vector<Vec3> offsets = offsets_of(shape_called(name));
+        std::vector<Vec3> margin;  // in the order of angles
+        for (std::size_t v = 0; v < offsets.size(); ++v) {
+            const HeadPoint& point = skin()[v];
+            if (point.loops == HeadLoops::Eye && point.loop == kLidLoop && point.rest.x > 0) {
+                margin.push_back(point.rest + offsets[v]);
+            }
+        }
+        REQUIRE(margin.size() > 20);
+        for (std::size_t k = 1; k < margin.size(); ++k) {
+            CHECK(glm::distance(margin[k], margin[margin.size() - k]) < 0.02f);  // [cm]
         }
     }
-    REQUIRE(margin.size() > 20);
-    for (std::size_t k = 1; k < margin.size(); ++k) {
-        CHECK(glm::distance(margin[k], margin[margin.size() - k]) < 0.02f);  // [cm]
-    }
+}
+
+TEST_CASE("head expressions: AU37 takes the tip of the tongue out over the lower lip") {
+    const HeadPart mouth = make_mouth();
+    const auto tip = std::ranges::max_element(mouth.points, {}, &HeadPoint::tongue);
+    REQUIRE(tip->tongue > 0.9f);
+    const Vec3 lip = lip_line(kPi / 2);
+    CHECK(tip->rest.z < lip.z);
+    CHECK(tip->rest.z + action_offset(action_unit("AU37"), *tip, kShape).z > lip.z + 0.5f);
 }
 
 TEST_CASE("head expressions: on its way no lid enters the ball of the eye") {
     for (const char* const name :
-         {"AU5_L", "AU6_L", "AU7_L", "AU41_L", "AU42_L", "AU43_L", "AU44_L", "AU45_L", "AU63_L",
-          "AU64_L"}) {
+         {"AU5_L", "AU6_L", "AU7_L", "AU41_L", "AU42_L", "AU43_L", "AU44_L", "AU45_L", "AU46_L",
+          "AU63_L", "AU64_L"}) {
         CAPTURE(name);
         const std::vector<Vec3> offsets = offsets_of(shape_called(name));
         float nearest = std::numeric_limits<float>::infinity();
@@ -311,7 +325,7 @@ TEST_CASE("head expressions: no triangle of the skin turns over") {
 
 TEST_CASE("head expressions: all parts have the same shapes, and joints move each vertex") {
     const auto count = shapes().size();
-    for (int part = 0; part <= static_cast<int>(HeadPartKind::Hair); ++part) {
+    for (int part = 0; part <= static_cast<int>(HeadPartKind::Scalp); ++part) {
         CAPTURE(part);
         for (const float end : {0.0f, 1.0f}) {
             const MeshData mesh = make_head(

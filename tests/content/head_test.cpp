@@ -1,5 +1,6 @@
 #include "content/make/head.h"
 #include "content/make/head_layout.h"
+#include "content/make/head_parts.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
 
@@ -83,6 +84,163 @@ TEST_CASE("head: lids do not enter the ball of the eye") {
         Vec3 p = wrapped()[v];
         p.x = std::abs(p.x);
         CHECK(glm::length(p - kEyeCenter) > kEyeRadius);
+    }
+}
+
+/// Vertices of the left part that loops `from` to `to` make up.
+std::vector<std::uint32_t> left_loops(HeadLoops loops, int from, int to) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t v = 0; v < wrapped().size(); ++v) {
+        const HeadVertex& vertex = head_layout().vertices[v];
+        if (vertex.left && vertex.loops == loops && vertex.loop >= from && vertex.loop <= to) {
+            found.push_back(v);
+        }
+    }
+    return found;
+}
+
+Vec3 mean_place(const std::vector<std::uint32_t>& vertices) {
+    Vec3 sum = Vec3(0);
+    for (const std::uint32_t v : vertices) {
+        sum += wrapped()[v];
+    }
+    return sum / static_cast<float>(vertices.size());
+}
+
+/// Of the quads between `vertices`: their areas times their normals.
+Vec3 facing(const std::vector<std::uint32_t>& vertices) {
+    Vec3 sum = Vec3(0);
+    for (const auto& quad : head_layout().quads) {
+        if (std::ranges::all_of(
+                quad, [&](std::uint32_t v) { return std::ranges::binary_search(vertices, v); })) {
+            sum += glm::cross(
+                wrapped()[quad[2]] - wrapped()[quad[0]], wrapped()[quad[3]] - wrapped()[quad[1]]);
+        }
+    }
+    return glm::normalize(sum);
+}
+
+TEST_CASE("head: a nostril opens downwards and ends 8 mm or more up, within the nose") {
+    const auto rim = left_loops(HeadLoops::Nostril, kNostrilRim, kNostrilRim);
+    const auto cavity = left_loops(HeadLoops::Nostril, kNostrilRim, kNostrilLoops);
+    const auto end = left_loops(HeadLoops::Nostril, kNostrilLoops, kNostrilLoops);
+    REQUIRE(rim.size() >= 16);
+    CHECK(facing(cavity).y < -0.8f);
+    CHECK(mean_place(end).y - mean_place(rim).y > 0.8f);
+    for (const std::uint32_t v : left_loops(HeadLoops::Nostril, kNostrilRim + 2, kNostrilLoops)) {
+        CHECK(head_distance(wrapped()[v], HeadShape{}, 1) < 0);
+    }
+    for (const std::uint32_t v : rim) {  // a column stays between the nostrils
+        CHECK(wrapped()[v].x > 0.2f);
+    }
+}
+
+TEST_CASE(
+    "head: an ear is as long and wide as an adult's, and its concha a hollow that faces out") {
+    constexpr int kConcha = 22;
+    const auto front = left_loops(HeadLoops::Ear, 6, kEarLoops);
+    Vec3 low = Vec3(100);
+    Vec3 high = Vec3(-100);
+    for (const std::uint32_t v : front) {
+        low = glm::min(low, wrapped()[v]);
+        high = glm::max(high, wrapped()[v]);
+    }
+    CHECK(high.y - low.y > 5.5f);  // 62.4 mm, two deviations 7.4
+    CHECK(high.y - low.y < 7.0f);
+    CHECK(facing(front).x > 0.7f);
+    const Vec3 concha = mean_place(left_loops(HeadLoops::Ear, kConcha, kEarLoops));
+    CHECK(high.x - concha.x > 0.8f);  // the helix stands out from it
+    const Vec3 head = project_to_head(concha, HeadShape{}, 1);
+    CHECK(glm::distance(head, concha) < 0.6f);
+}
+
+TEST_CASE("head: the neck ends in a plane ring that turns once around") {
+    float turned = 0;
+    std::vector<Vec3> ring;
+    for (std::size_t v = 0; v < wrapped().size(); ++v) {
+        if (head_layout().vertices[v].chart.y == kHeadRows) {
+            CHECK(wrapped()[v].y == doctest::Approx(-14.5f));
+            ring.push_back(wrapped()[v]);
+        }
+    }
+    REQUIRE(ring.size() == kHeadColumns);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Vec3 edge = ring[(k + 1) % ring.size()] - ring[k];
+        const Vec3 next = ring[(k + 2) % ring.size()] - ring[(k + 1) % ring.size()];
+        const float turn = std::asin(glm::cross(glm::normalize(edge), glm::normalize(next)).y);
+        CHECK(turn > -0.15f);  // hollows beside the throat are shallow
+        turned += turn;
+    }
+    CHECK(std::abs(turned - 2 * kPi) < 1e-3f);
+}
+
+TEST_CASE("head: the tear line lies on the lower lid and the ball, and follows the lid") {
+    HeadPart corneas = make_corneas();
+    const ActionUnit& blink = action_unit("AU43");
+    int wet = 0;
+    for (const HeadPoint& point : corneas.points) {
+        if (point.loops != HeadLoops::Eye) {
+            continue;
+        }
+        ++wet;
+        const Vec3 p = {std::abs(point.rest.x), point.rest.y, point.rest.z};
+        CHECK(p.y < kEyeCenter.y);
+        const float reach = glm::distance(p, kEyeCenter);
+        CHECK(reach > kBallRadius - 0.01f);
+        CHECK(reach < kEyeRadius + kLidThickness);
+        CHECK(action_offset(blink, point, HeadShape{}).y > -0.01f);  // up, as the lid does
+    }
+    CHECK(wet == 2 * 5 * 40);
+}
+
+TEST_CASE("head: a cornea has the radius and height of an eye's, and the iris lies 3 mm below") {
+    constexpr float kScale = kBallRadius / 1.2f;  // of an eye whose ball has 24 mm
+    float apex = 0;
+    for (const HeadPoint& point : make_corneas().points) {
+        apex = std::max(apex, point.eye > 0 ? point.rest.z - kEyeCenter.z : 0.0f);
+    }
+    CHECK(apex - kBallRadius == doctest::Approx(0.11f * kScale).epsilon(0.1));
+    // Of the front surface, 7.8 mm (0.25): by what it sinks 3 mm from the axis.
+    float sunk = 0;
+    float iris = 0;
+    for (const HeadPoint& point : make_corneas().points) {
+        const Vec3 p = point.rest - kEyeCenter;
+        const float radius2 = p.x * p.x + p.y * p.y;
+        if (point.eye > 0 && radius2 > square(0.25f) && radius2 < square(0.36f)) {
+            sunk = (radius2 + square(apex - p.z)) / (2 * (apex - p.z));
+        }
+    }
+    CHECK(sunk > (0.78f - 0.05f) * kScale);
+    CHECK(sunk < (0.78f + 0.05f) * kScale);
+    for (const HeadPoint& point : make_eye_balls().points) {
+        const Vec3 p = point.rest - kEyeCenter;
+        if (point.eye > 0 && p.z > 0 && glm::length(Vec2(p.x, p.y)) < 0.5f) {
+            iris = std::max(iris, p.z);
+        }
+    }
+    CHECK(apex - iris > 0.27f);
+    CHECK(apex - iris < 0.34f);
+}
+
+TEST_CASE("head: hair grows on the scalp alone, its cards lie outside of the skull, roots first") {
+    CHECK(scalp_hair_cover({0, 14, 0}) == 1);
+    CHECK(scalp_hair_cover({0, 7, 10}) == 0);  // forehead, cheek, neck
+    CHECK(scalp_hair_cover({6, 0, 6}) == 0);
+    CHECK(scalp_hair_cover({0, -10, -7}) == 0);
+    const HeadPart hair = make_scalp_hair(HeadShape{});
+    const std::size_t triangles = hair.mesh.indices.size() / 3;
+    CHECK(triangles > 3000);
+    CHECK(triangles < 12000);
+    for (std::size_t v = 0; v < hair.points.size(); ++v) {
+        const Vec3& p = hair.points[v].rest;
+        CHECK(p.z < 11.5f);
+        CHECK(hair.mesh.normals[v].y > -1.01f);
+        if (hair.mesh.uvs[v].y > 0) {
+            CHECK(head_distance(p, HeadShape{}, 0) > -0.2f);
+        } else if (hair.mesh.uvs[v].x == 0) {  // both ends of a root
+            CHECK(scalp_hair_cover(0.5f * (p + hair.points[v + 1].rest)) > 0.1f);
+        }
+        CHECK(head_distance(p, HeadShape{}, 0) < 1.5f);
     }
 }
 

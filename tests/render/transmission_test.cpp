@@ -115,6 +115,48 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    GlassScene, "transmission: a wall within a medium is seen where the bent ray meets it") {
+    constexpr double kWall = -0.3;  // as an iris beneath its cornea
+    constexpr double kEdge = 0.1;
+    constexpr int kSize = 128;
+    constexpr float kScale = 40;
+    const Vec3 eye = {1.2f, 0, 0.9f};
+    const RenderView view = look(eye, {0, 0, 0}, kSize, kSize);
+    Material slab = glass(2 / kScale);
+    for (const float index : {1.1f, 1.376f, 2.4f}) {
+        slab.refractive_index = index;
+        world.clear();
+        add_edge(static_cast<float>(kWall), static_cast<float>(kEdge));
+        add_pane(slab, kScale);
+        const gpu::FloatImage image = radiance(view);
+        int want = -1;  // the last pixel of the middle row that shows the white part
+        int straight = -1;
+        for (int x = 0; x < kSize; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / kSize * 2 - 1;
+            const glm::dvec3 ray = glm::normalize(glm::dvec3(
+                transform_vector(view.world_from_camera, Vec3(u * view.tangent.x, 0, -1))));
+            if (ray.z >= 0) {
+                continue;
+            }
+            const double hit = eye.x - ray.x * eye.z / ray.z;
+            const double sine = ray.x / index;  // Snell's law, of the angle from the normal z
+            want =
+                hit - kWall * sine / std::sqrt(1 - sine * sine) < kEdge ? std::max(want, x) : want;
+            straight = hit - kWall * ray.x / -ray.z < kEdge ? std::max(straight, x) : straight;
+        }
+        REQUIRE(std::abs(want - straight) >= 1);
+        int got = -1;
+        for (int x = 0; x < kSize; ++x) {
+            if (image.at(x, kSize / 2, 0) > 0.3f) {
+                got = std::max(got, x);
+            }
+        }
+        CAPTURE(index);
+        CHECK(std::abs(got - want) <= 1);
+    }
+}
+
 TEST_CASE_FIXTURE(GlassScene, "transmission: a thin sheet moves nothing and tints by its color") {
     add_edge(-1, 0.3f);
     const gpu::FloatImage bare = radiance(front());

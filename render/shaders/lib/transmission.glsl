@@ -1,6 +1,7 @@
 // What is seen through a clear medium: the image behind it, displaced as by a slab of its thickness, blurred by its
 // roughness, in the color that absorption leaves (M. McGuire and M. Mara, "Phenomenological Transparency", 2017; thickness
-// as in KHR_materials_volume). What is off screen is taken from the surroundings. Definition REFRACTION: it has a
+// as in KHR_materials_volume). What lies within the medium, as an iris beneath its cornea, is seen where the bent ray
+// meets it. What is off screen is taken from the surroundings. Definition REFRACTION: it has a
 // thickness. Include after lib/lighting.glsl.
 
 #include "lib/optics.glsl"
@@ -39,13 +40,37 @@ vec3 blurred_behind(vec2 uv, float diameter) {
     return 0.25 * sum;
 }
 
+#ifdef REFRACTION
+vec3 clip_of(vec3 position) {
+    return (view.clip_from_world * vec4(position, 1.0)).xyw;
+}
+
+// How far a ray from `position`, `here` away along the view axis, goes inside: to what it meets, at most `thickness`.
+// Fixed-point iteration on the image behind, from what is seen straight ahead. Fails where that hides what the ray meets.
+float distance_inside(vec3 position, vec3 inside, float here, float thickness) {
+    const int kSteps = 5;
+    float deeper = clip_of(position + inside).z - here;  // along the view axis, by a unit of the ray
+    vec2 uv = gl_FragCoord.xy * view.size.zw;
+    float travelled = thickness;
+    for (int i = 0; i < kSteps; ++i) {
+        float depth = textureLod(behind_depth, uv, 0.0).r;
+        float behind = depth > 0.0 ? view_distance(depth) - here : 0.0;
+        travelled = behind > 0.0 && deeper > 0.0 ? min(behind / deeper, thickness) : thickness;
+        vec3 clip = clip_of(position + travelled * inside);
+        uv = clip.xy / max(clip.z, 1e-6) * 0.5 + 0.5;
+    }
+    return travelled;
+}
+#endif
+
 // Radiance through the medium, before the Fresnel reflection at its front. `normal` faces the viewer.
 vec3 transmitted_radiance(ClearMedium medium, vec3 position, vec3 normal, vec3 to_camera, float roughness) {
     vec2 here_uv = gl_FragCoord.xy * view.size.zw;
     float here = view_distance(gl_FragCoord.z);
 #ifdef REFRACTION
     vec3 inside = refract_ray(normal, to_camera, 1.0 / medium.index);
-    vec3 clip = (view.clip_from_world * vec4(position + medium.thickness * inside, 1.0)).xyw;
+    float path = distance_inside(position, inside, here, medium.thickness);
+    vec3 clip = clip_of(position + path * inside);
     vec2 uv = clip.xy / max(clip.z, 1e-6) * 0.5 + 0.5;
     float depth = textureLod(behind_depth, uv, 0.0).r;
     bool in_front = depth > 0.0 && view_distance(depth) < here;  // what is in front of the medium is not behind it
