@@ -3,7 +3,6 @@
 #include "ecs/base/hash.h"
 #include "systems/animation/deform_mesh.h"
 #include "systems/faces/wrinkle_measure.h"
-#include "systems/faces/wrinkle_system.h"
 #include "systems/particles/mesh_source.h"
 
 #include <glm/geometric.hpp>

@@ -31,10 +31,6 @@ const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
     return image < assets.images.size() ? &assets.images[image] : nullptr;
 }
 
-bool is_named(const VertexRegion& region, const std::vector<std::string>& names) {
-    return names.empty() || std::ranges::find(names, region.name) != names.end();
-}
-
 /// Whether it says where and, if that is measured, across which direction a vertex wrinkles.
 bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::size_t vertices) {
     return is_named(region, surface.regions) && region.weights.size() == vertices
@@ -114,28 +110,6 @@ std::vector<WrinkleRest> make_rests(
 }
 
 }  // namespace
-
-void merge_regions(
-    const MeshData& mesh, const std::vector<std::string>& names, bool directed,
-    std::span<float> mask, std::span<Vec3> across) {
-    const std::size_t vertices = mesh.positions.size();
-    std::vector<float> strongest(vertices, 0.0f);
-    for (const VertexRegion& region : mesh.regions) {
-        const bool has_across = region.across.size() == vertices;
-        if (!is_named(region, names) || region.weights.size() != vertices
-            || (directed && !has_across)) {
-            continue;
-        }
-        for (std::size_t v = 0; v < vertices; ++v) {
-            const float weight = region.weights[v];
-            mask[v] = std::min(mask[v] + std::max(finite_or(weight, 0), 0.0f), 1.0f);
-            if (weight > strongest[v] && has_across) {
-                strongest[v] = weight;
-                across[v] = region.across[v];
-            }
-        }
-    }
-}
 
 float radial_share(const Vec3& position, const Vec3& center, float radius) {
     const float share = glm::distance(position, center) / radius;

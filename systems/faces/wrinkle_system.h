@@ -6,10 +6,6 @@
 #include "ecs/query.h"
 #include "ecs/schedule.h"
 
-#include <span>
-#include <string>
-#include <vector>
-
 namespace limn {
 
 // Prepares meshes whose skin may wrinkle, once and whenever their mesh, map or regions change
@@ -24,13 +20,6 @@ void prepare_wrinkles(
     Res<const Assets> assets, Commands commands);
 
 // ---- parts of the above ----
-
-/// Adds to `mask` the weights of the regions with these names (all if there are none), at most 1 in
-/// all, and sets `across` to the direction of the strongest there. `directed`: only those that have
-/// directions. Both have one element per vertex.
-void merge_regions(
-    const MeshData& mesh, const std::vector<std::string>& names, bool directed,
-    std::span<float> mask, std::span<Vec3> across);
 
 /// Of a radial driver: 1 at the center, falling to 0 at `radius` [m] and beyond, by a cosine.
 [[nodiscard]] float radial_share(const Vec3& position, const Vec3& center, float radius);
