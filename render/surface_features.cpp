@@ -1,12 +1,13 @@
 #include "render/surface_features.h"
 
 #include "render/variant.h"
+#include "render/wrinkle_features.h"
 
 namespace limn {
 namespace {
 
 struct FeatureName {
-    SurfaceFeature bit;
+    std::uint32_t bit;
     const char* definition;
 };
 constexpr FeatureName kNames[] = {
@@ -26,13 +27,17 @@ constexpr FeatureName kNames[] = {
     {kWrinkleView, "WRINKLE_VIEW"},
     {kTransmission, "TRANSMISSION"},
     {kRefraction, "REFRACTION"},
+    {kWrinkleModel, "WRINKLE_MODEL"},
+    {kWrinkleLayers, "WRINKLE_LAYERS"},
+    {kWrinkleIndependent, "WRINKLE_INDEPENDENT"},
+    {kWrinklePhoto, "WRINKLE_PHOTO"},
 };
 
 }  // namespace
 
 void add_features(Variant& variant, const SurfaceFeatures& features) {
     for (const FeatureName& feature : kNames) {
-        if (features.has(feature.bit)) {
+        if ((features.bits & feature.bit) != 0) {
             variant.add(feature.definition);
         }
     }

@@ -11,6 +11,7 @@
 #include "systems/animation/rotation_track_system.h"
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
+#include "systems/faces/wrinkle_response_system.h"
 #include "systems/faces/wrinkle_system.h"
 #include "systems/faces/wrinkle_track_system.h"
 #include "systems/fly_camera_system.h"
@@ -79,6 +80,8 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_deformers>(Animate, Both);
     systems.add<update_attachments>(Animate, Both);
     systems.add<prepare_wrinkles>(Create, Both);
+    systems.add<prepare_wrinkle_responses>(Create, Both);
+    systems.add<update_wrinkle_responses>(Animate, Both);  // after poses: measures the skin
 }
 
 void add_water_systems(SystemList& systems) {

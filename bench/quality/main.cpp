@@ -98,7 +98,8 @@ int run(int argc, char** argv) {
         ->type_name("EFFECT");
     program
         .add_option(
-            "file", options.file, "a glTF or Wavefront model to measure, for the effect fakephong")
+            "file", options.file,
+            "a model to measure: glTF or Wavefront for fakephong, a glTF face for wrinkles")
         ->type_name("FILE");
     program
         .add_option_function<std::string>(
@@ -124,7 +125,8 @@ int run(int argc, char** argv) {
         + names
         + "\nExample:\n"
           "  limn quality --html quality.html\n"
-          "  limn quality fakephong model.glb --html model.html");
+          "  limn quality fakephong model.glb --html model.html\n"
+          "  limn quality wrinkles face.glb --html face.html");
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& wanted) {  // --help

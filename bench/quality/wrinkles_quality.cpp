@@ -1,8 +1,10 @@
+#include "bench/quality/face_folds_file.h"
 #include "bench/quality/quality.h"
 #include "content/bake/furrow_field.h"
 #include "content/bake/furrow_recipe.h"
 #include "content/bake/furrow_trace.h"
 #include "content/make/furrow_patterns.h"
+#include "content/make/head.h"
 #include "content/make/shapes.h"
 #include "ecs/components/surface.h"
 #include "render/furrow_maker.h"
@@ -168,11 +170,13 @@ Status measure_maker(HeadlessRenderer& headless, QualityReport& report) {
 Status measure_wrinkles(HeadlessRenderer& headless, QualityReport& report) {
     measure_field(report);
     measure_furrows(report);
+    LIMN_TRY(measure_face("head", make_head({}), report));
     return measure_maker(headless, report);
 }
 
 const RegisterQuality kRegistered(
-    "wrinkles", "furrows: fields in double precision; the CPU's maps", measure_wrinkles);
+    "wrinkles", "furrows: fields in double precision; the CPU's maps; faces: anatomy",
+    measure_wrinkles, measure_face_file);
 
 }  // namespace
 }  // namespace limn

@@ -1,5 +1,6 @@
 #include "content/app/bake_command.h"
 
+#include "content/app/bake_photometric.h"
 #include "content/app/image_file.h"
 #include "content/app/progress.h"
 #include "content/bake/furrow_recipe.h"
@@ -150,6 +151,7 @@ Status bake_furrows(const BakeOptions& options) {
 
 constexpr BakeKind kKinds[] = {
     {"furrows", "wrinkle furrows of skin along vector fields: height and normal map", bake_furrows},
+    {"photometric", "normals and reflectance from photographs in one light each", bake_photometric},
 };
 
 }  // namespace

@@ -330,10 +330,10 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
 }
 
 Command add_bake(CLI::App& program, BakeOptions& options) {
-    CLI::App* app = program.add_subcommand("bake", "Make maps from a mesh");
+    CLI::App* app = program.add_subcommand("bake", "Make maps from a mesh or from photographs");
     std::string kinds;
     for (const BakeKind& kind : bake_kinds()) {
-        kinds += fmt::format("  {:<10} {}\n", kind.name, kind.doc);
+        kinds += fmt::format("  {:<11} {}\n", kind.name, kind.doc);
     }
     add_parsed(
         *app, "kind", "of maps", options.kind,
@@ -346,7 +346,9 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         })
         ->type_name("KIND")
         ->required();
-    app->add_option("in", options.in, ".gltf or .glb")->type_name("IN")->required();
+    app->add_option("in", options.in, ".gltf or .glb; of photometric: .json")
+        ->type_name("IN")
+        ->required();
     add_parsed(
         *app, "-o,--out", "NAME.png or NAME.exr", options.out,
         [](const std::string& text) {
@@ -369,8 +371,14 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "Its recipe has the fields of the image kind furrows (limn components furrows), as\n"
         "  {{\"preset\": \"hand\", \"projection\": \"uv\", \"arrows\": [\n"
         "    {{\"at\": [0, 1, 0], \"first\": [0, 1, 0], \"second\": [1, 0, 0], \"weight\": 1}}]}}\n"
+        "photometric reads a file that says\n"
+        "  {{\"shots\": [{{\"image\": \"a.png\", \"to_light\": [1, 0, 1]}}, ...], \"shadow\": "
+        "0.02}}\n"
+        "of at least three photographs of a matt surface from one place, each in one of equally\n"
+        "bright lights, and writes NAME_normal.png and NAME_albedo.png.\n"
         "Files are written under a temporary name and renamed when complete.\n\n"
         "Examples:\n"
+        "  limn bake photometric shots.json -o face.png\n"
         "  limn bake furrows model.glb -o skin.png --set projection=cylinder\n"
         "  limn bake furrows model.glb -o skin.exr --set projection=planar --set preset=hand",
         kinds));

@@ -81,8 +81,9 @@ constexpr Need kNeeds[] = {
     {"point_mass", {"transform", "", ""}},
     {"air_drag", {"point_mass", "", ""}},
     {"variable_mass", {"point_mass", "", ""}},
-    {"wrinkle_maps", {"wrinkle_weights", "", ""}},
+    {"wrinkle_maps", {"wrinkle_weights", "wrinkle_response", ""}},
     {"wrinkle_weights", {"wrinkle_maps", "", ""}},
+    {"wrinkle_response", {"wrinkle_maps", "", ""}},
     {"wrinkle_track", {"wrinkle_weights", "", ""}},
 };
 

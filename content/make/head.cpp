@@ -98,8 +98,13 @@ HeadPart make_skin(const HeadShape& shape) {
             const bool beyond = layout.vertices[quad[k]].chart.x < high - 0.5f * kHeadColumns;
             corners[k] = vertex_at(quad[k], beyond);
         }
-        for (const int k : {0, 1, 2, 0, 2, 3}) {
-            part.mesh.indices.push_back(corners[k]);
+        // By the shorter diagonal, which is the same on both sides.
+        const auto distance = [&](int a, int b) {
+            return glm::distance(positions[quad[a]], positions[quad[b]]);
+        };
+        const std::uint32_t first = distance(0, 2) <= distance(1, 3) ? 0 : 1;
+        for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) {
+            part.mesh.indices.push_back(corners[(first + k) % 4]);
         }
     }
     generate_normals(part.mesh);

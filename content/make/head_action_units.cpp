@@ -53,7 +53,11 @@ constexpr ActionUnit kUnits[] = {
      .lower_lid = 0.2f},
     {.name = "AU7",
      .sided = true,
-     .pulls = {{{{3.2f, 2.3f, 9.4f}, {-0.8f, 1.4f, 0.3f}, {1.9f, 1.2f, 2}}}},
+     .pulls = {{
+         {{3.2f, 2.3f, 9.4f}, {-0.8f, 1.4f, 0.3f}, {1.9f, 1.2f, 2}},
+         {{5.4f, 2.2f, 7.9f}, {-1.6f, 2.4f, 0}, {1.7f, 1.6f, 2.5f}, Lips::Both, kSlides},
+         {{5.4f, 4.5f, 7.8f}, {-0.4f, -1.4f, 0}, {1.4f, 1.3f, 2.5f}, Lips::Both, kSlides},
+     }},
      .lower_lid = 0.27f},
     {.name = "AU8",
      .pulls = {{

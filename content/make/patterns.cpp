@@ -6,12 +6,14 @@
 #include "content/make/furrow_patterns.h"
 #include "content/make/glow_pattern.h"
 #include "content/make/hair_pattern.h"
+#include "content/make/head_furrow_pattern.h"
 #include "content/make/mask_pattern.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
 #include "content/make/puff_pattern.h"
 #include "content/make/sprite_patterns.h"
+#include "content/make/strain_fold_pattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -406,6 +408,8 @@ std::span<const PatternKind> pattern_kinds() {
             "light without a rim around what is too bright to see, for what only adds light"),
         pattern_kind<HairPattern, make_hair>(
             "hair", "strands of hair along v with gaps, for the cards of a head"),
+        pattern_kind<HeadFurrowsPattern, make_head_furrows>(
+            "head_furrows", "furrows along the folds of a head, at rest or as wrinkle maps"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<MasksPattern, make_masks>(
@@ -427,6 +431,8 @@ std::span<const PatternKind> pattern_kinds() {
             "stained_glass", "leaded diamonds between two borders; black at the lead"),
         pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),
         pattern_kind<StonePattern, make_stone>("stone", "irregular flagstones"),
+        pattern_kind<StrainFoldsPattern, make_strain_folds>(
+            "strain_folds", "folds of a face as a model of its strain, for a wrinkle_surface"),
         pattern_kind<TilesPattern, make_tiles>("tiles", "glazed tiles in grout"),
         pattern_kind<TreePattern, make_tree>(
             "tree", "a flipbook of trees in leaf, each another one"),

@@ -61,6 +61,7 @@
 #include "ecs/components/weather.h"
 #include "ecs/components/wrinkle.h"
 #include "ecs/components/wrinkle_maps.h"
+#include "ecs/components/wrinkle_response.h"
 #include "ecs/hierarchy.h"
 
 namespace limn {
@@ -113,6 +114,7 @@ void register_all_components() {
     register_component<DeformerState>();
     register_component<WrinkleSurface>();
     register_component<WrinkleMaps>();
+    register_component<WrinkleResponse>();
     register_component<WrinkleWeights>();
     register_component<WrinkleTrack>();
     register_component<JointAttachment>();

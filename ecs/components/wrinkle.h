@@ -25,6 +25,8 @@ enum class WrinkleMethod : std::uint8_t {
     Isometric,    ///< slopes as steep as keep the length of the skin
     Blend,  ///< wrinkles in full, whose light is blended with that of smooth skin (.bump-blend)
     StrainView,  ///< colors and crosses of the strain, to look at it (face.strain)
+    Model,       ///< the strain's polynomial of a fitted map (face.wrinkle-model)
+    Photo,  ///< as a photograph in one light: shading that does not move (face.wrinkle-options)
 };
 
 /// Shares of the triangles at a vertex in its compression (wrinkle.compression.vertex-weight).
@@ -42,9 +44,18 @@ enum class WrinkleDriver : std::uint8_t {
     Radial,  ///< nothing: strongest at `center`, none beyond `radius` (Pelachaud et al.)
 };
 
+/// How the wrinkles of two layers become one relief (wrinkle.compression.overlap).
+enum class WrinkleCombine : std::uint8_t {
+    Slopes,       ///< heights add up, in any order
+    Independent,  ///< the second layer covers the first as far as it is raised; for comparison
+};
+
 struct WrinkleSurface {
     WrinkleMethod method = WrinkleMethod::Isometric;
     std::vector<std::string> regions{};
+    std::vector<std::string> second_regions{};
+    bool second_turned = false;
+    WrinkleCombine combine = WrinkleCombine::Slopes;
     WrinkleDriver driver = WrinkleDriver::Chord;
     WrinkleWeight weight = WrinkleWeight::Angle;
     bool mean_length = false;
@@ -63,7 +74,9 @@ struct WrinkleSurface {
 
 /// The driver that is used: the strain where that is drawn.
 inline WrinkleDriver used_driver(const WrinkleSurface& surface) {
-    return surface.method == WrinkleMethod::StrainView ? WrinkleDriver::Strain : surface.driver;
+    const bool strain =
+        surface.method == WrinkleMethod::StrainView || surface.method == WrinkleMethod::Model;
+    return strain ? WrinkleDriver::Strain : surface.driver;
 }
 
 LIMN_FIELDS(WrinkleSurface) {
@@ -72,12 +85,26 @@ LIMN_FIELDS(WrinkleSurface) {
         .doc =
             "how wrinkles are drawn; strain_view: in their place the skin's strain, red where "
             "it is compressed by 0.3 in some direction, blue where stretched, with a cross along "
-            "the principal directions, on all of any deformed mesh",
-        .values = "none alpha directional bump sphere isometric blend strain_view");
+            "the principal directions, on all of any deformed mesh; model: as its material's "
+            "wrinkle texture, a fitted model of a mesh with tangents, says of the strain; photo: "
+            "as in a photograph, lit from above the map whatever the lights",
+        .values = "none alpha directional bump sphere isometric blend strain_view model photo");
     LIMN_FIELD(
         regions,
         "of the mesh, by name, that wrinkle; none: all that it has, or all of a mesh that has "
         "none where the driver is not chord");
+    LIMN_FIELD(
+        second_regions,
+        "with any, the wrinkle map has two layers: x and y of the normals of the second one in "
+        "blue and alpha, raised across these regions by the chords there; for alpha, bump and "
+        "isometric");
+    LIMN_FIELD(
+        second_turned,
+        "the second layer is raised by shortening along the wrinkles of its regions, or of those "
+        "of the first layer if it names none");
+    LIMN_FIELD(
+        combine, .doc = "slopes of both layers are added, or the second one covers the first",
+        .values = "slopes independent");
     LIMN_FIELD(
         driver,
         .doc = "what raises wrinkles: shortening of triangles across them, of edges, along the "
@@ -109,7 +136,7 @@ LIMN_FIELDS(WrinkleSurface) {
         share, "isometric: of the shortening beyond that becomes folds; 1: all of it", "", 0, 1);
     LIMN_FIELD(center, "radial: where wrinkles are strongest, in mesh space at rest", "m");
     LIMN_FIELD(radius, "radial: where none are left", "m", 1e-6, 1e6);
-    LIMN_FIELD(activation, "radial: strength at the center", "", 0, 1);
+    LIMN_FIELD(activation, "factor of all strengths; radial: strength at the center", "", 0, 1);
     LIMN_FIELD(
         shade_from,
         "distance from the camera beyond which slopes are only darkened, as by alpha, which a mesh "
@@ -143,12 +170,21 @@ inline constexpr int kFoldSteps = 16;
 /// factors on its slopes, divided by sqrt(e), at e = i / (kFoldSteps - 1).
 using FoldTable = std::array<float, kFoldSteps>;
 
+/// Whether its wrinkles are of two layers.
+inline bool has_layers(const WrinkleSurface& surface) {
+    return used_driver(surface) == WrinkleDriver::Chord
+           && (surface.method == WrinkleMethod::Alpha || surface.method == WrinkleMethod::Bump
+               || surface.method == WrinkleMethod::Isometric)
+           && (!surface.second_regions.empty() || surface.second_turned);
+}
+
 /// What the wrinkle system prepares for each WrinkleSurface on a mesh that has such regions.
 struct WrinkleState {
     /// None for a radial driver; for strain three, along u, v and (u + v) / sqrt(2) of axes u and v
-    /// in the tangent plane of each vertex; otherwise one.
+    /// in the tangent plane of each vertex; otherwise one, and that of the second layer.
     std::vector<WrinkleRest> rests;
-    std::vector<float> mask;  ///< per vertex: 0 .. 1 of the wrinkles
+    std::vector<float> mask;         ///< per vertex: 0 .. 1 of the wrinkles
+    std::vector<float> second_mask;  ///< of a second layer, whose rest is the second one; or empty
     FoldTable folds = {};
     /// Strain of a mesh with tangents, per vertex: the angle from the axis u to the tangent [rad],
     /// and the side of the bitangent, 1 or -1. Or empty.

@@ -1,6 +1,7 @@
 #include "render/passes/wrinkle_maps_pass.h"
 
 #include "ecs/components/wrinkle_maps.h"
+#include "ecs/components/wrinkle_response.h"
 #include "ecs/world.h"
 #include "render/drawn_image.h"
 #include "render/fullscreen.h"
@@ -52,7 +53,12 @@ void WrinkleMapsEffect::collect(FrameData& frame) {
 void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     const ImagePool& images = frame.materials->images();
     const auto draw = [&](Entity entity, const WrinkleMaps& maps) {
-        const auto* const weights = frame.world->find<WrinkleWeights>(entity);
+        const auto* const response = frame.world->find<WrinkleResponse>(entity);
+        const auto* const measured = frame.world->find<MeasuredWrinkles>(entity);
+        const bool measures = response != nullptr && measured != nullptr;
+        const WrinkleWeights* const weights =
+            measures ? &measured->weights : frame.world->find<WrinkleWeights>(entity);
+        const float influence = measures ? response->share : 1.0f;
         const bool more = images.find_texture(maps.second_masks) != nullptr;
         const std::array<ImageId, 5> sources = {
             maps.base, maps.stretched, maps.compressed, maps.first_masks,
@@ -86,11 +92,13 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
             {array_of(0), array_of(1), array_of(2), array_of(3), array_of(4), read(0), read(1),
              read(2), read(3), read(4)},
             {target_level(discarded(composed), 0)}, program,
-            [&array, first, second, decoding, by_slopes](PassContext&, const gpu::Program& its) {
+            [&array, first, second, decoding, by_slopes,
+             influence](PassContext&, const gpu::Program& its) {
                 its.set("size", Vec2(array.width(), array.height()));
                 its.set("first_weights", first);
                 its.set("second_weights", second);
                 its.set("decoding", decoding);
+                its.set("share", influence);
                 its.set("by_slopes", by_slopes ? 1 : 0);
             });
         place_drawn_image(graph, images, composed, target);

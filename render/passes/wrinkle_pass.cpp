@@ -30,6 +30,8 @@ static_assert(static_cast<std::uint32_t>(WrinkleDriver::Radial) == layout::kWrin
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Isometric) == layout::kWrinkleIsometric);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Blend) == layout::kWrinkleBlend);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::StrainView) == layout::kWrinkleStrainView);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::Model) == layout::kWrinkleModel);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::Photo) == layout::kWrinklePhoto);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Bump) == layout::kWrinkleBump);
 
@@ -74,6 +76,9 @@ std::vector<Texel> rest_texels(const WrinkleState& state) {
     std::vector<Texel> texels;
     const auto number = [&state](std::size_t block) {
         return [&state, block](std::size_t v) {
+            if (block > 0 && !state.second_mask.empty()) {
+                return state.second_mask[std::min(v, state.second_mask.size() - 1)];
+            }
             if (block > 0) {
                 return v < state.frames.size() ? state.frames[v][static_cast<int>(block) - 1]
                                                : 0.0f;
@@ -152,7 +157,8 @@ float share_until(float end, float distance) {
 
 /// Whether it can be drawn without tangents.
 bool is_shade(WrinkleMethod method) {
-    return method == WrinkleMethod::Alpha || method == WrinkleMethod::Directional;
+    return method == WrinkleMethod::Alpha || method == WrinkleMethod::Directional
+           || method == WrinkleMethod::Photo;
 }
 
 TierShares tier_shares(const WrinkleSurface& surface, float distance, bool tangents) {
@@ -187,8 +193,10 @@ layout::WrinkleJob make_job(
     job.activation = surface.activation;
     job.own_share = shares.own;
     job.shade_share = shares.shade;
-    if (state.rests.size() == 3) {
+    if (state.rests.size() > 1) {
         job.second = block_texels(state.rests[0]);
+    }
+    if (state.rests.size() == 3) {
         job.third = job.second + block_texels(state.rests[1]);
     }
     for (int i = 0; i < kFoldSteps; ++i) {

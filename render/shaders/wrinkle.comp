@@ -53,6 +53,13 @@ float fold_strength(int job, float e) {
     return mix(low, high, place - float(i)) * sqrt(clamp(e, 0.0, 1.0));
 }
 
+// Of the wrinkles at a vertex of this compression, without its mask.
+float strength_of(int job, uvec4 job1, float share, float ratio) {
+    return job1.x == kWrinkleIsometric
+        ? fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), share))
+        : max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
+}
+
 void main() {
     uint group = gl_WorkGroupID.y * kWrinkleGroupsWide + gl_WorkGroupID.x;
     if (group >= group_count) {
@@ -74,29 +81,37 @@ void main() {
     if (job2.y == kWrinkleByStrain) {
         float along_v = block_compression(job0.x, job3.x, number, first, mean_length);
         float between = block_compression(job0.x, job3.y, number, first, mean_length);
-        if (job1.x == kWrinkleStrainView) {
+        if (job1.x == kWrinkleStrainView || job1.x == kWrinkleModel) {
             float angle = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.x + number)).y);
             float side = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.y + number)).y);
             vec3 strain = strain_of_tensor(ratio, along_v, between, angle, side);
-            wrinkles[first + number] = uvec2(packHalf2x16(strain.xy), packHalf2x16(vec2(strain.z, abs(side))));
+            float known = abs(side) * (job1.x == kWrinkleModel ? mask * uintBitsToFloat(job3.z) : 1.0);
+            wrinkles[first + number] = uvec2(packHalf2x16(strain.xy), packHalf2x16(vec2(strain.z, known)));
             return;
         }
         ratio = shortest_ratio(ratio, along_v, between);
     }
 
     uint method = job1.x;
-    float strength = method == kWrinkleIsometric
-        ? fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), uintBitsToFloat(job2.x)))
-        : max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
-    strength = mask * (job2.y == kWrinkleByRadius ? uintBitsToFloat(job2.w) : strength);
+    float activation = uintBitsToFloat(job2.w);
+    float share = uintBitsToFloat(job2.x);
+    float strength = mask * activation * (job2.y == kWrinkleByRadius ? 1.0 : strength_of(job, job1, share, ratio));
     bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
     float own = strength * uintBitsToFloat(job3.z);
     float shade = min(strength, 1.0) * uintBitsToFloat(job3.w);
     vec4 by_method = own * vec4(
         steep ? 1.0 : 0.0,
         method == kWrinkleSphere ? 1.0 : 0.0,
-        method == kWrinkleAlpha ? 1.0 : 0.0,
+        method == kWrinkleAlpha || method == kWrinklePhoto ? 1.0 : 0.0,
         method == kWrinkleDirectional ? 1.0 : 0.0);
     by_method.z += shade;
+    if (job3.x != 0u && job2.y != kWrinkleByStrain) {  // a second layer: its strengths are y and w
+        float second_mask = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.x + number)).y);
+        float second = second_mask * activation
+            * strength_of(job, job1, share, block_compression(job0.x, job3.x, number, first, mean_length));
+        float second_own = second * uintBitsToFloat(job3.z);
+        by_method.y = steep ? second_own : 0.0;
+        by_method.w = (steep ? 0.0 : second_own) + min(second, 1.0) * uintBitsToFloat(job3.w);
+    }
     wrinkles[first + number] = uvec2(packHalf2x16(by_method.xy), packHalf2x16(by_method.zw));
 }

@@ -2,7 +2,7 @@
 //
 // A mesh at rest is a block of texels of two 32-bit numbers; three, one after the other, for strain. One per vertex and one more, which ends the last: its
 // first triangle as a texel of the first block, and its mask as a float; in the second and third block the
-// angle and the side of its tangent instead (WrinkleState::frames; 0: none). Then two per triangle at a vertex, whose third corner
+// angle and the side of its tangent instead (WrinkleState::frames; 0: none). A second layer is another block, with its own mask. Then two per triangle at a vertex, whose third corner
 // is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
 // root of the triangle's weight at the vertex (the weight itself where means are of lengths).
 
@@ -26,7 +26,7 @@ struct WrinkleJob {
     uint driver;       // kWrinkleBy*
     uint mean_length;  // 1: means are of lengths
     float activation;
-    uint second;       // of strain: where its second and third block begin, from the first
+    uint second;       // of strain: where its second and third block begin, from the first; else that of a second layer, or 0
     uint third;
     float own_share;   // of the method, and of alpha in its place
     float shade_share;
@@ -45,6 +45,8 @@ const uint kWrinkleSphere = 4u;
 const uint kWrinkleIsometric = 5u;
 const uint kWrinkleBlend = 6u;
 const uint kWrinkleStrainView = 7u;
+const uint kWrinkleModel = 8u;
+const uint kWrinklePhoto = 9u;
 
 // WrinkleDriver
 const uint kWrinkleByStrain = 2u;

@@ -11,6 +11,7 @@
 #include "render/skinning/deform_source.h"
 #include "render/skinning/skin_palette.h"
 #include "render/surface_features.h"
+#include "render/wrinkle_features.h"
 
 #include <fmt/format.h>
 
@@ -22,12 +23,19 @@ namespace {
 
 constexpr std::size_t kEvaluateGrain = 16;
 
+std::uint32_t layer_features(const WrinkleSurface& surface) {
+    const bool independent = surface.combine == WrinkleCombine::Independent;
+    return !has_layers(surface) ? 0u : kWrinkleLayers | (independent ? kWrinkleIndependent : 0u);
+}
+
 /// What its program must do, beside adding its wrinkles to the normals.
 std::uint32_t wrinkle_features(const WrinkleSurface& surface) {
     if (surface.method == WrinkleMethod::StrainView) {
         return kWrinkleView;
     }
     return (surface.method == WrinkleMethod::Blend ? kWrinkleBlend : 0u)
+           | (surface.method == WrinkleMethod::Model ? kWrinkleModel : 0u)
+           | (surface.method == WrinkleMethod::Photo ? kWrinklePhoto : 0u) | layer_features(surface)
            | (surface.fade ? kWrinkleFade : 0u) | (surface.interpolate ? 0u : kWrinkleFlat);
 }
 

@@ -113,4 +113,18 @@ std::vector<Vec2> wrinkle_slopes(const ImageData& map) {
     return slopes;
 }
 
+std::vector<Vec2> layered_slopes(const ImageData& map) {
+    std::vector<Vec2> slopes;
+    if (map.format != PixelFormat::Rgba8) {
+        return slopes;
+    }
+    slopes.reserve(map.pixels.size() / 2);
+    for (std::size_t i = 0; i + 2 <= map.pixels.size(); i += 2) {
+        const Vec2 n = (Vec2(map.pixels[i], map.pixels[i + 1]) - 128.0f) / 127.0f;
+        const float z2 = std::max(1 - glm::dot(n, n), square(kMinNormalZ));
+        slopes.push_back(-n / std::sqrt(z2));
+    }
+    return slopes;
+}
+
 }  // namespace limn

@@ -29,4 +29,8 @@ namespace limn {
 /// for other formats.
 [[nodiscard]] std::vector<Vec2> wrinkle_slopes(const ImageData& map);
 
+/// The same of a map with two layers, x and y of the normals of the first in red and green, of the
+/// second in blue and alpha: the slopes of both, texel by texel.
+[[nodiscard]] std::vector<Vec2> layered_slopes(const ImageData& map);
+
 }  // namespace limn

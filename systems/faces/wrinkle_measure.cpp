@@ -147,6 +147,32 @@ WrinkleRest rest_of_triangles(
 
 }  // namespace
 
+bool is_named(const VertexRegion& region, const std::vector<std::string>& names) {
+    return names.empty() || std::ranges::find(names, region.name) != names.end();
+}
+
+void merge_regions(
+    const MeshData& mesh, const std::vector<std::string>& names, bool directed,
+    std::span<float> mask, std::span<Vec3> across) {
+    const std::size_t vertices = mesh.positions.size();
+    std::vector<float> strongest(vertices, 0.0f);
+    for (const VertexRegion& region : mesh.regions) {
+        const bool has_across = region.across.size() == vertices;
+        if (!is_named(region, names) || region.weights.size() != vertices
+            || (directed && !has_across)) {
+            continue;
+        }
+        for (std::size_t v = 0; v < vertices; ++v) {
+            const float weight = region.weights[v];
+            mask[v] = std::min(mask[v] + std::max(finite_or(weight, 0), 0.0f), 1.0f);
+            if (weight > strongest[v] && has_across) {
+                strongest[v] = weight;
+                across[v] = region.across[v];
+            }
+        }
+    }
+}
+
 WrinkleRest make_wrinkle_rest(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
     std::span<const Vec3> across, WrinkleWeight weight) {

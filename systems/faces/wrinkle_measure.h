@@ -1,11 +1,13 @@
 #pragma once
 
+#include "ecs/components/surface.h"
 #include "ecs/components/wrinkle.h"
 #include "systems/faces/skin_strain.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace limn {
@@ -20,6 +22,16 @@ namespace limn {
 // edges now. That is the square of its longest chord in that direction by what it was at rest,
 // since a triangle deforms affinely: no chord needs to be found, and only shortening in that
 // direction counts, neither shortening along the wrinkles nor shear that keeps the chord.
+
+/// Whether a region is one of these, or there are no names.
+[[nodiscard]] bool is_named(const VertexRegion& region, const std::vector<std::string>& names);
+
+/// Adds to `mask` the weights of the regions with these names (all if there are none), at most 1 in
+/// all, and sets `across` to the direction of the strongest there. `directed`: only those that have
+/// directions. Both have one element per vertex.
+void merge_regions(
+    const MeshData& mesh, const std::vector<std::string>& names, bool directed,
+    std::span<float> mask, std::span<Vec3> across);
 
 /// `across` has a direction per vertex, of either sign: the mean of three is used, without its part
 /// along the normal. A triangle has none where they cancel or are parallel to the normal, where it

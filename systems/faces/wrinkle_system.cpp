@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -32,17 +33,20 @@ const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
 
 /// Whether it says where and, if that is measured, across which direction a vertex wrinkles.
 bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::size_t vertices) {
-    const bool named = surface.regions.empty()
-                       || std::ranges::find(surface.regions, region.name) != surface.regions.end();
-    return named && region.weights.size() == vertices
+    return is_named(region, surface.regions) && region.weights.size() == vertices
            && (region.across.size() == vertices || used_driver(surface) != WrinkleDriver::Chord);
+}
+
+/// Those of a second layer.
+const std::vector<std::string>& second_regions(const WrinkleSurface& surface) {
+    return surface.second_regions.empty() ? surface.regions : surface.second_regions;
 }
 
 /// A mesh without regions wrinkles anywhere by drivers that need no direction.
 bool wrinkles_everywhere(const WrinkleSurface& surface, const MeshData& mesh) {
     return surface.method == WrinkleMethod::StrainView
            || (mesh.regions.empty() && surface.regions.empty()
-               && surface.driver != WrinkleDriver::Chord);
+               && used_driver(surface) != WrinkleDriver::Chord);
 }
 
 std::vector<WrinkleRest>
@@ -63,6 +67,23 @@ make_strain_rests(const MeshData& mesh, WrinkleWeight weight, std::vector<Vec2>&
     std::array<WrinkleRest, 3> rests =
         make_strain_rest(mesh.positions, mesh.indices, skin.vertex_u, normals, weight);
     return {std::make_move_iterator(rests.begin()), std::make_move_iterator(rests.end())};
+}
+
+/// Where the second layer may wrinkle, and the chords that are measured for it.
+std::vector<float> add_second_layer(
+    const WrinkleSurface& surface, const MeshData& mesh, std::vector<WrinkleRest>& rests) {
+    const std::size_t vertices = mesh.positions.size();
+    std::vector<float> mask(vertices, 0.0f);
+    std::vector<Vec3> across(vertices, Vec3{0, 0, 0});
+    merge_regions(mesh, second_regions(surface), true, mask, across);
+    if (surface.second_turned) {
+        for (std::size_t v = 0; v < vertices && v < mesh.normals.size(); ++v) {
+            across[v] = glm::cross(mesh.normals[v], across[v]);
+        }
+    }
+    rests.push_back(make_wrinkle_rest(mesh.positions, mesh.indices, across, surface.weight));
+    rests.back().mean_length = surface.mean_length;
+    return mask;
 }
 
 /// What is measured; `across` is per vertex.
@@ -110,6 +131,11 @@ wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, cons
         hash = hash_bytes(&surface.center, sizeof surface.center, hash);
         hash = hash_bytes(&surface.radius, sizeof surface.radius, hash);
     }
+    hash = hash_combine(hash, has_layers(surface) ? (surface.second_turned ? 2 : 1) : 0);
+    for (const VertexRegion& region : mesh->regions) {
+        const bool second = has_layers(surface) && is_named(region, second_regions(surface));
+        hash = hash_combine(hash, second ? 1 : 0);
+    }
     const ImageData* const map = map_of(instance, assets);
     hash = hash_combine(hash, map == nullptr ? kNoAsset : map - assets.images.data());
     bool any = wrinkles_everywhere(surface, *mesh);
@@ -132,29 +158,21 @@ WrinkleState make_wrinkle_state(
     const MeshData& mesh = *mesh_of(instance, assets);
     const std::size_t vertices = mesh.positions.size();
     std::vector<Vec3> across(vertices, Vec3{0, 0, 0});
-    std::vector<float> strongest(vertices, 0.0f);
     state.mask.assign(vertices, wrinkles_everywhere(surface, mesh) ? 1.0f : 0.0f);
-    for (const VertexRegion& region : mesh.regions) {
-        if (!is_used(region, surface, vertices)) {
-            continue;
-        }
-        for (std::size_t v = 0; v < vertices; ++v) {
-            const float weight = region.weights[v];
-            state.mask[v] = std::min(state.mask[v] + std::max(finite_or(weight, 0), 0.0f), 1.0f);
-            if (weight > strongest[v] && region.across.size() == vertices) {
-                strongest[v] = weight;
-                across[v] = region.across[v];
-            }
-        }
-    }
+    merge_regions(
+        mesh, surface.regions, used_driver(surface) == WrinkleDriver::Chord, state.mask, across);
     state.rests = make_rests(surface, mesh, across, state.frames);
+    if (has_layers(surface)) {
+        state.second_mask = add_second_layer(surface, mesh, state.rests);
+    }
     if (used_driver(surface) == WrinkleDriver::Radial) {
         for (std::size_t v = 0; v < vertices; ++v) {
             state.mask[v] *= radial_share(mesh.positions[v], surface.center, surface.radius);
         }
     }
     if (const ImageData* const map = map_of(instance, assets)) {
-        state.folds = make_fold_table(wrinkle_slopes(*map));
+        state.folds =
+            make_fold_table(has_layers(surface) ? layered_slopes(*map) : wrinkle_slopes(*map));
     }
     return state;
 }

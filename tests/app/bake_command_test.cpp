@@ -1,9 +1,11 @@
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
+#include "ecs/base/srgb.h"
 #include "ecs/components/surface.h"
 #include "tests/app/run_program.h"
 
 #include <doctest/doctest.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +46,78 @@ void check_fails(const TemporaryFolder& folder, const Words& more, int code, con
 }
 
 }  // namespace
+
+TEST_CASE("bake: photometric writes the normals and the reflectance of what was photographed") {
+    const TemporaryFolder folder;
+    const Vec3 normals[2] = {{0.2f, 0.3f, 0.932738f}, {-0.4f, 0.1f, 0.911043f}};
+    const float albedo[2] = {0.7f, 0.35f};
+    const Vec3 lights[3] = {{1, 0, 1}, {-1, 0, 1}, {0, 1, 1}};
+    for (int shot = 0; shot < 3; ++shot) {
+        ExrImage image = {.width = 2, .height = 1};
+        std::vector<float> values;
+        for (int x = 0; x < 2; ++x) {
+            const float lit =
+                albedo[x] * std::max(glm::dot(normals[x], glm::normalize(lights[shot])), 0.0f);
+            values.insert(values.end(), 3, lit);
+        }
+        add_layer(image, "", "RGB", values, false);
+        REQUIRE(write_exr(folder.file("shot" + std::to_string(shot) + ".exr"), image).ok());
+    }
+    write_text(
+        folder.file("shots.json"),
+        R"({"shots": [{"image": "shot0.exr", "to_light": [1, 0, 1]}, {"image": "shot1.exr", "to_light": [-1, 0, 1]},
+            {"image": "shot2.exr", "to_light": [0, 2, 2]}]})");
+    const ProgramRun run =
+        run_limn(folder, {"bake", "photometric", folder.file("shots.json"), "-o", "face.png"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const auto normal = load_image(folder.file("face_normal.png"), false);
+    const auto gray = load_image(folder.file("face_albedo.png"), true);
+    REQUIRE((normal.ok() && gray.ok()));
+    for (std::size_t x = 0; x < 2; ++x) {
+        for (int c = 0; c < 3; ++c) {
+            const float found =
+                static_cast<float>(normal->pixels[4 * x + static_cast<std::size_t>(c)]) / 127.5f
+                - 1;
+            CHECK(std::abs(found - normals[x][c]) < 0.006f);
+        }
+        const float found = static_cast<float>(gray->pixels[4 * x]) / 255.0f;
+        CHECK(std::abs(linear_from_srgb(found) - albedo[x]) < 0.005f);
+    }
+}
+
+TEST_CASE("bake: photometric refuses lights in a plane, other sizes and missing files by name") {
+    const TemporaryFolder folder;
+    const auto says = [&](const char* shots, const char* expected) {
+        write_text(folder.file("shots.json"), shots);
+        const ProgramRun run =
+            run_limn(folder, {"bake", "photometric", folder.file("shots.json"), "-o", "face.png"});
+        CAPTURE(run.err);
+        CHECK(run.exit_code == 1);
+        CHECK(count_lines(run.err) == 1);
+        CHECK(run.err.find(expected) != std::string::npos);
+        CHECK_FALSE(std::filesystem::exists(folder.file("face_normal.png")));
+    };
+    says(R"({"shots": []})", "shots.json: found 0 lights, expected at least 3");
+    says(
+        R"({"shots": [{"image": "a.png", "to_light": [1, 0, 1]}, {"image": "b.png", "to_light": [0, 0, 1]},
+            {"image": "c.png", "to_light": [-1, 0, 1]}]})",
+        "lights that all lie in one plane");
+    says(
+        R"({"shots": [{"image": "a.png", "to_light": [1, 0, 1]}, {"image": "b.png", "to_light": [0, 1, 1]},
+            {"image": "c.png", "to_light": [-1, 0, 1]}]})",
+        "a.png: ");
+    says(R"({"shot": []})", "shot");
+    for (int size = 1; size <= 2; ++size) {
+        ExrImage image = {.width = size, .height = 1};
+        add_layer(image, "", "Y", std::vector<float>(static_cast<std::size_t>(size), 0.5f), false);
+        REQUIRE(write_exr(folder.file(size == 1 ? "a.exr" : "b.exr"), image).ok());
+    }
+    says(
+        R"({"shots": [{"image": "a.exr", "to_light": [1, 0, 1]}, {"image": "b.exr", "to_light": [0, 1, 1]},
+            {"image": "a.exr", "to_light": [-1, 0, 1]}]})",
+        "b.exr: found 2 x 1 pixels, expected the 1 x 1 of the first image");
+}
 
 TEST_CASE("bake: furrows writes a height map and unit normals of the size asked for") {
     const TemporaryFolder folder;

@@ -1,5 +1,6 @@
 #include "ecs/components/time.h"
 #include "ecs/components/wrinkle_maps.h"
+#include "ecs/components/wrinkle_response.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
 
@@ -208,6 +209,25 @@ TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: what is drawn is the composite of
             CHECK(error <= kSeen);
         }
     }
+}
+
+TEST_CASE_FIXTURE(
+    WrinkledFace,
+    "skin pipeline: measured weights draw what the animator's would, pixel for pixel") {
+    const gpu::FloatImage animated = seen(kGrimace);
+    const gpu::FloatImage rest = seen({});
+    world.add(face, WrinkleResponse{.share = 1});
+    world.add(face, MeasuredWrinkles{.weights = kGrimace, .started = true});
+    CHECK(seen({.lips = 1}).pixels == animated.pixels);
+    // Without a share of theirs the skin is as at rest: wrinkles are left to the surface.
+    world.get<WrinkleResponse>(face).share = 0;
+    CHECK(seen({.lips = 1}).pixels == rest.pixels);
+    // Half of it is half of the influence.
+    world.get<WrinkleResponse>(face).share = 0.5f;
+    world.get<MeasuredWrinkles>(face).weights = {.left_brow = 1};
+    const gpu::FloatImage half = seen({});
+    world.remove<WrinkleResponse>(face);
+    CHECK(half.pixels == seen({.left_brow = 0.5f}).pixels);
 }
 
 TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: without weights normals are those of the skin") {

@@ -1,3 +1,4 @@
+#include "content/bake/wrinkle_model.h"
 #include "systems/faces/wrinkle_fold.h"
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
@@ -63,10 +64,10 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
                 method == WrinkleMethod::Isometric ? fold_strength(
                     state.folds, fold_excess(ratio[v], surface.slack, surface.share))
                 : surface.driver == WrinkleDriver::Radial
-                    ? surface.activation
+                    ? 1.0f
                     : std::max(wrinkle_intensity(ratio[v], surface.lambda, surface.beta), 0.0f);
             Vec4 expected = {0, 0, 0, 0};
-            expected[component] = state.mask[v] * strength;
+            expected[component] = state.mask[v] * surface.activation * strength;
             CHECK(glm::length(found.wrinkles[v] - expected) <= 1e-3f * std::max(strength, 1.0f));
             strong += expected[component] > 0.1f ? 1 : 0;
         }
@@ -199,6 +200,40 @@ TEST_CASE_FIXTURE(
         == pixels({.method = WrinkleMethod::None}, 0.3f, false));
 }
 
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle pass: a model's slopes are its polynomial of the strain, of any degree") {
+    // The square becomes 0.8 as high; the map's bitangent points up.
+    const Vec3 strain = {0, -0.2f, 0};
+    Random random(4, 0, 0, 0);
+    std::vector<WrinklePose> poses;
+    for (int i = 0; i < 40; ++i) {
+        const Vec3 at = {
+            0.5f * random.uniform() - 0.25f, 0.5f * random.uniform() - 0.25f,
+            0.5f * random.uniform() - 0.25f};
+        poses.push_back(
+            {std::vector<Vec3>(16, at),
+             std::vector<Vec2>(
+                 16, Vec2(at.y + 8 * at.y * at.y, 0.3f * at.x - 60 * at.y * at.y * at.y))});
+    }
+    for (int degree = 1; degree <= 3; ++degree) {
+        const WrinkleModel model = fit_wrinkle_model(4, poses, {.degree = degree});
+        material.wrinkle_texture.image = add(pack_wrinkle_model(model));
+        const auto slope_at = [&](float weight) {
+            const Entity entity = square({.method = WrinkleMethod::Model}, weight);
+            const Vec3 n = rgb_at(aov(view, "normal"), 16, 16);
+            world.destroy(entity);
+            return Vec2(-n.x / n.z, -n.y / n.z);
+        };
+        const Vec2 expected = modeled_slope(model, 5, strain);
+        CHECK(glm::length(expected) > 0.1f);
+        CHECK(glm::distance(slope_at(0.2f), expected) < 4e-3f);
+        CHECK(slope_at(0) == Vec2(0));
+        // Beyond the poses it stays where it is at their end.
+        CHECK(glm::distance(slope_at(0.9f), slope_at(0.5f)) < 1e-6f);
+    }
+}
+
 TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: a flat map raises nothing, however compressed") {
     shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0}));
     material.wrinkle_texture.image =
@@ -215,6 +250,118 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: a flat map raises nothing, howeve
           WrinkleMethod::Sphere, WrinkleMethod::Isometric, WrinkleMethod::Blend}) {
         CHECK(pixels(method) == none);
     }
+}
+
+/// A map whose first layer has the slope of `slope_map`, and whose second one that along u.
+ImageData layered_map() {
+    return {
+        .name = "layers", .width = 1, .height = 1, .pixels = {128, kSlopeByte, kSlopeByte, 128}};
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleScene, "wrinkle overlap: slopes of both layers add up, each by its own strength") {
+    MeshData mesh = make_square();
+    MorphTarget& smaller = mesh.morphs.emplace_back();
+    for (std::uint32_t v = 0; v < 4; ++v) {
+        smaller.vertices.push_back(v);
+        smaller.positions.push_back(mesh.positions[v] * Vec3{-0.5f, -1, 0});
+    }
+    const float length = std::sqrt(127.0f * 127.0f - 60.0f * 60.0f);
+    const float slope = 60 / length;  // of each layer, whose z follows from x and y
+    material.wrinkle_texture.image = add(layered_map());
+    const auto drawn = [&](WrinkleSurface surface) {
+        surface.second_turned = true;
+        surface.lambda = 1;
+        const Entity entity = skin(mesh, surface, 0.2f);
+        const Vec3 n = rgb_at(aov(view, "normal"), 16, 16);
+        world.destroy(entity);
+        return Vec2(n.x / n.z, n.y / n.z);
+    };
+    const float high = wrinkle_intensity(0.64f, 1, 4);
+    const float low = wrinkle_intensity(0.81f, 1, 4);
+    const Vec2 summed = drawn({.method = WrinkleMethod::Bump});
+    CHECK(summed.x == near(low * slope).epsilon(3e-3));
+    CHECK(summed.y == near(high * slope).epsilon(3e-3));
+
+    // Independent, the second one covers the first: less of it is left, and in between it is
+    // flatter.
+    const Vec2 covered =
+        drawn({.method = WrinkleMethod::Bump, .combine = WrinkleCombine::Independent});
+    const Vec3 first = glm::normalize(Vec3(0, slope, 1));
+    const Vec3 second = glm::normalize(Vec3(slope, 0, 1));
+    const Vec3 n = glm::mix(glm::mix(Vec3(0, 0, 1), first, high), second, low);
+    CHECK(covered.x == near(n.x / n.z).epsilon(3e-3));
+    CHECK(covered.y == near(n.y / n.z).epsilon(3e-3));
+    CHECK(covered.y < 0.8f * summed.y);
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle overlap: one layer is as without a second one, and two halves as a whole") {
+    // Only across the first layer's wrinkles: the second one stays flat.
+    material.wrinkle_texture.image = add(layered_map());
+    const auto drawn = [&](const WrinkleSurface& surface) {
+        const Entity entity = square(surface, 0.2f);
+        const Vec3 n = rgb_at(aov(view, "normal"), 16, 16);
+        world.destroy(entity);
+        return Vec2(n.x / n.z, n.y / n.z);
+    };
+    const float slope = 60 / std::sqrt(127.0f * 127.0f - 60.0f * 60.0f);
+    const Vec2 single = drawn({.method = WrinkleMethod::Bump, .second_turned = true, .lambda = 1});
+    CHECK(single.x == 0);
+    CHECK(single.y == near(wrinkle_intensity(0.64f, 1, 4) * slope).epsilon(3e-3));
+    // Two identical layers at half their strength are one at its whole.
+    material.wrinkle_texture.image = add(ImageData{
+        .name = "twins", .width = 1, .height = 1, .pixels = {128, kSlopeByte, 128, kSlopeByte}});
+    const Vec2 halves = drawn(
+        {.method = WrinkleMethod::Bump,
+         .second_regions = {"all"},
+         .lambda = 1,
+         .activation = 0.5f});
+    CHECK(halves.y == near(single.y).epsilon(3e-3));
+}
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle overlap: alpha darkens by one layer and then the other") {
+    MeshData mesh = make_square();
+    MorphTarget& smaller = mesh.morphs.emplace_back();
+    for (std::uint32_t v = 0; v < 4; ++v) {
+        smaller.vertices.push_back(v);
+        smaller.positions.push_back(mesh.positions[v] * Vec3{-1, -1, 0});
+    }
+    material.wrinkle_texture.image = add(layered_map());
+    skin(mesh, {.method = WrinkleMethod::Alpha, .second_turned = true, .lambda = 1}, 0.2f);
+    const float dark =
+        1 - wrinkle_intensity(0.64f, 1, 4) * 60 / std::sqrt(127.0f * 127.0f - 60.0f * 60.0f);
+    CHECK(rgb_at(aov(view, "albedo"), 16, 16).x / 0.5f == near(dark * dark).epsilon(6e-3));
+}
+
+TEST_CASE_FIXTURE(
+    WrinkleScene, "wrinkle options: a photograph keeps its light, a normal map follows the lamp") {
+    const auto brightness = [&](WrinkleMethod method, const Vec3& light) {
+        const Entity lamp = shine(DirectionalLight{}, look_at(light, {0, 0, 0}));
+        const Entity entity = square({.method = method, .lambda = 1}, 0.2f);
+        const float wrinkled = rgb_at(radiance(view), 16, 16).x;
+        world.destroy(entity);
+        const Entity smooth = square({.method = WrinkleMethod::None}, 0.2f);
+        const float flat = rgb_at(radiance(view), 16, 16).x;
+        world.destroy(smooth);
+        world.destroy(lamp);
+        return wrinkled / flat;
+    };
+    // The slope faces up or down, and so do the lamps.
+    const float photo_up = brightness(WrinkleMethod::Photo, {0, 1, 1});
+    const float photo_down = brightness(WrinkleMethod::Photo, {0, -1, 1});
+    CHECK(photo_up == near(photo_down).epsilon(5e-3));  // gloss is not painted
+    const float bump_up = brightness(WrinkleMethod::Bump, {0, 1, 1});
+    const float bump_down = brightness(WrinkleMethod::Bump, {0, -1, 1});
+    CHECK(bump_up > 1.1f);
+    CHECK(bump_down < 0.9f);
+    CHECK(photo_up > 1.1f);  // its light was above
+    // In full, it is the light of the normal in that lamp.
+    const float slope = -map_slope().y;
+    const float painted = (1 + slope) / std::sqrt(1 + slope * slope);
+    const float strength = wrinkle_intensity(0.64f, 1, 4);
+    CHECK(photo_up == near(1 + strength * (painted - 1)).epsilon(1e-2));
 }
 
 TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: across the fold only; along it nothing happens") {

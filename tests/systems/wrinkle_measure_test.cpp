@@ -200,6 +200,24 @@ TEST_CASE("wrinkle measure: triangles without area or direction, and NaN positio
     CHECK(vertices == std::vector<float>{1, 1, 1});
 }
 
+TEST_CASE(
+    "wrinkle measure: an edge of three triangles and one triangle twice are measured as others") {
+    // A page in a book: all are shortened alike, so every mean is that.
+    const Positions book = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
+    const std::vector<std::uint32_t> pages = {0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 2};
+    const WrinkleRest rest =
+        make_wrinkle_rest(book, pages, std::vector<Vec3>(book.size(), Vec3(0, 1, 0)));
+    const Positions shorter = mapped(book, [](Vec3 p) { return p * Vec3(1, 0.9f, 1); });
+    for (const float ratio : vertex_compression({&rest, 1}, shorter)) {
+        CHECK(ratio == near(0.81).epsilon(1e-5));
+    }
+    // An index beyond the positions is no triangle.
+    const std::vector<std::uint32_t> beyond = {0, 1, 2, 0, 1, 77};
+    const WrinkleRest cut =
+        make_wrinkle_rest(book, beyond, std::vector<Vec3>(book.size(), Vec3(0, 1, 0)));
+    CHECK(vertex_compression({&cut, 1}, shorter)[0] == near(0.81).epsilon(1e-5));
+}
+
 TEST_CASE("wrinkle measure: by angles, how a fan is divided does not matter") {
     // Four right angles about a point, the last one compressed to a half.
     Fan four{

@@ -1,8 +1,12 @@
 #include "ecs/world.h"
+#include "systems/faces/wrinkle_measure.h"
 #include "systems/faces/wrinkle_system.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>
+
+#include <limits>
+#include <vector>
 
 using namespace limn;
 using limn::test::near;
@@ -76,6 +80,35 @@ TEST_CASE(
     assets.meshes[0].regions[1].across.clear();
     CHECK(wrinkle_source({}, kInstance, assets) == 0);
     CHECK(make_wrinkle_state({}, kInstance, assets).rests.empty());
+}
+
+TEST_CASE(
+    "wrinkle system: empty regions and weights that are NaN or beyond 1 give a mask of 0 to 1") {
+    Assets assets = two_regions();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    assets.meshes[0].regions[0].weights = {10, nan, -3, 0.25f};
+    assets.meshes[0].regions[1].weights.assign(4, 0.0f);
+    const WrinkleState state = make_wrinkle_state({}, kInstance, assets);
+    CHECK(state.mask == std::vector<float>{1, 0, 0, 0.25f});
+    const WrinkleState empty = make_wrinkle_state({.regions = {"cheek"}}, kInstance, assets);
+    CHECK(empty.mask == std::vector<float>(4, 0.0f));
+    for (const float ratio : vertex_compression(empty.rests, assets.meshes[0].positions)) {
+        CHECK(ratio == 1);
+    }
+}
+
+TEST_CASE("wrinkle system: two layers have a rest and a mask each, along the folds if turned") {
+    const Assets assets = two_regions();
+    const WrinkleState two =
+        make_wrinkle_state({.regions = {"brow"}, .second_regions = {"cheek"}}, kInstance, assets);
+    REQUIRE(two.rests.size() == 2);
+    CHECK(two.mask == std::vector<float>{1, 0.8f, 0.7f, 0});
+    CHECK(two.second_mask == std::vector<float>{0, 0.5f, 0.4f, 0.6f});
+    CHECK(two.rests[1].across[0] == Vec2{0, 1});
+    // By a driver without directions there is one layer.
+    CHECK(make_wrinkle_state(
+              {.second_regions = {"cheek"}, .driver = WrinkleDriver::Edge}, kInstance, assets)
+              .second_mask.empty());
 }
 
 TEST_CASE("wrinkle system: each driver measures what it is named after") {

@@ -13,12 +13,17 @@
 //   WRINKLE_FADE   light that grazes smooth skin fades
 //   WRINKLE_VIEW   in place of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and w
 //                  1 where that frame is known. After lib/view.glsl
+//   WRINKLE_MODEL  the wrinkle map is a model of the strain: wrinkle_strength is (tt, bb, tb), and w the share of its slopes
+//   WRINKLE_LAYERS  the wrinkle map has two layers: wrinkle_strength is of the slopes and then the shade of both
+//   WRINKLE_INDEPENDENT  the second one covers the first
+//   WRINKLE_PHOTO  light from above the map is painted on
 //   WRINKLE_FLAT   strengths are those of one vertex of each triangle
 
 #include "lib/gbuffer.glsl"
 #include "lib/interpolation.glsl"
 #include "lib/material_maps.glsl"
 #include "lib/wrinkle.glsl"
+#include "lib/wrinkle_model.glsl"
 
 #if defined(WRINKLE_MAP) && !defined(LIT_AT_VERTICES)
 #define WRINKLES
@@ -81,14 +86,57 @@ vec4 base_color_texel() {
 }
 
 #ifdef WRINKLES
+#ifdef WRINKLE_MODEL
+vec4 model_tile(vec3 place, int tile, int tiles, float half_texel) {
+    place.y = (float(tile) + clamp(place.y, half_texel, 1.0 - half_texel)) / float(tiles);
+    return texture(material_maps[WRINKLE_MAP], place);
+}
+
+// The slope of wrinkles of skin strained like this.
+vec2 wrinkle_slope_here() {
+    vec3 place = map_place(kWrinkleSlot);
+    vec2 size = vec2(textureSize(material_maps[WRINKLE_MAP], 0).xy);
+    int tiles = int(size.y / size.x + 0.5);
+    float half_texel = 0.5 / size.x;
+    vec4 range = model_tile(place, 0, tiles, half_texel);
+    vec4 range_tb = model_tile(place, 1, tiles, half_texel);
+    vec3 x = model_strain(wrinkle_strength.xyz, range, range_tb);
+    vec2 slope = vec2(0.0);
+    for (int tile = 2; tile < tiles; ++tile) {
+        vec4 coefficients = model_tile(place, tile, tiles, half_texel);
+        slope += coefficients.xy * model_term(x, 2 * tile - 4) + coefficients.zw * model_term(x, 2 * tile - 3);
+    }
+    return slope;
+}
+#elif defined(WRINKLE_LAYERS)
+vec4 wrinkle_slopes_here() {
+    return wrinkle_slopes(texture(material_maps[WRINKLE_MAP], map_place(kWrinkleSlot)));
+}
+
+vec2 wrinkle_slope_here() {
+    vec4 slopes = wrinkle_slopes_here();
+#ifdef WRINKLE_INDEPENDENT
+    return covered_slope(slopes, clamp(wrinkle_strength.xy, 0.0, 1.0));
+#else
+    return wrinkle_strength.x * slopes.xy + wrinkle_strength.y * slopes.zw;
+#endif
+}
+#else
 vec2 wrinkle_slope_here() {
     return wrinkle_slope(texture(material_maps[WRINKLE_MAP], map_place(kWrinkleSlot)).xyz);
 }
 #endif
+#endif
 
 vec4 surface_color() {
     vec4 color = material_texel(0) * base_color_texel();
-#ifdef WRINKLES
+#if defined(WRINKLES) && defined(WRINKLE_LAYERS)
+    vec4 slopes = wrinkle_slopes_here();
+    color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slopes.xy, false), 0.0, 1.0);
+    color.rgb *= 1.0 - clamp(wrinkle_strength.w * wrinkle_shade(slopes.zw, false), 0.0, 1.0);
+#elif defined(WRINKLES) && defined(WRINKLE_PHOTO)
+    color.rgb *= mix(1.0, painted_light(wrinkle_slope_here()), clamp(wrinkle_strength.z, 0.0, 1.0));
+#elif defined(WRINKLES) && !defined(WRINKLE_MODEL)
     vec2 slope = wrinkle_slope_here();
     color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slope, false) + wrinkle_strength.w * wrinkle_shade(slope, true), 0.0, 1.0);
 #endif
@@ -125,7 +173,10 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
 #ifdef WRINKLES
     smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
     vec2 slope = wrinkle_slope_here();
-#ifndef WRINKLE_BLEND
+#ifdef WRINKLE_MODEL
+    slope *= wrinkle_strength.w;
+#elif defined(WRINKLE_LAYERS)
+#elif !defined(WRINKLE_BLEND)
     slope = wrinkle_strength.x * slope + lifted_slope(slope, wrinkle_strength.y);
 #endif
     n_ts.xy -= n_ts.z * slope;  // slopes of both heights add up

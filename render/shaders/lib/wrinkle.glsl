@@ -86,3 +86,23 @@ vec2 lifted_slope(vec2 slope, float strength) {
 float wrinkle_shade(vec2 slope, bool directional) {
     return clamp(directional ? slope.y : length(slope), 0.0, 1.0);
 }
+
+// Light from above the map at 45 degrees, by that on smooth skin.
+float painted_light(vec2 slope) {
+    return max(1.0 - slope.y, 0.0) * inversesqrt(1.0 + dot(slope, slope));
+}
+
+// Slopes of both layers of a wrinkle map: x and y of the first normal in red and green, of the second in blue and alpha.
+vec4 wrinkle_slopes(vec4 texel) {
+    vec4 n = (texel * 255.0 - 128.0) / 127.0;
+    vec2 z = sqrt(max(1.0 - vec2(dot(n.xy, n.xy), dot(n.zw, n.zw)), 0.0025));
+    return -n / z.xxyy;
+}
+
+// The second layer blended over the first, each over flat skin, as normals: not as high in between.
+vec2 covered_slope(vec4 slopes, vec2 strength) {
+    vec3 first = vec3(-slopes.xy, 1.0) * inversesqrt(1.0 + dot(slopes.xy, slopes.xy));
+    vec3 second = vec3(-slopes.zw, 1.0) * inversesqrt(1.0 + dot(slopes.zw, slopes.zw));
+    vec3 n = mix(mix(vec3(0.0, 0.0, 1.0), first, strength.x), second, strength.y);
+    return -n.xy / max(n.z, 0.05);
+}

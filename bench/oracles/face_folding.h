@@ -1,0 +1,75 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/surface.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limn::oracle {
+
+// Where the skin of a face folds in each of its expressions, held against anatomy: an expression
+// shortens skin across the folds of its own regions, and leaves others as they are. Regions and
+// directions are those of the mesh (content/bake/face_regions.h).
+
+/// Morph targets that belong together: both halves of an action unit, or one target.
+struct FaceExpression {
+    std::string name;  ///< "mouthSmile" of mouthSmile_L and mouthSmile_R
+    std::string unit;  ///< of FACS without a side, "AU12"; or empty
+    std::vector<std::uint32_t> morphs;
+};
+
+/// In the order of their first targets. Units are those of the targets, or follow from their names.
+[[nodiscard]] std::vector<FaceExpression> find_face_expressions(const MeshData& mesh);
+
+/// Skin of a region in an expression.
+struct RegionFolding {
+    double shortening =
+        0;            ///< across its folds: mean over vertices by area and weight, at least 0 each
+    double left = 0;  ///< of x > 0
+    double right = 0;
+    double turn = 0;  ///< mean angle between across and the direction of most shortening [rad]
+};
+
+/// Shortening of every region of a mesh, prepared once.
+class FaceFolding {
+  public:
+    explicit FaceFolding(const MeshData& mesh);
+    ~FaceFolding();
+    FaceFolding(const FaceFolding&) = delete;
+    FaceFolding& operator=(const FaceFolding&) = delete;
+
+    /// With these targets at `weight`. One element per region, in their order.
+    [[nodiscard]] std::vector<RegionFolding>
+    measure(std::span<const std::uint32_t> morphs, float weight = 1) const;
+
+  private:
+    struct Region;
+    const MeshData& mesh_;
+    std::vector<Region> regions_;
+};
+
+/// What anatomy says of an expression (shared facts of faces, sections D).
+struct FoldingRule {
+    std::string_view name;                 ///< "smile"
+    std::vector<std::string_view> units;   ///< whose targets together are the expression
+    std::vector<std::string_view> folds;   ///< regions of which one folds at least
+    std::vector<std::string_view> smooth;  ///< that do not
+};
+[[nodiscard]] std::span<const FoldingRule> folding_rules();
+
+/// A rule held against a face.
+struct FoldingResult {
+    double folding = 0;     ///< shortening of the region that folds most
+    double smooth = 0;      ///< of those that do not fold: the most
+    double difference = 0;  ///< between both sides of the one that folds, as a share
+};
+/// False where the face lacks one of the units or all regions that fold.
+[[nodiscard]] bool apply_rule(
+    const FoldingRule& rule, const MeshData& mesh, const FaceFolding& folding,
+    FoldingResult& result);
+
+}  // namespace limn::oracle

@@ -1,0 +1,161 @@
+#include "bench/oracles/face_folding.h"
+#include "bench/quality/face_folds_file.h"
+#include "content/load/gltf_write.h"
+#include "content/load/ict_facekit.h"
+#include "content/load/makehuman.h"
+#include "content/make/head.h"
+#include "content/make/shapes.h"
+#include "tests/near.h"
+#include "tests/support.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+void no_progress(int /*done*/, int /*total*/) {}
+
+/// The skin of a face of the folder of shared assets; none without the folder.
+std::optional<GltfScene> import_shared(const char* name) {
+    const auto folder = test::shared_asset(name);
+    if (!folder) {
+        return std::nullopt;
+    }
+    Result<GltfScene> scene = std::string(name) == "makehuman"
+                                  ? import_makehuman(*folder, no_progress)
+                                  : import_ict_facekit(*folder, no_progress);
+    REQUIRE_MESSAGE(scene.ok(), scene.error().message);
+    return std::move(*scene);
+}
+
+/// All rules that the face has shapes for, of which there are at least `count`.
+void check_face(const MeshData& face, std::size_t count) {
+    const oracle::FaceFolding folding(face);
+    for (const oracle::RegionFolding& region : folding.measure({})) {
+        CHECK(region.shortening < 1e-6);
+    }
+    std::size_t applied = 0;
+    for (const oracle::FoldingRule& rule : oracle::folding_rules()) {
+        oracle::FoldingResult result;
+        if (!oracle::apply_rule(rule, face, folding, result)) {
+            continue;
+        }
+        const std::string name(rule.name);
+        CAPTURE(name);
+        CAPTURE(result.folding);
+        CAPTURE(result.smooth);
+        CHECK(result.folding > 0.02);
+        CHECK(result.folding >= 5 * result.smooth);
+        CHECK(result.difference < 0.02);
+        ++applied;
+    }
+    CHECK(applied >= count);
+}
+
+TEST_CASE(
+    "face folding: the head's own skin folds where anatomy says, five times as much as beside") {
+    check_face(make_head({}), 7);
+}
+
+TEST_CASE("face folding: so does that of ICT FaceKit") {
+    if (const auto scene = import_shared("ict-facekit")) {
+        check_face(scene->meshes[0], 6);
+    }
+}
+
+TEST_CASE("face folding: and that of MakeHuman") {
+    if (const auto scene = import_shared("makehuman")) {
+        check_face(scene->meshes[0], 5);
+    }
+}
+
+TEST_CASE("face folding: at half its weight an expression folds the same regions, about half") {
+    const MeshData head = make_head({});
+    const oracle::FaceFolding folding(head);
+    for (const oracle::FaceExpression& expression : oracle::find_face_expressions(head)) {
+        if (expression.unit != "AU4" && expression.unit != "AU9") {
+            continue;
+        }
+        const auto half = folding.measure(expression.morphs, 0.5f);
+        const auto whole = folding.measure(expression.morphs);
+        for (std::size_t i = 0; i < whole.size(); ++i) {
+            if (whole[i].shortening > 0.05) {
+                CHECK(half[i].shortening == test::near(0.5 * whole[i].shortening).epsilon(0.25));
+            }
+        }
+    }
+}
+
+TEST_CASE("face folding: halves of a unit are one expression, by any names") {
+    MeshData mesh = make_sphere({});
+    for (const char* const name :
+         {"mouthSmileLeft", "jawOpen", "mouthSmileRight", "jawLeft", "fat", "browInnerUp"}) {
+        mesh.morphs.emplace_back().name = name;
+    }
+    const auto found = oracle::find_face_expressions(mesh);
+    REQUIRE(found.size() == 5);
+    CHECK(found[0].name == "mouthSmile");
+    CHECK(found[0].unit == "AU12");
+    CHECK(found[0].morphs == std::vector<std::uint32_t>{0, 2});
+    CHECK(found[1].unit == "AU27");
+    CHECK(found[3].unit.empty());
+    CHECK(found[4].unit == "AU1");
+}
+
+TEST_CASE("face folding: a file of a face with other names is measured as the face, or refused") {
+    const test::TemporaryFolder folder;
+    GltfScene scene;
+    scene.name = "face";
+    MeshData& head = scene.meshes.emplace_back(make_head({}));
+    for (MorphTarget& morph : head.morphs) {
+        const std::map<std::string, std::string> names = {
+            {"AU12_L", "mouthSmileLeft"},
+            {"AU12_R", "mouthSmileRight"},
+            {"AU4_L", "browDownLeft"},
+            {"AU4_R", "browDownRight"}};
+        const auto found = names.find(morph.name);
+        morph.action_unit.clear();
+        morph.name = found != names.end() ? found->second : "x" + morph.name;
+    }
+    scene.materials.emplace_back();
+    GltfNode node;
+    node.name = "face";
+    node.first_morph = 0;
+    node.parts = {{0, 0}};
+    scene.nodes.push_back(node);
+    scene.morph_weights.assign(head.morphs.size(), 0.0f);
+    const std::string file = folder.file("face.glb");
+    const Status saved = save_glb(file, scene);
+    REQUIRE_MESSAGE(saved.ok(), saved.error().message);
+    QualityReport report;
+    const Status status = measure_face_file(file, report);
+    REQUIRE_MESSAGE(status.ok(), status.error().message);
+    CHECK(report.html.find("mouthSmile") != std::string::npos);
+    std::size_t rules = 0;
+    for (const QualityRow& row : report.rows) {
+        CAPTURE(row.name);
+        CHECK(holds(row));
+        rules += row.name.find("that by the most") != std::string::npos ? 1 : 0;
+    }
+    CHECK(rules == 2);
+
+    GltfScene ball = scene;
+    ball.meshes[0] = make_sphere({});
+    ball.morph_weights.clear();
+    ball.nodes[0].first_morph = -1;
+    REQUIRE(save_glb(file, ball).ok());
+    const Status refused = measure_face_file(file, report);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(
+        refused.error().message.find("found no morph target named as an action unit")
+        != std::string::npos);
+}
+
+}  // namespace
+}  // namespace limn
