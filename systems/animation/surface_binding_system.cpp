@@ -119,7 +119,7 @@ class Binder {
     void bind_to_faces_of(const MeshData& surface, MeshData& bound, SurfaceBindingState& state) {
         const SurfaceBinding& settings = state.settings;
         bound.skin = bind_to_faces(
-            bound.positions, surface.positions, state.corners,
+            bound.positions, bound.normals, surface.positions, state.corners,
             std::isfinite(settings.locality) ? settings.locality : 0.0f,
             static_cast<std::size_t>(std::max(settings.faces, 1)));
         assets_.skins[state.skin.index] = make_face_skin(surface.positions, state.corners);

@@ -36,6 +36,7 @@ struct FaceBall {
     Vec3 corner[3];
     Vec3 center;
     float radius;
+    Vec3 normal;  ///< unit
 };
 
 std::vector<FaceBall>
@@ -45,11 +46,14 @@ make_balls(std::span<const Vec3> positions, std::span<const std::uint32_t> corne
         FaceBall ball{
             {positions[corners[i]], positions[corners[i + 1]], positions[corners[i + 2]]},
             Vec3(0),
-            0.0f};
+            0.0f,
+            Vec3(0)};
         ball.center = (ball.corner[0] + ball.corner[1] + ball.corner[2]) / 3.0f;
         for (const Vec3& corner : ball.corner) {
             ball.radius = std::max(ball.radius, glm::distance(ball.center, corner));
         }
+        ball.normal = normalize_or(
+            glm::cross(ball.corner[1] - ball.corner[0], ball.corner[2] - ball.corner[0]), Vec3(0));
         balls.push_back(ball);
     }
     return balls;
@@ -73,10 +77,11 @@ struct Near {
     }
 };
 
-/// The `count` nearest faces, nearest first.
+/// The `count` nearest faces, nearest first. A face that faces away from `normal`, or from nothing if
+/// that is 0, is up to `away` farther.
 void find_nearest(
-    const Vec3& p, const std::vector<FaceBall>& balls, std::size_t count,
-    std::vector<Near>& nearest) {
+    const Vec3& p, const Vec3& normal, float away, const std::vector<FaceBall>& balls,
+    std::size_t count, std::vector<Near>& nearest) {
     nearest.clear();
     for (std::size_t f = 0; f < balls.size(); ++f) {
         const FaceBall& ball = balls[f];
@@ -84,9 +89,12 @@ void find_nearest(
         if (full && glm::distance(p, ball.center) - ball.radius > nearest.back().distance) {
             continue;
         }
+        const float distance =
+            distance_to_triangle(p, ball.corner[0], ball.corner[1], ball.corner[2]);
+        const float turned =
+            normal != Vec3(0) ? 0.5f * (1.0f - glm::dot(normal, ball.normal)) : 0.0f;
         const Near found = {
-            distance_to_triangle(p, ball.corner[0], ball.corner[1], ball.corner[2]),
-            static_cast<std::uint16_t>(f)};
+            std::sqrt(square(distance) + square(away * turned)), static_cast<std::uint16_t>(f)};
         if (full && !(found < nearest.back())) {
             continue;
         }
@@ -154,8 +162,9 @@ faces_with_area(std::span<const Vec3> positions, std::span<const std::uint32_t> 
 }
 
 SkinWeights bind_to_faces(
-    std::span<const Vec3> points, std::span<const Vec3> positions,
+    std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec3> positions,
     std::span<const std::uint32_t> corners, float locality, std::size_t count) {
+    LIMN_CHECK(normals.empty() || normals.size() == points.size());
     LIMN_CHECK(corners.size() >= 3 && corners.size() <= std::size_t{3} * 65536 && count > 0);
     const std::vector<FaceBall> balls = make_balls(positions, corners);
     const float unit = mean_edge(balls);
@@ -163,7 +172,8 @@ SkinWeights bind_to_faces(
     parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         std::vector<Near> nearest;
         for (std::size_t i = begin; i < end; ++i) {
-            find_nearest(points[i], balls, count + 1, nearest);
+            const Vec3 normal = normals.empty() ? Vec3(0) : normals[i];
+            find_nearest(points[i], normal, kAway * unit, balls, count + 1, nearest);
             all[i] = weigh(nearest, count, unit, locality);
         }
     });

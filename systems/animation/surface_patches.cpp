@@ -19,7 +19,7 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kGrain = 64;       ///< points per task
-constexpr std::size_t kCandidates = 12;  ///< patches that are tried for a point
+constexpr std::size_t kCandidates = 24;  ///< patches that are tried for a point
 constexpr int kSamples = 8;              ///< per edge of a patch, for the start of Newton's method
 constexpr int kSteps = 20;               ///< of Newton's method
 constexpr float kInside = 1e-4f;         ///< by which (u, v) may leave the triangle
@@ -114,7 +114,10 @@ class PatchBinder {
     [[nodiscard]] SurfacePlace
     bind(const Vec3& point, const Vec3& normal, const Vec3& tangent) const {
         SurfacePlace place;
-        const bool found = find_inside(point, place) || find_beside(point, place);
+        const Faces near = candidates(point);
+        const Faces facing = facing_along(near, normal);
+        const bool found = find_inside(point, facing, place) || find_beside(point, facing, place)
+                           || find_inside(point, near, place) || find_beside(point, near, place);
         if (!found || glm::length(place.offset) > reach_) {
             return {};
         }
@@ -129,6 +132,9 @@ class PatchBinder {
     }
 
   private:
+    /// Faces, with the distances of their flat triangles.
+    using Faces = std::vector<std::pair<float, std::uint32_t>>;
+
     [[nodiscard]] std::span<const Vec4> patch(std::size_t f) const {
         return std::span(patches_).subspan(f * kPatchTexels, kPatchTexels);
     }
@@ -141,8 +147,8 @@ class PatchBinder {
     [[nodiscard]] Vec3 corner(std::size_t i) const { return positions_[corners_[i]]; }
 
     /// The nearest faces, by their flat triangles.
-    [[nodiscard]] std::vector<std::pair<float, std::uint32_t>> candidates(const Vec3& p) const {
-        std::vector<std::pair<float, std::uint32_t>> nearest;
+    [[nodiscard]] Faces candidates(const Vec3& p) const {
+        Faces nearest;
         for (std::uint32_t f = 0; f < corners_.size() / 3; ++f) {
             nearest.emplace_back(
                 distance_to_triangle(p, corner(3 * f), corner(3 * f + 1), corner(3 * f + 2)), f);
@@ -153,6 +159,20 @@ class PatchBinder {
         return nearest;
     }
 
+    /// Those that do not face away from the normal of a point: lips that touch are bound each to
+    /// its own patches.
+    [[nodiscard]] Faces facing_along(const Faces& faces, const Vec3& normal) const {
+        Faces facing;
+        for (const auto& face : faces) {
+            const std::size_t f = std::size_t{3} * face.second;
+            const Vec3 area = glm::cross(corner(f + 1) - corner(f), corner(f + 2) - corner(f));
+            if (glm::dot(area, normal) > 0.0f) {
+                facing.push_back(face);
+            }
+        }
+        return facing;
+    }
+
     [[nodiscard]] float size_of(std::size_t f) const {
         return std::max(
             glm::distance(corner(3 * f), corner(3 * f + 1)),
@@ -160,9 +180,9 @@ class PatchBinder {
     }
 
     /// The nearest place straight below the point.
-    bool find_inside(const Vec3& p, SurfacePlace& place) const {
+    bool find_inside(const Vec3& p, const Faces& faces, SurfacePlace& place) const {
         float nearest = INFINITY;
-        for (const auto& [flat, f] : candidates(p)) {
+        for (const auto& [flat, f] : faces) {
             // A patch bulges less than its size.
             if (flat - 0.5f * size_of(f) > nearest) {
                 continue;
@@ -185,10 +205,11 @@ class PatchBinder {
 
     /// Above an edge that is not at the border of the surface: the nearest place, and an offset
     /// that is not only along the normal.
-    bool find_beside(const Vec3& p, SurfacePlace& place) const {
+    bool find_beside(const Vec3& p, const Faces& faces, SurfacePlace& place) const {
+        place = {};
         float nearest = INFINITY;
         bool is_border = false;
-        for (const auto& [flat, f] : candidates(p)) {
+        for (const auto& [flat, f] : faces) {
             Vec3 at = nearest_sample(patch(f), p);
             solve_place(patch(f), p, size_of(f), at);
             const Vec2 clamped = is_finite(at) ? clamp_place(at) : Vec2(1.0f / 3.0f);
@@ -206,7 +227,10 @@ class PatchBinder {
                             || (borders_[3 * f + 2] && clamped.y <= kInside);
             }
         }
-        return !is_border && place.patch != kNoPatch;
+        if (is_border) {
+            place = {};
+        }
+        return place.patch != kNoPatch;
     }
 
     std::span<const Vec3> positions_;
@@ -242,6 +266,9 @@ make_patch_corners(std::span<const Vec3> positions, std::span<const std::uint32_
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 p = positions[indices[i + k]];
             face[k] = first.try_emplace({p.x, p.y, p.z}, indices[i + k]).first->second;
+        }
+        if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
+            continue;
         }
         const Vec3 ab = positions[face[1]] - positions[face[0]];
         const Vec3 ac = positions[face[2]] - positions[face[0]];

@@ -67,7 +67,7 @@ struct Follower {
     explicit Follower(float locality = 4.0f, std::size_t count = 8) {
         sheet.positions[12].y = 0.3f;  // not flat
         sheet.positions[7].x += 0.1f;
-        weights = bind_to_faces(points, sheet.positions, sheet.indices, locality, count);
+        weights = bind_to_faces(points, {}, sheet.positions, sheet.indices, locality, count);
         skin = make_face_skin(sheet.positions, sheet.indices);
     }
     [[nodiscard]] std::vector<Vec3> follow(const std::vector<Vec3>& positions) const {
@@ -130,7 +130,7 @@ TEST_CASE("surface faces: weights sum to 1, of the nearest faces, as many as ask
     }
     // A lone face, and faces that are all alike, still carry everything.
     const SkinWeights alike =
-        bind_to_faces(follower.points, follower.sheet.positions, follower.sheet.indices, 0.0f, 4);
+        bind_to_faces(follower.points, {}, follower.sheet.positions, follower.sheet.indices, 0.0f, 4);
     CHECK(alike.weights == std::vector<float>(4 * follower.points.size(), 0.25f));
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("surface faces: the deformed shape has no jump where other faces becom
     Follower follower;
     follower.sheet = sheet;
     follower.points = line;
-    follower.weights = bind_to_faces(line, sheet.positions, sheet.indices, 2.0f, 3);
+    follower.weights = bind_to_faces(line, {}, sheet.positions, sheet.indices, 2.0f, 3);
     follower.skin = make_face_skin(sheet.positions, sheet.indices);
     const std::vector<Vec3> moved = follower.follow_map(
         [](const Vec3& p) { return p + Vec3(0, 0.3f * std::sin(3 * p.x) * std::cos(2 * p.z), 0); });
@@ -198,6 +198,37 @@ TEST_CASE("surface faces: the deformed shape has no jump where other faces becom
         largest = std::max(largest, glm::distance(moved[i], moved[i - 1]));
     }
     CHECK(largest < 4 * 1.8f / 4000.0f);
+}
+
+TEST_CASE("surface faces: of two surfaces that touch, each carries what faces its way") {
+    // Two lips: one that faces up, and one above it, almost in touch, that faces down.
+    MeshData lips = make_sheet(4);
+    const auto count = static_cast<std::uint32_t>(lips.positions.size());
+    const std::size_t corners = lips.indices.size();
+    for (std::uint32_t v = 0; v < count; ++v) {
+        lips.positions.push_back(lips.positions[v] + Vec3(0, 0.01f, 0));
+    }
+    for (std::size_t i = 0; i < corners; i += 3) {
+        for (const std::size_t k : {std::size_t{0}, std::size_t{2}, std::size_t{1}}) {
+            lips.indices.push_back(lips.indices[i + k] + count);
+        }
+    }
+    std::vector<Vec3> points;
+    std::vector<Vec3> normals;
+    for (float x = -0.8f; x < 0.8f; x += 0.1f) {
+        points.insert(points.end(), {{x, 0.004f, 0.1f}, {x, 0.006f, 0.1f}});
+        normals.insert(normals.end(), {{0, 1, 0}, {0, -1, 0}});
+    }
+    const SkinWeights weights =
+        bind_to_faces(points, normals, lips.positions, lips.indices, 4.0f, 8);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        float other = 0.0f;
+        for (std::uint32_t i = weights.first[p]; i < weights.first[p + 1]; ++i) {
+            const bool is_upper = weights.joints[i] >= corners / 3;
+            other += is_upper == (normals[p].y < 0) ? 0.0f : weights.weights[i];
+        }
+        CHECK(other < 0.01f);
+    }
 }
 
 TEST_CASE("surface faces: faces without area have no frame and are left out") {

@@ -389,6 +389,36 @@ TEST_CASE("patches: above a ridge, where no patch is straight below, the mesh is
     }
 }
 
+TEST_CASE("patches: of two surfaces that touch, each carries what faces its way") {
+    Surface lips = make_bumpy();
+    const std::size_t lower = lips.faces();
+    const auto count = static_cast<std::uint32_t>(lips.positions.size());
+    for (std::uint32_t v = 0; v < count; ++v) {
+        lips.positions.push_back(lips.positions[v] + Vec3(0, 0.01f, 0));
+    }
+    for (std::size_t i = 0; i < 3 * lower; i += 3) {
+        for (const std::size_t k : {std::size_t{0}, std::size_t{2}, std::size_t{1}}) {
+            lips.corners.push_back(lips.corners[i + k] + count);
+        }
+    }
+    lips.update();
+    std::vector<Vec3> points;
+    std::vector<Vec3> normals;
+    for (std::size_t f = 0; f < lower; f += 2) {
+        const Vec3 on = evaluate_patch(lips.patch(f), 0.3f, 0.4f).position;
+        points.insert(points.end(), {on + Vec3(0, 0.002f, 0), on + Vec3(0, 0.008f, 0)});
+        points.insert(points.end(), {on + Vec3(0, 0.008f, 0), on + Vec3(0, 0.002f, 0)});
+        normals.insert(normals.end(), {{0, 1, 0}, {0, -1, 0}, {0, 1, 0}, {0, -1, 0}});
+    }
+    const std::vector<Vec4> tangents(points.size(), Vec4(1, 0, 0, 1));
+    const std::vector<SurfacePlace> places =
+        bind_to_patches(points, normals, tangents, lips.positions, lips.corners, 1);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        REQUIRE(places[i].patch != kNoPatch);
+        CHECK((places[i].patch < lower) == (normals[i].y > 0));
+    }
+}
+
 TEST_CASE("patches: no vertex moves farther than the bound") {
     const Surface surface = make_bumpy();
     const Surface bent = map_surface(surface, bend);
@@ -429,7 +459,11 @@ TEST_CASE("patches: seams are closed, and triangulations that are no surface are
         return result ? std::string("none") : result.error().message;
     };
     CHECK(error({}) == "none");
-    CHECK(error({0, 0, 1}) == "triangle 8 has no area");
+    CHECK(error({0, 0, 1}) == "none");
+    const std::vector<Vec3> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    CHECK(
+        make_patch_corners(line, std::vector<std::uint32_t>{0, 1, 2}).error().message
+        == "triangle 0 has no area");
     CHECK(
         error({0, 3, 1}).find("vertices 0 and 3 with one that faces the opposite side")
         != std::string::npos);
