@@ -15,13 +15,19 @@ namespace limn {
 namespace {
 
 constexpr int kIterations = 20;
+/// Half of the width of the midline, whose vertices belong to neither side, as a share of the
+/// width: rounding would put them on either.
+constexpr float kMidline = 0.005f;
 
-/// Mean of the positions with x > 0 (side 1) or x < 0 (side -1), by weights. False without any.
+/// Mean of the positions on the left (side 1) or right (side -1) of the middle, by weights. False
+/// without any.
 bool find_center(const MeshData& mesh, const VertexRegion& region, float side, Vec3& center) {
     Vec3 sum(0);
     float weights = 0.0f;
+    const float middle = 0.5f * (mesh.bounds.min.x + mesh.bounds.max.x);
+    const float clear = kMidline * (mesh.bounds.max.x - mesh.bounds.min.x);
     for (std::size_t v = 0; v < region.weights.size() && v < mesh.positions.size(); ++v) {
-        if (side * mesh.positions[v].x > 0.0f) {
+        if (side * (mesh.positions[v].x - middle) > clear) {
             sum += region.weights[v] * mesh.positions[v];
             weights += region.weights[v];
         }
