@@ -77,8 +77,8 @@ struct Near {
     }
 };
 
-/// The `count` nearest faces, nearest first. A face that faces away from `normal`, or from nothing if
-/// that is 0, is up to `away` farther.
+/// The `count` nearest faces, nearest first. A face that faces away from `normal`, or from nothing
+/// if that is 0, is up to `away` farther.
 void find_nearest(
     const Vec3& p, const Vec3& normal, float away, const std::vector<FaceBall>& balls,
     std::size_t count, std::vector<Near>& nearest) {

@@ -21,9 +21,9 @@ namespace limn {
 // GPU with velocities and normals, and costs what skinning costs.
 //
 // The paper's weights are not normalized and would not reproduce the rest pose. A face that faces
-// away from a point's normal counts as farther away: so lips that touch do not stick. Where only the
-// nearest `count` faces are kept, their weights are reduced by that of the nearest one left out, so
-// that the list changes from point to point without a crease.
+// away from a point's normal counts as farther away: so lips that touch do not stick. Where only
+// the nearest `count` faces are kept, their weights are reduced by that of the nearest one left
+// out, so that the list changes from point to point without a crease.
 
 /// Frame of a triangle: origin a, axes b - a, c - a and their cross product, scaled to grow like a
 /// length. A triangle without area has no third axis.
@@ -37,8 +37,9 @@ namespace limn {
 faces_with_area(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 
 /// Influences of the faces on each of `points`, at most `count` >= 1 each; distances are in mean
-/// edges of the faces, of which a face that faces the opposite way is kAway farther away. `normals`:
-/// unit, one per point, or empty. At least one face, at most 65536. Time grows as points * faces.
+/// edges of the faces, of which a face that faces the opposite way is kAway farther away.
+/// `normals`: unit, one per point, or empty. At least one face, at most 65536. Time grows as points
+/// * faces.
 inline constexpr float kAway = 4.0f;
 [[nodiscard]] SkinWeights bind_to_faces(
     std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec3> positions,

@@ -31,9 +31,9 @@ struct PatchPoint {
 };
 
 /// Faces of a triangle mesh as three markers each: of vertices at one place, as on both sides of a
-/// seam, the first stands for all; triangles between such vertices are left out. Fails with one line
-/// at a triangle without area, an edge of more
-/// than two triangles, or two triangles at an edge that face opposite sides.
+/// seam, the first stands for all; triangles between such vertices are left out. Fails with one
+/// line at a triangle without area, an edge of more than two triangles, or two triangles at an edge
+/// that face opposite sides.
 [[nodiscard]] Result<std::vector<std::uint32_t>>
 make_patch_corners(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 

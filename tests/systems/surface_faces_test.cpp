@@ -129,8 +129,8 @@ TEST_CASE("surface faces: weights sum to 1, of the nearest faces, as many as ask
         CHECK(sum == near(1));
     }
     // A lone face, and faces that are all alike, still carry everything.
-    const SkinWeights alike =
-        bind_to_faces(follower.points, {}, follower.sheet.positions, follower.sheet.indices, 0.0f, 4);
+    const SkinWeights alike = bind_to_faces(
+        follower.points, {}, follower.sheet.positions, follower.sheet.indices, 0.0f, 4);
     CHECK(alike.weights == std::vector<float>(4 * follower.points.size(), 0.25f));
 }
 
