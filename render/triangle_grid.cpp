@@ -1,5 +1,7 @@
 #include "render/triangle_grid.h"
 
+#include "ecs/base/triangle.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -23,27 +25,7 @@ void for_cells(const IVec3& low, const IVec3& high, Visit visit) {
     }
 }
 
-float distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 ab = b - a;
-    const float length2 = glm::dot(ab, ab);
-    const float share = length2 > 0 ? std::clamp(glm::dot(p - a, ab) / length2, 0.0f, 1.0f) : 0.0f;
-    return glm::distance(p, a + share * ab);
-}
-
 }  // namespace
-
-float distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 normal = glm::cross(b - a, c - a);
-    const float length = glm::length(normal);
-    const bool above = length > 0 && glm::dot(glm::cross(b - a, p - a), normal) >= 0
-                       && glm::dot(glm::cross(c - b, p - b), normal) >= 0
-                       && glm::dot(glm::cross(a - c, p - c), normal) >= 0;
-    if (above) {
-        return std::abs(glm::dot(p - a, normal)) / length;
-    }
-    return std::min(
-        {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
-}
 
 TriangleGrid::TriangleGrid(std::span<const Vec3> positions, std::span<const std::uint32_t> indices)
     : positions_(positions), indices_(indices) {

@@ -10,11 +10,6 @@ namespace limn {
 
 // Distances to a set of triangles, by a uniform grid of about as many cells as triangles.
 
-/// Distance [m] of `p` from a triangle, which may be a line or a point.
-/// After Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
-[[nodiscard]] float
-distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-
 class TriangleGrid {
   public:
     /// Three valid indices per triangle, at least one triangle; all positions finite. Both spans

@@ -9,6 +9,7 @@
 #include "systems/animation/driven_shapes_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/animation/rotation_track_system.h"
+#include "systems/animation/surface_binding_system.h"
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/faces/wrinkle_response_system.h"
@@ -70,6 +71,8 @@ void add_object_systems(SystemList& systems) {
 void add_animation_systems(SystemList& systems) {
     systems.add<add_poses>(Create, Both);
     systems.add<add_deformer_states>(Create, Both);
+    systems.add<add_surface_binding_states>(Create, Both);
+    systems.add<bind_surfaces>(Move, Both);
     systems.add<add_rotation_track_states>(Create, Both);
     systems.add<prepare_rotation_tracks>(Move);
     systems.add<update_rotation_tracks>(Move, Both);
@@ -78,6 +81,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
     systems.add<update_driven_shapes>(Animate, Both);  // after poses: follows their weights
     systems.add<update_deformers>(Animate, Both);
+    systems.add<update_surface_bindings>(Animate, Both);  // after what deforms the surfaces
     systems.add<update_attachments>(Animate, Both);
     systems.add<prepare_wrinkles>(Create, Both);
     systems.add<prepare_wrinkle_responses>(Create, Both);

@@ -397,11 +397,13 @@ Command add_info(CLI::App& program, std::string& file) {
 
 Command add_import(CLI::App& program, ImportOptions& options) {
     CLI::App* app = program.add_subcommand("import", "Convert outside data to glTF");
-    app->add_option("kind", options.kind, "of the data: ict-facekit or makehuman")
+    app->add_option("kind", options.kind, "of the data: ict-facekit, makehuman or markers")
         ->type_name("KIND")
         ->required()
-        ->check(CLI::IsMember({"ict-facekit", "makehuman"}));
-    app->add_option("in", options.in, "folder with the data")->type_name("FOLDER")->required();
+        ->check(CLI::IsMember({"ict-facekit", "makehuman", "markers"}));
+    app->add_option("in", options.in, "folder with the data, or the .trc file of markers")
+        ->type_name("IN")
+        ->required();
     app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
     app->footer(
         "ict-facekit: the neutral face of ICT FaceKit with all expressions in its folder "
@@ -410,10 +412,16 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "makehuman: the base mesh of MakeHuman with its expression units, the mean of the young\n"
         "builds, the default rig and eyes, from base.obj, targets, rigs and proxies.\n"
         "Shapes keep their names and know their FACS action units; skin has regions that wrinkle,\n"
-        "with the direction across the folds.\n\n"
+        "with the direction across the folds.\n"
+        "markers: recorded markers of a face, a TRC file whose first frame is the face at rest;\n"
+        "those called head... take the head's motion out, gaps are filled. A face follows it by\n"
+        "\"surface_binding\": {\"surface\": \"take\", \"method\": \"patches\"}, where the entity "
+        "take\n"
+        "has the file as its gltf.\n\n"
         "Examples:\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
         "  limn import makehuman makehuman -o person.glb\n"
+        "  limn import markers take.trc -o take.glb\n"
         "  limn play face.glb");
     return {app, [&options] { return run_import(options); }};
 }

@@ -4,6 +4,7 @@
 #include "content/load/gltf_write.h"
 #include "content/load/ict_facekit.h"
 #include "content/load/makehuman.h"
+#include "content/load/marker_import.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -24,8 +25,9 @@ Status run_import(const ImportOptions& options) {
         progress->update(done);
     };
     const GltfScene scene = LIMN_TRY(
-        options.kind == "makehuman" ? import_makehuman(options.in, show)
-                                    : import_ict_facekit(options.in, show));
+        options.kind == "markers"     ? import_markers(options.in)
+        : options.kind == "makehuman" ? import_makehuman(options.in, show)
+                                      : import_ict_facekit(options.in, show));
     LIMN_TRY(save_glb(options.out, scene));
     progress.reset();
 
@@ -37,6 +39,12 @@ Status run_import(const ImportOptions& options) {
     std::string joints;
     if (!scene.skeleton.joints.empty()) {
         joints = fmt::format(", {} joints", scene.skeleton.joints.size() - 1);
+    }
+    if (options.kind == "markers") {
+        fmt::print(
+            "{}: {} markers, {} triangles, {:.2f} s\n", options.out, vertices,
+            skin.indices.size() / 3, scene.clips[0].duration);
+        return Done{};
     }
     fmt::print(
         "{}: {} parts, {} vertices, {} shapes, {} regions{}\n", options.out, scene.meshes.size(),

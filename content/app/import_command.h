@@ -7,8 +7,8 @@
 namespace limn {
 
 struct ImportOptions {
-    std::string kind;  ///< ict-facekit or makehuman
-    std::string in;    ///< folder
+    std::string kind;  ///< ict-facekit, makehuman or markers
+    std::string in;    ///< folder, or the file of markers
     std::string out;   ///< .glb
 };
 

@@ -38,7 +38,9 @@ std::vector<Vec3> posed_positions(const World& world, Entity entity) {
     }
     std::vector<Vec3> positions;
     const bool deforms = deform_positions(
-        mesh, *deformed, source.skin, source.pose, source.morphs, source.deformers, positions);
+        mesh, *deformed, source.skin, source.pose, source.morphs, source.deformers, positions,
+        source.surface != nullptr ? surface_shape(source.surface, source.surface->patches)
+                                  : SurfaceShape{});
     return deforms ? positions : std::vector<Vec3>{};
 }
 

@@ -126,15 +126,18 @@ class GlbWriter {
         for (const Material& material : scene_.materials) {
             LIMN_TRY(add_material(material));
         }
+        for (const ClipData& clip : scene_.clips) {
+            LIMN_TRY(add_clip(clip));
+        }
         return pack();
     }
 
   private:
     Status check() const {
-        if (!scene_.images.empty() || !scene_.clips.empty()) {
+        if (!scene_.images.empty()) {
             return fail(
-                "{}: found {} images and {} clips, expected none: they are not written",
-                scene_.name, scene_.images.size(), scene_.clips.size());
+                "{}: found {} images, expected none: they are not written", scene_.name,
+                scene_.images.size());
         }
         for (const GltfNode& node : scene_.nodes) {
             if (node.has_camera || node.light.index() != 0 || !node.components.empty()) {
@@ -468,11 +471,66 @@ class GlbWriter {
         return Done{};
     }
 
-    Status add_skin(const SkinData& source) {
+    /// The first node of each joint.
+    [[nodiscard]] std::map<std::int32_t, std::size_t> find_joint_nodes() const {
         std::map<std::int32_t, std::size_t> node_of_joint;
         for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
             node_of_joint.try_emplace(scene_.joints[i], i);
         }
+        return node_of_joint;
+    }
+
+    Status add_clip(const ClipData& source) {
+        const std::map<std::int32_t, std::size_t> node_of_joint = find_joint_nodes();
+        JsonValue samplers = json_array();
+        JsonValue channels = json_array();
+        for (const ClipSheet& sheet : source.sheets) {
+            if (sheet.interpolation != Interpolation::Linear || !sheet.rotating.empty()
+                || !sheet.scaling.empty() || !sheet.morphing.empty() || sheet.times.empty()) {
+                return fail(
+                    "{}: found other keys in the clip {}, expected linear translations only",
+                    scene_.name, in_quotes(source.name));
+            }
+            JsonValue times = make_accessor<float>(sheet.times.size());
+            set(times, "bufferView", json_index(add_view(std::span(sheet.times))));
+            set(times, "min", json_array({json_of(sheet.times.front())}));
+            set(times, "max", json_array({json_of(sheet.times.back())}));
+            const JsonValue input = add(std::move(times));
+            const std::size_t joints = sheet.translating.size();
+            for (std::size_t j = 0; j < joints; ++j) {
+                const auto node = node_of_joint.find(sheet.translating[j]);
+                if (node == node_of_joint.end()) {
+                    return fail(
+                        "{}: found joint {} in the clip {}, expected one with a node", scene_.name,
+                        sheet.translating[j], in_quotes(source.name));
+                }
+                std::vector<Vec3> places;
+                for (std::size_t k = 0; k < sheet.times.size(); ++k) {
+                    places.push_back(sheet.translations[k * joints + j]);
+                }
+                JsonValue target = json_object();
+                set(target, "node", json_index(number_[node->second]));
+                set(target, "path", json_of(std::string_view("translation")));
+                JsonValue channel = json_object();
+                set(channel, "sampler", json_index(samplers.items.size()));
+                set(channel, "target", std::move(target));
+                channels.items.push_back(std::move(channel));
+                JsonValue sampler = json_object();
+                set(sampler, "input", input);
+                set(sampler, "output", add_values(places));
+                samplers.items.push_back(std::move(sampler));
+            }
+        }
+        JsonValue clip = json_object();
+        set(clip, "name", json_of(source.name));
+        set(clip, "samplers", std::move(samplers));
+        set(clip, "channels", std::move(channels));
+        animations_.items.push_back(std::move(clip));
+        return Done{};
+    }
+
+    Status add_skin(const SkinData& source) {
+        const std::map<std::int32_t, std::size_t> node_of_joint = find_joint_nodes();
         JsonValue joints = json_array();
         std::vector<Mat4> matrices;
         for (std::size_t i = 0; i < source.joints.size(); ++i) {
@@ -568,6 +626,7 @@ class GlbWriter {
               {"meshes", &meshes_},
               {"materials", &materials_},
               {"skins", &skins_},
+              {"animations", &animations_},
               {"accessors", &accessors_},
               {"bufferViews", &views_}}) {
             if (!list->items.empty()) {
@@ -584,6 +643,7 @@ class GlbWriter {
     JsonValue meshes_ = json_array();
     JsonValue nodes_ = json_array();
     JsonValue skins_ = json_array();
+    JsonValue animations_ = json_array();
     JsonValue materials_ = json_array();
     JsonValue roots_ = json_array();
     std::set<std::string> used_extensions_;

@@ -12,15 +12,15 @@
 namespace limn {
 
 // Writes scenes as glTF 2.0, binary form: nodes, meshes, sparse morph targets with their action
-// units, vertex regions, skins and materials. load_gltf reads an equal scene, numbers to the bit,
-// when meshes have their vertices in the order in which triangles use them, and normals and
+// units, vertex regions, skins, clips and materials. load_gltf reads an equal scene, numbers to the
+// bit, when meshes have their vertices in the order in which triangles use them, and normals and
 // tangents; but the parts of a node with several are named after the node.
 //
 // Our own writer, since the reader is: libraries write morph targets and attributes dense, which is
 // ten times the size for faces.
 
-/// The bytes of a .glb. Fails on what is not written: images, clips, lights, cameras, components,
-/// other shading models than pbr and unlit.
+/// The bytes of a .glb. Fails on what is not written: images, lights, cameras, components, keys of
+/// clips other than linear translations, other shading models than pbr and unlit.
 [[nodiscard]] Result<std::vector<std::byte>> write_glb(const GltfScene& scene);
 
 /// The container: `root` with the one buffer `bytes`, whose size must be a multiple of four. Fails

@@ -64,7 +64,7 @@ constexpr Need kNeeds[] = {
     {"inflate", {"mesh_instance", "", ""}},
     {"no_shadow", {"mesh_instance", "", ""}},
     {"mesh_levels", {"mesh_instance", "", ""}},
-    {"deformed", {"mesh_instance", "", ""}},
+    {"deformed", {"mesh_instance", "control_surface", ""}},
     {"particle_emitter", {"particle_look", "particle_mesh", ""}},
     {"particle_mesh", {"particle_emitter", "", ""}},
     {"force_field", {"transform", "", ""}},

@@ -7,7 +7,9 @@
 #include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
 #include "content/make/plants.h"
+#include "content/make/retargeted.h"
 #include "content/make/shapes.h"
+#include "content/make/simplify_mesh.h"
 #include "content/make/sweep.h"
 #include "content/make/teapot.h"
 #include "content/make/terrain.h"
@@ -66,6 +68,10 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<PlantShape, make_plants>(
             "plants", "grass, bushes or trees of blades that branch, standing on y = 0"),
+        mesh_kind<RetargetedShape, make_retargeted>(
+            "retargeted", "the surface of one face fitted onto another, with its motion"),
+        mesh_kind<SimplifiedShape, make_simplified>(
+            "simplified", "another mesh of the level with fewer triangles, its skin and shapes"),
         mesh_kind<SphereShape, make_sphere>("sphere", "a sphere with longitude and latitude as uv"),
         mesh_kind<SweepShape, make_sweep>("sweep", "a profile swept along a path of the level"),
         mesh_kind<TeapotShape, make_teapot>(

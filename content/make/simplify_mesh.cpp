@@ -1,7 +1,10 @@
 #include "content/make/simplify_mesh.h"
 
+#include "content/bake/tangents.h"
+
 #include <meshoptimizer.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -97,6 +100,17 @@ void simplify_mesh(MeshData& mesh, std::size_t triangles) {
         gather(region.weights, source);
         gather(region.across, source);
     }
+}
+
+MeshData make_simplified(const SimplifiedShape& shape, const Assets& assets) {
+    if (shape.mesh.index >= assets.meshes.size()) {
+        return {};
+    }
+    MeshData mesh = assets.meshes[shape.mesh.index];
+    mesh.pieces.clear();
+    simplify_mesh(mesh, static_cast<std::size_t>(std::max(shape.triangles, 4)));
+    update_bounds(mesh);
+    return mesh;
 }
 
 }  // namespace limn

@@ -43,6 +43,7 @@
 #include "ecs/components/shoaling_waves.h"
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/components/texture_combine.h"
 #include "ecs/components/texture_shade.h"
 #include "ecs/components/time.h"
@@ -112,6 +113,9 @@ void register_all_components() {
     register_component<Deformed>();
     register_component<Deformers>();
     register_component<DeformerState>();
+    register_component<ControlSurface>();
+    register_component<SurfaceBinding>();
+    register_component<SurfaceBindingState>();
     register_component<WrinkleSurface>();
     register_component<WrinkleMaps>();
     register_component<WrinkleResponse>();

@@ -7,6 +7,7 @@
 
 layout(binding = 5) uniform samplerBuffer controls;  // packed deformers
 #include "lib/deformers.glsl"
+#include "lib/surface_patches.glsl"
 
 layout(local_size_x = 64) in;  // kDeformGroup
 layout(binding = 0) uniform usamplerBuffer jobs;        // DeformJob
@@ -43,6 +44,7 @@ struct Lists {
     int influence_end;
     int offset;
     int offset_end;
+    int place;  // on the patches of a surface
 };
 
 vec3 unpack_turn(uint a, uint b, bool second) {
@@ -116,7 +118,24 @@ Vertex apply_controls(Vertex v, int first) {
     return Vertex(deform_point(first, v.position), unit_or(turned, normal), tangent);
 }
 
-Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight, uint first_control) {
+Vertex follow_surface(Vertex v, int texel, int patches) {
+    uvec4 a = texelFetch(rest, texel);
+    if (a.x == kNoPatch) {
+        return v;
+    }
+    vec4 b = uintBitsToFloat(texelFetch(rest, texel + 1));
+    vec4 c = uintBitsToFloat(texelFetch(rest, texel + 2));
+    vec3 offset = vec3(uintBitsToFloat(a.w), b.xy);
+    PatchPoint at = evaluate_patch(patches + kPatchTexels * int(a.x), uintBitsToFloat(a.y), uintBitsToFloat(a.z));
+    mat3 axes = patch_axes(at, offset.z);
+    vec3 normal = patch_normal(axes, vec3(b.zw, c.x));
+    return Vertex(place_on_patch(at, offset), unit_or(normal, v.normal), unit_or(axes * c.yzw, v.tangent));
+}
+
+Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight, uint first_control, uint patches) {
+    if ((kFlags & kDeformPatches) != 0u) {
+        v = follow_surface(v, lists.place, int(patches));
+    }
     if ((kFlags & kDeformMorphs) != 0u) {
         v = add_morphs(v, lists, int(first_weight));
     }
@@ -139,7 +158,7 @@ void main() {
     int job = int(kDeformJobTexels * texelFetch(group_jobs, int(group)).x);
     uvec4 job0 = texelFetch(jobs, job);      // rest, vertex_count, slot, first_group
     uvec4 job1 = texelFetch(jobs, job + 1);  // palette, previous_palette, weights, previous_weights
-    uvec4 job2 = texelFetch(jobs, job + 2);  // controls, previous_controls
+    uvec4 job2 = texelFetch(jobs, job + 2);  // controls, previous_controls, patches, previous_patches
     uint number = (group - job0.w) * kDeformGroup + gl_LocalInvocationID.x;
     if (number >= job0.y) {
         return;
@@ -161,15 +180,16 @@ void main() {
         int(a.w),
         int(texelFetch(rest, texel + int(kRestTexels)).w),
         int(b.w),
-        int(texelFetch(rest, texel + int(kRestTexels) + 1).w));
+        int(texelFetch(rest, texel + int(kRestTexels) + 1).w),
+        int(job0.x + kRestTexels * (job0.y + 1u) + kOnPatchTexels * number));
     if ((kFlags & kDeformPrevious) != 0u) {
-        vec3 p = deformed(v, lists, job1.y, job1.w, job2.y).position;
+        vec3 p = deformed(v, lists, job1.y, job1.w, job2.y, job2.w).position;
         previous[3u * place] = p.x;
         previous[3u * place + 1u] = p.y;
         previous[3u * place + 2u] = p.z;
     }
     if ((kFlags & kDeformCurrent) != 0u) {
-        Vertex now = deformed(v, lists, job1.x, job1.z, job2.x);
+        Vertex now = deformed(v, lists, job1.x, job1.z, job2.x, job2.z);
         positions[3u * place] = now.position.x;
         positions[3u * place + 1u] = now.position.y;
         positions[3u * place + 2u] = now.position.z;

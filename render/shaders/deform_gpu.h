@@ -1,7 +1,8 @@
 // Input of deform.comp, as texels of four 32-bit numbers. Shared by C++ and GLSL.
 //
 // A mesh in bind pose is a block of texels: three per vertex - position and its first influence, normal and its
-// first offset, tangent - and a sentinel vertex, which ends the lists of the last; then influences, two per texel -
+// first offset, tangent - and a sentinel vertex, which ends the lists of the last; for a mesh on the patches of a
+// surface three per vertex - patch, u, v, offset, normal, tangent (surface_places.h); then influences, two per texel -
 // joint, weight, joint, weight - and morph offsets, two texels each - position and target, normal and tangent as six
 // 16-bit fractions of kMaxUnitDifference. Indices into these lists count texels from the beginning of the block.
 
@@ -12,6 +13,7 @@ namespace limn::layout {
 #endif
 
 const uint kRestTexels = 3u;    // per vertex
+const uint kOnPatchTexels = 3u;   // per vertex on patches
 const uint kOffsetTexels = 2u;  // per offset of a morph target
 const float kMaxUnitDifference = 2.0; // largest difference of two unit vectors, by component
 
@@ -27,8 +29,8 @@ struct DeformJob {
     uint previous_weights;
     uint controls;        // first texel of its packed deformers (lib/deformers.glsl)
     uint previous_controls;
-    uint unused0;
-    uint unused1;
+    uint patches;         // first texel of the patches of its surface (lib/surface_patches.glsl), among the controls
+    uint previous_patches;
 };
 
 const uint kDeformJobTexels = 3u;
@@ -43,6 +45,7 @@ const uint kDeformJoints = 8u;      // has a palette
 const uint kDeformDual = 16u;       // of dual quaternions
 const uint kDeformMorphs = 32u;     // has morph weights, one per target
 const uint kDeformControls = 64u;   // has deformers
+const uint kDeformPatches = 128u;   // is on the patches of a surface
 
 #ifdef __cplusplus
 static_assert(sizeof(DeformJob) == 16 * kDeformJobTexels);

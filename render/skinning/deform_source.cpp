@@ -13,32 +13,39 @@ DeformSource find_deform_source(
     const Deformed& settings) {
     const std::string& name = assets.meshes[mesh.index].name;
     const bool alive = !settings.character.is_null() && world.alive(settings.character);
+    const auto* binding = world.find<SurfaceBindingState>(entity);
+    const bool follows_faces = binding != nullptr && !binding->pose.joints.empty();
+    const SkinId skin_id = follows_faces ? binding->skin : settings.skin;
     DeformSource source;
-    source.pose = alive ? world.find<Pose>(settings.character) : nullptr;
+    source.pose = follows_faces ? &binding->pose
+                  : alive       ? world.find<Pose>(settings.character)
+                                : nullptr;
     source.morphs = alive ? world.find<MorphWeights>(settings.character) : nullptr;
     source.deformers = world.find<DeformerState>(entity);
-    if (joint_count == 0 && assets.meshes[mesh.index].morphs.empty()
-        && source.deformers == nullptr) {
+    source.surface = binding != nullptr && binding->places != nullptr ? binding : nullptr;
+    if (joint_count == 0 && assets.meshes[mesh.index].morphs.empty() && source.deformers == nullptr
+        && source.surface == nullptr) {
         source.fault =
             fmt::format("deformed mesh {} has neither joints, morph targets nor deformers", name);
         return source;
     }
-    if (source.pose == nullptr && source.morphs == nullptr && source.deformers == nullptr) {
+    if (source.pose == nullptr && source.morphs == nullptr && source.deformers == nullptr
+        && source.surface == nullptr) {
         source.fault = fmt::format(
             "deformed mesh {}: its character {}", name,
             alive ? "has neither Pose nor MorphWeights" : "is gone");
         return source;
     }
-    if (settings.skin.index == kNoAsset) {
+    if (skin_id.index == kNoAsset) {
         return source;
     }
-    if (settings.skin.index >= assets.skins.size()) {
+    if (skin_id.index >= assets.skins.size()) {
         source.fault = fmt::format(
-            "deformed mesh {}: skin {} out of range, there are {}", name, settings.skin.index,
+            "deformed mesh {}: skin {} out of range, there are {}", name, skin_id.index,
             assets.skins.size());
         return source;
     }
-    const SkinData& skin = assets.skins[settings.skin.index];
+    const SkinData& skin = assets.skins[skin_id.index];
     const std::size_t joints = source.pose != nullptr ? source.pose->joints.size() : 0;
     const auto beyond = std::find_if(
         skin.joints.begin(), skin.joints.end(), [&](std::uint16_t j) { return j >= joints; });

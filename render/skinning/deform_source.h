@@ -3,6 +3,7 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 
 #include <string>
 
@@ -12,10 +13,11 @@ class World;
 
 /// Inputs of a deformed instance; valid until the world changes.
 struct DeformSource {
-    const SkinData* skin = nullptr;            ///< null: not skinned
-    const Pose* pose = nullptr;                ///< contains all joints of the skin
-    const MorphWeights* morphs = nullptr;      ///< null: no morph targets
-    const DeformerState* deformers = nullptr;  ///< of the mesh itself; null: none
+    const SkinData* skin = nullptr;                ///< null: not skinned
+    const Pose* pose = nullptr;                    ///< contains all joints of the skin
+    const MorphWeights* morphs = nullptr;          ///< null: no morph targets
+    const DeformerState* deformers = nullptr;      ///< of the mesh itself; null: none
+    const SurfaceBindingState* surface = nullptr;  ///< likewise, if it follows patches
     std::string fault;  ///< why it is drawn in rest pose; empty if it is deformed
 };
 

@@ -57,18 +57,30 @@ std::uint64_t hash_at(const std::vector<T>& before, const std::vector<T>& now, f
         hash_combine(hash_values(before), hash_values(now)), std::bit_cast<std::uint32_t>(alpha));
 }
 
-/// The packed deformers at time `alpha` between the last two steps.
-void make_controls(const DeformerState* state, float alpha, std::vector<Vec4>& controls) {
-    controls.clear();
-    if (state == nullptr) {
-        return;
+/// Texels at time `alpha` between the last two steps.
+std::vector<Vec4>
+mix_texels(const std::vector<Vec4>& previous, const std::vector<Vec4>& now, float alpha) {
+    std::vector<Vec4> texels = now;
+    for (std::size_t i = 0; previous.size() == now.size() && i < now.size(); ++i) {
+        texels[i] = glm::mix(previous[i], now[i], alpha);
     }
-    controls = state->now;
-    if (state->previous.size() == controls.size()) {
-        for (std::size_t i = 0; i < controls.size(); ++i) {
-            controls[i] = glm::mix(state->previous[i], controls[i], alpha);
-        }
-    }
+    return texels;
+}
+
+std::vector<Vec4> make_controls(const DeformerState* state, float alpha) {
+    return state != nullptr ? mix_texels(state->previous, state->now, alpha) : std::vector<Vec4>{};
+}
+
+std::vector<Vec4> make_patches(const SurfaceBindingState* state, float alpha) {
+    return state != nullptr ? mix_texels(state->previous_patches, state->patches, alpha)
+                            : std::vector<Vec4>{};
+}
+
+std::span<const SurfacePlace> places_of(const World& world, Entity entity) {
+    const auto* binding = world.find<SurfaceBindingState>(entity);
+    return binding != nullptr && binding->places != nullptr
+               ? std::span<const SurfacePlace>(*binding->places)
+               : std::span<const SurfacePlace>{};
 }
 
 bool is_finite(const Bounds& box) {
@@ -126,7 +138,7 @@ void DeformedList::report(const std::string& fault) {
 
 bool DeformedList::resolve(
     const World& world, const Assets& assets, Entry& entry, std::string& fault) {
-    entry.rest = &rest_.get(assets, entry.mesh);
+    entry.rest = &rest_.get(assets, entry.mesh, places_of(world, entry.entity));
     if (!entry.rest->fault.empty()) {
         const std::string& name = assets.meshes[entry.mesh.index].name;
         fault = fmt::format("deformed mesh {} {}", name, entry.rest->fault);
@@ -138,6 +150,7 @@ bool DeformedList::resolve(
     entry.pose = source.pose;
     entry.morphs = source.morphs;
     entry.deformers = source.deformers;
+    entry.surface = source.surface;
     fault = std::move(source.fault);
     return fault.empty();
 }
@@ -160,6 +173,10 @@ void DeformedList::evaluate(Entry& entry) const {
             shape = hash_combine(
                 shape, hash_at(entry.deformers->previous, entry.deformers->now, alpha));
         }
+        if (entry.surface != nullptr) {
+            shape = hash_combine(
+                shape, hash_at(entry.surface->previous_patches, entry.surface->patches, alpha));
+        }
         return shape | 1;
     };
     entry.shape = hash_shape(alpha_);
@@ -172,10 +189,15 @@ void DeformedList::evaluate(Entry& entry) const {
     make_morph_weights(
         entry.morphs, settings.first_morph, entry.rest->bounds.morphs.size(), alpha_,
         entry.weights);
-    make_controls(entry.deformers, alpha_, entry.controls);
+    entry.controls = make_controls(entry.deformers, alpha_);
+    entry.patches = make_patches(entry.surface, alpha_);
+    float displacement = max_displacement(entry.controls);
+    if (entry.surface != nullptr) {
+        displacement +=
+            max_motion(entry.surface->rest_patches, entry.patches, entry.surface->largest_offset);
+    }
     entry.bounds = posed_bounds(
-        entry.rest->bounds, entry.palette, settings.skinning, entry.weights,
-        max_displacement(entry.controls));
+        entry.rest->bounds, entry.palette, settings.skinning, entry.weights, displacement);
 }
 
 void DeformedList::update(
@@ -221,7 +243,7 @@ void DeformedList::update(
     // Adding a mesh may have reallocated the pool.
     for (const std::uint32_t i : active_) {
         Entry& entry = entries_[i];
-        entry.rest = &rest_.get(*assets, entry.mesh);
+        entry.rest = &rest_.get(*assets, entry.mesh, places_of(world, entry.entity));
         const auto* wrinkles = world.find<WrinkleState>(entry.entity);
         const auto* surface = world.find<WrinkleSurface>(entry.entity);
         entry.wrinkled = wrinkles != nullptr && surface != nullptr
@@ -296,7 +318,8 @@ std::uint32_t DeformedList::flags_of(const Entry& entry) {
         flags |= entry.settings.skinning == Skinning::DualQuaternion ? layout::kDeformDual : 0u;
     }
     return flags | (entry.weights.empty() ? 0u : layout::kDeformMorphs)
-           | (entry.controls.empty() ? 0u : layout::kDeformControls);
+           | (entry.controls.empty() ? 0u : layout::kDeformControls)
+           | (entry.patches.empty() ? 0u : layout::kDeformPatches);
 }
 
 void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
@@ -329,9 +352,8 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
             entry.morphs, settings.first_morph, entry.weights.size(), previous_alpha_, weights);
         job.previous_palette = add_palette(palette);
         job.previous_weights = add_weights(weights);
-        std::vector<Vec4> controls;
-        make_controls(entry.deformers, previous_alpha_, controls);
-        job.previous_controls = add_controls(controls);
+        job.previous_controls = add_controls(make_controls(entry.deformers, previous_alpha_));
+        job.previous_patches = add_controls(make_patches(entry.surface, previous_alpha_));
     }
     if ((flags & (layout::kDeformPrevious | layout::kDeformCopyPrevious)) != 0) {
         entry.drawn_previous = entry.previous_shape;
@@ -340,6 +362,7 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
         job.palette = add_palette(entry.palette);
         job.weights = add_weights(entry.weights);
         job.controls = add_controls(entry.controls);
+        job.patches = add_controls(entry.patches);
         entry.drawn = entry.shape;
     }
     const std::uint32_t groups =

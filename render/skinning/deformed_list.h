@@ -19,6 +19,7 @@ namespace limn {
 
 class MeshPool;
 class World;
+struct SurfaceBindingState;
 
 // Tracks the deformed instances of a frame, where their vertices are stored, and which must be
 // recomputed. Once per frame update() visits every Deformed: its bounds and a hash of its shape are
@@ -127,11 +128,13 @@ class DeformedList {
         std::vector<Affine> palette;       ///< mesh from rest pose, one per joint
         std::vector<float> weights;
         std::vector<Vec4> controls;  ///< packed deformers
+        std::vector<Vec4> patches;   ///< of its surface
         // Valid until the world changes.
         const SkinData* skin = nullptr;
         const Pose* pose = nullptr;
         const MorphWeights* morphs = nullptr;
         const DeformerState* deformers = nullptr;
+        const SurfaceBindingState* surface = nullptr;
         const RestMesh* rest = nullptr;
     };
 

@@ -86,21 +86,35 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
     return texels;
 }
 
+Texels place_texels(std::span<const SurfacePlace> places) {
+    Texels texels;
+    for (const SurfacePlace& at : places) {
+        texels.push_back({at.patch, bits(at.u), bits(at.v), bits(at.offset.x)});
+        texels.push_back(
+            {bits(at.offset.y), bits(at.offset.z), bits(at.normal.x), bits(at.normal.y)});
+        texels.push_back(
+            {bits(at.normal.z), bits(at.tangent.x), bits(at.tangent.y), bits(at.tangent.z)});
+    }
+    return texels;
+}
+
 }  // namespace
 
-const RestMesh& RestPool::get(const Assets& assets, MeshId mesh) {
+const RestMesh&
+RestPool::get(const Assets& assets, MeshId mesh, std::span<const SurfacePlace> places) {
     meshes_.resize(std::max<std::size_t>(meshes_.size(), mesh.index + 1));
     std::optional<RestMesh>& made = meshes_[mesh.index];
-    if (!made || made->version != assets.meshes[mesh.index].version) {
+    if (!made || made->version != assets.meshes[mesh.index].version
+        || (!places.empty() && !made->has_places)) {
         if (made && made->texel_count > 0) {
             slots_.release(made->first_texel, made->texel_count);
         }
-        made = upload(assets.meshes[mesh.index]);
+        made = upload(assets.meshes[mesh.index], places);
     }
     return *made;
 }
 
-RestMesh RestPool::upload(const MeshData& mesh) {
+RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfacePlace> places) {
     RestMesh made;
     made.version = mesh.version;
     made.fault = check_deformable(mesh);
@@ -115,7 +129,10 @@ RestMesh RestPool::upload(const MeshData& mesh) {
     std::vector<std::size_t> first_offset;
     const Texels influences = influence_texels(mesh.skin, mesh.positions.size(), first_influence);
     const Texels offsets = offset_texels(mesh, first_offset);
-    const std::size_t influences_at = layout::kRestTexels * (mesh.positions.size() + 1);
+    made.has_places = places.size() == mesh.positions.size();
+    const Texels placed = made.has_places ? place_texels(places) : Texels{};
+    const std::size_t places_at = layout::kRestTexels * (mesh.positions.size() + 1);
+    const std::size_t influences_at = places_at + placed.size();
     const std::size_t offsets_at = influences_at + influences.size();
 
     Texels texels;
@@ -134,6 +151,7 @@ RestMesh RestPool::upload(const MeshData& mesh) {
         texels.push_back({bits(n.x), bits(n.y), bits(n.z), offset});
         texels.push_back({bits(t3.x), bits(t3.y), bits(t3.z), bits(t.w < 0 ? -1.0f : 1.0f)});
     }
+    texels.insert(texels.end(), placed.begin(), placed.end());
     texels.insert(texels.end(), influences.begin(), influences.end());
     texels.insert(texels.end(), offsets.begin(), offsets.end());
 

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_places.h"
 #include "render/gpu/buffer.h"
 #include "render/skinning/posed_bounds.h"
 #include "render/slot_allocator.h"
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,7 @@ struct RestMesh {
     std::uint32_t joint_count = 0;  ///< required of its skin; 0: not skinned
     SkinBounds bounds;
     std::uint32_t version = 0;  ///< of the MeshData
+    bool has_places = false;    ///< on the patches of a surface
     std::string fault;          ///< why it cannot be deformed; empty if it can
 };
 
@@ -27,7 +30,9 @@ struct RestMesh {
 /// uploaded when its first instance appears, and again after it was edited.
 class RestPool {
   public:
-    [[nodiscard]] const RestMesh& get(const Assets& assets, MeshId mesh);
+    /// `places`: of its vertices on patches, one each, or empty.
+    [[nodiscard]] const RestMesh&
+    get(const Assets& assets, MeshId mesh, std::span<const SurfacePlace> places = {});
     void clear();
 
     [[nodiscard]] const gpu::Buffer& texels() const {
@@ -35,7 +40,7 @@ class RestPool {
     }  ///< null until the first mesh
 
   private:
-    RestMesh upload(const MeshData& mesh);
+    RestMesh upload(const MeshData& mesh, std::span<const SurfacePlace> places);
 
     std::vector<std::optional<RestMesh>> meshes_;  ///< by mesh
     gpu::Buffer buffer_;

@@ -2,6 +2,7 @@
 
 #include "systems/animation/deformer_kernels.h"
 #include "systems/animation/skin_kernels.h"
+#include "systems/animation/surface_patches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,11 +31,15 @@ bool has_all_joints(const MeshData& mesh, const SkinData& skin, const Pose& pose
 
 bool deform_positions(
     const MeshData& mesh, const Deformed& deformed, const SkinData* skin, const Pose* pose,
-    const MorphWeights* morphs, const DeformerState* deformers, std::vector<Vec3>& positions) {
+    const MorphWeights* morphs, const DeformerState* deformers, std::vector<Vec3>& positions,
+    const SurfaceShape& surface) {
     positions = mesh.positions;
     std::vector<Vec3> normals(positions.size(), Vec3(0, 0, 1));
     std::vector<Vec4> tangents(positions.size(), Vec4(1, 0, 0, 1));
     const SkinnedVertices moved = {positions, normals, tangents};
+    if (surface.places.size() == positions.size()) {
+        follow_patches(surface.places, surface.patches, positions, normals, tangents);
+    }
     add_morphs(mesh.morphs, weights_of(morphs, deformed.first_morph), moved);
     if (deformers != nullptr) {
         deform_points(deformers->now, positions);

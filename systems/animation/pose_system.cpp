@@ -118,20 +118,27 @@ void step_weights(
 
 void add_poses(
     Query<const Skeleton, Without<Pose>> bare, Query<const Deformed, const MeshInstance> meshes,
-    Query<const MorphWeights> weights, Res<const Assets> assets, Commands commands) {
+    Query<const Deformed, const ControlSurface> surfaces, Query<const MorphWeights> weights,
+    Res<const Assets> assets, Commands commands) {
     if (bare.empty()) {
         return;
     }
     bare.each([&](Entity entity, const Skeleton&) { commands.add(entity, Pose{}); });
     std::map<Entity, std::size_t> counts;
-    meshes.each([&](const Deformed& deformed, const MeshInstance& instance) {
-        const MeshData* const mesh = find_asset(assets->meshes, instance.mesh.index);
+    const auto count_targets = [&](const Deformed& deformed, MeshId id) {
+        const MeshData* const mesh = find_asset(assets->meshes, id.index);
         if (mesh != nullptr && !mesh->morphs.empty()
             && bare.find<const Skeleton>(deformed.character) != nullptr
             && weights.find<const MorphWeights>(deformed.character) == nullptr) {
             std::size_t& count = counts[deformed.character];
             count = std::max(count, deformed.first_morph + mesh->morphs.size());
         }
+    };
+    meshes.each([&](const Deformed& deformed, const MeshInstance& instance) {
+        count_targets(deformed, instance.mesh);
+    });
+    surfaces.each([&](const Deformed& deformed, const ControlSurface& surface) {
+        count_targets(deformed, surface.mesh);
     });
     for (const auto& [character, count] : counts) {
         commands.add(character, MorphWeights{std::vector<float>(count, 0.0f), {}});

@@ -3,6 +3,7 @@
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
 #include "ecs/query.h"
@@ -17,11 +18,12 @@ namespace limn {
 // velocity. A clip that does not fit the skeleton is ignored: the character keeps its rest pose.
 
 /// Adds a Pose to every Skeleton that lacks one, and MorphWeights of 0 to those among them that
-/// lack weights although their meshes have morph targets. Before update_poses, with a sync point in
-/// between.
+/// lack weights although their meshes, or surfaces that move meshes, have morph targets. Before
+/// update_poses, with a sync point in between.
 void add_poses(
     Query<const Skeleton, Without<Pose>> bare, Query<const Deformed, const MeshInstance> meshes,
-    Query<const MorphWeights> weights, Res<const Assets> assets, Commands commands);
+    Query<const Deformed, const ControlSurface> surfaces, Query<const MorphWeights> weights,
+    Res<const Assets> assets, Commands commands);
 
 /// Samples the clips: writes Pose and MorphWeights. Allocates only for new characters.
 void update_poses(

@@ -1,6 +1,6 @@
 #include "systems/particles/particle_obstacles.h"
 
-#include "systems/particles/mesh_source.h"
+#include "systems/animation/mesh_source.h"
 
 #include <glm/geometric.hpp>
 
@@ -102,7 +102,8 @@ HeightCollider make_field(const HeightField& field, const Vec3& center) {
 void find_particle_obstacles(
     Query<
         const ParticleCollider, const WorldTransform, Optional<const MeshInstance>,
-        Optional<const Deformed>, Optional<const DeformerState>, Optional<const HeightField>>
+        Optional<const Deformed>, Optional<const DeformerState>,
+        Optional<const SurfaceBindingState>, Optional<const HeightField>>
         colliders,
     Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
     Res<ParticleObstacles> obstacles) {
@@ -114,7 +115,7 @@ void find_particle_obstacles(
     colliders.each([&](Entity entity, const ParticleCollider& collider,
                        const WorldTransform& transform, const MeshInstance* instance,
                        const Deformed* deformed, const DeformerState* deformers,
-                       const HeightField* field) {
+                       const SurfaceBindingState* binding, const HeightField* field) {
         const Vec3 center = transform_point(transform.world, Vec3(0));
         const Axes axes = axes_of(transform.world);
         switch (collider.shape) {
@@ -130,8 +131,8 @@ void find_particle_obstacles(
             break;
         case ColliderShape::Mesh:
             if (instance != nullptr) {
-                const MeshSource source =
-                    find_mesh_source(*instance, deformed, deformers, poses, morphs, *assets);
+                const MeshSource source = find_mesh_source(
+                    instance->mesh, deformed, deformers, poses, morphs, *assets, binding);
                 if (source.data != nullptr) {
                     followed.push_back({entity, &transform.world, source});
                 }

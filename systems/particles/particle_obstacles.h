@@ -5,6 +5,7 @@
 #include "ecs/components/height_field.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
@@ -39,7 +40,8 @@ struct ParticleObstacles {
 void find_particle_obstacles(
     Query<
         const ParticleCollider, const WorldTransform, Optional<const MeshInstance>,
-        Optional<const Deformed>, Optional<const DeformerState>, Optional<const HeightField>>
+        Optional<const Deformed>, Optional<const DeformerState>,
+        Optional<const SurfaceBindingState>, Optional<const HeightField>>
         colliders,
     Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
     Res<ParticleObstacles> obstacles);

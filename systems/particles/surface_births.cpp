@@ -139,8 +139,9 @@ SurfaceSource find_surface_source(
         const auto* const instance = meshes.find<const MeshInstance>(entity);
         if (instance != nullptr) {
             source.mesh = find_mesh_source(
-                *instance, meshes.find<const Deformed>(entity),
-                meshes.find<const DeformerState>(entity), poses, morphs, assets);
+                instance->mesh, meshes.find<const Deformed>(entity),
+                meshes.find<const DeformerState>(entity), poses, morphs, assets,
+                meshes.find<const SurfaceBindingState>(entity));
             source.place = place_of(
                 *meshes.find<const WorldTransform>(entity),
                 *meshes.find<const PreviousWorldTransform>(entity));

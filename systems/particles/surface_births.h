@@ -7,7 +7,7 @@
 #include "ecs/components/particle_surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
-#include "systems/particles/mesh_source.h"
+#include "systems/animation/mesh_source.h"
 #include "systems/particles/mesh_volume.h"
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct SurfaceSource {
 /// The entities that have a mesh, as a parameter of systems.
 using MeshQuery = Query<
     const MeshInstance, const WorldTransform, const PreviousWorldTransform,
-    Optional<const Deformed>, Optional<const DeformerState>>;
+    Optional<const Deformed>, Optional<const DeformerState>, Optional<const SurfaceBindingState>>;
 
 /// `mesh` may be null; `emitter` is the entity with the ParticleSurface and `place` its place.
 [[nodiscard]] SurfaceSource find_surface_source(

@@ -253,7 +253,7 @@ TEST_CASE("gltf write: what is not written is refused") {
     };
     CHECK(
         message([](GltfScene& s) { s.images.resize(1); })
-        == "scene: found 1 images and 0 clips, expected none: they are not written");
+        == "scene: found 1 images, expected none: they are not written");
     CHECK(
         message([](GltfScene& s) { s.nodes[1].has_camera = true; }).find("\"strip\"")
         != std::string::npos);

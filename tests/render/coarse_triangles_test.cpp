@@ -1,4 +1,5 @@
 #include "content/make/shapes.h"
+#include "ecs/base/triangle.h"
 #include "render/coarse_triangles.h"
 #include "render/triangle_grid.h"
 #include "tests/near.h"

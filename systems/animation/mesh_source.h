@@ -4,6 +4,7 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/query.h"
 
 #include <vector>
@@ -19,12 +20,14 @@ struct MeshSource {
     const Pose* pose = nullptr;
     const MorphWeights* morphs = nullptr;
     const DeformerState* deformers = nullptr;
+    SurfaceShape surface = {};
 };
 
-/// `deformed` and `deformers` may be null.
+/// `deformed`, `deformers` and `binding` are those of the entity, or null.
 [[nodiscard]] MeshSource find_mesh_source(
-    const MeshInstance& instance, const Deformed* deformed, const DeformerState* deformers,
-    const Query<const Pose>& poses, const Query<const MorphWeights>& morphs, const Assets& assets);
+    MeshId mesh, const Deformed* deformed, const DeformerState* deformers,
+    const Query<const Pose>& poses, const Query<const MorphWeights>& morphs, const Assets& assets,
+    const SurfaceBindingState* binding = nullptr);
 
 /// Its vertices as they are deformed, moved by `world`, to `positions`, which is resized.
 void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions);

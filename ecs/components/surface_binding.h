@@ -1,0 +1,113 @@
+#pragma once
+
+#include "ecs/components/animation.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/surface_places.h"
+#include "ecs/entity.h"
+#include "ecs/reflect.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace limn {
+
+// Meshes that follow another surface: few vertices, posed by joints, clips, morph targets or
+// deformers of their own, move the thousands of vertices of a mesh that is bound to them.
+
+/// A mesh that is not drawn but moves those that are bound to it. What deforms a drawn mesh -
+/// Deformed, Deformers, a Skeleton - deforms it.
+struct ControlSurface {
+    MeshId mesh;
+};
+
+LIMN_FIELDS(ControlSurface) {
+    LIMN_FIELD(mesh, "a mesh of the level, by name; it is not drawn");
+}
+
+enum class SurfaceMethod : std::uint8_t {
+    Faces,    ///< surface-oriented free-form deformation (face.soffd), in place of joints
+    Patches,  ///< smooth patches through the vertices (face.bids-surface); joints act afterwards
+};
+
+/// With a MeshInstance: its rest shape is bound to the rest shape of a surface, and follows it.
+/// Both must coincide: one a child of the other without a transform, or at the same place. What
+/// moves the mesh besides - morph targets, deformers - adds to it. A binding of the surface itself
+/// is ignored.
+struct SurfaceBinding {
+    Entity surface;
+    SurfaceMethod method = SurfaceMethod::Faces;
+    float locality = 4.0f;
+    int faces = 8;
+    float reach = 0.05f;
+
+    bool operator==(const SurfaceBinding&) const = default;
+};
+
+LIMN_FIELDS(SurfaceBinding) {
+    LIMN_FIELD(
+        surface, "entity with a control_surface or mesh_instance, or a character with such a mesh");
+    LIMN_FIELD(method, .doc = "how it follows", .values = "faces patches");
+    LIMN_FIELD(
+        locality,
+        "of faces: exponent by which the influence of a face falls with distance, in mean edges of "
+        "the "
+        "surface: 0 all alike, 8 the nearest almost alone",
+        "", 0, 16);
+    LIMN_FIELD(faces, "of faces: how many influence a vertex, at most", "", 1, 32);
+    LIMN_FIELD(
+        reach, "of patches: vertices farther from the surface, or beside it, stay", "m", 0, 1e4);
+}
+
+/// What a SurfaceBinding has become; written by bind_surfaces and update_surface_bindings.
+struct SurfaceBindingState {
+    SurfaceBinding settings;  ///< that it was bound with
+    MeshId rest;              ///< the mesh to bind
+    MeshId surface_mesh;      ///< that it is bound to
+    MeshId bound;             ///< a copy of `rest` that knows its influences; none: not bound
+    Entity surface;           ///< the entity of the surface's mesh
+    std::vector<std::uint32_t> corners;  ///< three vertices of the surface per face
+
+    SkinId skin;  ///< of `bound`, if by faces: one joint each
+    Pose pose;    ///< of the faces
+
+    /// Of the vertices of `bound`, if by patches. Shared by all that are bound alike, never
+    /// changed, and made again where it is missing.
+    std::shared_ptr<const std::vector<SurfacePlace>> places;
+    float largest_offset = 0.0f;  ///< of the places [m]
+    std::vector<Vec4> rest_patches;
+    std::vector<Vec4> patches;           ///< now
+    std::vector<Vec4> previous_patches;  ///< of the previous step
+};
+
+LIMN_FIELDS(SurfaceBindingState) {
+    LIMN_FIELD(settings, "that it was bound with");
+    LIMN_FIELD(rest, "the mesh to bind");
+    LIMN_FIELD(surface_mesh, "that it is bound to");
+    LIMN_FIELD(bound, "the mesh with its influences");
+    LIMN_FIELD(skin, "one joint per face of the surface");
+    LIMN_FIELD(surface, "entity of the surface's mesh");
+    LIMN_FIELD(corners, "three vertices of the surface per face");
+    LIMN_FIELD(pose, "of the faces");
+    LIMN_FIELD(largest_offset, "of vertices from the patches", "m");
+    LIMN_FIELD(rest_patches, "packed patches at rest");
+    LIMN_FIELD(patches, "packed patches after the last step");
+    LIMN_FIELD(previous_patches, "those of the previous step");
+}
+
+/// Not copied with a prefab: an instance has no history.
+template <>
+struct ComponentTraits<SurfaceBindingState> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+
+/// What moves the vertices of an instance by patches; `patches` are its own, or between two steps.
+[[nodiscard]] inline SurfaceShape
+surface_shape(const SurfaceBindingState* state, const std::vector<Vec4>& patches) {
+    if (state == nullptr || state->places == nullptr || patches.empty()) {
+        return {};
+    }
+    return {*state->places, patches};
+}
+
+}  // namespace limn

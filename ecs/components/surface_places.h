@@ -1,0 +1,44 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace limn {
+
+// Where the vertices of meshes are on the patches of a surface that moves them
+// (surface_binding.h, method patches), and the patches. Shared by the CPU and the GPU.
+
+inline constexpr std::uint32_t kNoPatch = 0xffffffffu;
+
+/// Place of a vertex: on `patch` at (u, v), and from there by `offset` along the axes of the patch:
+/// tangent, bitangent and normal. The surface's normal alone suffices, except for vertices above an
+/// edge from where no patch is straight below.
+struct SurfacePlace {
+    std::uint32_t patch = kNoPatch;
+    float u = 0.0f;          ///< of the patch's first corner
+    float v = 0.0f;          ///< of its second
+    Vec3 offset = Vec3(0);   ///< [m]
+    Vec3 normal = Vec3(0);   ///< of the mesh, as a covector of (u, v, distance)
+    Vec3 tangent = Vec3(0);  ///< of the mesh, as a vector of (u, v, distance)
+};
+
+// A patch is 16 texels, xyz each: control points b300 b030 b003 b210 b120 b021 b012 b102 b201 b111,
+// where the exponents belong to u, v and w, then normals n200 n020 n002 n110 n011 n101.
+inline constexpr std::size_t kPatchPoints = 10;
+inline constexpr std::size_t kPatchTexels = 16;
+
+/// What moves an instance of a bound mesh; no places: nothing does.
+struct SurfaceShape {
+    std::span<const SurfacePlace> places;  ///< one per vertex
+    std::span<const Vec4> patches;
+};
+
+/// No bound vertex moves farther [m] between two shapes of a surface: by as much as a control point
+/// of its patch, and by the turn of its offset. `reach`: the largest offset.
+[[nodiscard]] float
+max_motion(std::span<const Vec4> rest, std::span<const Vec4> patches, float reach);
+
+}  // namespace limn

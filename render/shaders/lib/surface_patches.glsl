@@ -1,0 +1,74 @@
+// Smooth patches through the vertices of a surface that moves a mesh: ecs/components/surface_places.h has their layout,
+// systems/animation/surface_patches.cpp the same on the CPU. Needs `samplerBuffer controls`.
+
+const uint kNoPatch = 0xffffffffu;
+const int kPatchTexels = 16;
+const float kMinPatchNormal = 1e-20;  // squared length of a sum of normals that has none
+
+struct PatchPoint {
+    vec3 position;
+    vec3 by_u;
+    vec3 by_v;
+    vec3 normal;  // unit
+    vec3 normal_by_u;
+    vec3 normal_by_v;
+};
+
+// One step of de Casteljau's algorithm.
+vec3 mix_three(int patch_texel, ivec3 points, vec3 share) {
+    return share.x * texelFetch(controls, patch_texel + points.x).xyz
+           + share.y * texelFetch(controls, patch_texel + points.y).xyz
+           + share.z * texelFetch(controls, patch_texel + points.z).xyz;
+}
+
+PatchPoint evaluate_patch(int texel, float u, float v) {
+    vec3 share = vec3(u, v, 1.0 - u - v);
+    vec3 q200 = mix_three(texel, ivec3(0, 3, 8), share);
+    vec3 q020 = mix_three(texel, ivec3(4, 1, 5), share);
+    vec3 q002 = mix_three(texel, ivec3(7, 6, 2), share);
+    vec3 q110 = mix_three(texel, ivec3(3, 4, 9), share);
+    vec3 q011 = mix_three(texel, ivec3(9, 5, 6), share);
+    vec3 q101 = mix_three(texel, ivec3(8, 9, 7), share);
+    vec3 r100 = mat3(q200, q110, q101) * share;
+    vec3 r010 = mat3(q110, q020, q011) * share;
+    vec3 r001 = mat3(q101, q011, q002) * share;
+    vec3 m100 = mix_three(texel, ivec3(10, 13, 15), share);
+    vec3 m010 = mix_three(texel, ivec3(13, 11, 14), share);
+    vec3 m001 = mix_three(texel, ivec3(15, 14, 12), share);
+    vec3 sum = mat3(m100, m010, m001) * share;
+
+    PatchPoint at;
+    at.position = mat3(r100, r010, r001) * share;
+    at.by_u = 3.0 * (r100 - r001);
+    at.by_v = 3.0 * (r010 - r001);
+    float length2 = dot(sum, sum);
+    if (!(length2 > kMinPatchNormal)) {
+        at.normal = unit_or(cross(at.by_u, at.by_v), vec3(0.0, 0.0, 1.0));
+        at.normal_by_u = vec3(0.0);
+        at.normal_by_v = vec3(0.0);
+        return at;
+    }
+    at.normal = sum * inversesqrt(length2);
+    vec3 by_u = 2.0 * (m100 - m001);
+    vec3 by_v = 2.0 * (m010 - m001);
+    at.normal_by_u = (by_u - dot(by_u, at.normal) * at.normal) * inversesqrt(length2);
+    at.normal_by_v = (by_v - dot(by_v, at.normal) * at.normal) * inversesqrt(length2);
+    return at;
+}
+
+// Where changes of (u, v, distance) lead, at a distance along the normal.
+mat3 patch_axes(PatchPoint at, float distance) {
+    return mat3(at.by_u + distance * at.normal_by_u, at.by_v + distance * at.normal_by_v, at.normal);
+}
+
+// A covector of (u, v, distance), not normalized.
+vec3 patch_normal(mat3 axes, vec3 covector) {
+    mat3 cofactors = mat3(cross(axes[1], axes[2]), cross(axes[2], axes[0]), cross(axes[0], axes[1]));
+    return (dot(axes[0], cofactors[0]) < 0.0 ? -1.0 : 1.0) * (cofactors * covector);
+}
+
+// `offset`: along tangent, bitangent and normal.
+vec3 place_on_patch(PatchPoint at, vec3 offset) {
+    vec3 tangent = unit_or(at.by_u - dot(at.by_u, at.normal) * at.normal, vec3(1.0, 0.0, 0.0));
+    return at.position + mat3(tangent, cross(at.normal, tangent), at.normal) * offset;
+}

@@ -1,0 +1,258 @@
+#include "systems/animation/surface_binding_system.h"
+
+#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+#include "systems/animation/mesh_source.h"
+#include "systems/animation/surface_faces.h"
+#include "systems/animation/surface_patches.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kMaxFaces = 65536;  ///< joints that SkinWeights can name
+
+using Bindings = Query<const SurfaceBinding, SurfaceBindingState, const MeshInstance>;
+
+MeshId mesh_of(const SurfaceQuery& surfaces, Entity entity) {
+    if (const auto* control = surfaces.find<const ControlSurface>(entity)) {
+        return control->mesh;
+    }
+    const auto* instance = surfaces.find<const MeshInstance>(entity);
+    return instance != nullptr ? instance->mesh : MeshId{};
+}
+
+/// The entity itself, or the first whose mesh it deforms.
+Entity find_surface(const SurfaceQuery& surfaces, Entity named) {
+    if (named.is_null() || mesh_of(surfaces, named) != MeshId{}) {
+        return named;
+    }
+    Entity found{};
+    surfaces.each([&](Entity entity, const ControlSurface*, const MeshInstance*,
+                      const Deformed* deformed, const DeformerState*) {
+        if (found.is_null() && deformed != nullptr && deformed->character == named) {
+            found = entity;
+        }
+    });
+    return found;
+}
+
+/// Binds one entity, for bind_surfaces.
+class Binder {
+  public:
+    Binder(const Bindings& bindings, const SurfaceQuery& surfaces, Assets& assets)
+        : bindings_(bindings), surfaces_(surfaces), assets_(assets) {}
+
+    Status bind(Entity entity, SurfaceBindingState& state) {
+        state.surface = find_surface(surfaces_, state.settings.surface);
+        state.surface_mesh = mesh_of(surfaces_, state.surface);
+        if (state.rest.index >= assets_.meshes.size()) {
+            return fail("it has no mesh");
+        }
+        if (state.surface_mesh.index >= assets_.meshes.size() || state.surface == entity) {
+            return fail("its surface has no mesh, expected a control_surface or mesh_instance");
+        }
+        const MeshData& named = assets_.meshes[state.surface_mesh.index];
+        const bool by_patches = state.settings.method == SurfaceMethod::Patches;
+        if (by_patches) {
+            Result<std::vector<std::uint32_t>> corners =
+                make_patch_corners(named.positions, named.indices);
+            if (!corners) {
+                return fail("surface {}: {}", named.name, corners.error().message);
+            }
+            state.corners = *std::move(corners);
+            make_patches(named.positions, state.corners, state.rest_patches);
+        } else {
+            state.corners = faces_with_area(named.positions, named.indices);
+        }
+        const std::size_t faces = state.corners.size() / 3;
+        if (faces == 0 || faces > kMaxFaces) {
+            return fail(
+                "mesh {} has {} faces with area, expected 1 to {}", named.name, faces, kMaxFaces);
+        }
+        if (const SurfaceBindingState* equal = find_equal(entity, state)) {
+            if (is_sole_user(entity, state) && state.bound != equal->bound) {
+                free_mesh(assets_, state.bound);
+            }
+            state.bound = equal->bound;
+            state.skin = equal->skin;
+            state.places = equal->places;
+            state.largest_offset = equal->largest_offset;
+            return Done{};
+        }
+        reserve(entity, state);  // may move the meshes
+        const MeshData& surface = assets_.meshes[state.surface_mesh.index];
+        MeshData bound = assets_.meshes[state.rest.index];
+        bound.name += " on " + surface.name;
+        bound.version = assets_.meshes[state.bound.index].version + 1;
+        if (by_patches) {
+            bind_to_patches_of(surface, bound, state);
+        } else {
+            bind_to_faces_of(surface, bound, state);
+        }
+        assets_.meshes[state.bound.index] = std::move(bound);
+        return Done{};
+    }
+
+  private:
+    static void
+    bind_to_patches_of(const MeshData& surface, const MeshData& bound, SurfaceBindingState& state) {
+        const float reach = state.settings.reach;
+        std::vector<SurfacePlace> places = bind_to_patches(
+            bound.positions, bound.normals, bound.tangents, surface.positions, state.corners,
+            std::isfinite(reach) ? reach : 0.0f);
+        state.largest_offset = 0.0f;
+        for (const SurfacePlace& place : places) {
+            state.largest_offset = std::max(state.largest_offset, glm::length(place.offset));
+        }
+        state.places = std::make_shared<const std::vector<SurfacePlace>>(std::move(places));
+    }
+
+    void bind_to_faces_of(const MeshData& surface, MeshData& bound, SurfaceBindingState& state) {
+        const SurfaceBinding& settings = state.settings;
+        bound.skin = bind_to_faces(
+            bound.positions, bound.normals, surface.positions, state.corners,
+            std::isfinite(settings.locality) ? settings.locality : 0.0f,
+            static_cast<std::size_t>(std::max(settings.faces, 1)));
+        assets_.skins[state.skin.index] = make_face_skin(surface.positions, state.corners);
+        state.places = nullptr;
+    }
+
+    /// Another that is bound alike.
+    const SurfaceBindingState* find_equal(Entity entity, const SurfaceBindingState& state) {
+        const SurfaceBindingState* found = nullptr;
+        bindings_.each([&](Entity other, const SurfaceBinding&, const SurfaceBindingState& theirs,
+                           const MeshInstance&) {
+            SurfaceBinding settings = theirs.settings;
+            settings.surface = state.settings.surface;
+            if (other != entity && theirs.bound != MeshId{} && theirs.rest == state.rest
+                && theirs.surface_mesh == state.surface_mesh && settings == state.settings) {
+                found = &theirs;
+            }
+        });
+        return found;
+    }
+
+    /// Whether it has a bound mesh, and it alone.
+    bool is_sole_user(Entity entity, const SurfaceBindingState& state) {
+        bool sole = state.bound != MeshId{};
+        bindings_.each([&](Entity other, const SurfaceBinding&, const SurfaceBindingState& theirs,
+                           const MeshInstance&) {
+            sole = sole && (other == entity || theirs.bound != state.bound);
+        });
+        return sole;
+    }
+
+    /// Keeps its bound mesh if nothing else uses it, or appends one.
+    void reserve(Entity entity, SurfaceBindingState& state) {
+        if (!is_sole_user(entity, state)) {
+            state.bound = {static_cast<std::uint32_t>(assets_.meshes.size())};
+            state.skin = {static_cast<std::uint32_t>(assets_.skins.size())};
+            assets_.meshes.emplace_back();
+            assets_.skins.emplace_back();
+        }
+    }
+
+    const Bindings& bindings_;
+    const SurfaceQuery& surfaces_;
+    Assets& assets_;
+};
+
+void step_patches(const std::vector<Vec3>& positions, SurfaceBindingState& state) {
+    std::swap(state.patches, state.previous_patches);
+    make_patches(positions, state.corners, state.patches);
+    if (state.previous_patches.size() != state.patches.size()) {
+        state.previous_patches = state.patches;
+    }
+}
+
+void step_pose(
+    const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& corners, Pose& pose) {
+    const std::size_t faces = corners.size() / 3;
+    const bool is_new = pose.joints.size() != faces;
+    std::swap(pose.joints, pose.previous);
+    pose.joints.resize(faces);
+    compute_face_frames(positions, corners, pose.joints);
+    if (is_new) {
+        pose.previous = pose.joints;
+    }
+}
+
+}  // namespace
+
+void add_surface_binding_states(
+    Query<const SurfaceBinding, With<MeshInstance>, Without<SurfaceBindingState>> bare,
+    Query<const Deformed> deformed, Commands commands) {
+    bare.each([&](Entity entity, const SurfaceBinding&) {
+        commands.add(entity, SurfaceBindingState{});
+        if (deformed.find<const Deformed>(entity) == nullptr) {
+            Deformed by_itself;
+            by_itself.character = entity;
+            commands.add(entity, by_itself);
+        }
+    });
+}
+
+void bind_surfaces(
+    Bindings bindings, Query<MeshInstance> instances, SurfaceQuery surfaces, Res<Assets> assets) {
+    bindings.each([&](Entity entity, const SurfaceBinding& binding, SurfaceBindingState& state,
+                      const MeshInstance& instance) {
+        const bool is_bound = state.bound != MeshId{} && instance.mesh == state.bound;
+        const bool has_places =
+            state.places != nullptr || state.settings.method != SurfaceMethod::Patches;
+        const bool failed =
+            state.bound == MeshId{} && state.rest == instance.mesh && state.rest != MeshId{};
+        if (((is_bound && has_places) || failed) && binding == state.settings) {
+            return;
+        }
+        state.rest = is_bound ? state.rest : instance.mesh;
+        state.settings = binding;
+        Status bound = Binder(bindings, surfaces, *assets).bind(entity, state);
+        if (!bound) {
+            state.bound = {};
+            state.corners.clear();
+            state.places = nullptr;
+            const bool named = state.rest.index < assets->meshes.size();
+            log_warn(
+                "surface_binding of mesh {}: {}; it is not bound",
+                named ? assets->meshes[state.rest.index].name : "none", bound.error().message);
+        }
+        state.pose = {};
+        state.patches.clear();
+        state.previous_patches.clear();
+        instances.find<MeshInstance>(entity)->mesh = bound ? state.bound : state.rest;
+    });
+}
+
+void update_surface_bindings(
+    Query<SurfaceBindingState> bindings, SurfaceQuery surfaces, Query<const Pose> poses,
+    Query<const MorphWeights> morphs, Res<const Assets> assets) {
+    std::vector<Vec3> positions;
+    bindings.each([&](SurfaceBindingState& state) {
+        const MeshId mesh = mesh_of(surfaces, state.surface);
+        if (state.corners.empty() || mesh != state.surface_mesh) {
+            state.pose.previous = state.pose.joints;  // the surface is gone: as it was
+            state.previous_patches = state.patches;
+            return;
+        }
+        const MeshSource source = find_mesh_source(
+            mesh, surfaces.find<const Deformed>(state.surface),
+            surfaces.find<const DeformerState>(state.surface), poses, morphs, *assets);
+        place_vertices(source, Affine{}, positions);
+        if (state.settings.method == SurfaceMethod::Patches) {
+            step_patches(positions, state);
+        } else {
+            step_pose(positions, state.corners, state.pose);
+        }
+    });
+}
+
+}  // namespace limn

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
+#include "ecs/components/surface_binding.h"
+#include "ecs/query.h"
+#include "ecs/system.h"
+
+namespace limn {
+
+// Meshes that follow surfaces (surface_binding.h). Bound meshes are copies in Assets: entities of
+// the same mesh, surface mesh and settings share one, and changed settings replace it where nothing
+// else uses it. What cannot be bound is logged once, and drawn as if it had no binding.
+
+/// What may deform the mesh of a surface.
+using SurfaceQuery = Query<
+    Optional<const ControlSurface>, Optional<const MeshInstance>, Optional<const Deformed>,
+    Optional<const DeformerState>, AnyOf<ControlSurface, MeshInstance>>;
+
+/// Adds a SurfaceBindingState to every SurfaceBinding that lacks one, and a Deformed by itself
+/// where nothing deforms the mesh.
+void add_surface_binding_states(
+    Query<const SurfaceBinding, With<MeshInstance>, Without<SurfaceBindingState>> bare,
+    Query<const Deformed> deformed, Commands commands);
+
+/// Binds what is not bound, or has other settings or another mesh than when it was.
+void bind_surfaces(
+    Query<const SurfaceBinding, SurfaceBindingState, const MeshInstance> bindings,
+    Query<MeshInstance> instances, SurfaceQuery surfaces, Res<Assets> assets);
+
+/// The shape of each surface now; that of the previous step is kept for velocities.
+void update_surface_bindings(
+    Query<SurfaceBindingState> bindings, SurfaceQuery surfaces, Query<const Pose> poses,
+    Query<const MorphWeights> morphs, Res<const Assets> assets);
+
+}  // namespace limn

@@ -1,0 +1,490 @@
+#include "ecs/base/rng.h"
+#include "systems/animation/surface_patches.h"
+#include "tests/near.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+using test::near;
+
+struct Surface {
+    std::vector<Vec3> positions;
+    std::vector<std::uint32_t> corners;
+    std::vector<Vec4> patches;
+
+    void update() { make_patches(positions, corners, patches); }
+    [[nodiscard]] std::span<const Vec4> patch(std::size_t f) const {
+        return std::span(patches).subspan(f * kPatchTexels, kPatchTexels);
+    }
+    [[nodiscard]] std::size_t faces() const { return corners.size() / 3; }
+};
+
+/// Its first face is the octant (1, 0, 0) (0, 1, 0) (0, 0, 1).
+Surface make_octahedron() {
+    Surface surface;
+    surface.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    surface.corners = {0, 1, 2, 1, 3, 2, 3, 4, 2, 4, 0, 2, 1, 0, 5, 3, 1, 5, 4, 3, 5, 0, 4, 5};
+    surface.update();
+    return surface;
+}
+
+/// A bumpy sheet of 2 x 2 m, facing +y.
+Surface make_bumpy(int n = 5) {
+    Surface surface;
+    for (int z = 0; z <= n; ++z) {
+        for (int x = 0; x <= n; ++x) {
+            const Vec2 at = 2.0f * Vec2(x, z) / static_cast<float>(n) - 1.0f;
+            surface.positions.emplace_back(
+                at.x, 0.15f * std::sin(3 * at.x) + 0.1f * std::cos(4 * at.y + at.x), at.y);
+        }
+    }
+    const auto at = [n](int x, int z) { return static_cast<std::uint32_t>(z * (n + 1) + x); };
+    for (int z = 0; z < n; ++z) {
+        for (int x = 0; x < n; ++x) {
+            for (const std::uint32_t v :
+                 {at(x, z), at(x, z + 1), at(x + 1, z), at(x + 1, z), at(x, z + 1),
+                  at(x + 1, z + 1)}) {
+                surface.corners.push_back(v);
+            }
+        }
+    }
+    surface.update();
+    return surface;
+}
+
+/// Vertices over a surface, bound to it.
+struct Skin {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;
+    std::vector<Vec4> tangents;
+    std::vector<SurfacePlace> places;
+
+    void bind(const Surface& surface, float reach) {
+        normals.assign(positions.size(), glm::normalize(Vec3(0.2f, 1, -0.1f)));
+        tangents.assign(positions.size(), Vec4(1, 0, 0, -1));
+        places = bind_to_patches(
+            positions, normals, tangents, surface.positions, surface.corners, reach);
+    }
+    [[nodiscard]] Skin follow(const Surface& surface) const {
+        Skin moved = *this;
+        follow_patches(places, surface.patches, moved.positions, moved.normals, moved.tangents);
+        return moved;
+    }
+};
+
+Skin skin_over(const Surface& surface, float reach = 0.3f) {
+    Skin skin;
+    Random random(2, 7, 1, 8);
+    while (skin.positions.size() < 400) {
+        const Vec2 at = 1.9f * Vec2(random.uniform() - 0.5f, random.uniform() - 0.5f);
+        skin.positions.emplace_back(
+            at.x,
+            0.15f * std::sin(3 * at.x) + 0.1f * std::cos(4 * at.y + at.x)
+                + 0.2f * (random.uniform() - 0.5f),
+            at.y);
+    }
+    skin.bind(surface, reach);
+    return skin;
+}
+
+const Affine kTurn =
+    affine_from({0.4f, -0.3f, 0.7f}, glm::normalize(Quat(0.6f, 0.3f, -0.5f, 0.4f)), Vec3(1));
+
+Surface map_surface(Surface surface, const auto& map) {
+    for (Vec3& p : surface.positions) {
+        p = map(p);
+    }
+    surface.update();
+    return surface;
+}
+
+Vec3 bend(const Vec3& p) {
+    return p + Vec3(0.05f * p.y, 0.2f * std::sin(2 * p.x + p.z), -0.1f * p.x * p.x);
+}
+
+}  // namespace
+
+TEST_CASE("patches: over an octant the patch has the control points and radii of a PN triangle") {
+    const Surface sphere = make_octahedron();
+    const std::span<const Vec4> octant = sphere.patch(0);
+    CHECK(glm::distance(Vec3(octant[3]), Vec3(1, 1.0f / 3, 0)) < 1e-6f);
+    CHECK(glm::distance(Vec3(octant[9]), Vec3(0.5f)) < 1e-6f);
+    const PatchPoint center = evaluate_patch(octant, 1.0f / 3, 1.0f / 3);
+    CHECK(glm::length(center.position) == near(0.769800));
+    CHECK(glm::length(evaluate_patch(octant, 0.5f, 0.5f).position) == near(0.883883));
+    CHECK(glm::distance(center.normal, glm::normalize(Vec3(1))) < 1e-6f);
+}
+
+TEST_CASE("patches: the surface passes through its markers, with their normals") {
+    const Surface surface = make_bumpy();
+    for (std::size_t f = 0; f < surface.faces(); ++f) {
+        const std::array<Vec2, 3> at = {Vec2(1, 0), Vec2(0, 1), Vec2(0, 0)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const PatchPoint corner = evaluate_patch(surface.patch(f), at[k].x, at[k].y);
+            CHECK(
+                glm::distance(corner.position, surface.positions[surface.corners[3 * f + k]])
+                < 1e-6f);
+            CHECK(glm::length(corner.normal) == near(1));
+            CHECK(glm::distance(corner.normal, Vec3(surface.patch(f)[10 + k])) < 1e-6f);
+        }
+    }
+}
+
+TEST_CASE("patches: markers in a plane make a plane") {
+    Surface flat = make_bumpy();
+    for (Vec3& p : flat.positions) {
+        p.y = 0.25f * p.x;
+    }
+    flat.update();
+    for (std::size_t f = 0; f < flat.faces(); ++f) {
+        for (const Vec2 at : {Vec2(0.2f, 0.3f), Vec2(0.6f, 0.1f), Vec2(0.1f, 0.8f)}) {
+            const PatchPoint on = evaluate_patch(flat.patch(f), at.x, at.y);
+            CHECK(std::abs(on.position.y - 0.25f * on.position.x) < 1e-6f);
+            CHECK(glm::distance(on.normal, glm::normalize(Vec3(-0.25f, 1, 0))) < 1e-6f);
+        }
+    }
+}
+
+TEST_CASE("patches: neighbors agree along their edge, in positions and normals") {
+    const Surface surface = make_bumpy();
+    std::size_t shared = 0;
+    for (std::size_t f = 0; f < surface.faces(); ++f) {
+        for (std::size_t g = 0; g < surface.faces(); ++g) {
+            for (std::size_t i = 0; i < 9; ++i) {
+                const std::size_t a = i / 3;
+                const std::size_t b = i % 3;
+                if (f == g || surface.corners[3 * f + a] != surface.corners[3 * g + (b + 1) % 3]
+                    || surface.corners[3 * f + (a + 1) % 3] != surface.corners[3 * g + b]) {
+                    continue;
+                }
+                ++shared;
+                for (float t = 0.0f; t <= 1.0f; t += 0.125f) {
+                    Vec3 on_f(0);
+                    on_f[static_cast<int>(a)] = 1 - t;
+                    on_f[static_cast<int>((a + 1) % 3)] = t;
+                    Vec3 on_g(0);
+                    on_g[static_cast<int>(b)] = t;
+                    on_g[static_cast<int>((b + 1) % 3)] = 1 - t;
+                    const PatchPoint p = evaluate_patch(surface.patch(f), on_f.x, on_f.y);
+                    const PatchPoint q = evaluate_patch(surface.patch(g), on_g.x, on_g.y);
+                    CHECK(glm::distance(p.position, q.position) < 1e-6f);
+                    CHECK(glm::distance(p.normal, q.normal) < 1e-6f);
+                }
+            }
+        }
+    }
+    CHECK(shared == 2 * 65);  // each edge inside, from both sides
+}
+
+TEST_CASE("patches: derivatives are those of the surface and of its normals") {
+    const Surface surface = make_bumpy();
+    constexpr float kStep = 1e-2f;
+    for (std::size_t f = 0; f < surface.faces(); f += 7) {
+        const auto at = [&](float u, float v) { return evaluate_patch(surface.patch(f), u, v); };
+        const PatchPoint p = at(0.3f, 0.4f);
+        const auto check = [&](const PatchPoint& more, const PatchPoint& less, const Vec3& by,
+                               const Vec3& normal_by) {
+            const Vec3 slope = (more.position - less.position) / (2 * kStep);
+            const Vec3 turn = (more.normal - less.normal) / (2 * kStep);
+            CHECK(glm::distance(slope, by) < 1e-3f);
+            CHECK(glm::distance(turn, normal_by) < 1e-3f);
+        };
+        check(at(0.3f + kStep, 0.4f), at(0.3f - kStep, 0.4f), p.by_u, p.normal_by_u);
+        check(at(0.3f, 0.4f + kStep), at(0.3f, 0.4f - kStep), p.by_v, p.normal_by_v);
+    }
+}
+
+TEST_CASE("patches: markers at rest leave a mesh at rest") {
+    const Surface surface = make_bumpy();
+    const Skin skin = skin_over(surface);
+    const Skin moved = skin.follow(surface);
+    std::size_t bound = 0;
+    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+        bound += skin.places[i].patch != kNoPatch ? 1 : 0;
+        CHECK(glm::distance(moved.positions[i], skin.positions[i]) < 1e-6f);
+        CHECK(glm::distance(moved.normals[i], skin.normals[i]) < 1e-5f);
+        CHECK(glm::distance(moved.tangents[i], skin.tangents[i]) < 1e-5f);
+    }
+    CHECK(bound > 390);
+}
+
+TEST_CASE("patches: the offset of a vertex is its distance along the normal, outside positive") {
+    const Surface surface = make_bumpy();
+    Skin skin;
+    std::vector<float> heights;
+    std::vector<Vec3> feet;
+    for (std::size_t f = 0; f < surface.faces(); f += 3) {
+        for (const float height : {-0.05f, 0.0f, 0.02f, 0.1f}) {
+            const PatchPoint on = evaluate_patch(surface.patch(f), 0.35f, 0.4f);
+            skin.positions.push_back(on.position + height * on.normal);
+            heights.push_back(height);
+            feet.push_back(on.position);
+        }
+    }
+    skin.bind(surface, 1);
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        const SurfacePlace& place = skin.places[i];
+        REQUIRE(place.patch != kNoPatch);
+        CHECK(glm::length(place.offset - Vec3(0, 0, heights[i])) < 1e-5f);
+        CHECK(
+            glm::distance(
+                evaluate_patch(surface.patch(place.patch), place.u, place.v).position, feet[i])
+            < 1e-4f);
+    }
+}
+
+TEST_CASE("patches: no sample of the whole surface is nearer than where a vertex is bound") {
+    const Surface surface = make_bumpy();
+    const Skin skin = skin_over(surface);
+    std::vector<Vec3> samples;
+    for (std::size_t f = 0; f < surface.faces(); ++f) {
+        for (int i = 0; i <= 20; ++i) {
+            for (int j = 0; i + j <= 20; ++j) {
+                samples.push_back(
+                    evaluate_patch(
+                        surface.patch(f), static_cast<float>(i) / 20, static_cast<float>(j) / 20)
+                        .position);
+            }
+        }
+    }
+    REQUIRE(samples.size() > 10000);
+    for (std::size_t i = 0; i < skin.positions.size(); i += 5) {
+        float nearest = INFINITY;
+        for (const Vec3& sample : samples) {
+            nearest = std::min(nearest, glm::distance(sample, skin.positions[i]));
+        }
+        // Along the field of normals, which leans a little: not quite the nearest point.
+        if (skin.places[i].patch != kNoPatch) {
+            CHECK(glm::length(skin.places[i].offset) < 1.03f * nearest + 1e-3f);
+        }
+    }
+}
+
+TEST_CASE("patches: a rigid motion of the markers moves the mesh rigidly") {
+    const Surface surface = make_bumpy();
+    const Skin skin = skin_over(surface);
+    const Skin moved =
+        skin.follow(map_surface(surface, [](const Vec3& p) { return transform_point(kTurn, p); }));
+    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+        if (skin.places[i].patch == kNoPatch) {
+            continue;
+        }
+        CHECK(glm::distance(moved.positions[i], transform_point(kTurn, skin.positions[i])) < 1e-5f);
+        CHECK(glm::distance(moved.normals[i], transform_vector(kTurn, skin.normals[i])) < 2e-5f);
+        CHECK(
+            glm::distance(Vec3(moved.tangents[i]), transform_vector(kTurn, Vec3(skin.tangents[i])))
+            < 2e-5f);
+        CHECK(moved.tangents[i].w == -1.0f);
+    }
+}
+
+TEST_CASE("patches: vertices on both sides of an edge stay together") {
+    const Surface surface = make_bumpy();
+    Skin skin;
+    for (std::size_t f = 0; f < surface.faces(); f += 2) {  // over the diagonals of the grid
+        for (float t = 0.1f; t < 0.95f; t += 0.2f) {
+            const PatchPoint on = evaluate_patch(surface.patch(f), 0, t);
+            const Vec3 along = glm::normalize(on.by_v);
+            const Vec3 across = glm::normalize(glm::cross(along, on.normal));
+            skin.positions.push_back(on.position + 0.05f * on.normal + 1e-4f * across);
+            skin.positions.push_back(on.position + 0.05f * on.normal - 1e-4f * across);
+        }
+    }
+    skin.bind(surface, 1);
+    const Skin moved = skin.follow(map_surface(surface, bend));
+    std::size_t apart = 0;
+    for (std::size_t i = 0; i < skin.positions.size(); i += 2) {
+        REQUIRE(skin.places[i].patch != kNoPatch);
+        apart += skin.places[i].patch != skin.places[i + 1].patch ? 1 : 0;
+        CHECK(glm::distance(moved.positions[i], moved.positions[i + 1]) < 1e-3f);
+    }
+    CHECK(apart > skin.positions.size() / 3);
+}
+
+TEST_CASE("patches: a vertex rises by as much as its offset grows") {
+    const Surface surface = make_bumpy();
+    const Surface bent = map_surface(surface, bend);
+    Skin skin = skin_over(surface);
+    std::vector<Skin> moved;
+    for (const float share : {0.0f, 1.0f, 2.0f}) {
+        Skin scaled = skin;
+        for (SurfacePlace& place : scaled.places) {
+            place.offset *= share;
+        }
+        moved.push_back(scaled.follow(bent));
+    }
+    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+        if (skin.places[i].patch != kNoPatch) {
+            const Vec3 middle = 0.5f * (moved[0].positions[i] + moved[2].positions[i]);
+            CHECK(glm::distance(moved[1].positions[i], middle) < 1e-6f);
+        }
+    }
+}
+
+TEST_CASE("patches: normals and tangents are those of the moved mesh") {
+    const Surface surface = make_bumpy();
+    const Surface bent = map_surface(surface, bend);
+    constexpr float kStep = 2e-3f;
+    Skin skin;  // triples: a point and its neighbors along x and z, in a plane
+    for (std::size_t f = 0; f < surface.faces(); f += 2) {
+        const PatchPoint on = evaluate_patch(surface.patch(f), 0.3f, 0.35f);
+        const Vec3 at = on.position + Vec3(0, 0.05f, 0);
+        for (const Vec3& by : {Vec3(0), Vec3(kStep, 0, 0), Vec3(0, 0, kStep)}) {
+            skin.positions.push_back(at + by);
+        }
+    }
+    skin.bind(surface, 1);
+    skin.normals.assign(skin.positions.size(), Vec3(0, 1, 0));
+    skin.places = bind_to_patches(
+        skin.positions, skin.normals, skin.tangents, surface.positions, surface.corners, 1);
+    const Skin moved = skin.follow(bent);
+    for (std::size_t i = 0; i < skin.positions.size(); i += 3) {
+        const Vec3 along_x = moved.positions[i + 1] - moved.positions[i];
+        const Vec3 along_z = moved.positions[i + 2] - moved.positions[i];
+        const Vec3 normal = glm::normalize(glm::cross(along_z, along_x));
+        CHECK(glm::distance(moved.normals[i], normal) < 0.02f);
+        CHECK(glm::distance(Vec3(moved.tangents[i]), glm::normalize(along_x)) < 0.02f);
+    }
+}
+
+TEST_CASE("patches: what is too far from the surface or beside it is not bound") {
+    const Surface surface = make_bumpy();
+    Skin skin;
+    skin.positions = {{0, 0.6f, 0}, {0, 0.12f, 0}, {1.3f, 0.1f, 0}, {0.2f, 0.1f, -1.4f}};
+    skin.bind(surface, 0.3f);
+    CHECK(skin.places[0].patch == kNoPatch);
+    CHECK(skin.places[1].patch != kNoPatch);
+    CHECK(skin.places[2].patch == kNoPatch);
+    CHECK(skin.places[3].patch == kNoPatch);
+    const Skin moved = skin.follow(map_surface(surface, bend));
+    CHECK(moved.positions[0] == skin.positions[0]);
+    CHECK(moved.normals[2] == skin.normals[2]);
+    CHECK(moved.positions[1] != skin.positions[1]);
+}
+
+TEST_CASE("patches: above a ridge, where no patch is straight below, the mesh is still bound") {
+    Surface sphere = make_octahedron();
+    Skin skin;
+    Random random(5, 5, 5, 5);
+    for (int i = 0; i < 300; ++i) {
+        skin.positions.push_back((0.4f + 0.8f * random.uniform()) * random.direction());
+    }
+    skin.bind(sphere, 2);
+    for (const SurfacePlace& place : skin.places) {
+        CHECK(place.patch != kNoPatch);
+    }
+    const Skin moved =
+        skin.follow(map_surface(sphere, [](const Vec3& p) { return transform_point(kTurn, p); }));
+    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+        CHECK(glm::distance(moved.positions[i], transform_point(kTurn, skin.positions[i])) < 1e-5f);
+    }
+}
+
+TEST_CASE("patches: of two surfaces that touch, each carries what faces its way") {
+    Surface lips = make_bumpy();
+    const std::size_t lower = lips.faces();
+    const auto count = static_cast<std::uint32_t>(lips.positions.size());
+    for (std::uint32_t v = 0; v < count; ++v) {
+        lips.positions.push_back(lips.positions[v] + Vec3(0, 0.01f, 0));
+    }
+    for (std::size_t i = 0; i < 3 * lower; i += 3) {
+        for (const std::size_t k : {std::size_t{0}, std::size_t{2}, std::size_t{1}}) {
+            lips.corners.push_back(lips.corners[i + k] + count);
+        }
+    }
+    lips.update();
+    std::vector<Vec3> points;
+    std::vector<Vec3> normals;
+    for (std::size_t f = 0; f < lower; f += 2) {
+        const Vec3 on = evaluate_patch(lips.patch(f), 0.3f, 0.4f).position;
+        points.insert(points.end(), {on + Vec3(0, 0.002f, 0), on + Vec3(0, 0.008f, 0)});
+        points.insert(points.end(), {on + Vec3(0, 0.008f, 0), on + Vec3(0, 0.002f, 0)});
+        normals.insert(normals.end(), {{0, 1, 0}, {0, -1, 0}, {0, 1, 0}, {0, -1, 0}});
+    }
+    const std::vector<Vec4> tangents(points.size(), Vec4(1, 0, 0, 1));
+    const std::vector<SurfacePlace> places =
+        bind_to_patches(points, normals, tangents, lips.positions, lips.corners, 1);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        REQUIRE(places[i].patch != kNoPatch);
+        CHECK((places[i].patch < lower) == (normals[i].y > 0));
+    }
+}
+
+TEST_CASE("patches: no vertex moves farther than the bound") {
+    const Surface surface = make_bumpy();
+    const Surface bent = map_surface(surface, bend);
+    const Skin skin = skin_over(surface);
+    const Skin moved = skin.follow(bent);
+    float largest = 0.0f;
+    for (const SurfacePlace& place : skin.places) {
+        largest = std::max(largest, glm::length(place.offset));
+    }
+    const float most = max_motion(surface.patches, bent.patches, largest);
+    float found = 0.0f;
+    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+        found = std::max(found, glm::distance(moved.positions[i], skin.positions[i]));
+    }
+    CHECK(found <= most);
+    CHECK(most < 4 * found);
+    CHECK(max_motion(surface.patches, surface.patches, largest) == 0.0f);
+}
+
+TEST_CASE("patches: seams are closed, and triangulations that are no surface are refused") {
+    Surface surface = make_bumpy(2);
+    // The same with a vertex of its own for each corner.
+    std::vector<Vec3> apart;
+    std::vector<std::uint32_t> each;
+    for (const std::uint32_t corner : surface.corners) {
+        each.push_back(static_cast<std::uint32_t>(apart.size()));
+        apart.push_back(surface.positions[corner]);
+    }
+    const std::vector<std::uint32_t> closed = *make_patch_corners(apart, each);
+    std::vector<Vec4> patches;
+    make_patches(apart, closed, patches);
+    CHECK(patches == surface.patches);
+
+    const auto error = [&](std::vector<std::uint32_t> more) {
+        std::vector<std::uint32_t> indices = surface.corners;
+        indices.insert(indices.end(), more.begin(), more.end());
+        const auto result = make_patch_corners(surface.positions, indices);
+        return result ? std::string("none") : result.error().message;
+    };
+    CHECK(error({}) == "none");
+    CHECK(error({0, 0, 1}) == "none");
+    const std::vector<Vec3> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    CHECK(
+        make_patch_corners(line, std::vector<std::uint32_t>{0, 1, 2}).error().message
+        == "triangle 0 has no area");
+    CHECK(
+        error({0, 3, 1}).find("vertices 0 and 3 with one that faces the opposite side")
+        != std::string::npos);
+    CHECK(error({1, 3, 8}).find("vertices 1 and 3 with two others") != std::string::npos);
+    CHECK(make_patch_corners(surface.positions, {}).error().message == "it has no triangles");
+}
+
+TEST_CASE("patches: markers that meet, cross or leave numbers behind give finite vertices") {
+    const Surface surface = make_bumpy();
+    const Skin skin = skin_over(surface);
+    for (const Surface& bad :
+         {map_surface(surface, [](const Vec3&) { return Vec3(1); }),
+          map_surface(surface, [](const Vec3& p) { return Vec3(p.x, 0, 0); }),
+          map_surface(surface, [](const Vec3& p) { return Vec3(-p.x, p.y, p.z); })}) {
+        const Skin moved = skin.follow(bad);
+        for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+            CHECK(is_finite(moved.positions[i]));
+            CHECK(is_finite(moved.normals[i]));
+            CHECK(is_finite(Vec3(moved.tangents[i])));
+        }
+    }
+}
+
+}  // namespace limn
