@@ -103,6 +103,9 @@ HWY_INLINE void measure_triangles(const WrinkleRest& rest, const wrinkle::Batch&
     const V infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const V one = hn::Set(d, 1.0f);
     for (std::size_t t = 0; t < rest.across.size(); ++t) {
+        if (rest.across[t] == Vec2{0, 0}) {
+            continue;  // counts nowhere
+        }
         const float* const a = batch.positions + 3 * wrinkle::kFaces * rest.corners[3 * t];
         const float* const b = batch.positions + 3 * wrinkle::kFaces * rest.corners[3 * t + 1];
         const float* const c = batch.positions + 3 * wrinkle::kFaces * rest.corners[3 * t + 2];
@@ -150,9 +153,6 @@ average_triangles(const WrinkleRest& rest, const wrinkle::Batch& batch, float* v
 
 /// Compression of the lanes of a row, in the shortest direction of three.
 HWY_INLINE V compression_at(const wrinkle::Batch& batch, std::size_t at) {
-    if (batch.rests.empty()) {
-        return hn::Set(d, 1.0f);
-    }
     const V along_u = hn::Load(d, batch.compression[0] + at);
     if (batch.rests.size() == 1) {
         return along_u;
@@ -177,11 +177,31 @@ HWY_INLINE V intensity_of(V ratio, V lambda, V beta) {
     return hn::Div(hn::Sub(one, power), hn::Add(one, power));
 }
 
+/// Whether no triangle counts at any of these vertices.
+HWY_INLINE bool is_not_measured(const wrinkle::Batch& batch, std::size_t v, std::size_t count) {
+    return batch.rests.empty() || batch.rests[0].first[v] == batch.rests[0].first[v + count];
+}
+
 /// Rows to eight arrays of intensities.
 HWY_INLINE void write_intensities(const wrinkle::Batch& batch) {
     HWY_ALIGN float rows[4 * wrinkle::kFaces];
+    HWY_ALIGN float at_rest[wrinkle::kFaces];
+    for (std::size_t lane = 0; lane < wrinkle::kFaces; lane += kLanes) {
+        const V intensity = intensity_of(
+            hn::Set(d, 1.0f), hn::Load(d, batch.lambda.data() + lane),
+            hn::Load(d, batch.beta.data() + lane));
+        hn::Store(intensity, d, at_rest + lane);
+    }
     for (std::size_t v = 0; v < batch.vertices; v += 4) {
         const std::size_t count = std::min<std::size_t>(4, batch.vertices - v);
+        if (is_not_measured(batch, v, count)) {
+            for (std::size_t face = 0; face < wrinkle::kFaces; ++face) {
+                if (float* const to = batch.to[face]; to != nullptr) {
+                    std::fill_n(to + v, count, at_rest[face]);
+                }
+            }
+            continue;
+        }
         for (std::size_t i = 0; i < count * wrinkle::kFaces; i += kLanes) {
             const std::size_t lane = i % wrinkle::kFaces;
             const V ratio = compression_at(batch, wrinkle::kFaces * v + i);
