@@ -1,4 +1,5 @@
 #include "bench/quality/quality.h"
+#include "bench/quality/wrinkle_methods_quality.h"
 #include "content/bake/furrow_field.h"
 #include "content/bake/furrow_recipe.h"
 #include "content/bake/furrow_trace.h"
@@ -168,11 +169,13 @@ Status measure_maker(HeadlessRenderer& headless, QualityReport& report) {
 Status measure_wrinkles(HeadlessRenderer& headless, QualityReport& report) {
     measure_field(report);
     measure_furrows(report);
+    LIMN_TRY(measure_wrinkle_methods(headless, report));
     return measure_maker(headless, report);
 }
 
 const RegisterQuality kRegistered(
-    "wrinkles", "furrows: fields in double precision; the CPU's maps", measure_wrinkles);
+    "wrinkles", "lengths, normals and fields in double precision; the CPU's maps of furrows",
+    measure_wrinkles);
 
 }  // namespace
 }  // namespace limn
