@@ -149,7 +149,7 @@ void add_face_growth(FaceBench& bench) {
             repeats, [&] { find_intensities(crowd.chord, faces); },
             [&] { measure_scalar(crowd.chord, faces); });
         points[0].push_back({"compression and intensities", count, measure * per_face});
-        points[1].push_back({"the same, scalar", count, scalar * per_face});
+        points[1].push_back({"compression and intensities, scalar", count, scalar * per_face});
         points[2].push_back({"all deformers", count, deform * per_face});
         points[3].push_back({"all deformers, scalar", count, deform_scalar * per_face});
     }

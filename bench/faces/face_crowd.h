@@ -18,7 +18,7 @@
 namespace limn::bench {
 
 inline constexpr std::size_t kCrowd = 100;
-inline constexpr std::size_t kIdentities = 12;  ///< as many meshes has the level crowd-of-faces
+inline constexpr std::size_t kIdentities = 4;  ///< as many as in the level crowd-of-faces
 
 /// What moves one face, and where it went.
 struct CrowdMember {
