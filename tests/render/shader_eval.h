@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/oracles/shader_eval.h"
+#include "bench/oracles/shader_values.h"
 #include "tests/render/render_fixture.h"
 
 #include <string>

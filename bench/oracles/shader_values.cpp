@@ -1,4 +1,4 @@
-#include "bench/oracles/shader_eval.h"
+#include "bench/oracles/shader_values.h"
 
 #include "render/gpu/buffer.h"
 #include "render/gpu/shader_library.h"
