@@ -392,7 +392,9 @@ Command add_info(CLI::App& program, std::string& file) {
     app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .png, .exr ...")
         ->type_name("FILE")
         ->required();
-    app->footer("Example:\n  limn info model.glb");
+    app->footer(
+        "A .csv with the answers of viewers to the level relax: their counts beside those of the "
+        "test's source.\n\nExample:\n  limn info model.glb");
     return {app, [&file] { return run_info(file); }};
 }
 
