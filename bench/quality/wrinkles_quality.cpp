@@ -1,5 +1,6 @@
 #include "bench/quality/face_folds_file.h"
 #include "bench/quality/quality.h"
+#include "bench/quality/wrinkle_methods_quality.h"
 #include "content/bake/furrow_field.h"
 #include "content/bake/furrow_recipe.h"
 #include "content/bake/furrow_trace.h"
@@ -171,11 +172,12 @@ Status measure_wrinkles(HeadlessRenderer& headless, QualityReport& report) {
     measure_field(report);
     measure_furrows(report);
     LIMN_TRY(measure_face("head", make_head({}), report));
+    LIMN_TRY(measure_wrinkle_methods(headless, report));
     return measure_maker(headless, report);
 }
 
 const RegisterQuality kRegistered(
-    "wrinkles", "furrows: fields in double precision; the CPU's maps; faces: anatomy",
+    "wrinkles", "lengths, normals, fields in double precision; the CPU's maps; faces: anatomy",
     measure_wrinkles, measure_face_file);
 
 }  // namespace

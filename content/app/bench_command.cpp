@@ -34,6 +34,7 @@ constexpr int kHeapFrames =
     600;  ///< the last ones, whose least heap memory counts; a whole camera path if it is longer
 constexpr int kHeapInterval = 60;                    ///< frames between its measurements
 constexpr const char* kParticlesName = "particles";  ///< likewise: their pools, without a scene
+constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of heads
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
 constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
 
@@ -173,7 +174,7 @@ machine_report(const Stage& stage, const HeadlessRenderer& headless, const Bench
 }
 
 Status run_bench(const BenchOptions& options) {
-    if (options.scene == kParticlesName) {
+    if (options.scene == kParticlesName || options.scene == kFacesName) {
         std::vector<std::string> arguments = {
             "--repeats", std::to_string(std::min(options.frames, 400))};
         for (const auto& [option, file] :
@@ -182,10 +183,10 @@ Status run_bench(const BenchOptions& options) {
                 arguments.insert(arguments.end(), {option, file});
             }
         }
-        return run_sibling("limn bench", "limn-bench-particles", std::move(arguments));
+        return run_sibling("limn bench", "limn-bench-" + options.scene, std::move(arguments));
     }
     if (!options.svg.empty()) {
-        return fail("limn bench: --svg is for the scene `particles`, found `{}`", options.scene);
+        return fail("limn bench: --svg is for `particles` and `faces`, found `{}`", options.scene);
     }
     if (options.scene == kLensName) {
         return run_lens_bench(options);

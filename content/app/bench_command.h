@@ -24,7 +24,7 @@ struct BenchOptions {
     std::vector<Assignment> assignments;  ///< --set
     std::string json;  ///< file, or "-" for stdout instead of the table; empty = none
     std::string csv;   ///< the same
-    std::string svg;   ///< file, of `particles` alone; empty = none
+    std::string svg;   ///< file, of `particles` and `faces`; empty = none
     std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
 

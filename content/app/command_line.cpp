@@ -167,7 +167,8 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         ->type_name("FILE");
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
         ->type_name("FILE");
-    app->add_option("--svg", options.svg, "of `particles`: draw the cost over their number")
+    app->add_option(
+           "--svg", options.svg, "of `particles`, `faces`: draw the cost over their number")
         ->type_name("FILE");
     app->footer(
         R"(Every frame simulates one step and renders off screen. Times are in milliseconds; "all threads" is
@@ -211,13 +212,21 @@ JSON: {"threads", "gates": [{"gate", "name", "ours", "other", "against", "unit",
 "met"}], "growth": [{"curve", "points": [{"count", "ns"}]}], "notes"}
 CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, curve,count,ns
 
+`limn bench faces` moves a hundred heads and measures how their skin is compressed, beside scalar
+versions of the same, draws skin that wrinkles beside plain PBR, and shows what a face
+costs among 1 to 100. --frames is how often each is run at most, and the best counts.
+JSON: {"threads", "rows": [{"name", "ours_ms", "reference_ms", "against", "ratio", "limit", "met"}],
+"growth": [{"curve", "faces", "ns"}]}
+CSV: name,ours_ms,reference_ms,against,ratio,limit,met and, after an empty line, curve,faces,ns
+
 Examples:
   limn bench lights --size 640x360
   limn bench lens --size 640x360 --frames 100
   limn bench fakephong --size 640x360 --frames 9
   limn bench gallery --size 640x360 --set glow.strength=0.1
   limn bench stress-instances --frames 600 --json numbers.json
-  limn bench particles --csv particles.csv --svg particles.svg)");
+  limn bench particles --csv particles.csv --svg particles.svg
+  limn bench faces --csv faces.csv --svg faces.svg)");
     return {app, [&options] { return run_bench(options); }};
 }
 
@@ -391,7 +400,9 @@ Command add_info(CLI::App& program, std::string& file) {
     app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .png, .exr ...")
         ->type_name("FILE")
         ->required();
-    app->footer("Example:\n  limn info model.glb");
+    app->footer(
+        "A .csv with the answers of viewers to the level relax: their counts beside those of the "
+        "test's source.\n\nExample:\n  limn info model.glb");
     return {app, [&file] { return run_info(file); }};
 }
 

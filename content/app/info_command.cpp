@@ -1,7 +1,9 @@
 #include "content/app/info_command.h"
 
 #include "content/app/headless.h"
+#include "content/app/trial_file.h"
 #include "content/game/game.h"
+#include "content/game/wrinkle_trial_system.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
 #include "content/load/level_hints.h"
@@ -380,12 +382,22 @@ Status print_image(const std::string& file) {
     return Done{};
 }
 
+/// Answers of viewers to the level relax.
+Status print_trials(const std::string& file) {
+    const std::vector<TrialRecord> records = LIMN_TRY(load_trials(file));
+    fmt::print("{} viewers\n{}", records.size(), describe_tally(tally_trials(records)));
+    return Done{};
+}
+
 }  // namespace
 
 Status run_info(const std::string& file) {
     const std::string extension = extension_of(file);
     if (extension == ".exr") {
         return print_exr(file);
+    }
+    if (extension == ".csv") {
+        return print_trials(file);
     }
     static constexpr std::array<std::string_view, 6> kImages = {".png", ".jpg",  ".jpeg",
                                                                 ".bmp", ".webp", ".hdr"};

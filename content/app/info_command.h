@@ -6,7 +6,7 @@
 
 namespace limn {
 
-/// `limn info`: prints the contents of a level, a glTF file or an image.
+/// `limn info`: prints the contents of a level, a glTF file, an image or the answers of viewers.
 [[nodiscard]] Status run_info(const std::string& file);
 
 }  // namespace limn

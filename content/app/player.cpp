@@ -97,6 +97,7 @@ void Player::simulate(float dt, const Input& input) {
             step_stage(*off_stage_);
         }
     }
+    follow_trial();
     cost_.simulate_ms = seconds_between(begin, Clock::now()) * 1e3;
 }
 

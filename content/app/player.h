@@ -14,6 +14,7 @@
 #include "content/app/shows_panel.h"
 #include "content/app/stage.h"
 #include "content/app/window.h"
+#include "content/game/wrinkle_trial.h"
 #include "content/load/made_assets.h"
 #include "ecs/components/input.h"
 #include "render/gpu/device.h"
@@ -22,6 +23,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -119,6 +121,9 @@ class Player {
     [[nodiscard]] std::vector<std::filesystem::file_time_type> level_file_times() const;
     void save_screenshot(const IVec2& size);
     void save_exr(const RenderView& view);
+    /// Asks the viewer of a WrinkleTrial, and adds new answers to the file
+    /// limn-<level>-answers.csv.
+    void follow_trial();
     /// Prints the path and shows a message, or the error.
     void report_saved(const std::string& path, const Status& status);
     [[nodiscard]] std::string next_file(const char* ending);
@@ -131,6 +136,8 @@ class Player {
     std::optional<BufferViewer> buffers_;
     std::unique_ptr<Stage> stage_;
     MadeAssets made_;
+    std::size_t trials_saved_ = 0;  ///< answers of the level's WrinkleTrial that are in the file
+    TrialStage trial_stage_ = TrialStage::FirstClip;
 
     // The level without the technique of options_.show, beside the one with it.
     std::unique_ptr<Stage> off_stage_;

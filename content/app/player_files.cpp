@@ -3,6 +3,9 @@
 #include "content/app/image_file.h"
 #include "content/app/image_notes.h"
 #include "content/app/player.h"
+#include "content/app/trial_file.h"
+#include "content/game/wrinkle_trial_system.h"
+#include "content/load/atomic_file.h"
 #include "content/load/png_file.h"
 #include "ecs/base/log.h"
 #include "render/gpu/shader_library.h"
@@ -12,6 +15,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -81,6 +86,50 @@ void Player::save_exr(const RenderView& view) {
     const FrameOutput frame =
         render_accumulated(*renderer_, stage_->world, view, kExrSamples, request);
     report_saved(path, write_image_file(path, frame, image_notes(*stage_, shown_time_)));
+}
+
+void Player::follow_trial() {
+    const WrinkleTrialState* state = nullptr;
+    std::as_const(stage_->world)
+        .query<const WrinkleTrialState>()
+        .each([&](const WrinkleTrialState& found) { state = &found; });
+    if (state == nullptr) {
+        trials_saved_ = 0;
+        return;
+    }
+    if (state->stage != std::exchange(trial_stage_, state->stage)) {
+        if (state->stage == TrialStage::AnyDifference) {
+            hud_->toast("Did the two differ?  N: no, Y: yes");
+        } else if (state->stage == TrialStage::Preference) {
+            hud_->toast("Which was better?  1: the first, 2: the second");
+        }
+    }
+    trials_saved_ = std::min(trials_saved_, state->records.size());
+    if (trials_saved_ == state->records.size()) {
+        return;
+    }
+    const std::filesystem::path folder = options_.out.empty() ? "." : options_.out;
+    const std::string path =
+        (folder / fmt::format("limn-{}-answers.csv", stage_->scene.name)).string();
+    std::vector<TrialRecord> all;
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) {
+        Result<std::vector<TrialRecord>> before = load_trials(path);
+        if (!before) {
+            trials_saved_ = state->records.size();
+            report_saved(path, before.error());
+            return;
+        }
+        all = *std::move(before);
+    }
+    all.insert(
+        all.end(), state->records.begin() + static_cast<std::ptrdiff_t>(trials_saved_),
+        state->records.end());
+    trials_saved_ = state->records.size();
+    std::filesystem::create_directories(folder, ignored);
+    report_saved(path, write_file(path, write_trials(all)));
+    fmt::print("{}", describe_tally(tally_trials(all)));
+    std::fflush(stdout);
 }
 
 void Player::report_saved(const std::string& path, const Status& status) {

@@ -4,6 +4,7 @@
 #include "content/game/sailing_system.h"
 #include "content/game/stone_system.h"
 #include "content/game/walker_system.h"
+#include "content/game/wrinkle_trial_system.h"
 #include "ecs/components/all.h"
 
 namespace limn {
@@ -85,6 +86,8 @@ void register_game_components() {
     register_component<StoneThrower>();
     register_component<StoneThrowerState>();
     register_component<ThrownStone>();
+    register_component<WrinkleTrial>();
+    register_component<WrinkleTrialState>();
     register_game_actions();
 }
 
@@ -95,10 +98,12 @@ void add_game_systems(SystemList& systems) {
     systems.add<add_sailboat_states>(Create, Both);
     systems.add<add_walker_states>(Create, Both);
     systems.add<add_stone_throwers>(Create, Both);
+    systems.add<add_wrinkle_trials>(Create, Both);
     systems.add<place_racers>(Move, AtStart);
     systems.add<update_racers>(Move);
     systems.add<update_speed_views>(Move);  // after racers: uses their current speed
-    systems.add<throw_stones>(Force);       // hits the current surface of the water
+    systems.add<update_wrinkle_trials>(Move, Both);
+    systems.add<throw_stones>(Force);  // hits the current surface of the water
     systems.add<update_sailboats>(Force);
     systems.add<turn_booms>(Float);  // after floating bodies
     systems.add<update_walkers>(Float);

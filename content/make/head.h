@@ -53,8 +53,8 @@ LIMN_FIELDS(HeadShape) {
 [[nodiscard]] MeshData make_head(const HeadShape& shape);
 
 /// The same skeleton for all parts. The skin has clips: each face of head_clips.h for a few
-/// seconds, "expressions" with all of them, "talk", and "blink", for a morph animation beside
-/// others.
+/// seconds, "expressions" with all of them, "talk", "relax", and "blink", for a morph animation
+/// beside others.
 [[nodiscard]] MeshRig make_head_rig(const HeadShape& shape);
 
 }  // namespace limn

@@ -210,6 +210,27 @@ ClipData make_talk(std::string_view says) {
     return clip;
 }
 
+/// The same, and brows that rise and relax.
+ClipData make_relax(const ClipData& talk) {
+    ClipData clip = talk;
+    clip.name = "relax";
+    const float last = clip.duration;
+    for (const char* const unit : {"AU1_L", "AU1_R", "AU2_L", "AU2_R"}) {
+        std::vector<float> times;
+        std::vector<float> weights;
+        for (float start = 0.3f; start + 2.2f < last; start += 2.6f) {
+            for (const Key& key : kRise) {
+                times.push_back(start + key.time);
+                weights.push_back(0.8f * key.share);
+            }
+        }
+        if (!times.empty()) {
+            add_curve(clip, expression_index(unit), std::move(times), std::move(weights));
+        }
+    }
+    return clip;
+}
+
 }  // namespace
 
 std::vector<ClipData> make_head_clips(std::string_view says) {
@@ -219,6 +240,7 @@ std::vector<ClipData> make_head_clips(std::string_view says) {
     }
     clips.push_back(make_all_faces());
     clips.push_back(make_talk(says));
+    clips.push_back(make_relax(clips.back()));
     clips.push_back(make_blink());
     return clips;
 }

@@ -40,7 +40,14 @@ struct TemporaryFolder {
 };
 
 Result<std::string> make_folder() {
-    std::string path = std::filesystem::temp_directory_path() / "limn-speech-XXXXXX";
+    std::error_code error;
+    const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
+    if (error) {
+        return fail(
+            "{}: found no folder for temporary files, expected one (TMPDIR): {}", kProgram,
+            error.message());
+    }
+    std::string path = parent / "limn-speech-XXXXXX";
     if (mkdtemp(path.data()) == nullptr) {
         return fail("{}: {}", path, std::strerror(errno));
     }
@@ -156,6 +163,8 @@ Result<Utterance> speak_utterance(std::string_view text, const std::string& voic
     const std::string file = folder.path / "phrase.wav";
     Utterance utterance;
     for (const std::string& phrase : phrases_of(text)) {
+        std::error_code absent;  // the first time
+        std::filesystem::remove(file, absent);
         const ProgramOutput output = LIMN_TRY(
             run_program({std::string(kProgram), "-v", voice, "--ipa", "-w", file, "--", phrase}));
         const Result<std::vector<std::byte>> bytes = read_file(file);

@@ -5,18 +5,23 @@
 #include "systems/animation/surface_patches.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace limn {
 namespace {
 
-std::vector<float> weights_of(const MorphWeights* morphs, std::size_t first) {
+/// Memory of deform_positions, which is reused.
+struct Memory {
     std::vector<float> weights;
+    std::vector<Affine> palette;
+    std::vector<DualQuaternion> duals;
+};
+
+void find_weights(const MorphWeights* morphs, std::size_t first, std::vector<float>& weights) {
+    weights.clear();
     for (std::size_t i = first; morphs != nullptr && i < morphs->weights.size(); ++i) {
-        weights.push_back(std::isfinite(morphs->weights[i]) ? morphs->weights[i] : 0.0f);
+        weights.push_back(finite_or(morphs->weights[i], 0.0f));
     }
-    return weights;
 }
 
 bool has_all_joints(const MeshData& mesh, const SkinData& skin, const Pose& pose) {
@@ -33,14 +38,14 @@ bool deform_positions(
     const MeshData& mesh, const Deformed& deformed, const SkinData* skin, const Pose* pose,
     const MorphWeights* morphs, const DeformerState* deformers, std::vector<Vec3>& positions,
     const SurfaceShape& surface) {
+    thread_local Memory memory;
     positions = mesh.positions;
-    std::vector<Vec3> normals(positions.size(), Vec3(0, 0, 1));
-    std::vector<Vec4> tangents(positions.size(), Vec4(1, 0, 0, 1));
-    const SkinnedVertices moved = {positions, normals, tangents};
+    const SkinnedVertices moved = {positions, {}, {}};
     if (surface.places.size() == positions.size()) {
-        follow_patches(surface.places, surface.patches, positions, normals, tangents);
+        follow_patches(surface.places, surface.patches, positions, {}, {});
     }
-    add_morphs(mesh.morphs, weights_of(morphs, deformed.first_morph), moved);
+    find_weights(morphs, deformed.first_morph, memory.weights);
+    add_morphs(mesh.morphs, memory.weights, moved);
     if (deformers != nullptr) {
         deform_points(deformers->now, positions);
     }
@@ -49,15 +54,15 @@ bool deform_positions(
             positions = mesh.positions;
             return false;
         }
-        const RestVertices rest = {positions, normals, tangents};
-        std::vector<Affine> palette(skin->joints.size());
-        compute_skin_palette(*skin, pose->joints, palette);
+        const RestVertices rest = {positions, {}, {}};
+        memory.palette.resize(skin->joints.size());
+        compute_skin_palette(*skin, pose->joints, memory.palette);
         if (deformed.skinning == Skinning::Linear) {
-            skin_linear(mesh.skin, palette, rest, moved, 0, positions.size());
+            skin_linear(mesh.skin, memory.palette, rest, moved, 0, positions.size());
         } else {
-            std::vector<DualQuaternion> duals(palette.size());
-            compute_dual_palette(palette, duals);
-            skin_dual(mesh.skin, duals, rest, moved, 0, positions.size());
+            memory.duals.resize(memory.palette.size());
+            compute_dual_palette(memory.palette, memory.duals);
+            skin_dual(mesh.skin, memory.duals, rest, moved, 0, positions.size());
         }
     }
     const bool finite =

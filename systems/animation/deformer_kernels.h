@@ -17,7 +17,8 @@ namespace limn {
 [[nodiscard]] Vec3
 deform_normal(std::span<const Vec4> packed, const Vec3& point, const Vec3& normal);
 
-/// deform_point of all points, in place.
+/// deform_point of all points, in place; many at once by SIMD, with the same bits as one by one.
 void deform_points(std::span<const Vec4> packed, std::span<Vec3> points);
+void deform_points_scalar(std::span<const Vec4> packed, std::span<Vec3> points);
 
 }  // namespace limn

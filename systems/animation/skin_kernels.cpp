@@ -562,8 +562,9 @@ HWY_INLINE void find_means(
 
 // ---- transformation of a batch ------------------------------------------------------------------
 
+/// Normals and tangents of a batch.
 template <typename Joint>
-HWY_INLINE void move_batch(const skin::Work<Joint>& work, const Matrices& m, std::size_t at) {
+HWY_INLINE void turn_batch(const skin::Work<Joint>& work, const Matrices& m, std::size_t at) {
     const V one = hn::Set(d, 1.0f);
     V x;
     V y;
@@ -615,7 +616,16 @@ HWY_INLINE void move_batch(const skin::Work<Joint>& work, const Matrices& m, std
         hn::IfThenElse(turned, hn::Mul(tx, tangent_unit), x),
         hn::IfThenElse(turned, hn::Mul(ty, tangent_unit), y),
         hn::IfThenElse(turned, hn::Mul(tz, tangent_unit), z), w, &work.moved.tangents[at].x);
+}
 
+template <typename Joint>
+HWY_INLINE void move_batch(const skin::Work<Joint>& work, const Matrices& m, std::size_t at) {
+    if (!work.moved.normals.empty()) {
+        turn_batch(work, m, at);
+    }
+    V x;
+    V y;
+    V z;
     load_entries(&work.rest.positions[at].x, x, y, z);
     store_entries(
         hn::Add(dot3(m.xx, m.xy, m.xz, x, y, z), m.xt),
@@ -659,21 +669,33 @@ void check_spans(
     const SkinWeights& skin, const RestVertices& rest, const SkinnedVertices& moved,
     std::size_t end) {
     const std::size_t count = rest.positions.size();
-    LIMN_CHECK(rest.normals.size() == count && rest.tangents.size() == count);
+    const std::size_t turned = moved.normals.empty() ? 0 : count;
+    LIMN_CHECK(rest.normals.size() == turned && rest.tangents.size() == turned);
     LIMN_CHECK(
-        moved.positions.size() == count && moved.normals.size() == count
-        && moved.tangents.size() == count);
+        moved.positions.size() == count && moved.normals.size() == turned
+        && moved.tangents.size() == turned);
     LIMN_CHECK(skin.first.size() == count + 1 && end <= count);
 }
 
-/// kStride floats per joint, aligned to a cache line.
+/// Palettes of the kernels, aligned to cache lines; their memory is reused.
+struct PaletteMemory {
+    hwy::AlignedFreeUniquePtr<float[]> data;
+    std::size_t size = 0;
+};
+
+/// kStride floats per joint; valid until the next call on this thread.
 template <typename Joint>
-hwy::AlignedFreeUniquePtr<float[]> make_palette(std::span<const Joint> joints) {
+const float* make_palette(std::span<const Joint> joints) {
+    thread_local PaletteMemory memory;
     constexpr std::size_t stride = skin::kStride<Joint>;
-    auto palette = hwy::AllocateAligned<float>(stride * std::max<std::size_t>(joints.size(), 1));
+    if (memory.size < stride * joints.size()) {
+        memory.size = stride * joints.size();
+        memory.data = hwy::AllocateAligned<float>(memory.size);
+    }
+    float* const palette = memory.data.get();
     for (std::size_t i = 0; i < joints.size(); ++i) {
-        std::memset(palette.get() + stride * i, 0, stride * sizeof(float));
-        std::memcpy(palette.get() + stride * i, &joints[i], sizeof(Joint));
+        std::memset(palette + stride * i, 0, stride * sizeof(float));
+        std::memcpy(palette + stride * i, &joints[i], sizeof(Joint));
     }
     return palette;
 }
@@ -684,8 +706,8 @@ void skin_linear(
     const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
     const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     check_spans(skin, rest, moved, end);
-    const auto numbers = make_palette(palette);
-    const skin::Work<Affine> work = {skin, palette, numbers.get(), rest, moved};
+    const float* const numbers = make_palette(palette);
+    const skin::Work<Affine> work = {skin, palette, numbers, rest, moved};
     const std::size_t next = HWY_DYNAMIC_DISPATCH(skin_linear_vector)(work, begin, end);
     skin_linear_scalar(skin, palette, rest, moved, next, end);
 }
@@ -694,8 +716,8 @@ void skin_dual(
     const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
     const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     check_spans(skin, rest, moved, end);
-    const auto numbers = make_palette(palette);
-    const skin::Work<DualQuaternion> work = {skin, palette, numbers.get(), rest, moved};
+    const float* const numbers = make_palette(palette);
+    const skin::Work<DualQuaternion> work = {skin, palette, numbers, rest, moved};
     const std::size_t next = HWY_DYNAMIC_DISPATCH(skin_dual_vector)(work, begin, end);
     skin_dual_scalar(skin, palette, rest, moved, next, end);
 }

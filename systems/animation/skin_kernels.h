@@ -21,14 +21,14 @@ namespace limn {
 // fastest where neighbors have the same joints, at most four, slower where they have different
 // ones, and slowest where their number differs as well.
 
-/// Undeformed vertices; all spans have the same length.
+/// Undeformed vertices; all spans have the same length, or only positions are not empty.
 struct RestVertices {
     std::span<const Vec3> positions;
     std::span<const Vec3> normals;   ///< unit
     std::span<const Vec4> tangents;  ///< unit; w is kept
 };
 
-/// Destination of deformed vertices; the same length, possibly the same memory.
+/// Destination of deformed vertices; the same lengths, possibly the same memory.
 struct SkinnedVertices {
     std::span<Vec3> positions;
     std::span<Vec3> normals;

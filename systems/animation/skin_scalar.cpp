@@ -112,8 +112,10 @@ void move_vertices(
     const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
         const Affine mean = mean_matrix(skin, palette, v);
-        moved.normals[v] = turn_normal(mean, skin, palette, rest.normals[v], v);
-        moved.tangents[v] = turn_tangent(mean, rest.tangents[v]);
+        if (!moved.normals.empty()) {
+            moved.normals[v] = turn_normal(mean, skin, palette, rest.normals[v], v);
+            moved.tangents[v] = turn_tangent(mean, rest.tangents[v]);
+        }
         moved.positions[v] =
             turn(mean, rest.positions[v]) + Vec3(mean.row[0].w, mean.row[1].w, mean.row[2].w);
     }
@@ -203,10 +205,10 @@ void add_morphs(
         for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
             const std::uint32_t v = morph.vertices[i];
             vertices.positions[v] += weight * morph.positions[i];
-            if (!morph.normals.empty()) {
+            if (!morph.normals.empty() && !vertices.normals.empty()) {
                 vertices.normals[v] += weight * morph.normals[i];
             }
-            if (!morph.tangents.empty()) {
+            if (!morph.tangents.empty() && !vertices.tangents.empty()) {
                 vertices.tangents[v] += Vec4(weight * morph.tangents[i], 0.0f);
             }
         }

@@ -412,6 +412,9 @@ void follow_patches(
         const PatchPoint at = evaluate_patch(
             patches.subspan(place.patch * kPatchTexels, kPatchTexels), place.u, place.v);
         positions[i] = place_on(at, place.offset);
+        if (normals.empty()) {
+            continue;
+        }
         const Mat3 axes = axes_at(at, place.offset.z);
         // The inverse transpose, times the determinant.
         const Mat3 cofactors(

@@ -53,7 +53,7 @@ void make_patches(
     std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach);
 
 /// The vertices of bound places, in place; what is not bound stays. All three spans have the length
-/// of `places`.
+/// of `places`; normals and tangents may be empty, both.
 void follow_patches(
     std::span<const SurfacePlace> places, std::span<const Vec4> patches, std::span<Vec3> positions,
     std::span<Vec3> normals, std::span<Vec4> tangents);

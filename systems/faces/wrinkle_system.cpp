@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -180,13 +181,18 @@ WrinkleState make_wrinkle_state(
 void prepare_wrinkles(
     Query<const WrinkleSurface, const MeshInstance> surfaces, Query<const WrinkleState> states,
     Res<const Assets> assets, Commands commands) {
+    std::map<std::uint64_t, WrinkleState> made_now;  // a crowd has few different ones
     surfaces.each([&](Entity entity, const WrinkleSurface& surface, const MeshInstance& instance) {
         const WrinkleState* const made = states.find<const WrinkleState>(entity);
         const std::uint64_t source = wrinkle_source(surface, instance, *assets);
         if (source == 0 && made != nullptr) {
             commands.remove<WrinkleState>(entity);
         } else if (source != 0 && (made == nullptr || made->source != source)) {
-            commands.add(entity, make_wrinkle_state(surface, instance, *assets));
+            const auto [state, is_new] = made_now.try_emplace(source);
+            if (is_new) {
+                state->second = make_wrinkle_state(surface, instance, *assets);
+            }
+            commands.add(entity, state->second);
         }
     });
 }

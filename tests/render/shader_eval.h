@@ -1,45 +1,21 @@
 #pragma once
 
-#include "render/gpu/buffer.h"
-#include "render/gpu/shader_library.h"
+#include "bench/oracles/shader_values.h"
 #include "tests/render/render_fixture.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn::test {
 
-/// What shader code makes of numbers: `body` is run once for each of `inputs`, finds it in the vec4
-/// `x` and leaves its answer in the vec4 `y`. `before` stands above it: includes and functions.
+/// oracle::evaluate_shader on the tests' device.
 inline std::vector<Vec4> evaluate_shader(
     const std::string& before, const std::string& body, const std::vector<Vec4>& inputs) {
-    gpu::Device& device = shared_device();
-    gpu::ShaderFiles files = gpu::ShaderFiles::standard();
-    files.put(
-        "eval.comp", "#version 450\nlayout(local_size_x = 64) in;\n"
-                     "layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };\n"
-                     "layout(std430, binding = 1) writeonly buffer Outputs { vec4 outputs[]; };\n"
-                         + before
-                         + "\nvoid main() {\n"
-                           "    uint i = gl_GlobalInvocationID.x;\n"
-                           "    if (i >= uint(inputs.length())) { return; }\n"
-                           "    vec4 x = inputs[i];\n    vec4 y = vec4(0.0);\n"
-                         + body + "\n    outputs[i] = y;\n}\n");
-    gpu::ShaderLibrary library(device.caps(), files);
-    const Result<const gpu::Program*> program = library.load({.compute = "eval.comp"});
-    REQUIRE_MESSAGE(program.ok(), (program ? "" : program.error().message));
-    const gpu::Buffer source = gpu::Buffer::of("inputs", std::span<const Vec4>(inputs));
-    const std::size_t bytes = inputs.size() * sizeof(Vec4);
-    const gpu::Buffer target("outputs", bytes, gpu::BufferUse::GpuOnly);
-    device.use(**program);
-    device.bind_storage(0, source);
-    device.bind_storage(1, target);
-    device.dispatch(static_cast<unsigned>((inputs.size() + 63) / 64));
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    std::vector<Vec4> outputs(inputs.size());
-    target.read(0, std::as_writable_bytes(std::span(outputs)));
-    device.invalidate_state();
-    return outputs;
+    Result<std::vector<Vec4>> found =
+        oracle::evaluate_shader(shared_device(), before, body, inputs);
+    REQUIRE_MESSAGE(found.ok(), (found ? "" : found.error().message));
+    return std::move(*found);
 }
 
 }  // namespace limn::test

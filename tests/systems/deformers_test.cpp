@@ -9,9 +9,12 @@
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
+#include <hwy/targets.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace limn {
@@ -280,6 +283,43 @@ TEST_CASE("deformers: no vertex moves farther than the bound, which is not idle"
         CHECK(glm::distance(deform_point(packed, p), p) <= most);
     }
     CHECK(max_displacement({}) == 0.0f);
+}
+
+TEST_CASE("deformers: vectors of the machine and plain C++ give the same bits") {
+    Deformers deformers = with(make_lattice([](const Vec3&, int i, int j, int k) {
+        return (i + j + k) % 2 == 0 ? Vec3(0.03f, 0, 0) : Vec3(0);
+    }));
+    deformers.muscles = {kMuscleUp, kMuscleUp};
+    deformers.muscles[1].attachment = {0.01f, 0.05f, 0.02f};
+    deformers.muscles[1].insertion = {0, 0, 0};
+    deformers.muscles[1].contraction = 1;  // pulls beyond the attachment, but for the limit
+    deformers.sphincters.push_back(
+        {.center = {0.3f, 0, 0.4f},
+         .right = {0.3f, 0.1f, 0},
+         .up = {0, 0.2f, 0},
+         .depth = 0.2f,
+         .contraction = 0.8f});
+    const std::vector<Vec4> packed = pack_deformers(deformers);
+    Random random(5, 6, 7, 8);
+    std::vector<Vec3> rest;
+    for (int i = 0; i < 5003; ++i) {
+        rest.push_back((i % 3 == 0 ? 0.9f : 0.09f) * random.uniform() * random.direction());
+    }
+    rest[7] = deformers.muscles[0].attachment;
+    std::vector<Vec3> plain = rest;
+    deform_points_scalar(packed, plain);
+    CHECK(plain != rest);
+    const std::int64_t targets = hwy::SupportedTargets();
+    for (std::int64_t left = targets; left != 0; left &= left - 1) {
+        hwy::SetSupportedTargetsForTest(left & -left);
+        hwy::GetChosenTarget().DeInit();
+        CAPTURE(std::string(hwy::TargetName(left & -left)));
+        std::vector<Vec3> points = rest;
+        deform_points(packed, points);
+        CHECK(points == plain);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
 }
 
 TEST_CASE("deformers: controls without extent or with numbers that are not finite do nothing") {

@@ -320,6 +320,30 @@ TEST_CASE("skin: vectors of the machine and plain C++ give the same bits, cut an
     }
 }
 
+TEST_CASE("skin: positions by themselves have the bits that they have with normals and tangents") {
+    for (const std::size_t count : {15, 203}) {
+        Puppet puppet = make_puppet(30, count, 5);
+        for (std::uint32_t v = 0; v < 10; ++v) {
+            puppet.mesh.morphs.push_back({"", "", {v}, {Vec3(0.5f)}, {Vec3(1)}, {Vec3(2)}});
+        }
+        const std::vector<float> weights(10, 0.3f);
+        puppet.pose(random_pose(puppet.skeleton, 3));
+        std::vector<Vec3> alone = puppet.mesh.positions;
+        add_morphs(puppet.mesh.morphs, weights, {alone, {}, {}});
+        add_morphs(
+            puppet.mesh.morphs, weights,
+            {puppet.mesh.positions, puppet.mesh.normals, puppet.mesh.tangents});
+        CHECK(same_bits(alone, puppet.mesh.positions));
+        puppet.linear();
+        skin_linear(puppet.mesh.skin, puppet.palette, {alone, {}, {}}, {alone, {}, {}}, 0, count);
+        CHECK(same_bits(alone, puppet.moved.positions));
+        alone = puppet.mesh.positions;
+        puppet.dual();
+        skin_dual(puppet.mesh.skin, puppet.duals, {alone, {}, {}}, {alone, {}, {}}, 0, count);
+        CHECK(same_bits(alone, puppet.moved.positions));
+    }
+}
+
 /// Vertices of `count` joints each. Each follows others than its neighbors; or `run` neighbors in a
 /// row follow the same.
 Puppet make_regular_puppet(std::size_t count, std::size_t run, std::size_t vertices) {

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
+#include "ecs/components/skeleton.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/wrinkle.h"
+#include "systems/faces/wrinkle_batch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace limn::bench {
+
+inline constexpr std::size_t kCrowd = 100;
+inline constexpr std::size_t kIdentities = 4;  ///< as many as in the level crowd-of-faces
+
+/// What moves one face, and where it went.
+struct CrowdMember {
+    Pose pose;
+    MorphWeights morphs;
+    DeformerState deformers;
+    std::vector<Vec3> deformed;
+    std::vector<float> intensity;
+};
+
+/// The project's own head, a hundred times, each in another moment of its expressions; and what
+/// measures its skin.
+struct FaceCrowd {
+    MeshData mesh;
+    SkinData skin;
+    std::vector<WrinkleRest> chord;   ///< one
+    std::vector<WrinkleRest> strain;  ///< three
+    std::vector<CrowdMember> members;
+};
+
+/// The same for all callers; its members are deformed. Takes seconds.
+[[nodiscard]] FaceCrowd& face_crowd();
+
+/// Of the first `count` members.
+[[nodiscard]] std::vector<CrowdFace> crowd_faces(FaceCrowd& crowd, std::size_t count);
+
+/// All deformers, as deform_positions.
+void deform_crowd(FaceCrowd& crowd, std::size_t count);
+/// The same by the scalar versions of all kernels.
+void deform_crowd_scalar(FaceCrowd& crowd, std::size_t count);
+
+/// Best times of two functions, in turns: other work on the machine disturbs both alike [ms].
+template <typename A, typename B>
+std::pair<double, double> race(int repeats, A a, B b) {
+    using Clock = std::chrono::steady_clock;
+    std::pair<double, double> best = {INFINITY, INFINITY};
+    const auto time_of = [](auto& run) {
+        const auto begin = Clock::now();
+        run();
+        return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    };
+    for (int i = 0; i < repeats; ++i) {
+        best.first = std::min(best.first, time_of(a));
+        best.second = std::min(best.second, time_of(b));
+    }
+    return best;
+}
+
+}  // namespace limn::bench

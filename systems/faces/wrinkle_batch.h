@@ -1,0 +1,30 @@
+#pragma once
+
+#include "ecs/components/wrinkle.h"
+
+#include <span>
+
+namespace limn {
+
+// Intensities of wrinkles on a crowd: faces that share a mesh at rest, eight at a time, one in each
+// SIMD lane. Neighboring lanes then read one vertex of eight faces, so that triangles need no
+// gathers, and weights and directions are read once for all eight. Compression has the same bits
+// as vertex_compression(); intensity, by other logarithms, is within 1e-6 of wrinkle_intensity().
+
+/// One face of the crowd.
+struct CrowdFace {
+    std::span<const Vec3> deformed;  ///< its vertices, as many as the mesh at rest has
+    float lambda = 1.05f;            ///< of WrinkleSurface, > 0
+    float beta = 4;                  ///< the same
+    std::span<float> intensity;      ///< destination, one per vertex, -1 .. 1
+};
+
+/// Writes wrinkle_intensity() of every vertex of every face, without its mask. `rests` are those of
+/// the WrinkleState of the mesh: none, one or three. Faces are divided among threads by eights;
+/// which of them are together does not change any bit.
+void find_intensities(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces);
+
+/// The same face by face, on this thread.
+void find_intensities_scalar(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces);
+
+}  // namespace limn
