@@ -8,6 +8,7 @@
 #include "render/passes/deform_pass.h"
 #include "render/passes/depth_of_field_pass.h"
 #include "render/passes/environment_pass.h"
+#include "render/passes/furrow_pass.h"
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/glare_pass.h"
 #include "render/passes/glow_pass.h"
@@ -48,8 +49,7 @@ constexpr EffectEntry kImage[] = {
     effect<DeformEffect>(kSceneViews),     // before all that draws meshes
     effect<WrinkleEffect>(kSceneViews),    // where deformed skin is compressed
     effect<LightListEffect>(kSceneViews),  // records and clusters
-    effect<EnvironmentEffect>(kSceneViews),
-    effect<GbufferEffect>(kSceneViews),
+    effect<EnvironmentEffect>(kSceneViews), effect<GbufferEffect>(kSceneViews),
     effect<HighlightMapEffect>(kMainViews),  // what stands in for highlights
     effect<WaterBodiesEffect>(kSceneViews),  // where water is, and what lies in it
     effect<ShadowEffect>(kSceneViews),       // maps and volumes; after water, which asks for maps
@@ -60,8 +60,7 @@ constexpr EffectEntry kImage[] = {
     effect<LightEffect>(kSceneViews),
     effect<ShadingComparisonEffect>(kMainViews),         // two methods as one image
     effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // light that spreads within surfaces
-    effect<SkyEffect>(kSceneViews),
-    effect<MirrorCausticEffect>(kSceneViews),
+    effect<SkyEffect>(kSceneViews), effect<MirrorCausticEffect>(kSceneViews),
     effect<WaterEffect>(kSceneViews),      // over all that is opaque
     effect<WaterVeilEffect>(kSceneViews),  // what lies between a camera in the water and all else
     effect<ParticleEffect>(kSceneViews),   // what is behind blended surfaces
@@ -71,23 +70,19 @@ constexpr EffectEntry kImage[] = {
 
     // Where views end that are not the camera's.
     effect<ProbeEffect>(kSceneViews),  // asks for its faces as views; lights all others
-    effect<WaterMirrorEffect>(kMirrorView),
-    effect<AovEffect>(kMainViews),
+    effect<WaterMirrorEffect>(kMirrorView), effect<AovEffect>(kMainViews),
 
     // The lens and the shutter.
-    effect<TemporalEffect>(kMainViews),
-    effect<RippleEffect>(kMainViews),
-    effect<MotionBlurEffect>(kMainViews),
-    effect<DepthOfFieldEffect>(kMainViews),
-    effect<LensFlareEffect>(kMainViews),
-    effect<DazzleEffect>(kMainViews),
-    effect<GlareEffect>(kFilmViews),
-    effect<GlowEffect>(kMainViews | kMeanView),
+    effect<TemporalEffect>(kMainViews), effect<RippleEffect>(kMainViews),
+    effect<MotionBlurEffect>(kMainViews), effect<DepthOfFieldEffect>(kMainViews),
+    effect<LensFlareEffect>(kMainViews), effect<DazzleEffect>(kMainViews),
+    effect<GlareEffect>(kFilmViews), effect<GlowEffect>(kMainViews | kMeanView),
     effect<ShadingMarksEffect>(kMainViews),  // over the image: no lens blurs them
     effect<VignetteEffect>(kFilmViews),
 
     // The film.
     effect<ToneMapEffect>(kFilmViews),
+    effect<FurrowEffect>(kMainViews | kMeanView),  // over the displayed image: colors are exact
 };
 
 }  // namespace

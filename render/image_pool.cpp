@@ -103,6 +103,21 @@ void ImagePool::update(std::span<const ImageData> images) {
     }
 }
 
+void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
+    const ImageLayer its = find(id);
+    if (its.array == 0) {
+        return;
+    }
+    gpu::Texture& array = arrays_[its.array].texture;
+    gpu::TextureDesc level = array.desc();
+    level.levels = 1;
+    level.depth = 1;
+    if (pixels.size() == gpu::texture_bytes(level)) {
+        array.upload(std::as_bytes(pixels), 0, static_cast<int>(its.layer));
+        array.generate_mipmaps();  // of all layers: those of a view alone stay as they were on Mesa
+    }
+}
+
 std::vector<gpu::TextureDesc> ImagePool::place(std::span<const ImageData> images) {
     const int max_size = device_.caps().max_texture_size;
     const int max_layers = std::min(device_.caps().max_texture_layers, 1 << layout::kLayerBits);

@@ -33,6 +33,9 @@ class ImagePool {
     /// Uploads those beyond size().
     void update(std::span<const ImageData> images);
     [[nodiscard]] std::size_t size() const { return images_.size(); }
+    /// Replaces the pixels of an image, given in its format as ImageData has them; where there is
+    /// no such image, or they are not as many, nothing.
+    void replace(ImageId id, std::span<const std::uint8_t> pixels);
 
     /// Magenta if there is no such image.
     [[nodiscard]] ImageLayer find(ImageId id) const {

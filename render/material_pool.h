@@ -63,6 +63,7 @@ class MaterialPool {
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
     [[nodiscard]] const ImagePool& images() const { return images_; }
+    [[nodiscard]] ImagePool& images() { return images_; }
 
   private:
     void upload_records();

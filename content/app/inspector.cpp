@@ -7,6 +7,7 @@
 #include "content/load/level_hints.h"
 #include "ecs/archetype.h"
 #include "ecs/base/srgb.h"
+#include "ecs/components/furrows.h"
 #include "ecs/components/name.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/surface.h"
@@ -340,6 +341,9 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         draw_copy_menu(world, info, value.data());
         if (info.id == component_id<ParticleEmitter>) {
             draw_emitter(world);
+        }
+        if (info.id == component_id<Furrows> && ImGui::SmallButton("Edit furrows")) {
+            furrows_ = true;
         }
         const std::string place = fmt::format("{}: {}", entity_label(world, selected_), info.name);
         edit_copy(style, world, std::move(edit), info, value.data(), place);

@@ -43,6 +43,8 @@ class Inspector {
     [[nodiscard]] bool take_focus() { return std::exchange(focus_, false); }
     /// Whether "Step" of an emitter was pressed since the last call.
     [[nodiscard]] bool take_step() { return std::exchange(step_, false); }
+    /// Whether "Edit furrows" of the selected entity was pressed since the last call.
+    [[nodiscard]] bool take_furrows() { return std::exchange(furrows_, false); }
     /// For a new world: clears the selection and the undo stack.
     void reset();
 
@@ -86,6 +88,7 @@ class Inspector {
     std::string material_search_;
     bool focus_ = false;
     bool step_ = false;
+    bool furrows_ = false;
     std::vector<Row> rows_;
     std::unordered_set<Entity> collapsed_;
     double rows_built_at_ = -1.0;  // [s]

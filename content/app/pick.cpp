@@ -36,25 +36,6 @@ std::optional<float> hit_box(const Vec3& origin, const Vec3& direction, const Bo
     return enter <= leave ? std::optional(enter) : std::nullopt;
 }
 
-/// Moeller and Trumbore 1997; both sides.
-std::optional<float> hit_triangle(
-    const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 edge1 = b - a;
-    const Vec3 edge2 = c - a;
-    const Vec3 p = glm::cross(direction, edge2);
-    const float determinant = glm::dot(edge1, p);
-    if (std::abs(determinant) < 1e-20f) {
-        return std::nullopt;
-    }
-    const Vec3 from_a = origin - a;
-    const float u = glm::dot(from_a, p) / determinant;
-    const Vec3 q = glm::cross(from_a, edge1);
-    const float v = glm::dot(direction, q) / determinant;
-    const float distance = glm::dot(edge2, q) / determinant;
-    return u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance >= 0.0f ? std::optional(distance)
-                                                                       : std::nullopt;
-}
-
 /// A mesh whose box the ray hits, in the mesh's own space.
 struct Candidate {
     Entity entity;
@@ -98,6 +79,25 @@ std::optional<float> hit_mesh(const Candidate& candidate, float nearest) {
 }
 
 }  // namespace
+
+// Moeller and Trumbore 1997.
+std::optional<float> hit_triangle(
+    const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 edge1 = b - a;
+    const Vec3 edge2 = c - a;
+    const Vec3 p = glm::cross(direction, edge2);
+    const float determinant = glm::dot(edge1, p);
+    if (std::abs(determinant) < 1e-20f) {
+        return std::nullopt;
+    }
+    const Vec3 from_a = origin - a;
+    const float u = glm::dot(from_a, p) / determinant;
+    const Vec3 q = glm::cross(from_a, edge1);
+    const float v = glm::dot(direction, q) / determinant;
+    const float distance = glm::dot(edge2, q) / determinant;
+    return u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance >= 0.0f ? std::optional(distance)
+                                                                       : std::nullopt;
+}
 
 Ray ray_through(const RenderView& view, const Vec2& point) {
     const Vec2 ndc = {2.0f * point.x - 1.0f, 1.0f - 2.0f * point.y};

@@ -152,15 +152,22 @@ Status Player::run() {
         if (inspector_.take_focus()) {
             focus_selection();
         }
+        if (inspector_.take_furrows()) {
+            edit_furrows();
+        }
+        if (furrows_.take_reset()) {
+            face_furrows();
+        }
         real_seconds_ += real;
         if (real_seconds_ >= 1.0) {
             rate_ = paused_ ? 1.0 : simulated_seconds_ / real_seconds_;
             real_seconds_ = simulated_seconds_ = 0.0;
         }
-        if (events.left_clicked && !hud_->wants_mouse()) {
+        pointer_taken_ = edit_by_pointer(events);
+        if (events.left_clicked && !hud_->wants_mouse() && !pointer_taken_) {
             select_under_pointer();
         }
-        if (events.double_clicked && !hud_->wants_mouse()) {
+        if (events.double_clicked && !hud_->wants_mouse() && !pointer_taken_) {
             focus_under_pointer();
         }
         if (const std::optional<std::size_t> camera = model_panel_.take_camera()) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "content/app/buffer_viewer.h"
+#include "content/app/furrow_panel.h"
 #include "content/app/hud.h"
 #include "content/app/inspector.h"
 #include "content/app/leave_dialog.h"
+#include "content/app/light_drag.h"
 #include "content/app/model_panel.h"
 #include "content/app/pick.h"
 #include "content/app/play_command.h"
@@ -98,6 +100,11 @@ class Player {
     void activate_camera(std::size_t index);
     [[nodiscard]] Ray pointer_ray() const;
     void select_under_pointer();
+    /// Whether an editor takes the pointer in this frame, so that it moves no camera.
+    [[nodiscard]] bool edit_by_pointer(const WindowEvents& events);
+    void edit_furrows();
+    /// View and light face the entity whose furrows are edited.
+    void face_furrows();
 
     void set_paused(bool paused);
     void simulate(float dt, const Input& input);
@@ -150,6 +157,8 @@ class Player {
     Inspector inspector_;
     ProfilerPanel profiler_;
     ModelPanel model_panel_;
+    FurrowPanel furrows_;
+    LightDrag light_;
     LeaveDialog leave_;
     PlayerCamera camera_;
     RenderScale scale_;
@@ -170,6 +179,7 @@ class Player {
     double simulated_seconds_ = 0.0;   ///< likewise
     double rate_ = 1.0;                ///< simulated seconds a real second
     bool gamepad_click_ = false;       ///< A was down in the last frame
+    bool pointer_taken_ = false;       ///< by an editor
     bool paused_ = false;
     bool step_once_ = false;
     bool paths_shown_ = false;

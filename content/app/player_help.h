@@ -29,6 +29,7 @@ struct HelpState {
     bool selected = false;   ///< an entity is
     bool edited = false;     ///< there is something to undo or to redo
     bool inspector = false;  ///< its panel is open
+    bool furrows = false;    ///< the editor of furrows is open
     bool panel = false;      ///< some panel is open
 };
 

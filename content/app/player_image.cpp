@@ -5,6 +5,7 @@
 #include "content/app/outline.h"
 #include "content/app/path_overlay.h"
 #include "content/app/player.h"
+#include "content/bake/furrow_skin.h"
 #include "content/game/stones.h"
 #include "ecs/base/log.h"
 #include "ecs/components/rendering.h"
@@ -64,6 +65,9 @@ void Player::draw_frame(float dt, const Input& input) {
         }
     }
     const Clock::time_point begin = Clock::now();
+    if (furrows_.is_open()) {
+        stage_->world.run(update_furrow_skins);  // also while time stands
+    }
     show_edits();
     const IVec2 size = render_size(scale_, window_size);
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
@@ -94,6 +98,7 @@ void Player::show_edits() {
     }
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
         if (played != nullptr && paused_) {
+            played->world.run(update_furrow_skins);
             // Twice: what was moved has not moved since the last frame.
             played->world.run(update_transforms);
             played->world.run(update_transforms);
@@ -187,6 +192,10 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
         shows_.draw_divider(hud_->style());
     }
     shows_.draw(hud_->style(), options_.show);
+    furrows_.draw(hud_->style(), stage_->world, inspector_.undo_stack());
+    if (const std::string message = furrows_.take_message(); !message.empty()) {
+        hud_->toast(message);
+    }
     model_panel_.draw(hud_->style(), stage_->world, level_cameras(), stage_->scene.camera);
     inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
@@ -236,6 +245,7 @@ HelpState Player::help_state() const {
         .selected = stage_->world.alive(inspector_.selected()),
         .edited = undo.undo_count() + undo.redo_count() > 0,
         .inspector = inspector_.open,
+        .furrows = furrows_.is_open(),
         .panel = inspector_.open || profiler_.open || buffers_->open || shows_.open
                  || model_panel_.open};
 }

@@ -45,7 +45,7 @@ Input Player::read_input(const WindowEvents& events, float dt) {
     const bool dragging = window_->is_button_down(GLFW_MOUSE_BUTTON_LEFT)
                           || window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT)
                           || window_->is_button_down(GLFW_MOUSE_BUTTON_MIDDLE);
-    const bool on_panel = hud_->wants_mouse() && !window_->is_mouse_captured();
+    const bool on_panel = (hud_->wants_mouse() && !window_->is_mouse_captured()) || pointer_taken_;
     window_->capture_mouse(dragging && !on_panel);
     if (dragging && !on_panel) {
         input.look = events.mouse_motion;
@@ -96,6 +96,37 @@ Input Player::read_input(const WindowEvents& events, float dt) {
 Ray Player::pointer_ray() const {
     return ray_through(
         view_, window_->mouse_position() / Vec2(glm::max(window_->framebuffer_size(), IVec2(1))));
+}
+
+bool Player::edit_by_pointer(const WindowEvents& events) {
+    const PanelPointer pointer = {
+        .at = window_->mouse_position(),
+        .motion = events.mouse_motion,
+        .left = window_->is_button_down(GLFW_MOUSE_BUTTON_LEFT),
+        .right = window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT),
+        .clicked = events.left_clicked,
+        .blocked = hud_->wants_mouse() || window_->is_mouse_captured(),
+        .window = window_->framebuffer_size()};
+    World& world = stage_->world;
+    UndoStack& undo = inspector_.undo_stack();
+    if (furrows_.take_pointer(world, undo, view_, pointer)) {
+        return true;
+    }
+    const bool directs = pointer.left && window_->is_key_down(GLFW_KEY_L) && !pointer.blocked
+                         && !hud_->wants_keyboard();
+    if (!directs) {
+        light_.release();
+        return false;
+    }
+    const std::optional<Hit> ahead = pick_entity(world, ray_through(view_, {0.5f, 0.5f}));
+    const Vec3 center =
+        entity_middle(world, inspector_.selected())
+            .value_or(
+                ahead ? entity_middle(world, ahead->entity).value_or(Vec3(0)) : model_middle());
+    light_.drag(
+        world, undo, center, pointer.motion, static_cast<float>(pointer.window.y),
+        view_.world_from_camera);
+    return true;
 }
 
 void Player::select_under_pointer() {

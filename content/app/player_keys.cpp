@@ -26,6 +26,9 @@ bool flies(const HelpState& state) {
 bool has_inspector(const HelpState& state) {
     return state.inspector;
 }
+bool edits_furrows(const HelpState& state) {
+    return state.furrows;
+}
 bool has_edits(const HelpState& state) {
     return state.edited;
 }
@@ -105,6 +108,17 @@ std::span<const PlayerKey> Player::keys() {
          .label = "Double-click",
          .text = "a curve or gradient: add a key",
          .shown = has_inspector},
+        {.heading = "Edit",
+         .label = "L + drag",
+         .text = "turn the brightest light about the selection"},
+        {.heading = "Edit",
+         .label = "Click",
+         .text = "furrows: select a vertex",
+         .shown = edits_furrows},
+        {.heading = "Edit",
+         .label = "Drag",
+         .text = "furrows: the tip of a vector; right drag: the light",
+         .shown = edits_furrows},
         {"Edit", "Ctrl Z", "undo", GLFW_KEY_Z, kControl, [](Player& p) { p.undo_or_redo(true); },
          has_edits},
         {"Edit", "Ctrl Y", "redo", GLFW_KEY_Y, kControl, [](Player& p) { p.undo_or_redo(false); },
@@ -154,6 +168,10 @@ void Player::handle_key(const KeyPress& press) {
 
 void Player::close_one_or_ask() {
     if (hud_->close_popup()) {
+        return;
+    }
+    if (furrows_.is_open()) {
+        furrows_.close(stage_->world);
         return;
     }
     const std::pair<std::string_view, bool*> panels[] = {

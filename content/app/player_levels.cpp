@@ -34,6 +34,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     level_times_ = level_file_times();
     level_error_.clear();
     inspector_.reset();
+    furrows_.reset();
     camera_ = {};
     const Bounds& bounds = stage_->scene.bounds;
     if (!is_empty(bounds)) {

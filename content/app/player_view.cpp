@@ -4,6 +4,7 @@
 #include "content/app/player.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -130,6 +131,24 @@ void Player::focus_selection() {
     if (!is_empty(box)) {
         camera_.orbit.distance = framing_distance(camera_.lens, glm::length(half_extent(box)));
     }
+}
+
+void Player::edit_furrows() {
+    furrows_.open(stage_->world, inspector_.selected());
+    focus_selection();
+}
+
+void Player::face_furrows() {
+    World& world = stage_->world;
+    const auto* const place = std::as_const(world).find<WorldTransform>(furrows_.entity());
+    const std::optional<Vec3> middle = entity_middle(world, furrows_.entity());
+    if (place == nullptr || !middle) {
+        return;
+    }
+    const Vec3 front = normalize_or(transform_vector(place->world, {0, 0, 1}), {0, 0, 1});
+    const float distance = camera_.orbit.distance;
+    start_orbit(camera_, look_at(*middle + distance * front, *middle), *middle);
+    face_light(world, inspector_.undo_stack(), *middle, front);
 }
 
 void Player::go_home() {

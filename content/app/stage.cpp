@@ -1,5 +1,6 @@
 #include "content/app/stage.h"
 
+#include "content/bake/furrow_skin.h"
 #include "content/game/game.h"
 #include "content/load/set_value.h"
 #include "ecs/components/time.h"
@@ -16,6 +17,11 @@ constexpr double kRounding = 1e-3;
 
 }  // namespace
 
+void add_stage_systems(SystemList& systems) {
+    add_game_systems(systems);
+    systems.add<update_furrow_skins>(Phase::Create, When::Both);
+}
+
 Result<std::unique_ptr<Stage>> open_stage(const std::string& scene, const StageOptions& options) {
     register_game_components();
     auto stage = std::make_unique<Stage>();
@@ -26,14 +32,15 @@ Result<std::unique_ptr<Stage>> open_stage(const std::string& scene, const StageO
         return loaded.error();
     }
     stage->scene = *std::move(loaded);
-    stage->schedule = make_world_schedule(add_game_systems);
-    start_world(stage->world, add_game_systems);
+    stage->schedule = make_world_schedule(add_stage_systems);
+    start_world(stage->world, add_stage_systems);
     for (const Assignment& assignment : options.assignments) {
         const Status status = set_value(stage->world, assignment.path, assignment.value);
         if (!status) {
             return status.error();
         }
     }
+    stage->world.run(update_furrow_skins);  // with what was assigned: a frame needs no step
     return stage;
 }
 

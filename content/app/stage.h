@@ -5,6 +5,7 @@
 #include "ecs/base/result.h"
 #include "ecs/schedule.h"
 #include "ecs/world.h"
+#include "systems/update_world.h"
 
 #include <cstdint>
 #include <memory>
@@ -22,6 +23,10 @@ struct Stage {
     Schedule schedule;
     LoadedScene scene;
 };
+
+/// Systems of levels beside those of the engine: the game's, and what content grows as it is
+/// edited.
+void add_stage_systems(SystemList& systems);
 
 struct StageOptions {
     std::optional<std::uint64_t> seed = {};        ///< overrides the level's

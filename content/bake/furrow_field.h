@@ -2,7 +2,6 @@
 
 #include "ecs/components/furrows.h"
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -15,9 +14,6 @@ namespace limn {
 // edited vertices are weighted by the inverse of the distance (Shepard 1968; for fields on meshes
 // Praun et al. 2000): d(p) = sum w_i d_i / sum w_i, w_i = weight_i / |p - p_i|. The distance is
 // straight, so that what is set on a finger reaches the next one.
-
-/// The two vectors of a vertex: first and second field.
-using FurrowVectors = std::array<Vec3, 2>;
 
 /// At a vertex with unit normal `n`: (0, 1, 0) without its part along n, and that cross n. Where n
 /// is vertical, (0, 0, -1) takes the place of (0, 1, 0).

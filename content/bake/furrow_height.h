@@ -2,7 +2,6 @@
 
 #include "ecs/components/furrows.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace limn {
@@ -21,15 +20,6 @@ namespace limn {
 //
 // Images have rows from top to bottom; t, and y of a normal, point upwards. All of it gives the
 // same bits for any number of threads.
-
-/// What was grown, without noise. h1 and h2 stay apart, for wrinkles that deepen one of the fields.
-struct FurrowGrowth {
-    IVec2 size = {0, 0};              ///< [px]
-    std::vector<std::int32_t> cover;  ///< triangle of the map per pixel, or -1
-    std::vector<float> first;         ///< h1: furrows of field 0; 1 = skin without a furrow .. 0
-    std::vector<float> second;        ///< h2: furrows of field 1
-    std::vector<float> height;        ///< the lesser of both
-};
 
 [[nodiscard]] FurrowGrowth grow_furrows(const FurrowMap& map, const FurrowStyle& style);
 

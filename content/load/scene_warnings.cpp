@@ -81,6 +81,8 @@ constexpr Need kNeeds[] = {
     {"point_mass", {"transform", "", ""}},
     {"air_drag", {"point_mass", "", ""}},
     {"variable_mass", {"point_mass", "", ""}},
+    {"furrows", {"mesh_instance", "", ""}},
+    {"furrow_view", {"furrows", "", ""}},
     {"wrinkle_maps", {"wrinkle_weights", "wrinkle_response", ""}},
     {"wrinkle_weights", {"wrinkle_maps", "", ""}},
     {"wrinkle_response", {"wrinkle_maps", "", ""}},

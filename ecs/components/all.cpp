@@ -13,6 +13,7 @@
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/force_field.h"
+#include "ecs/components/furrows.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
@@ -119,6 +120,8 @@ void register_all_components() {
     register_component<WrinkleSurface>();
     register_component<WrinkleMaps>();
     register_component<WrinkleResponse>();
+    register_component<Furrows>();
+    register_component<FurrowView>();
     register_component<WrinkleWeights>();
     register_component<WrinkleTrack>();
     register_component<JointAttachment>();

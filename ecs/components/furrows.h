@@ -3,10 +3,13 @@
 #include "ecs/base/hash.h"
 #include "ecs/base/math.h"
 #include "ecs/base/rng.h"
+#include "ecs/components/surface.h"
 #include "ecs/reflect.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace limn {
@@ -25,6 +28,7 @@ struct FurrowFunctions {
     float width = 1;
     float depth = 0.25f;
     Vec2 limit = {30, -10};
+    bool operator==(const FurrowFunctions&) const = default;
 };
 
 LIMN_FIELDS(FurrowFunctions) {
@@ -45,6 +49,7 @@ struct FurrowStyle {
     float bump = 0.5f;
     int seed = 1;
     bool literal_turn = false;
+    bool operator==(const FurrowStyle&) const = default;
 };
 
 LIMN_FIELDS(FurrowStyle) {
@@ -62,6 +67,7 @@ struct FurrowArrow {
     Vec3 first = {0, 1, 0};
     Vec3 second = {1, 0, 0};
     float weight = 1;
+    bool operator==(const FurrowArrow&) const = default;
 };
 
 LIMN_FIELDS(FurrowArrow) {
@@ -100,6 +106,116 @@ struct FurrowMap {
     std::vector<FurrowTriangle> triangles;
     std::uint32_t stream[2] = {0, 1};  ///< random numbers of the two fields
 };
+
+/// The two vectors of a vertex: first and second field.
+using FurrowVectors = std::array<Vec3, 2>;
+
+/// What was grown, without noise. h1 and h2 stay apart, for wrinkles that deepen one of the fields.
+struct FurrowGrowth {
+    IVec2 size = {0, 0};              ///< [px]
+    std::vector<std::int32_t> cover;  ///< triangle of the map per pixel, or -1
+    std::vector<float> first;         ///< h1: furrows of field 0; 1 = skin without a furrow .. 0
+    std::vector<float> second;        ///< h2: furrows of field 1
+    std::vector<float> height;        ///< the lesser of both
+};
+
+/// What furrows still show while edits of Furrows wait.
+struct FurrowHold {
+    bool waits = false;
+    std::vector<FurrowArrow> spread = {};
+    std::vector<FurrowArrow> grown = {};
+    FurrowStyle style = {};
+    bool operator==(const FurrowHold&) const = default;
+};
+
+LIMN_FIELDS(FurrowHold) {
+    LIMN_FIELD(waits, "edits show after their step: interpolate, generate, remake");
+    LIMN_FIELD(spread, "arrows that the fields were last interpolated from");
+    LIMN_FIELD(grown, "arrows that furrows were last grown from");
+    LIMN_FIELD(style, "furrows were last grown with");
+}
+
+/// With a MeshInstance: grows furrows over the mesh at rest, by its texture coordinates, into
+/// images that its material uses. They follow every edit.
+struct Furrows {
+    ImageId normals = {};
+    ImageId heights = {};
+    bool tiles = false;
+    std::vector<FurrowArrow> arrows = {};
+    FurrowStyle style = {};
+    FurrowHold hold = {};
+    bool operator==(const Furrows&) const = default;
+};
+
+LIMN_FIELDS(Furrows) {
+    LIMN_FIELD(normals, "square image to write normals to, green up; keeps its size");
+    LIMN_FIELD(heights, "image of that size to write heights to: white is skin without a furrow");
+    LIMN_FIELD(tiles, "the image repeats in both directions");
+    LIMN_FIELD(
+        arrows, "the fields at some points; without any, one points upwards, the other across");
+    visit_fields(self.style, visit);
+    LIMN_FIELD(hold, "what is shown of edits that wait");
+}
+
+/// What of Furrows is shown on the mesh (wrinkle.furrow.view-modes).
+enum class FurrowMode : std::uint8_t {
+    Overview,  ///< skin without furrows
+    Vectors,   ///< white faces, vertices, and the fields there
+    Height,    ///< the height of furrows as brightness
+    Wrinkles,  ///< skin with furrows
+};
+
+/// With Furrows: looks at how they are made. Drawn over the image, at the rest pose.
+struct FurrowView {
+    FurrowMode mode = FurrowMode::Vectors;
+    bool only_edited = false;
+    float length = 0;
+    int selected = -1;
+    bool operator==(const FurrowView&) const = default;
+};
+
+LIMN_FIELDS(FurrowView) {
+    LIMN_FIELD(
+        mode,
+        .doc = "overview: skin without furrows; vectors: white faces with vertices in blue, the "
+               "first field in red, the second in green; height: furrows are dark; wrinkles: skin",
+        .values = "overview vectors height wrinkles");
+    LIMN_FIELD(only_edited, "fields are drawn where arrows set them, and nowhere else");
+    LIMN_FIELD(
+        length, "of a vector of magnitude 1; 0: less than the distance of vertices", "m", 0, 1e6);
+    LIMN_FIELD(selected, "vertex that is highlighted; -1: none", "", -1, 2147483647);
+}
+
+/// What is grown for each Furrows; rows of images from top to bottom.
+struct FurrowSkin {
+    Furrows source;  ///< it was made from, with `mesh` and `flat`
+    MeshId mesh;
+    std::uint32_t mesh_version = 0;
+    bool flat = false;                  ///< images are those of smooth skin
+    std::vector<FurrowVectors> field;   ///< per vertex: as shown
+    std::vector<std::uint32_t> edited;  ///< vertices that arrows set, in their order
+    float spacing = 0;                  ///< mean length of the edges of the mesh [m]
+    FurrowMap map;
+    FurrowGrowth growth;
+    std::vector<float> height;          ///< with noise
+    std::vector<std::uint8_t> normals;  ///< RGBA of the image
+    std::vector<std::uint8_t> heights;  ///< likewise
+    std::string fault;                  ///< why nothing was grown; empty: it was
+    std::uint32_t version = 0;          ///< changes with all of it
+};
+
+template <>
+struct ComponentTraits<FurrowSkin> : DefaultTraits {
+    static constexpr bool saved = false;  // follows from Furrows
+    static constexpr bool hashed = false;
+    static constexpr bool in_prefabs = false;
+};
+
+/// How long a vector of magnitude 1 is drawn [m].
+[[nodiscard]] inline float furrow_vector_length(const FurrowView& view, const FurrowSkin& skin) {
+    constexpr float kOfSpacing = 0.6f;  // by eye
+    return view.length > 0 ? view.length : kOfSpacing * skin.spacing;
+}
 
 /// Random numbers for the turn of a segment: of field `stream`, furrow `furrow`, its half.
 [[nodiscard]] inline Random furrow_turns(

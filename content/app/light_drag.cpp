@@ -1,0 +1,121 @@
+#include "content/app/light_drag.h"
+
+#include "content/app/field_widgets.h"
+#include "content/app/undo.h"
+#include "ecs/any_component.h"
+#include "ecs/components/light.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace limn {
+namespace {
+
+float brightness(const Vec3& color) {
+    return std::max(color.x, std::max(color.y, color.z));
+}
+
+/// The edit of a light's place, as if it were not done yet.
+Edit edit_of(const World& world, Entity light, const Transform& after) {
+    Edit edit;
+    edit.entity = light;
+    edit.before = AnyComponent::read(world, light, component_info<Transform>());
+    edit.after = AnyComponent::of(after);
+    edit.label = fmt::format("{}: transform", entity_label(world, light));
+    return edit;
+}
+
+}  // namespace
+
+std::optional<Entity> brightest_light(const World& world, const Vec3& point) {
+    std::optional<Entity> found;
+    float most = 0;
+    const auto offer = [&](Entity entity, float illuminance) {
+        if (illuminance > most && parent_of(world, entity).is_null()) {
+            most = illuminance;
+            found = entity;
+        }
+    };
+    const auto at_distance = [&](const Transform& place, float intensity) {
+        const Vec3 way = place.position - point;
+        return intensity / std::max(glm::dot(way, way), 1e-6f);
+    };
+    world.query<const PointLight, const Transform>().each(
+        [&](Entity entity, const PointLight& light, const Transform& place) {
+            offer(
+                entity, light.enabled
+                            ? at_distance(place, light.intensity * brightness(light.color))
+                            : 0.0f);
+        });
+    world.query<const SpotLight, const Transform>().each([&](Entity entity, const SpotLight& light,
+                                                             const Transform& place) {
+        offer(
+            entity,
+            light.enabled ? at_distance(place, light.intensity * brightness(light.color)) : 0.0f);
+    });
+    world.query<const DirectionalLight, const Transform>().each(
+        [&](Entity entity, const DirectionalLight& light, const Transform&) {
+            offer(entity, light.enabled ? light.illuminance * brightness(light.color) : 0.0f);
+        });
+    return found;
+}
+
+Transform turned_light(
+    const Transform& place, const Vec3& center, const Vec2& motion, float height,
+    const Affine& world_from_camera) {
+    const float angle = kPi / std::max(height, 1.0f);
+    const Vec3 right = transform_vector(world_from_camera, {1, 0, 0});
+    const Vec3 up = transform_vector(world_from_camera, {0, 1, 0});
+    const Quat turn =
+        glm::angleAxis(motion.x * angle, up) * glm::angleAxis(motion.y * angle, right);
+    Transform turned = place;
+    turned.position = center + turn * (place.position - center);
+    turned.rotation = glm::normalize(turn * place.rotation);
+    return turned;
+}
+
+Transform facing_light(const Transform& place, const Vec3& center, const Vec3& direction) {
+    Transform turned = place;
+    turned.position = center + glm::distance(place.position, center) * direction;
+    const Vec3 up = std::abs(direction.y) > 0.999f ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    turned.rotation = glm::quatLookAt(-direction, up);
+    return turned;
+}
+
+void LightDrag::drag(
+    World& world, UndoStack& undo, const Vec3& center, const Vec2& motion, float height,
+    const Affine& world_from_camera) {
+    const bool begins = !world.alive(light_);
+    const std::optional<Entity> light = begins ? brightest_light(world, center) : light_;
+    if (!light || motion == Vec2(0)) {
+        return;
+    }
+    const Transform place = *std::as_const(world).find<Transform>(*light);
+    Edit edit =
+        edit_of(world, *light, turned_light(place, center, motion, height, world_from_camera));
+    apply_edit_value(world, edit, edit.after);
+    if (begins || undo.redo_count() > 0 || undo.undo_count() == 0) {
+        undo.record(std::move(edit));
+    } else {
+        undo.extend(std::move(edit.after));
+    }
+    light_ = *light;
+}
+
+void face_light(World& world, UndoStack& undo, const Vec3& center, const Vec3& direction) {
+    if (const std::optional<Entity> light = brightest_light(world, center)) {
+        const Transform place = *std::as_const(world).find<Transform>(*light);
+        Edit edit = edit_of(world, *light, facing_light(place, center, direction));
+        apply_edit_value(world, edit, edit.after);
+        undo.record(std::move(edit));
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,27 @@
+// White faces lit from the eye, or the height of furrows (furrow_pass.h).
+#version 450
+#include "lib/scene_hides.glsl"
+
+layout(binding = 2) uniform sampler2D heights;
+
+layout(location = 0) in vec3 position_ms;
+layout(location = 1) in vec2 uv;
+layout(location = 0) out vec4 display;
+
+uniform vec3 eye;          // in the space of the mesh
+uniform int shows_height;  // 0: white
+
+const float kLeastWhite = 0.45;  // of faces seen from the side; by eye
+
+void main() {
+    if (scene_hides(gl_FragCoord.xyz)) {
+        discard;
+    }
+    if (shows_height != 0) {
+        display = vec4(vec3(texture(heights, uv).r), 1.0);
+        return;
+    }
+    vec3 normal = normalize(cross(dFdx(position_ms), dFdy(position_ms)));
+    float facing = abs(dot(normal, normalize(eye - position_ms)));
+    display = vec4(vec3(mix(kLeastWhite, 1.0, facing)), 1.0);
+}
