@@ -4,6 +4,9 @@
 #include "content/load/json_document.h"
 #include "ecs/base/text.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
