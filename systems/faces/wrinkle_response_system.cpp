@@ -3,7 +3,7 @@
 #include "ecs/base/hash.h"
 #include "systems/animation/deform_mesh.h"
 #include "systems/faces/wrinkle_measure.h"
-#include "systems/particles/mesh_source.h"
+#include "systems/animation/mesh_source.h"
 
 #include <glm/geometric.hpp>
 
