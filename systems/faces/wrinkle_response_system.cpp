@@ -196,7 +196,7 @@ void update_wrinkle_responses(
                    const MeshInstance& instance, const Deformed& deformed,
                    MeasuredWrinkles& measured) {
         const MeshSource source = find_mesh_source(
-            instance, &deformed, deformers.find<const DeformerState>(entity), poses, morphs,
+            instance.mesh, &deformed, deformers.find<const DeformerState>(entity), poses, morphs,
             *assets);
         if (source.data == nullptr || source.data->positions.size() != rest.areas.size()) {
             return;
