@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 
 namespace limn {
 namespace {
@@ -231,6 +232,9 @@ void FurrowPanel::draw(const HudStyle& style, World& world, UndoStack& undo) {
         const float margin = 14.0f * style.scale;
         ImGui::SetNextWindowPos({margin, style.panel_top}, ImGuiCond_FirstUseEver);
         ImGui::SetNextWindowSize({300.0f * style.scale, 0}, ImGuiCond_FirstUseEver);
+        const float room = ImGui::GetIO().DisplaySize.y - style.panel_top - margin;
+        ImGui::SetNextWindowSizeConstraints(
+            {0, 0}, {std::numeric_limits<float>::max(), std::max(room, 100.0f)});
         constexpr ImGuiWindowFlags kFlags =
             ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize;
         if (ImGui::Begin("Furrows", &open, kFlags)) {

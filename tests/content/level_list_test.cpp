@@ -29,7 +29,8 @@ TEST_CASE("levels: every level of the project loads, is named and has a camera t
         const auto* const orbit = world.find<OrbitCamera>(scene->camera);
         const bool after_something = orbit != nullptr && world.alive(orbit->target);
         const bool placed_by_keys = entry.name == "phonglab";
-        CHECK((on_a_path || after_something || placed_by_keys));
+        const bool stands_still = entry.name == "relax";  // to compare two times by eye
+        CHECK((on_a_path || after_something || placed_by_keys || stands_still));
     }
 }
 

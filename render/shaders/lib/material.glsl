@@ -130,7 +130,7 @@ vec2 wrinkle_slope_here() {
 
 vec4 surface_color() {
     vec4 color = material_texel(0) * base_color_texel();
-#if defined(WRINKLES) && defined(WRINKLE_LAYERS)
+#if defined(WRINKLES) && defined(WRINKLE_LAYERS) && !defined(WRINKLE_MODEL)
     vec4 slopes = wrinkle_slopes_here();
     color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slopes.xy, false), 0.0, 1.0);
     color.rgb *= 1.0 - clamp(wrinkle_strength.w * wrinkle_shade(slopes.zw, false), 0.0, 1.0);
