@@ -120,6 +120,7 @@ void register_all_components() {
     register_component<WrinkleSurface>();
     register_component<WrinkleMaps>();
     register_component<WrinkleResponse>();
+    register_component<MeasuredWrinkles>();
     register_component<Furrows>();
     register_component<FurrowView>();
     register_component<WrinkleWeights>();

@@ -2,8 +2,8 @@
 
 #include "ecs/base/hash.h"
 #include "systems/animation/deform_mesh.h"
-#include "systems/faces/wrinkle_measure.h"
 #include "systems/animation/mesh_source.h"
+#include "systems/faces/wrinkle_measure.h"
 
 #include <glm/geometric.hpp>
 

@@ -356,14 +356,14 @@ TEST_CASE("cli: info tells what particles may cost, by emitter and in all") {
     const ProgramRun run = run_limn(folder, {"info", "my.level.json"});
     CHECK(run.exit_code == 0);
     CAPTURE(run.out);
-    // 36 bytes each; on the GPU as many and two vectors more, to draw it.
+    // 36 bytes each; on the GPU 28 more, to draw it.
     CHECK(
         run.out.find("5 particle emitters\n"
                      "       3      3072 particles      108.0 KiB  cpu  smoke\n"
                      "       1       512 particles       18.0 KiB  cpu  spark\n"
-                     "       1    300000 particles    19921.9 KiB  gpu  dust\n"
+                     "       1    300000 particles    18750.0 KiB  gpu  dust\n"
                      "       4      3584 particles      126.0 KiB  cpu, in all\n"
-                     "       1    300000 particles    19921.9 KiB  gpu, in all\n")
+                     "       1    300000 particles    18750.0 KiB  gpu, in all\n")
         != std::string::npos);
     test::write_text(folder.file("none.level.json"), R"({"entities": [{"name": "post"}]})");
     CHECK(run_limn(folder, {"info", "none.level.json"}).out.find("emitter") == std::string::npos);

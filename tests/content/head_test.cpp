@@ -3,6 +3,7 @@
 #include "content/make/head_parts.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -159,7 +160,7 @@ TEST_CASE("head: the neck ends in a plane ring that turns once around") {
     std::vector<Vec3> ring;
     for (std::size_t v = 0; v < wrapped().size(); ++v) {
         if (head_layout().vertices[v].chart.y == kHeadRows) {
-            CHECK(wrapped()[v].y == doctest::Approx(-14.5f));
+            CHECK(wrapped()[v].y == test::near(-14.5f));
             ring.push_back(wrapped()[v]);
         }
     }
@@ -199,7 +200,7 @@ TEST_CASE("head: a cornea has the radius and height of an eye's, and the iris li
     for (const HeadPoint& point : make_corneas().points) {
         apex = std::max(apex, point.eye > 0 ? point.rest.z - kEyeCenter.z : 0.0f);
     }
-    CHECK(apex - kBallRadius == doctest::Approx(0.11f * kScale).epsilon(0.1));
+    CHECK(apex - kBallRadius == test::near(0.11f * kScale).epsilon(0.1));
     // Of the front surface, 7.8 mm (0.25): by what it sinks 3 mm from the axis.
     float sunk = 0;
     float iris = 0;

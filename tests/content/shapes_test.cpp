@@ -28,7 +28,7 @@ MeshData make_default(const MeshKind& kind) {
 
 TEST_CASE(
     "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
-    REQUIRE(mesh_kinds().size() == 22);
+    REQUIRE(mesh_kinds().size() == 24);
     for (const MeshKind& kind : mesh_kinds()) {
         const std::string name = kind.name;
         if (kind.make_rig != nullptr || name == "hovercraft" || name == "boat"
