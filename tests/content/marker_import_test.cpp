@@ -112,7 +112,9 @@ TEST_CASE("marker import: triangles cover the face once, and no marker is in a t
     std::vector<Vec3> points;
     Random random(4, 3, 2, 1);
     for (int i = 0; i < 60; ++i) {
-        const Vec2 at = 0.08f * Vec2(2 * random.uniform() - 1, 2 * random.uniform() - 1);
+        const float y = 2 * random.uniform() - 1;
+        const float x = 2 * random.uniform() - 1;
+        const Vec2 at = 0.08f * Vec2(x, y);
         points.emplace_back(at, 0.1f - 3 * glm::dot(at, at));
     }
     points.push_back(points[7]);  // twice
