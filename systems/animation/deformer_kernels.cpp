@@ -51,6 +51,8 @@ using V = hn::Vec<Floats>;
 using Mask = hn::Mask<Floats>;
 constexpr Floats d;
 
+namespace {
+
 HWY_INLINE V set(float value) {
     return hn::Set(d, value);
 }
@@ -199,6 +201,8 @@ HWY_INLINE void pass_lattice(const Vec4* record, Points& p) {
     p.y = hn::IfThenElse(inside, to_y, p.y);
     p.z = hn::IfThenElse(inside, to_z, p.z);
 }
+
+}  // namespace
 
 std::size_t deform_points_vector(std::span<const Vec4> packed, std::span<Vec3> points) {
     const std::size_t lanes = hn::Lanes(d);
