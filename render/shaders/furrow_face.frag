@@ -11,7 +11,7 @@ layout(location = 0) out vec4 display;
 uniform vec3 eye;          // in the space of the mesh
 uniform int shows_height;  // 0: white
 
-const float kLeastWhite = 0.45;  // of faces seen from the side; by eye
+const float kMinWhite = 0.45;  // of faces seen from the side; by eye
 
 void main() {
     if (scene_hides(gl_FragCoord.xyz)) {
@@ -23,5 +23,5 @@ void main() {
     }
     vec3 normal = normalize(cross(dFdx(position_ms), dFdy(position_ms)));
     float facing = abs(dot(normal, normalize(eye - position_ms)));
-    display = vec4(vec3(mix(kLeastWhite, 1.0, facing)), 1.0);
+    display = vec4(vec3(mix(kMinWhite, 1.0, facing)), 1.0);
 }

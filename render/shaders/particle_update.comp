@@ -107,7 +107,7 @@ vec3 next_vector(inout Random random) {
 
 // ---- births: particle_births.cpp
 
-const float kLeastKept = 0.37;
+const float kMinKept = 0.37;
 
 vec3 sample_direction(inout Random random) {
     float y = next_signed(random);
@@ -179,7 +179,7 @@ void rewind(inout Particle p, float at, int texel) {
     float old_share = texelFetch(steps, texel + 9).w;
     vec3 now = p.velocity;
     float ahead = at * push.w;
-    p.velocity = air.xyz + (now - air.xyz) * pow(max(air.w, kLeastKept), -at) - push.xyz * at;
+    p.velocity = air.xyz + (now - air.xyz) * pow(max(air.w, kMinKept), -at) - push.xyz * at;
     p.place -= (p.velocity * old_share + now * (1.0 - old_share)) * ahead;
     p.age = -ahead;
 }

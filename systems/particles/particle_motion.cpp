@@ -16,7 +16,7 @@ constexpr float kOrbitRate = 60.0f;          // in which `orbit` is what a step 
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
 const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
 
-constexpr float kLeastDrag = 0.1f;  // at which falling leads to no velocity too large to add [1/s]
+constexpr float kMinDrag = 0.1f;  // at which falling leads to no velocity too large to add [1/s]
 
 }  // namespace
 
@@ -48,7 +48,7 @@ MotionStep find_motion(
                      : motion.integrator == ParticleIntegrator::SemiImplicit ? 0.0f
                                                                              : 0.5f,
         .closed_form = closed_form};
-    if (motion.drag >= kLeastDrag) {
+    if (motion.drag >= kMinDrag) {
         // Both lead to one velocity, exactly, however long the step is.
         found.step.air += found.step.gravity / motion.drag;
         found.step.gravity = Vec3(0);

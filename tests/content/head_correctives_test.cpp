@@ -5,6 +5,7 @@
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
 #include "systems/animation/driven_shapes_system.h"
+#include "tests/content/head_skin.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -18,24 +19,12 @@
 namespace limn {
 namespace {
 
-const HeadShape kShape = {};
-
-/// Points of the skin [cm].
 const std::vector<HeadPoint>& skin() {
-    static const std::vector<HeadPoint> points = [] {
-        const std::vector<Vec3> rest = wrap_head(kShape);
-        std::vector<HeadPoint> made;
-        for (std::size_t v = 0; v < rest.size(); ++v) {
-            made.push_back(skin_point(head_layout().vertices[v], rest[v]));
-        }
-        return made;
-    }();
-    return points;
+    return test::head_skin();
 }
 
 const std::vector<MorphTarget>& shapes() {
-    static const std::vector<MorphTarget> made = make_expressions(skin(), kShape);
-    return made;
+    return test::head_shapes();
 }
 
 using Weights = std::vector<std::pair<std::string, float>>;

@@ -6,6 +6,7 @@
 #include "content/make/head_visemes.h"
 #include "content/make/head_wrap.h"
 #include "content/speech/utterance.h"
+#include "tests/content/head_skin.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -21,22 +22,12 @@ namespace {
 
 const HeadShape kShape = {};
 
-/// Points of the layout's vertices, [cm].
 const std::vector<HeadPoint>& skin() {
-    static const std::vector<HeadPoint> points = [] {
-        const std::vector<Vec3> rest = wrap_head(kShape);
-        std::vector<HeadPoint> made;
-        for (std::size_t v = 0; v < rest.size(); ++v) {
-            made.push_back(skin_point(head_layout().vertices[v], rest[v]));
-        }
-        return made;
-    }();
-    return points;
+    return test::head_skin();
 }
 
 const std::vector<MorphTarget>& shapes() {
-    static const std::vector<MorphTarget> made = make_expressions(skin(), kShape);
-    return made;
+    return test::head_shapes();
 }
 
 const MorphTarget& shape_called(std::string_view name) {
