@@ -1,11 +1,12 @@
 #pragma once
 
-#include "ecs/base/jobs.h"
 #include "ecs/chunk_view.h"
+#include "ecs/par_tasks.h"
+#include "ecs/query_access.h"
+#include "ecs/query_checks.h"
+#include "ecs/query_marks.h"
 #include "ecs/query_state.h"
-#include "ecs/query_terms.h"
 #include "ecs/resource.h"
-#include "ecs/task_scope.h"
 
 #include <algorithm>
 #include <array>
@@ -50,6 +51,7 @@ class Query {
     static constexpr bool kTracks = (detail::TermTraits<Terms>::is_tracked || ...);
     static constexpr bool kTakes = (detail::TermTraits<Terms>::is_take || ...);
     using Data = detail::DataTerms<Terms...>;
+    using Marks = detail::QueryMarks<Data, kTracks, kFollowsSparse>;
     static_assert(Data::size <= kMaxQueryColumns, "too many components in one query");
     static_assert(detail::has_each_once<Data>, "a query must list each component only once");
     static_assert(
@@ -88,7 +90,7 @@ class Query {
 
     template <typename F>
     void each(F&& function) const {
-        check_row_function<F>(Data{});
+        detail::check_row_function<F, kTakes>(Data{});
         const IterationGuard guard(*core_, lock_);
         state_->begin_call(*core_);
         const std::uint32_t version = write_version();
@@ -98,7 +100,7 @@ class Query {
             each_chunk([&](const ChunkTask& task) { run_enabled(task, version, function); });
         } else {
             each_range([&](const QueryMatch& match, std::uint32_t begin, std::uint32_t end) {
-                touch(match, begin, end, version, Data{});
+                Marks::touch(match, begin, end, version);
                 run_rows(match, begin, end, version, function, Data{}, Indices{});
             });
         }
@@ -108,19 +110,19 @@ class Query {
     /// 1024 of its values.
     template <typename F>
     void par_each(F&& function) const {
-        check_row_function<F>(Data{});
+        detail::check_row_function<F, kTakes>(Data{});
         const IterationGuard guard(*core_, lock_);
         state_->begin_call(*core_);
         const std::uint32_t version = write_version();
         if constexpr (kFollowsSparse) {
             const std::uint32_t size = leading_size();
-            par_tasks(chunks_of(size), [&](std::size_t task) {
+            detail::par_tasks(chunks_of(size), [&](std::size_t task) {
                 const std::uint32_t begin = static_cast<std::uint32_t>(task) * kChunkRows;
                 each_following(begin, chunk_end(begin, size), version, function);
             });
         } else {
             const ChunkTasks tasks(*this, version);
-            par_tasks(tasks.list.size(), [&](std::size_t task) {
+            detail::par_tasks(tasks.list.size(), [&](std::size_t task) {
                 run_enabled(tasks.list[task], version, function);
             });
         }
@@ -128,7 +130,7 @@ class Query {
 
     template <typename F>
     void chunks(F&& function) const {
-        check_chunk_function<F>(Data{});
+        detail::check_chunk_function<F, kFiltersRows>(Data{});
         const IterationGuard guard(*core_, lock_);
         state_->begin_call(*core_);
         const std::uint32_t version = write_version();
@@ -139,12 +141,12 @@ class Query {
 
     template <typename F>
     void par_chunks(F&& function) const {
-        check_chunk_function<F>(Data{});
+        detail::check_chunk_function<F, kFiltersRows>(Data{});
         const IterationGuard guard(*core_, lock_);
         state_->begin_call(*core_);
         const std::uint32_t version = write_version();
         const ChunkTasks tasks(*this, version);
-        par_tasks(tasks.list.size(), [&](std::size_t task) {
+        detail::par_tasks(tasks.list.size(), [&](std::size_t task) {
             run_chunk<std::remove_reference_t<F>>(
                 tasks.list[task], version, function, Data{}, Indices{});
         });
@@ -155,7 +157,7 @@ class Query {
     /// find(): the next ones are prefetched while the function runs.
     template <typename F>
     std::size_t gather(std::span<const Entity> entities, F&& function) const {
-        check_gather_function<F>(Data{});
+        detail::check_gather_function<F, kChanged>(Data{});
         const IterationGuard guard(*core_, lock_);
         state_->begin_call(*core_);
         const std::uint32_t version = write_version();
@@ -356,54 +358,12 @@ class Query {
         std::uint32_t row = 0;
     };
 
-    // ---- one-line errors for wrong functions
-    // ------------------------------------------------------
-
-    template <typename F, typename... Ts>
-    static constexpr void check_row_function(detail::TypeList<Ts...>) {
-        static_assert(!kTakes, "each: TakeRows is per chunk; use chunks or par_chunks");
-        static_assert(
-            std::is_invocable_v<
-                F&, detail::RowArgument<
-                        Ts>...> || std::is_invocable_v<F&, Entity, detail::RowArgument<Ts>...>,
-            "each: the function takes the query's components in order (const A&, B&, Optional as "
-            "C*), "
-            "optionally preceded by an Entity");
-    }
-    template <typename F, typename... Ts>
-    static constexpr void check_gather_function(detail::TypeList<Ts...>) {
-        static_assert(!kChanged, "gather: ignores versions; use a query without Changed");
-        static_assert(
-            std::is_invocable_v<F&, std::size_t, detail::RowArgument<Ts>...>,
-            "gather: the function takes the index in the list, a std::size_t, and then the query's "
-            "components in order (const A&, B&, Optional as C*)");
-    }
-    template <typename F, typename... Ts>
-    static constexpr void check_chunk_function(detail::TypeList<Ts...>) {
-        static_assert(
-            !kFiltersRows, "chunks: sparse components are not in chunks; use each or par_each");
-        static_assert(!(is_plain_tag<Ts> || ...), "chunks: tags have no array; use With<Tag>");
-        static_assert(
-            std::is_invocable_v<F&, ChunkView, detail::ChunkArgument<Ts>...>,
-            "chunks: the function takes a ChunkView and one std::span per component, in order: "
-            "std::span<const A>, std::span<B>; for a split component, SplitSpan<const C>; for a "
-            "shared one, const D&; for TakeRows, const RowMask&");
-    }
-
-    /// A toggled tag is allowed, to enable and disable it; its array is empty.
-    template <typename Term>
-    static constexpr bool is_plain_tag =
-        std::is_empty_v<
-            typename detail::TermTraits<Term>::Value> && !detail::TermTraits<Term>::is_take
-        && !detail::is_toggle<typename detail::TermTraits<Term>::Value>;
-
     [[nodiscard]] static constexpr std::uint32_t
     chunk_end(std::uint32_t begin, std::uint32_t size) {
         return size - begin < kChunkRows ? size : begin + kChunkRows;
     }
 
     // ---- ranges of rows
-    // ---------------------------------------------------------------------------
 
     [[nodiscard]] std::uint32_t write_version() const {
         return lock_ == IterationLock::System ? version_ : core_->now();
@@ -490,7 +450,6 @@ class Query {
     }
 
     // ---- toggled components
-    // ------------------------------------------------------------------------
 
     [[nodiscard]] EnabledRows enabled_rows(const ChunkTask& task, RowMask& rows) const {
         return state_->enabled_rows(*task.match->archetype, task.chunk, rows);
@@ -529,12 +488,12 @@ class Query {
                 return;
             }
             if (found == EnabledRows::Some) {
-                touch(match, begin, end, version, Data{});
+                Marks::touch(match, begin, end, version);
                 run_masked(match, begin, rows, version, function, Data{}, Indices{});
                 return;
             }
         }
-        touch(match, begin, end, version, Data{});
+        Marks::touch(match, begin, end, version);
         run_rows(match, begin, end, version, function, Data{}, Indices{});
     }
 
@@ -548,124 +507,12 @@ class Query {
                     return;
                 }
             }
-            raise_newest(*task.match, version, Data{});
+            Marks::raise_newest(*task.match, version);
             tasks.push_back(task);
         });
     }
 
-    template <typename Work>
-    static void par_tasks(std::size_t count, const Work& work) {
-        if (current_task.chunk != 0) {
-            for (std::size_t i = 0; i < count; ++i) {
-                work(i);  // nested in a task: keeps the task's commands in order
-            }
-            return;
-        }
-        // Scheduling a range costs as much as some hundred rows: 32 ranges per thread are enough.
-        const std::size_t grain = 1 + count / (32 * static_cast<std::size_t>(thread_count()));
-        const std::uint32_t sequence = ++current_task.sequence;
-        parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const TaskScopeGuard scope({sequence, static_cast<std::uint32_t>(i) + 1});
-                work(i);
-            }
-        });
-        ++current_task.sequence;
-    }
-
-    // ---- versions
-    // ---------------------------------------------------------------------------------
-
-    template <typename Visit, typename... Ts>
-    static void each_written(const QueryMatch& match, const Visit& visit, detail::TypeList<Ts...>) {
-        std::size_t position = 0;
-        [[maybe_unused]] const auto one = [&]<typename Term>() {
-            if constexpr (detail::TermTraits<Term>::is_write) {
-                if (detail::always_has_column<Term> || match.columns[position] >= 0) {
-                    visit(match.archetype->column(match.columns[position]));
-                }
-            }
-            ++position;
-        };
-        (one.template operator()<Ts>(), ...);
-    }
-
-    template <typename List>
-    static void touch(
-        const QueryMatch& match, std::uint32_t begin, std::uint32_t end, std::uint32_t version,
-        List list) {
-        each_written(
-            match,
-            [&](Column& column) {
-                std::uint32_t* const versions = column.versions.data();
-                const std::uint32_t first = begin / kChunkRows;
-                versions[first] = version;  // many archetypes have only one chunk: skip the loop
-                for (std::uint32_t chunk = first + 1; chunk < chunks_of(end); ++chunk) {
-                    versions[chunk] = version;
-                }
-                store_version(column.newest, version);
-            },
-            list);
-    }
-    template <typename List>
-    static void raise_newest(const QueryMatch& match, std::uint32_t version, List list) {
-        each_written(
-            match, [&](Column& column) { store_version(column.newest, version); }, list);
-    }
-
-    /// Calls mark(tracked rows, toggle bits or null) for every written term that tracks its rows;
-    /// with toggle bits only enabled rows are passed to the function.
-    template <typename Mark, typename... Ts>
-    static void each_tracked(const QueryMatch& match, const Mark& mark, detail::TypeList<Ts...>) {
-        [[maybe_unused]] const auto one = [&]<typename Term>() {
-            if constexpr (detail::TermTraits<Term>::is_tracked) {
-                using Value = typename detail::TermTraits<Term>::Value;
-                RowBits& bits = match.archetype->bits();
-                if (TrackedRows* track = bits.track(component_id<Value>); track != nullptr) {
-                    mark(
-                        *track, detail::TermTraits<Term>::is_optional
-                                    ? bits.toggle(component_id<Value>)
-                                    : nullptr);
-                }
-            }
-        };
-        (one.template operator()<Ts>(), ...);
-    }
-    static void mark_range(const QueryMatch& match, std::uint32_t begin, std::uint32_t end) {
-        if constexpr (kTracks) {
-            each_tracked(
-                match,
-                [&](TrackedRows& track, const ToggleBits* toggle) {
-                    if (toggle == nullptr && !kFollowsSparse) {
-                        track.mark(begin, end - begin);
-                        return;
-                    }
-                    for (std::uint32_t row = begin; row < end; ++row) {
-                        if (toggle == nullptr || toggle->is_enabled(row)) {
-                            track.mark_shared(row);  // tasks over a sparse set share chunks
-                        }
-                    }
-                },
-                Data{});
-        }
-    }
-    static void mark_masked(const QueryMatch& match, std::uint32_t chunk, const RowMask& rows) {
-        if constexpr (kTracks) {
-            each_tracked(
-                match,
-                [&](TrackedRows& track, const ToggleBits* toggle) {
-                    RowMask marked = rows;
-                    if (toggle != nullptr) {
-                        marked -= toggle->chunks[chunk].disabled;
-                    }
-                    track.written[chunk] |= marked;
-                },
-                Data{});
-        }
-    }
-
     // ---- calls
-    // ------------------------------------------------------------------------------------
 
     template <typename F, typename... Ts, std::size_t... Positions>
     void run_rows(
@@ -675,7 +522,7 @@ class Query {
         const Entity* entities = match.archetype->entities().data();
         constexpr bool kFiltersHere = kFiltersRows && !kFollowsSparse;
         if constexpr (!kFiltersHere) {
-            mark_range(match, begin, end);
+            Marks::mark_range(match, begin, end);
         }
         const auto loop = [&](auto... access) {
             for (std::uint32_t row = begin; row < end; ++row) {
@@ -683,7 +530,7 @@ class Query {
                     if (!passes(match, row)) {
                         continue;
                     }
-                    mark_range(match, row, row + 1);
+                    Marks::mark_range(match, row, row + 1);
                 }
                 if constexpr (std::is_invocable_v<F&, detail::RowArgument<Ts>...>) {
                     function(detail::row_argument(access[row])...);
@@ -703,7 +550,7 @@ class Query {
         std::index_sequence<Positions...>) const {
         const Entity* entities = match.archetype->entities().data();
         if constexpr (!kFiltersRows) {
-            mark_masked(match, begin / kChunkRows, rows);
+            Marks::mark_masked(match, begin / kChunkRows, rows);
         }
         const auto loop = [&](auto... access) {
             rows.for_each([&](std::uint32_t place) {
@@ -712,7 +559,7 @@ class Query {
                     if (!passes(match, row)) {
                         return;
                     }
-                    mark_range(match, row, row + 1);
+                    Marks::mark_range(match, row, row + 1);
                 }
                 if constexpr (std::is_invocable_v<F&, detail::RowArgument<Ts>...>) {
                     function(detail::row_argument(access[row])...);
@@ -739,7 +586,7 @@ class Query {
     template <typename F, typename... Ts, std::size_t... Positions>
     [[gnu::noinline]] void run_chunk(
         const ChunkTask& task, std::uint32_t version, PassedFunction<F> function,
-        detail::TypeList<Ts...> list, std::index_sequence<Positions...>) const {
+        detail::TypeList<Ts...>, std::index_sequence<Positions...>) const {
         const QueryMatch& match = *task.match;
         const std::uint32_t begin = task.chunk * kChunkRows;
         const std::uint32_t size = chunk_end(begin, match.archetype->size()) - begin;
@@ -760,7 +607,7 @@ class Query {
             }
         };
         (save.template operator()<Ts>(Positions), ...);
-        touch(match, begin, begin + size, version, list);
+        Marks::touch(match, begin, begin + size, version);
         [[maybe_unused]] std::array<RowMask, kTracks ? Data::size : 1> previous_written;
         if constexpr (kTracks) {
             std::size_t position = 0;
@@ -793,39 +640,10 @@ class Query {
         if constexpr (kTracks) {
             view.previous_written_ = previous_written.data();
         }
-        function(view, chunk_argument<Ts>(match, Positions, task.chunk, size)...);
-    }
-
-    template <typename Term>
-    static detail::ChunkValue<Term> chunk_argument(
-        const QueryMatch& match, std::size_t position, std::uint32_t chunk, std::uint32_t size) {
-        using Traits = detail::TermTraits<Term>;
-        using T = typename Traits::Value;
-        [[maybe_unused]] const int column = match.columns[position];
-        [[maybe_unused]] const std::uint32_t begin = chunk * kChunkRows;
-        if constexpr (Traits::is_take) {
-            return match.archetype->bits().track_of_column(column)->take(chunk, size);
-        } else if constexpr (std::is_empty_v<T>) {
-            return {};
-        } else if constexpr (detail::is_shared<T>) {
-            T* const value = detail::find_shared<T>(*match.archetype);
-            if constexpr (Traits::is_optional) {
-                return value;
-            } else {
-                return *value;
-            }
-        } else if constexpr (detail::is_split<T>) {
-            return column < 0 ? SplitSpan<T>()
-                              : SplitSpan<T>(&match.archetype->column(column), begin, size);
-        } else {
-            return detail::always_has_column<Term> || column >= 0 ? std::span<T>(
-                       reinterpret_cast<T*>(match.archetype->column(column).data) + begin, size)
-                                                                  : std::span<T>();
-        }
+        function(view, detail::chunk_argument<Ts>(match, Positions, task.chunk, size)...);
     }
 
     // ---- sparse components
-    // ------------------------------------------------------------------------
 
     /// Whether the row passes the per-row filters.
     [[nodiscard]] bool passes(const QueryMatch& match, std::uint32_t row) const {
@@ -878,18 +696,14 @@ class Query {
     template <typename F>
     void
     run_row(const QueryMatch& match, std::uint32_t row, std::uint32_t version, F& function) const {
-        each_written(
-            match,
-            [&](Column& column) {
-                store_version(column.versions[row / kChunkRows], version);
-                store_version(column.newest, version);
-            },
-            Data{});
+        Marks::each_written(match, [&](Column& column) {
+            store_version(column.versions[row / kChunkRows], version);
+            store_version(column.newest, version);
+        });
         run_rows(match, row, row + 1, version, function, Data{}, Indices{});
     }
 
     // ---- one entity
-    // -------------------------------------------------------------------------------
 
     [[nodiscard]] Place locate(Entity entity) const {
         state_->update(*core_);
@@ -998,8 +812,8 @@ class Query {
             "single: a split component has no address; use value<T>(single_entity())");
         const Place place = find_single();
         const std::uint32_t version = write_version();
-        touch(*place.match, place.row, place.row + 1, version, Data{});
-        mark_range(*place.match, place.row, place.row + 1);
+        Marks::touch(*place.match, place.row, place.row + 1, version);
+        Marks::mark_range(*place.match, place.row, place.row + 1);
         return {detail::access_term<Ts>(*core_, *place.match, Positions, version)[place.row]...};
     }
 
