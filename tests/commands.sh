@@ -39,7 +39,9 @@ quick() {
 
 # What the examples call theirs.
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+export runs=$folder.runs
+mkdir "$runs"
+trap 'rm -rf "$folder" "$runs"' EXIT
 sed -n '/^```json/,/^```/p' content/levels/README.md | sed '1d;/^```/,$d' >"$folder/my.level.json"
 if [ -d ../shared/assets ]; then
     ln -s "$(realpath ../shared/assets)/ict-facekit" "$folder/ICT-FaceKit"
@@ -68,16 +70,19 @@ if [ -d ../shared/assets ]; then
 fi
 
 mapfile -t commands < <(found | tr -s ' ' | sort -u | while read -r command; do quick "$command"; done | tr -s ' ' | sort -u)
-failed=0
-export DISPLAY=''
-for command in "${commands[@]}"; do
-    if output=$(cd "$folder" && eval "\"$limn\" ${command#limn }" 2>&1); then
-        echo "ok      $command"
+export DISPLAY='' limn folder
+run() {  # COMMAND: in a folder of its own with what the examples call theirs
+    local place output
+    place=$(mktemp -d -p "$runs")
+    cp -al "$folder/." "$place"
+    if output=$(cd "$place" && eval "\"$limn\" ${1#limn }" 2>&1); then
+        echo "ok      $1"
     else
-        echo "FAILED  $command"
-        tail -n 3 <<<"$output"
-        failed=1
+        printf 'FAILED  %s\n%s\n' "$1" "$(tail -n 3 <<<"$output")"
+        return 1
     fi
-done
+}
+export -f run
+printf '%s\0' "${commands[@]}" | xargs -0 -P "$(nproc)" -I {} bash -c 'run "$1"' _ {} || failed=1
 echo "${#commands[@]} commands"
-exit $failed
+exit ${failed:-0}

@@ -17,15 +17,15 @@ on_zink() {
 
 levels=("$@")
 [ $# -gt 0 ] || mapfile -t levels < <("$limn" levels | awk '{ print $1 }')
-failed=0
-for level in "${levels[@]}"; do
-    size=(--size 320x180 --time 1)
-    "$limn" render "$level" --quiet -o "$folder/llvmpipe.png" "${size[@]}"
-    psnr=failed
-    if on_zink "$limn" render "$level" --quiet -o "$folder/zink.png" "${size[@]}"; then
-        psnr=$("$limn" compare "$folder/llvmpipe.png" "$folder/zink.png" | awk '/^psnr/ { print $2 }')
+export limn folder minimum
+compare() {
+    local level=$1 size=(--size 320x180 --time 1) psnr=failed
+    "$limn" render "$level" --quiet -o "$folder/$level.llvmpipe.png" "${size[@]}"
+    if on_zink "$limn" render "$level" --quiet -o "$folder/$level.zink.png" "${size[@]}"; then
+        psnr=$("$limn" compare "$folder/$level.llvmpipe.png" "$folder/$level.zink.png" | awk '/^psnr/ { print $2 }')
     fi
     printf '%-20s %s dB\n' "$level" "$psnr"
-    awk -v p="$psnr" -v minimum="$minimum" 'BEGIN { exit !(p == "inf" || p + 0 >= minimum) }' || failed=1
-done
-exit "$failed"
+    awk -v p="$psnr" -v minimum="$minimum" 'BEGIN { exit !(p == "inf" || p + 0 >= minimum) }'
+}
+export -f compare on_zink
+printf '%s\n' "${levels[@]}" | xargs -P "$(nproc)" -I {} bash -c 'compare {}'

@@ -2,7 +2,7 @@
 // can be drawn, not where a limit is missed.
 #include "bench/faces/face_crowd.h"
 #include "bench/faces/face_rows.h"
-#include "content/load/atomic_file.h"
+#include "bench/report_files.h"
 #include "ecs/base/jobs.h"
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
-#include <utility>
 
 int main(int argc, char** argv) {
     using namespace limn;
@@ -54,18 +53,9 @@ int main(int argc, char** argv) {
             return 1;
         }
     }
-    for (const auto& [path, text] :
-         {std::pair{csv, face_bench_csv(bench)},
-          {json, face_bench_json(bench)},
-          {svg, face_bench_svg(bench)}}) {
-        if (path == "-") {
-            fmt::print("{}", text);
-        } else if (!path.empty()) {
-            if (const Status written = write_file(path, text); !written) {
-                fmt::print(stderr, "limn bench: {}\n", written.error().message);
-                return 1;
-            }
-        }
-    }
-    return 0;
+    const bool written = bench::write_reports(
+        {{csv, face_bench_csv(bench)},
+         {json, face_bench_json(bench)},
+         {svg, face_bench_svg(bench)}});
+    return written ? 0 : 1;
 }

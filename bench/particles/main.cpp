@@ -2,7 +2,7 @@
 // where a gate is missed.
 #include "bench/particles/particle_race.h"
 #include "bench/particles/particle_rows.h"
-#include "content/load/atomic_file.h"
+#include "bench/report_files.h"
 #include "ecs/base/jobs.h"
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
-#include <utility>
 
 int main(int argc, char** argv) {
     using namespace limn;
@@ -65,18 +64,9 @@ int main(int argc, char** argv) {
     if (!bench.quiet) {
         fmt::print("{} of {} gates met\n", met, bench.gates.size());
     }
-    for (const auto& [path, text] :
-         {std::pair{csv, particle_bench_csv(bench)},
-          {json, particle_bench_json(bench)},
-          {svg, particle_bench_svg(bench)}}) {
-        if (path == "-") {
-            fmt::print("{}", text);
-        } else if (!path.empty()) {
-            if (const Status written = write_file(path, text); !written) {
-                fmt::print(stderr, "limn bench: {}\n", written.error().message);
-                return 1;
-            }
-        }
-    }
-    return 0;
+    const bool written = bench::write_reports(
+        {{csv, particle_bench_csv(bench)},
+         {json, particle_bench_json(bench)},
+         {svg, particle_bench_svg(bench)}});
+    return written ? 0 : 1;
 }
