@@ -45,6 +45,7 @@ LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers) 
         static_cast<float>(layers.motion), look.motion_strength,
         is_streak ? 1.0f : to_share(look.velocity_cover),
         static_cast<float>(layers.negative_light)};
+    record[layout::kLookFocus].x = to_share(look.velocity_cover);
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =

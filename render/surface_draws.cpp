@@ -6,6 +6,7 @@
 #include "render/mesh_pool.h"
 #include "render/shaders/instance_gpu.h"
 #include "render/skinning/deformed_list.h"
+#include "render/view_block.h"
 
 namespace limn {
 namespace {
@@ -49,7 +50,9 @@ void draw_depth(
         features.bits |= run.features.bits & kHoles;
         features.maps = run.features.maps.only(layout::kBaseColorSlot);
     }
-    const gpu::Program* program = programs.get({}, features);
+    Variant variant;
+    variant.add_if(state.clip, "CLIPPED");
+    const gpu::Program* program = programs.get(variant, features);
     if (program == nullptr) {
         return;
     }
@@ -159,7 +162,8 @@ void draw_depths(
     const auto& list = view.data.get<InstanceList>();
     bind_instances(context.device(), *view.frame, list);
     for (const DrawRun& run : runs) {
-        draw_depth(context, view, list, run, programs, visible_sides({}, run));
+        draw_depth(
+            context, view, list, run, programs, visible_sides({.clip = is_clipped(view)}, run));
     }
 }
 

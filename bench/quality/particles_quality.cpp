@@ -16,7 +16,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -162,6 +166,75 @@ Status measure_motion(HeadlessRenderer& headless, QualityReport& report) {
     report.at_most("GPU: distance to the plain loop, of the way", gpu_error, 1e-4);
     report.at_most("CPU: distance to the exact motion, of the way", exact_error, 1e-4);
     return Done{};
+}
+
+// ---- population
+
+/// An emitter whose pool is too small, for ten seconds.
+void measure_population(QualityReport& report) {
+    ParticleEmitter emitter = burst_of(500);
+    emitter.bursts.clear();
+    emitter.rate = 700;
+    emitter.life = 1;
+    emitter.life_spread = 0.5f;
+    Fountain fountain(emitter, {});
+    double lost = 0;
+    std::size_t largest = 0;
+    for (int i = 0; i < 600; ++i) {
+        const ParticlePool& before = fountain.pool();
+        double expected =
+            static_cast<double>(before.size()) - static_cast<double>(before.clock.born);
+        for (std::size_t k = 0; k < before.size(); ++k) {
+            expected -= before.age[k] + kStep >= before.life[k] ? 1 : 0;
+        }
+        fountain.step(1);
+        const ParticlePool& after = fountain.pool();
+        expected += static_cast<double>(after.clock.born);
+        lost += std::abs(static_cast<double>(after.size()) - expected);
+        largest = std::max(largest, after.size());
+    }
+    const EmitterClock& clock = fountain.pool().clock;
+    const double counted = static_cast<double>(clock.born + clock.dropped);
+    report.at_most("a full pool, 10 s: births that are neither alive nor dead of age", lost, 0);
+    report.at_most(
+        "a full pool, 10 s: of 7,000 births, neither done nor counted as dropped",
+        std::abs(7000 - counted), 1);
+    report.at_most(
+        "a full pool, 10 s: alive, with room for 500", static_cast<double>(largest), 500);
+}
+
+// ---- order
+
+template <typename Key>
+double misplaced(const std::vector<Key>& keys) {
+    std::vector<std::uint32_t> found(keys.size());
+    std::iota(found.begin(), found.end(), 0u);
+    std::vector<std::uint32_t> expected = found;
+    std::stable_sort(expected.begin(), expected.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return keys[a] < keys[b];
+    });
+    SortScratch scratch;
+    sort_by_depth(std::span<const Key>(keys), found, scratch, SortThreads::All);
+    double count = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        count += found[i] != expected[i] ? 1 : 0;
+    }
+    return count;
+}
+
+/// A million depths, some 200 of them equal to each.
+void measure_order(QualityReport& report) {
+    std::vector<std::uint32_t> keys;
+    std::vector<std::uint16_t> short_keys;
+    for (std::uint32_t i = 0; i < 1000000; ++i) {
+        const float depth = static_cast<float>((i * 2654435761u) % 5003) / 100;
+        keys.push_back(depth_key(depth));
+        short_keys.push_back(depth_key16(depth, 0, 51));
+    }
+    report.at_most(
+        "sort of 1M by 32 bits: not where std::stable_sort has them", misplaced(keys), 0);
+    report.at_most(
+        "sort of 1M by 16 bits: not where std::stable_sort has them", misplaced(short_keys), 0);
 }
 
 // ---- collisions
@@ -347,6 +420,8 @@ void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
 
 Status measure_particles(HeadlessRenderer& headless, QualityReport& report) {
     LIMN_TRY(measure_motion(headless, report));
+    measure_population(report);
+    measure_order(report);
     measure_tunnelling(report);
     measure_transparency(headless, report);
     measure_shadows(headless, report);

@@ -427,7 +427,8 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(
         velocity_cover,
         "opacity times cover above which a pixel moves with it instead of with what is behind, for "
-        "motion blur and temporal antialiasing; 1: never; streaks never do",
+        "motion blur and temporal antialiasing, but for streaks; opacity above which it is as "
+        "sharp as the lens shows it, not as what is behind; 1: never",
         "", 0, 1);
     LIMN_FIELD(
         shadow,

@@ -1,6 +1,7 @@
 #include "render/passes/depth_of_field_pass.h"
 
 #include "render/fullscreen.h"
+#include "render/lens_depth.h"
 #include "render/render_view.h"
 
 #include <algorithm>
@@ -570,8 +571,10 @@ Result<DepthOfFieldEffect> DepthOfFieldEffect::create(gpu::Device& device, const
 }
 
 void DepthOfFieldEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
-    view.radiance =
-        draw_depth_of_field(graph, pass, view.camera, view.radiance, view.gbuffer.depth);
+    const auto* const lens = view.data.find<LensDepth>();
+    view.radiance = draw_depth_of_field(
+        graph, pass, view.camera, view.radiance,
+        lens != nullptr ? lens->depth : view.gbuffer.depth);
 }
 
 }  // namespace limn

@@ -8,7 +8,7 @@ namespace limn {
 
 // Depth of field: spreads out-of-focus light over its circle of confusion (thin_lens.h).
 //
-// Reads    radiance, depth
+// Reads    radiance; LensDepth, or depth
 // Writes   radiance as seen through the lens
 // Order    after everything drawn into the scene and after motion blur, before glow
 // Shaders  focus_*; lib/depth_of_field.glsl, layout in depth_of_field_gpu.h
@@ -25,8 +25,9 @@ namespace limn {
 // overdraw.
 //
 // Tiles of 16 px are classified: where all is in focus, the pass only copies. Blended surfaces are
-// as sharp as what is behind them. After Jimenez, "Next Generation Post Processing in Call of Duty:
-// Advanced Warfare" (2014), and Abadie, "A Life of a Bokeh" (2018).
+// as sharp as what is behind them; so are particles, but where they cover most of a pixel. After
+// Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare" (2014), and Abadie,
+// "A Life of a Bokeh" (2018).
 //
 // FocusMethod::Mip is the cheapest method (post.dof-mip): sharp surfaces leak into blurred ones,
 // near ones keep their outline, discs are squares.

@@ -11,6 +11,7 @@
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
 #include "render/instance_list.h"
+#include "render/lens_depth.h"
 #include "render/lighting.h"
 #include "render/material_pool.h"
 #include "render/particle_weighted.h"
@@ -120,6 +121,7 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
     ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"}),
+        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_focus.frag"}),
         ProgramVariants::of_meshes(device, "depth_first.frag")};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
     // As of materials: between mip levels only where that costs nothing.
@@ -175,6 +177,7 @@ std::uint32_t ParticleEffect::add_look(
     features.six_way = features.six_way || is_six_way;
     soft = soft || look.softness > 0;
     moving = moving || moves_pixels(looks.back());
+    focused = focused || look.velocity_cover < 1;
     return static_cast<std::uint32_t>(looks.size() - 1);
 }
 
@@ -312,7 +315,8 @@ void ParticleEffect::collect(FrameData& frame) {
     billboards.places.clear();
     extents.clear();
     features = {};
-    lit = soft = moving = has_ribbons = has_billboards = has_halves = has_weighted = false;
+    lit = soft = moving = focused = has_ribbons = has_billboards = has_halves = has_weighted =
+        false;
     const float alpha = frame.camera.alpha;
     const auto shape_in_world = [&](Entity entity) {
         const auto* const emitter = world.find<ParticleEmitter>(entity);
@@ -517,30 +521,27 @@ void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) 
 
 void ParticleEffect::add_sprites(
     FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
-    std::span<const Use> targets, std::span<const Part> parts, std::optional<TextureId> veil,
-    bool behind) {
+    std::span<const Use> targets, Part part, bool behind) {
     std::vector<Use> reads =
         lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+    const std::optional<TextureId> veil = view.data.get<ParticlesInFront>().veil;
     if (veil) {
         reads.push_back(sampled(*veil, kVeilUnit));
     }
     add_pool_reads(graph, reads);
     graph.add_pass(
         name, std::span<const Use>(reads), targets,
-        [this, &view, veiled = veil.has_value(), behind,
-         all = std::vector(parts.begin(), parts.end())](PassContext& context) {
-            for (const Part part : all) {
-                draw_sprites(context, view, part, veiled, behind);
-            }
+        [this, &view, part, behind](PassContext& context) {
+            draw_sprites(context, view, part, behind);
         });
 }
 
-void ParticleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
     auto& front = view.data.publish<ParticlesInFront>();
     front.effect = this;
     front.veil.reset();
     const std::vector<DrawRun>& blended = view.data.get<InstanceList>().blended;
-    if (blended.empty() || is_clipped(view)) {
+    if (blended.empty()) {
         return;
     }
     front.veil = create_target(graph, "particles.veil", GL_DEPTH_COMPONENT32F, view.size());
@@ -549,12 +550,10 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     graph.add_pass(
         "particles.veil", std::span<const Use>(meshes), veil,
         [this, &view, &blended](PassContext& context) {
+            bind_view(context, view);
             draw_depths(context, view, blended, veil_programs);
         });
-    const Use targets[] = {view.radiance};
-    const Part parts[] = {Part::Behind, Part::Front};
-    add_sprites(
-        graph, view, "particles.veiled", view.gbuffer.depth, targets, parts, front.veil, true);
+    add_layers(graph, frame, view, true);
 }
 
 void ParticleFrontEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
@@ -563,34 +562,42 @@ void ParticleFrontEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDa
     }
 }
 
-void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+/// What is behind the blended surfaces, if some may be seen, or the rest.
+void ParticleEffect::add_layers(
+    FrameGraph& graph, const FrameData& frame, ViewData& view, bool behind) {
     const auto& seen = view.data.get<ViewParticles>();
-    const std::optional<TextureId> veil = view.data.get<ParticlesInFront>().veil;
-    const auto add_pass = [&](const char* name, TextureId depth, std::initializer_list<Use> targets,
-                              Part part) {
-        const bool whole = part == Part::Behind || part == Part::Front;
+    const auto add_pass = [&](const char* name, const char* veiled, TextureId depth,
+                              std::initializer_list<Use> targets, Part part) {
         add_sprites(
-            graph, view, name, depth, std::span(targets.begin(), targets.size()), {&part, 1},
-            whole ? veil : std::nullopt);
+            graph, view, behind ? veiled : name, depth, std::span(targets.begin(), targets.size()),
+            part, behind);
     };
     create_layer_programs(*frame.device);
     if (seen.half_begin > 0) {
-        add_pass("particles.behind", view.gbuffer.depth, {view.radiance}, Part::Behind);
+        add_pass(
+            "particles.behind", "particles.veiled behind", view.gbuffer.depth, {view.radiance},
+            Part::Behind);
     }
     if (has_halves && layer_programs && !is_empty(seen.half_bounds)) {
         const ParticleLayer layer =
             begin_particle_layer(graph, *layer_programs, view, seen.half_bounds);
-        add_pass("particles.half", layer.depth, {cleared(layer.radiance)}, Part::Half);
+        add_pass(
+            "particles.half", "particles.veiled half", layer.depth, {cleared(layer.radiance)},
+            Part::Half);
         end_particle_layer(graph, *layer_programs, layer, view);
     }
-    add_pass("particles", view.gbuffer.depth, {view.radiance}, Part::Front);
+    add_pass("particles", "particles.veiled", view.gbuffer.depth, {view.radiance}, Part::Front);
     if (has_weighted && resolve != nullptr && !is_empty(seen.weighted_bounds)) {
         const WeightedLayers mixed = create_weighted_layers(graph, view);
         add_pass(
-            "particles.weighted", view.gbuffer.depth,
+            "particles.weighted", "particles.veiled weighted", view.gbuffer.depth,
             {cleared(mixed.sum), cleared(mixed.kept, Vec4(1))}, Part::Weighted);
         resolve_weighted(graph, *resolve, mixed, view);
     }
+}
+
+void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    add_layers(graph, frame, view, false);
     if (view.velocity && moving) {
         std::vector<Use> reads = {
             depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)};
@@ -600,9 +607,30 @@ void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewD
             "particles.velocity", std::span(reads), writes,
             [this, &view](PassContext& context) { draw_velocity(context, view); });
     }
+    if (view.camera.lens.aperture_radius > 0 && focused) {
+        add_lens_depth(graph, view);
+    }
     if (view.is(kMainViews) && gpu.meets_depth()) {
         remember_depth(graph, *depth_copy, view, seen_depth);
     }
+}
+
+void ParticleEffect::add_lens_depth(FrameGraph& graph, ViewData& view) {
+    const TextureId scene = view.gbuffer.depth;
+    TextureSpec spec = graph.spec(scene);
+    spec.name = "particles.lens depth";
+    const TextureId depth = graph.create(spec);
+    graph.add_pass(
+        "particles.depth behind", {scene}, {image(depth)}, [scene, depth](PassContext& context) {
+            context.texture(scene).copy_to(context.texture(depth));
+        });
+    std::vector<Use> reads;
+    add_pool_reads(graph, reads);
+    const Use writes[] = {depth};
+    graph.add_pass(
+        "particles.lens depth", std::span<const Use>(reads), writes,
+        [this, &view](PassContext& context) { draw_lens_depth(context, view); });
+    view.data.publish<LensDepth>().depth = depth;
 }
 
 void ParticleEffect::create_layer_programs(gpu::Device& device) {
@@ -658,10 +686,24 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
     });
 }
 
+void ParticleEffect::draw_lens_depth(PassContext& context, const ViewData& view) {
+    bind_view(context, view);
+    draw_runs(context, view, Part::All, [&](SpriteShape shape) {
+        Variant variant("FOCUS");
+        variant.add(sprite_variant(view, shape));
+        const gpu::Program* const program = focus_programs.get(variant);
+        if (program != nullptr) {
+            context.device().use(gpu::Pipeline{program, {.cull = GL_NONE}});
+        }
+        return program;
+    });
+}
+
 /// What the GPU moves at full resolution is in front.
 void ParticleEffect::draw_sprites(
-    PassContext& context, const ViewData& view, Part part, bool veiled, bool behind) {
+    PassContext& context, const ViewData& view, Part part, bool behind) {
     const bool is_weighted = part == Part::Weighted;
+    const bool is_veiled = view.data.get<ParticlesInFront>().veil.has_value();
     gpu::PipelineState state = kWeightedState;
     if (!is_weighted) {
         state.blend = gpu::kBlendPremultiplied;
@@ -674,7 +716,7 @@ void ParticleEffect::draw_sprites(
         variant.add_if(lit && shape != SpriteShape::SmallDisc, "LIT");
         variant.add_if(features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
-        variant.add_if(veiled, "VEILED");
+        variant.add_if(is_veiled, "VEILED");
         variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {

@@ -24,10 +24,10 @@ namespace limn {
 //
 // Reads    depth, light clusters, environment, InstanceList; ParticlePool, Trail, Beam, Billboard
 //          with ParticleLook
-// Writes   radiance; velocity, where they cover more than their look states
+// Writes   radiance; velocity and LensDepth, where they cover more than their look states
 // Order    what is behind blended surfaces before these, the rest after them and before the lens
-// Shaders  particle.vert, particle.frag, particle_velocity.frag, particle_weighted.frag; layout in
-// particle_gpu.h
+// Shaders  particle.vert, particle.frag, particle_velocity.frag, particle_focus.frag,
+// particle_weighted.frag; layout in particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
@@ -36,8 +36,8 @@ namespace limn {
 // also through one that is behind it. Looks of half the resolution are sorted among themselves, in
 // a layer (particle_layer.h) behind all others. Each view leaves out what it does not see; of
 // particles on the GPU, emitters whose shape alone counts. Looks that are weighted instead of
-// sorted (particle_weighted.h) are one layer before all others. Such layers, and views of mirrors,
-// have all blended surfaces behind them.
+// sorted (particle_weighted.h) are one layer before all others. Where blended surfaces are seen
+// there are two of each layer, one on each side of these.
 
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
@@ -70,6 +70,7 @@ struct ParticleEffect {
 
     ProgramVariants programs;
     ProgramVariants velocity_programs;
+    ProgramVariants focus_programs;
     ProgramVariants veil_programs;  ///< depth of blended surfaces
     std::vector<LookRecord> looks = {};
     std::vector<ParticleArrays> arrays = {};  ///< of each look
@@ -88,7 +89,8 @@ struct ParticleEffect {
     bool lit = false;
     bool soft = false;  ///< some fade where they meet a surface
     SpriteFeatures features = {};
-    bool moving = false;  ///< some look may cover enough to move pixels
+    bool moving = false;   ///< some look may cover enough to move pixels
+    bool focused = false;  ///< some look may cover enough for the lens to focus on
     bool has_ribbons = false;
     bool has_billboards = false;
     bool has_halves = false;
@@ -125,16 +127,17 @@ struct ParticleEffect {
     void append_runs(
         const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
         ViewParticles& seen);
+    void add_layers(FrameGraph& graph, const FrameData& frame, ViewData& view, bool behind);
     void add_sprites(
         FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
-        std::span<const Use> targets, std::span<const Part> parts,
-        std::optional<TextureId> veil = std::nullopt, bool behind = false);
+        std::span<const Use> targets, Part part, bool behind);
     void create_layer_programs(gpu::Device& device);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
     [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape) const;
-    void
-    draw_sprites(PassContext& context, const ViewData& view, Part part, bool veiled, bool behind);
+    void draw_sprites(PassContext& context, const ViewData& view, Part part, bool behind);
     void draw_velocity(PassContext& context, const ViewData& view);
+    void add_lens_depth(FrameGraph& graph, ViewData& view);
+    void draw_lens_depth(PassContext& context, const ViewData& view);
     template <typename Use>
     void draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use);
 };

@@ -24,6 +24,7 @@ layout(binding = 27) uniform sampler2DArray negative_lights;
 #ifdef VEILED
 layout(binding = 23) uniform sampler2D veil;  // depth of the nearest blended surface, 0: none
 uniform int behind;                           // 1: what is behind it; 0: the rest
+uniform float resolution;                     // of the image, as a share of the view's
 #endif
 
 layout(location = 0) out vec4 radiance;
@@ -33,7 +34,8 @@ layout(location = 1) out float opacity;
 
 void main() {
 #ifdef VEILED
-    bool is_behind = gl_FragCoord.z < texelFetch(veil, ivec2(gl_FragCoord.xy), 0).r;
+    ivec2 at = min(ivec2(gl_FragCoord.xy / resolution), textureSize(veil, 0) - 1);
+    bool is_behind = gl_FragCoord.z < texelFetch(veil, at, 0).r;
     if (is_behind != (behind != 0)) {
         discard;
     }

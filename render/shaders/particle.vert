@@ -6,6 +6,7 @@
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
 //   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   FOCUS  without light, for its depth where it covers enough
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
 #define VARYING out
@@ -407,6 +408,11 @@ void main() {
 #ifdef VELOCITY
     is_gone = is_gone || color.a * glow.z <= look_texel(look, kLookMotion).z;
     blend.x = glow.z / max(look_texel(look, kLookMotion).z, 1e-6);
+#endif
+#ifdef FOCUS
+    float least = max(look_texel(look, kLookFocus).x, 1e-6);
+    is_gone = is_gone || color.a <= least;
+    blend.x = 1.0 / least;
 #endif
 #ifdef RIBBONS
 #ifdef VELOCITY

@@ -54,7 +54,9 @@ const uint kLookShadow = 48u;
 //      move with it, 1: never; layer of the image of light from negative sides, -1: none
 const uint kLookMotion = 49u;
 //  50  acceleration at rest [m/s^2]; drag [1/s]
-const uint kLookTexels = 51u;
+//  51  opacity above which the lens focuses on them, 1: never
+const uint kLookFocus = 51u;
+const uint kLookTexels = 52u;
 
 // ParticleShadowRecord: rows that map the world to the opacity maps (lib/particle_shadow.glsl).
 //   0, 1, 3  texture coordinates s and t, as rows 0 and 1 divided by row 3

@@ -2,6 +2,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
+#include "ecs/components/water_look.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
@@ -17,7 +18,7 @@ struct OrderScene : Scene {
 
     /// A disc of 4 m at rest.
     Entity emit(const Vec3& place, const Vec3& color, float opacity = 1) {
-        ParticleLook look;
+        ParticleLook look = look_;
         look.size = 4;
         look.colors = {{.at = 0, .color = color, .opacity = opacity}};
         look.emission = 1;
@@ -44,6 +45,8 @@ struct OrderScene : Scene {
             affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(3)));
     }
     Vec3 middle() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33)), 16, 16); }
+
+    ParticleLook look_{};  ///< of those that are emitted, but for their size and color
 };
 
 }  // namespace
@@ -72,6 +75,55 @@ TEST_CASE_FIXTURE(
     CHECK(seen.x == test::near(0.8 * 0.5 * 0.5).epsilon(0.02));
     CHECK(seen.z == test::near(0.5 * 0.5).epsilon(0.02));
     CHECK(seen.y == test::near(0.5).epsilon(0.02));
+}
+
+TEST_CASE_FIXTURE(
+    OrderScene,
+    "particle order: at half the resolution and weighted, panes are as for all others") {
+    add_pane(0, {0, 0, 1}, 0.5f);
+    for (const bool is_half : {true, false}) {
+        CAPTURE(is_half);
+        look_.resolution = is_half ? ParticleResolution::Half : ParticleResolution::Full;
+        look_.sort = is_half ? ParticleSort::Distance : ParticleSort::Weighted;
+        const Entity behind = emit({0, 0, -1}, {1, 0, 0}, 0.8f);
+        const Entity before = emit({0, 0, 0.3f}, {0, 1, 0}, 0.5f);
+        const Vec3 seen = middle();
+        CHECK(seen.x == test::near(0.8 * 0.5 * 0.5).epsilon(0.02));
+        CHECK(seen.z == test::near(0.5 * 0.5).epsilon(0.02));
+        CHECK(seen.y == test::near(0.5).epsilon(0.02));
+        world.destroy(behind);
+        world.destroy(before);
+    }
+}
+
+TEST_CASE_FIXTURE(OrderScene, "particle order: a mirror shows them behind a pane and before it") {
+    world.add(
+        world.create(
+            Water{.size = {40, 40}, .absorption = {100, 100, 100}, .scattering = Vec3(0)},
+            WorldTransform{at({0, 0, 0})}),
+        WaterLook{.reflection = WaterReflection::Planar, .map_scale = 1});
+    // A ceiling, as the water sees it.
+    place(
+        add(make_square()),
+        add(Material{
+            .shading = ShadingModel::Unlit,
+            .alpha_mode = AlphaMode::Blend,
+            .double_sided = true,
+            .base_color = {0, 0, 1, 0.5f}}),
+        affine_from({0, 5, 0}, Quat(std::sqrt(0.5f), std::sqrt(0.5f), 0, 0), Vec3(9)));
+    const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
+    const auto mirrored = [&](float height) {
+        const Entity one = emit({0, height, 0}, {1, 0, 0});
+        const Vec3 seen = rgb_at(radiance(view), 16, 16);
+        world.destroy(one);
+        return seen;
+    };
+    const Vec3 behind = mirrored(6);
+    CHECK(behind.x > 0.005f);
+    CHECK(behind.x == test::near(behind.z).epsilon(0.05));
+    const Vec3 before = mirrored(4);
+    CHECK(before.x == test::near(2 * behind.x).epsilon(0.05));
+    CHECK(before.z < 0.02f * before.x);
 }
 
 TEST_CASE_FIXTURE(

@@ -1,0 +1,14 @@
+// Depth of pixels that particles cover, for the lens: where their opacity is above what the look states. Definitions:
+// those of lib/sprite.glsl.
+#version 450
+#define VARYING in
+#include "lib/particle_varyings.glsl"
+#include "lib/sprite.glsl"
+
+void main() {
+    vec2 place = sprite_place(corner);
+    vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
+    if (light.a * s.a * blend.x <= 1.0) {  // blend.x: 1 / the least opacity that counts
+        discard;
+    }
+}
