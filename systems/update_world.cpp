@@ -71,6 +71,7 @@ void add_object_systems(SystemList& systems) {
 void add_animation_systems(SystemList& systems) {
     systems.add<add_poses>(Create, Both);
     systems.add<add_deformer_states>(Create, Both);
+    systems.add<release_surface_bindings>(Create, Both);
     systems.add<add_surface_binding_states>(Create, Both);
     systems.add<bind_surfaces>(Move, Both);
     systems.add<add_rotation_track_states>(Create, Both);

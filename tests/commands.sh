@@ -56,7 +56,7 @@ echo '{"shots": [{"image": "a.png", "to_light": [1, 0, 1]}, {"image": "b.png", "
     {"image": "before.png", "to_light": [0, 1, 1]}]}' >"$folder/shots.json"
 {
     printf 'PathFileType\t4\t(X/Y/Z)\ttake.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n50\t50\t2\t7\tmm\n'
-    printf 'Frame#\tTime\thead1\t\t\thead2\t\t\thead3\t\t\tbrow\t\t\tlip\t\t\tchin\t\t\tcheek\t\t\n\t\tX1\tY1\tZ1\n\n'
+    printf 'Frame#\tTime\thead1\t\t\thead2\t\t\thead3\t\t\tskin24_4_L\t\t\tmouth9_270_M\t\t\tskin60_0_M\t\t\tskin39_16_L\t\t\n\t\tX1\tY1\tZ1\n\n'
     for frame in 1 2; do
         printf '%s\t0.0%s' $frame $frame
         printf '\t%s' -70 100 0 70 100 0 0 150 -50 20 60 90 0 -3$frame 100 0 -70 90 50 0 70

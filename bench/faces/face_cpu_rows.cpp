@@ -2,7 +2,9 @@
 #include "bench/faces/face_rows.h"
 #include "ecs/base/jobs.h"
 #include "systems/animation/deformer_kernels.h"
+#include "systems/animation/patch_kernels.h"
 #include "systems/animation/skin_kernels.h"
+#include "systems/animation/surface_patches.h"
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/weld.h"
 #include "systems/faces/wrinkle_measure.h"
@@ -71,6 +73,23 @@ void add_strain_rows(FaceBench& bench) {
     bench.add(FaceRow{"weld of one mesh, once", weld});
 }
 
+/// Markers in place of shapes and joints: patches through them, and the faces on these.
+void add_patch_row(FaceBench& bench, FaceCrowd& crowd) {
+    const auto move_by = [&](const auto& move) {
+        parallel_for(kCrowd, 1, [&](std::size_t i, std::size_t) {
+            CrowdMember& member = crowd.members[i];
+            make_patches(member.markers, crowd.corners, member.patches);
+            member.deformed = crowd.mesh.positions;
+            move(SurfaceShape{crowd.places, member.patches, crowd.order}, member.deformed);
+        });
+    };
+    const auto [patches, scalar] = race(
+        bench.repeats, [&] { move_by(move_by_patches); }, [&] { move_by(move_by_patches_scalar); });
+    bench.add(FaceRow{
+        fmt::format("{} patches through markers", crowd.corners.size() / 3), patches, scalar,
+        "scalar", kDeformLimit});
+}
+
 }  // namespace
 
 void add_measure_rows(FaceBench& bench) {
@@ -126,6 +145,8 @@ void add_deform_rows(FaceBench& bench) {
         bench.repeats, [&] { skin_by(skin_linear); }, [&] { skin_by(skin_linear_scalar); });
     bench.add(FaceRow{
         fmt::format("{} joints", crowd.skin.joints.size()), joints, joints_scalar, "scalar"});
+
+    add_patch_row(bench, crowd);
 
     const auto [all, all_scalar] = race(
         std::min(bench.repeats, 30), [&] { deform_crowd(crowd, kCrowd); },

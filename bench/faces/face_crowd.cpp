@@ -2,10 +2,13 @@
 
 #include "content/make/head.h"
 #include "ecs/base/jobs.h"
+#include "ecs/components/surface_binding.h"
+#include "ecs/world.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/deform_mesh.h"
 #include "systems/animation/deformer_kernels.h"
 #include "systems/animation/skin_kernels.h"
+#include "systems/animation/surface_binding_system.h"
 #include "systems/faces/wrinkle_system.h"
 
 #include <algorithm>
@@ -74,6 +77,25 @@ std::vector<WrinkleRest> rests_of(const MeshData& mesh, WrinkleDriver driver) {
     return make_wrinkle_state(surface, {MeshId{0}, {}}, assets).rests;
 }
 
+void bind_to_markers(FaceCrowd& crowd) {
+    const MeshData& mesh = crowd.mesh;
+    crowd.markers = make_head({.part = HeadPartKind::Markers});
+    World world;
+    world.insert_resource(Assets{}).meshes = {mesh, crowd.markers};
+    SurfaceBinding binding;
+    binding.surface = world.create(ControlSurface{MeshId{1}});
+    binding.method = SurfaceMethod::Patches;
+    binding.by_uvs = true;
+    binding.reach = 0.1f;
+    const Entity skin = world.create(MeshInstance{MeshId{0}, {}}, binding);
+    world.run(add_surface_binding_states);
+    world.run(bind_surfaces);
+    const auto& state = world.get<SurfaceBindingState>(skin);
+    crowd.corners = state.corners;
+    crowd.places = *state.places;
+    crowd.order = *state.order;
+}
+
 FaceCrowd make_crowd() {
     FaceCrowd crowd;
     crowd.mesh = make_head({});
@@ -81,6 +103,7 @@ FaceCrowd make_crowd() {
     crowd.skin = rig.skin;
     crowd.chord = rests_of(crowd.mesh, WrinkleDriver::Chord);
     crowd.strain = rests_of(crowd.mesh, WrinkleDriver::Strain);
+    bind_to_markers(crowd);
     const auto clip =
         std::ranges::find(rig.clips, std::string_view("expressions"), &ClipData::name);
     for (std::size_t i = 0; i < kCrowd; ++i) {
@@ -92,6 +115,8 @@ FaceCrowd make_crowd() {
         member.pose.joints.resize(rig.skeleton.joints.size());
         compute_joint_matrices(rig.skeleton, pose, member.pose.joints);
         member.deformers.now = pack_deformers(face_muscles(share));
+        member.markers = crowd.markers.positions;
+        add_morphs(crowd.markers.morphs, member.morphs.weights, {member.markers, {}, {}});
         member.deformed = crowd.mesh.positions;
         member.intensity.resize(crowd.mesh.positions.size());
     }

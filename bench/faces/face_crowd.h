@@ -4,6 +4,7 @@
 #include "ecs/components/deformers.h"
 #include "ecs/components/skeleton.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_places.h"
 #include "ecs/components/wrinkle.h"
 #include "systems/faces/wrinkle_batch.h"
 
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,6 +27,8 @@ struct CrowdMember {
     Pose pose;
     MorphWeights morphs;
     DeformerState deformers;
+    std::vector<Vec3> markers;  ///< of the surface that moves the face by patches, in its place
+    std::vector<Vec4> patches;
     std::vector<Vec3> deformed;
     std::vector<float> intensity;
 };
@@ -34,8 +38,12 @@ struct CrowdMember {
 struct FaceCrowd {
     MeshData mesh;
     SkinData skin;
-    std::vector<WrinkleRest> chord;   ///< one
-    std::vector<WrinkleRest> strain;  ///< three
+    MeshData markers;                    ///< what moves the mesh by patches
+    std::vector<std::uint32_t> corners;  ///< of its faces
+    std::vector<SurfacePlace> places;    ///< of the vertices on it
+    std::vector<std::uint32_t> order;    ///< of the places, patch by patch
+    std::vector<WrinkleRest> chord;      ///< one
+    std::vector<WrinkleRest> strain;     ///< three
     std::vector<CrowdMember> members;
 };
 

@@ -1,6 +1,7 @@
 #include "ecs/base/rng.h"
 #include "ecs/components/deformers.h"
 #include "systems/animation/deformer_kernels.h"
+#include "systems/animation/patch_kernels.h"
 #include "systems/animation/skin_kernels.h"
 #include "systems/animation/surface_faces.h"
 #include "systems/animation/surface_patches.h"
@@ -115,6 +116,23 @@ void patches_follow(benchmark::State& state) {
     per_vertex(state);
 }
 
+/// Positions alone.
+template <auto move>
+void patches_move(benchmark::State& state) {
+    const Face& at_rest = face();
+    const std::vector<SurfacePlace> places = bind_to_patches(
+        at_rest.positions, at_rest.normals, at_rest.tangents, at_rest.surface, at_rest.corners, 1);
+    const std::vector<std::uint32_t> order = order_by_patch(places);
+    std::vector<Vec4> patches;
+    make_patches(at_rest.surface, at_rest.corners, patches);
+    std::vector<Vec3> positions = at_rest.positions;
+    for (auto _ : state) {
+        move({places, patches, order}, positions);
+        benchmark::DoNotOptimize(positions.data());
+    }
+    per_vertex(state);
+}
+
 void patches_made(benchmark::State& state) {
     std::vector<Vec4> patches;
     for (auto _ : state) {
@@ -146,6 +164,8 @@ void faces_follow(benchmark::State& state) {
 
 BENCHMARK(muscles_and_lattice)->Unit(benchmark::kMicrosecond);
 BENCHMARK(patches_follow)->Unit(benchmark::kMicrosecond);
+BENCHMARK(patches_move<move_by_patches>)->Unit(benchmark::kMicrosecond);
+BENCHMARK(patches_move<move_by_patches_scalar>)->Unit(benchmark::kMicrosecond);
 BENCHMARK(patches_made)->Unit(benchmark::kMicrosecond);
 BENCHMARK(faces_follow)->Unit(benchmark::kMicrosecond);
 

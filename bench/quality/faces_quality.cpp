@@ -2,6 +2,7 @@
 #include "bench/oracles/skin_readback.h"
 #include "bench/quality/quality.h"
 #include "content/make/head.h"
+#include "content/make/head_expressions.h"
 #include "content/speech/coarticulation.h"
 #include "content/speech/mouth.h"
 #include "content/speech/resample.h"
@@ -13,12 +14,18 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "systems/animation/deformer_kernels.h"
 #include "systems/animation/deformer_system.h"
+#include "systems/animation/patch_kernels.h"
+#include "systems/animation/skin_kernels.h"
+#include "systems/animation/surface_binding_system.h"
+#include "systems/animation/surface_patches.h"
 #include "systems/faces/skin_strain.h"
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -32,8 +39,8 @@
 #include <vector>
 
 // Faces: what moves them and what measures their skin. Speech beside sums in double precision and a
-// search that tries all, deformers on both processors beside their definitions, strain beside the
-// polar decomposition.
+// search that tries all, deformers on both processors beside their definitions, a head that goes
+// with its markers beside its own shapes, strain beside the polar decomposition.
 
 namespace limn {
 namespace {
@@ -327,6 +334,98 @@ Status measure_deformers(gpu::Device& device, QualityReport& report) {
     return Done{};
 }
 
+// ---- markers ------------------------------------------------------------------------------------
+
+struct MarkedExpression {
+    const char* name;
+    std::array<std::string_view, 4> units;  ///< at weight 1; empty ones at the end
+    double most_mm;                         ///< RMS distance
+    double most_share;                      ///< of the RMS motion
+};
+
+constexpr MarkedExpression kMarked[] = {
+    {"jaw drops", {"AU26"}, 0.45, 0.12},
+    {"mouth opens wide", {"AU27", "AU25"}, 1.1, 0.11},
+    {"smile", {"AU12_L", "AU12_R", "AU6_L", "AU6_R"}, 0.5, 0.23},
+    {"blink", {"AU45_L", "AU45_R"}, 0.22, 0.34},
+    {"pucker", {"AU18"}, 0.4, 0.22},
+    {"brows rise", {"AU1_L", "AU1_R", "AU2_L", "AU2_R"}, 0.33, 0.36},
+    {"frown", {"AU4_L", "AU4_R"}, 0.16, 0.29},
+    {"nose wrinkles", {"AU9_L", "AU9_R"}, 0.22, 0.41},
+};
+
+/// `mesh` in an expression of the head's shapes.
+std::vector<Vec3> shape_of(const MeshData& mesh, const MarkedExpression& expression) {
+    std::vector<float> weights(mesh.morphs.size(), 0.0f);
+    for (const std::string_view unit : expression.units) {
+        if (!unit.empty()) {
+            weights[expression_index(unit)] = 1.0f;
+        }
+    }
+    std::vector<Vec3> positions = mesh.positions;
+    add_morphs(mesh.morphs, weights, {positions, {}, {}});
+    return positions;
+}
+
+double rms_mm(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    double sum = 0;
+    for (std::size_t v = 0; v < a.size(); ++v) {
+        const dvec3 difference = dvec3(a[v]) - dvec3(b[v]);
+        sum += glm::dot(difference, difference);
+    }
+    return 1000 * std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+Status measure_markers(QualityReport& report) {
+    const MeshData head = make_head({});
+    const MeshData markers = make_head({.part = HeadPartKind::Markers});
+    World world;
+    auto& assets = world.insert_resource(Assets{});
+    assets.meshes = {head, markers};
+    SurfaceBinding binding;
+    binding.surface = world.create(ControlSurface{MeshId{1}});
+    binding.method = SurfaceMethod::Patches;
+    binding.by_uvs = true;
+    binding.reach = 0.1f;
+    const Entity skin = world.create(MeshInstance{MeshId{0}, {}}, binding);
+    world.run(add_surface_binding_states);
+    world.run(bind_surfaces);
+    const auto& state = world.get<SurfaceBindingState>(skin);
+    if (state.places == nullptr) {
+        return fail("faces: the head is not bound to its markers");
+    }
+    std::vector<Vec4> patches;
+    const auto moved_by = [&](const std::vector<Vec3>& shape) {
+        make_patches(shape, state.corners, patches);
+        std::vector<Vec3> positions = head.positions;
+        move_by_patches(surface_shape(&state, patches), positions);
+        return positions;
+    };
+    double at_rest = 0;
+    const std::vector<Vec3> rest = moved_by(markers.positions);
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+        at_rest = std::max(at_rest, static_cast<double>(glm::distance(rest[v], head.positions[v])));
+    }
+    report.inform(
+        "markers: vertices of the surface", static_cast<double>(markers.positions.size()));
+    report.inform(
+        "markers: vertices of the head that they do not move",
+        static_cast<double>(head.positions.size() - state.order->size()));
+    report.at_most("markers: farthest vertex at rest", at_rest, 1e-6, "m");
+    for (const MarkedExpression& expression : kMarked) {
+        const std::vector<Vec3> truth = shape_of(head, expression);
+        const double error = rms_mm(moved_by(shape_of(markers, expression)), truth);
+        const double motion = rms_mm(truth, head.positions);
+        report.at_most(
+            fmt::format("markers: {}, head beside its own shapes, RMS", expression.name), error,
+            expression.most_mm, "mm");
+        report.at_most(
+            fmt::format("markers: {}, of the RMS motion", expression.name), error / motion,
+            expression.most_share);
+    }
+    return Done{};
+}
+
 // ---- strain -------------------------------------------------------------------------------------
 
 using Triangle = std::array<dvec3, 3>;
@@ -420,6 +519,7 @@ Status measure_faces(HeadlessRenderer& headless, QualityReport& report) {
     measure_coarticulation(report);
     measure_selection(report);
     LIMN_TRY(measure_deformers(*headless.device, report));
+    LIMN_TRY(measure_markers(report));
     measure_strain(report);
     return Done{};
 }

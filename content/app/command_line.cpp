@@ -416,6 +416,8 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         ->type_name("IN")
         ->required();
     app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
+    app->add_flag(
+        "--head", options.head, "markers: by name those of the head that is made here, see below");
     app->footer(
         "ict-facekit: the neutral face of ICT FaceKit with all expressions in its folder "
         "FaceXModel;\n"
@@ -428,11 +430,14 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "those called head... take the head's motion out, gaps are filled. A face follows it by\n"
         "\"surface_binding\": {\"surface\": \"take\", \"method\": \"patches\"}, where the entity "
         "take\n"
-        "has the file as its gltf.\n\n"
+        "has the file as its gltf. With --head, names are those of the head's own surface, a mesh\n"
+        "of part \"markers\": mouth9_90_M is on its loop 9, at 90 degrees, in the middle; the\n"
+        "face may be another, and markers that it lacks go with their neighbors.\n\n"
         "Examples:\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
         "  limn import makehuman makehuman -o person.glb\n"
         "  limn import markers take.trc -o take.glb\n"
+        "  limn import markers take.trc --head -o take.glb\n"
         "  limn play face.glb");
     return {app, [&options] { return run_import(options); }};
 }

@@ -14,6 +14,9 @@
 namespace limn {
 
 Status run_import(const ImportOptions& options) {
+    if (options.head && options.kind != "markers") {
+        return fail("--head: found {}, expected markers", options.kind);
+    }
     if (!options.out.ends_with(".glb")) {
         return fail("{}: expected a file name ending in .glb", options.out);
     }
@@ -24,8 +27,9 @@ Status run_import(const ImportOptions& options) {
         }
         progress->update(done);
     };
+    const MarkerSurface surface = options.head ? make_head_marker_surface() : MarkerSurface{};
     const GltfScene scene = LIMN_TRY(
-        options.kind == "markers"     ? import_markers(options.in)
+        options.kind == "markers" ? import_markers(options.in, options.head ? &surface : nullptr)
         : options.kind == "makehuman" ? import_makehuman(options.in, show)
                                       : import_ict_facekit(options.in, show));
     LIMN_TRY(save_glb(options.out, scene));

@@ -7,9 +7,10 @@
 namespace limn {
 
 struct ImportOptions {
-    std::string kind;  ///< ict-facekit, makehuman or markers
-    std::string in;    ///< folder, or the file of markers
-    std::string out;   ///< .glb
+    std::string kind;   ///< ict-facekit, makehuman or markers
+    std::string in;     ///< folder, or the file of markers
+    std::string out;    ///< .glb
+    bool head = false;  ///< markers are those of the project's own head
 };
 
 /// `limn import`: outside data into a .glb, which appears complete or not at all. Progress on a

@@ -1,39 +1,28 @@
 #include "content/load/marker_import.h"
 
+#include "content/bake/delaunay.h"
 #include "content/bake/tangents.h"
 #include "content/load/json_document.h"
 #include "content/load/marker_file.h"
+#include "content/make/head.h"
+#include "content/make/head_markers.h"
 #include "ecs/base/text.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 namespace limn {
 namespace {
 
 using DVec2 = glm::dvec2;
-using Corners = std::array<std::size_t, 3>;
-
-double turn_of(const DVec2& a, const DVec2& b, const DVec2& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-/// Whether d is within the circle through a, b and c, which turn counter-clockwise.
-bool is_in_circle(const DVec2& a, const DVec2& b, const DVec2& c, const DVec2& d) {
-    const DVec2 p = a - d;
-    const DVec2 q = b - d;
-    const DVec2 r = c - d;
-    return glm::dot(p, p) * (q.x * r.y - q.y * r.x) - glm::dot(q, q) * (p.x * r.y - p.y * r.x)
-               + glm::dot(r, r) * (p.x * q.y - p.y * q.x)
-           > 0.0;
-}
 
 /// Angle around a vertical axis, times the radius, and height. The axis lies as far behind the
 /// middle as the face is wide.
@@ -80,21 +69,66 @@ MarkerMotion face_of(const MarkerMotion& motion, const std::vector<std::uint32_t
     return face;
 }
 
+/// Each vertex with the joint of its marker.
+SkinWeights one_joint_each(std::span<const std::uint16_t> joints) {
+    SkinWeights skin;
+    for (std::size_t v = 0; v < joints.size(); ++v) {
+        skin.first.push_back(static_cast<std::uint32_t>(v));
+        skin.joints.push_back(joints[v]);
+        skin.weights.push_back(1.0f);
+    }
+    skin.first.push_back(static_cast<std::uint32_t>(joints.size()));
+    return skin;
+}
+
 MeshData make_surface(std::span<const Vec3> rest) {
     MeshData mesh;
     mesh.name = "markers";
     mesh.positions.assign(rest.begin(), rest.end());
     mesh.uvs.assign(rest.size(), Vec2(0));
     mesh.indices = triangulate_markers(rest);
-    for (std::size_t m = 0; m < rest.size(); ++m) {
-        mesh.skin.first.push_back(static_cast<std::uint32_t>(m));
-        mesh.skin.joints.push_back(static_cast<std::uint16_t>(m));
-        mesh.skin.weights.push_back(1.0f);
-    }
-    mesh.skin.first.push_back(static_cast<std::uint32_t>(rest.size()));
+    std::vector<std::uint16_t> joints(rest.size());
+    std::iota(joints.begin(), joints.end(), std::uint16_t{0});
+    mesh.skin = one_joint_each(joints);
     generate_normals(mesh);
     update_bounds(mesh);
     return mesh;
+}
+
+/// What was recorded of a face without the motion of its head, and how it was at rest.
+struct Take {
+    MarkerMotion face;
+    std::vector<Vec3> rest;
+};
+
+Result<Take> make_take(const std::string& name, MarkerMotion motion) {
+    std::vector<std::uint32_t> head;
+    for (std::uint32_t m = 0; m < motion.markers(); ++m) {
+        if (!is_finite(motion.positions[m])) {
+            return fail(
+                "{}: the first frame, the face at rest, lacks the marker {}", name,
+                in_quotes(motion.names[m]));
+        }
+        if (is_head(motion.names[m])) {
+            head.push_back(m);
+        }
+    }
+    const auto first_frame = [](const MarkerMotion& of) {
+        const auto end = of.positions.begin() + static_cast<std::ptrdiff_t>(of.markers());
+        return std::vector<Vec3>(of.positions.begin(), end);
+    };
+    if (!head.empty()) {
+        const Result<std::vector<Affine>> heads = stabilize_head(motion, first_frame(motion), head);
+        if (!heads) {
+            return fail("{}: {}", name, heads.error().message);
+        }
+    }
+    Take take{face_of(motion, head), {}};
+    take.rest = first_frame(take.face);
+    if (take.face.markers() > 65000) {
+        return fail("{}: found {} markers, expected at most 65000", name, take.face.markers());
+    }
+    return take;
 }
 
 ClipData make_clip(const MarkerMotion& face) {
@@ -113,90 +147,12 @@ ClipData make_clip(const MarkerMotion& face) {
     return clip;
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> triangulate_markers(std::span<const Vec3> positions) {
-    std::vector<DVec2> flat = unroll(positions);
-    const std::size_t count = flat.size();
-    double size = 1e-6;
-    for (const DVec2& p : flat) {
-        size = std::max(size, glm::distance(p, flat[0]));
-    }
-    // A triangle around all, far enough that it hardly bends the hull.
-    const DVec2 middle = flat.empty() ? DVec2(0) : flat[0];
-    flat.push_back(middle + 1e4 * size * DVec2(-1, -1));
-    flat.push_back(middle + 1e4 * size * DVec2(1, -1));
-    flat.push_back(middle + 1e4 * size * DVec2(0, 1));
-    std::vector<Corners> triangles = {{count, count + 1, count + 2}};
-    for (std::size_t i = 0; i < count; ++i) {
-        const bool is_twin = std::any_of(
-            flat.begin(), flat.begin() + static_cast<std::ptrdiff_t>(i),
-            [&](const DVec2& p) { return p == flat[i]; });
-        if (is_twin) {
-            continue;
-        }
-        std::map<std::pair<std::size_t, std::size_t>, int> edges;  // of what is taken out
-        std::erase_if(triangles, [&](const Corners& t) {
-            const bool out = is_in_circle(flat[t[0]], flat[t[1]], flat[t[2]], flat[i]);
-            for (std::size_t k = 0; out && k < 3; ++k) {
-                ++edges[{t[k], t[(k + 1) % 3]}];
-            }
-            return out;
-        });
-        for (const auto& [edge, times] : edges) {
-            if (!edges.contains({edge.second, edge.first})) {
-                triangles.push_back({edge.first, edge.second, i});
-            }
-        }
-    }
-    std::vector<std::uint32_t> indices;
-    for (const Corners& t : triangles) {
-        if (std::max({t[0], t[1], t[2]}) < count
-            && turn_of(flat[t[0]], flat[t[1]], flat[t[2]]) > 1e-9 * size * size) {
-            for (const std::size_t corner : t) {
-                indices.push_back(static_cast<std::uint32_t>(corner));
-            }
-        }
-    }
-    return indices;
-}
-
-Result<GltfScene> make_marker_scene(const std::string& name, MarkerMotion motion) {
-    std::vector<std::uint32_t> head;
-    for (std::uint32_t m = 0; m < motion.markers(); ++m) {
-        if (!is_finite(motion.positions[m])) {
-            return fail(
-                "{}: the first frame, the face at rest, lacks the marker {}", name,
-                in_quotes(motion.names[m]));
-        }
-        if (is_head(motion.names[m])) {
-            head.push_back(m);
-        }
-    }
-    const std::vector<Vec3> rest(
-        motion.positions.begin(),
-        motion.positions.begin() + static_cast<std::ptrdiff_t>(motion.markers()));
-    if (!head.empty()) {
-        const Result<std::vector<Affine>> heads = stabilize_head(motion, rest, head);
-        if (!heads) {
-            return fail("{}: {}", name, heads.error().message);
-        }
-    }
-    MarkerMotion face = face_of(motion, head);
-    const std::vector<Vec3> places(
-        face.positions.begin(),
-        face.positions.begin() + static_cast<std::ptrdiff_t>(face.markers()));
-    if (face.markers() > 65000) {
-        return fail("{}: found {} markers, expected at most 65000", name, face.markers());
-    }
-    fill_gaps(face, places);
-
+/// Markers as joints of the skin of `surface`, which knows them already.
+GltfScene make_scene(const std::string& name, const Take& take, MeshData surface) {
+    const MarkerMotion& face = take.face;
+    const std::vector<Vec3>& places = take.rest;
     GltfScene scene;
     scene.name = name;
-    MeshData surface = make_surface(places);
-    if (surface.indices.empty()) {
-        return fail("{}: found no three markers of the face that span a triangle", name);
-    }
     scene.skeleton.joints.push_back(name);
     scene.skeleton.parents.push_back(-1);
     scene.skeleton.rest.translations.emplace_back(0);
@@ -229,9 +185,71 @@ Result<GltfScene> make_marker_scene(const std::string& name, MarkerMotion motion
     return scene;
 }
 
-Result<GltfScene> import_markers(const std::string& in) {
+}  // namespace
+
+std::vector<std::uint32_t> triangulate_markers(std::span<const Vec3> positions) {
+    return triangulate_points(unroll(positions));
+}
+
+Result<GltfScene> make_marker_scene(const std::string& name, MarkerMotion motion) {
+    Take take = LIMN_TRY(make_take(name, std::move(motion)));
+    fill_gaps(take.face, take.rest);
+    MeshData surface = make_surface(take.rest);
+    if (surface.indices.empty()) {
+        return fail("{}: found no three markers of the face that span a triangle", name);
+    }
+    return make_scene(name, take, std::move(surface));
+}
+
+Result<GltfScene>
+make_marker_scene(const std::string& name, MarkerMotion motion, const MarkerSurface& surface) {
+    const Take take = LIMN_TRY(make_take(name, std::move(motion)));
+    Take known;
+    known.face.rate = take.face.rate;
+    std::map<std::string, std::uint16_t> joint_of;
+    std::vector<std::uint16_t> joints;
+    for (std::size_t v = 0; v < surface.names.size(); ++v) {
+        const auto next = static_cast<std::uint16_t>(joint_of.size());
+        const auto [joint, is_new] = joint_of.try_emplace(surface.names[v], next);
+        if (is_new) {
+            known.face.names.push_back(surface.names[v]);
+            known.rest.push_back(surface.mesh.positions[v]);
+        }
+        joints.push_back(joint->second);
+    }
+    const std::size_t count = known.rest.size();
+    const Vec3 unseen(std::numeric_limits<float>::quiet_NaN());
+    known.face.positions.assign(take.face.frames() * count, unseen);
+    for (std::size_t m = 0; m < take.face.markers(); ++m) {
+        const auto found = joint_of.find(take.face.names[m]);
+        if (found == joint_of.end()) {
+            const std::vector<std::string_view> names(
+                known.face.names.begin(), known.face.names.end());
+            return fail(
+                "{}: the surface has no marker {}{}", name, in_quotes(take.face.names[m]),
+                did_you_mean(take.face.names[m], names));
+        }
+        for (std::size_t f = 0; f < take.face.frames(); ++f) {
+            const Vec3 moved = take.face.positions[f * take.face.markers() + m] - take.rest[m];
+            known.face.positions[f * count + found->second] = known.rest[found->second] + moved;
+        }
+    }
+    fill_gaps(known.face, known.rest);
+    MeshData mesh = surface.mesh;
+    mesh.morphs.clear();
+    mesh.skin = one_joint_each(joints);
+    return make_scene(name, known, std::move(mesh));
+}
+
+Result<GltfScene> import_markers(const std::string& in, const MarkerSurface* surface) {
     MarkerMotion motion = LIMN_TRY(load_trc(in));
-    return make_marker_scene(std::filesystem::path(in).stem().string(), std::move(motion));
+    const std::string name = std::filesystem::path(in).stem().string();
+    return surface != nullptr ? make_marker_scene(name, std::move(motion), *surface)
+                              : make_marker_scene(name, std::move(motion));
+}
+
+MarkerSurface make_head_marker_surface() {
+    return {make_head({.part = HeadPartKind::Markers}), head_markers().names};
 }
 
 }  // namespace limn

@@ -6,6 +6,7 @@
 #include "content/make/head_ear.h"
 #include "content/make/head_expressions.h"
 #include "content/make/head_layout.h"
+#include "content/make/head_markers.h"
 #include "content/make/head_parts.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
@@ -67,6 +68,10 @@ Vec3 skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& sh
     return color;
 }
 
+Vec2 uv_at(const Vec2& chart) {
+    return {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)};
+}
+
 /// Vertices that the seam of the texture doubles are there twice.
 HeadPart make_skin(const HeadShape& shape) {
     const HeadLayout& layout = head_layout();
@@ -82,8 +87,7 @@ HeadPart make_skin(const HeadShape& shape) {
             const Vec2 chart = vertex.chart + Vec2(beyond ? kHeadColumns : 0, 0);
             part.points.push_back(skin_point(vertex, positions[v]));
             part.mesh.positions.push_back(positions[v]);
-            part.mesh.uvs.push_back(
-                {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)});
+            part.mesh.uvs.push_back(uv_at(chart));
             part.mesh.colors.emplace_back(skin_color(vertex, positions[v], shape), 1.0f);
         }
         return found->second;
@@ -121,6 +125,23 @@ HeadPart make_skin(const HeadShape& shape) {
     return part;
 }
 
+/// Some vertices of the skin, where they are on it and in its texture.
+HeadPart make_marker_surface(const HeadShape& shape) {
+    const std::vector<Vec3> positions = wrap_head(shape);
+    const HeadMarkers& markers = head_markers();
+    HeadPart part;
+    part.mesh.name = "markers";
+    for (std::size_t i = 0; i < markers.vertices.size(); ++i) {
+        const std::uint32_t v = markers.vertices[i];
+        part.points.push_back(skin_point(head_layout().vertices[v], positions[v]));
+        part.mesh.positions.push_back(positions[v]);
+        part.mesh.uvs.push_back(uv_at(markers.charts[i]));
+    }
+    part.mesh.indices = markers.indices;
+    generate_normals(part.mesh);
+    return part;
+}
+
 HeadPart make_part(const HeadShape& shape) {
     switch (shape.part) {
     case HeadPartKind::Skin:
@@ -137,6 +158,8 @@ HeadPart make_part(const HeadShape& shape) {
         return make_face_hair(shape);
     case HeadPartKind::Scalp:
         return make_scalp_hair(shape);
+    case HeadPartKind::Markers:
+        return make_marker_surface(shape);
     }
     return {};
 }
@@ -172,7 +195,8 @@ SkinWeights head_weights(std::span<const HeadPoint> points) {
 MeshData make_head(const HeadShape& shape) {
     HeadPart part = make_part(shape);
     MeshData& mesh = part.mesh;
-    if (shape.part != HeadPartKind::Skin) {  // whose points are those of a skewed head already
+    const bool is_skin = shape.part == HeadPartKind::Skin || shape.part == HeadPartKind::Markers;
+    if (!is_skin) {  // whose points are those of a skewed head already
         for (std::size_t v = 0; v < part.points.size(); ++v) {
             mesh.positions[v] = skew_head(mesh.positions[v], shape);
         }

@@ -31,15 +31,16 @@ enum class SurfaceMethod : std::uint8_t {
 };
 
 /// With a MeshInstance: its rest shape is bound to the rest shape of a surface, and follows it.
-/// Both must coincide: one a child of the other without a transform, or at the same place. What
+/// Both shapes must coincide, each in the space of its own mesh, wherever the entities are. What
 /// moves the mesh besides - morph targets, deformers - adds to it. A binding of the surface itself
-/// is ignored.
+/// is ignored. Without its SurfaceBinding, or without the surface, the mesh is as it was before.
 struct SurfaceBinding {
     Entity surface;
     SurfaceMethod method = SurfaceMethod::Faces;
     float locality = 4.0f;
     int faces = 8;
     float reach = 0.05f;
+    bool by_uvs = false;
 
     bool operator==(const SurfaceBinding&) const = default;
 };
@@ -57,6 +58,10 @@ LIMN_FIELDS(SurfaceBinding) {
     LIMN_FIELD(faces, "of faces: how many influence a vertex, at most", "", 1, 32);
     LIMN_FIELD(
         reach, "of patches: vertices farther from the surface, or beside it, stay", "m", 0, 1e4);
+    LIMN_FIELD(
+        by_uvs,
+        "of patches: a vertex is bound where the surface has its texture coordinates, so that lips "
+        "that touch go each with its own; both have the same layout");
 }
 
 /// What a SurfaceBinding has become; written by bind_surfaces and update_surface_bindings.
@@ -74,10 +79,13 @@ struct SurfaceBindingState {
     /// Of the vertices of `bound`, if by patches. Shared by all that are bound alike, never
     /// changed, and made again where it is missing.
     std::shared_ptr<const std::vector<SurfacePlace>> places;
-    float largest_offset = 0.0f;  ///< of the places [m]
+    std::shared_ptr<const std::vector<std::uint32_t>> order;  ///< bound vertices, patch by patch
+    float largest_offset = 0.0f;                              ///< of the places [m]
     std::vector<Vec4> rest_patches;
     std::vector<Vec4> patches;           ///< now
     std::vector<Vec4> previous_patches;  ///< of the previous step
+
+    bool has_added_deformed = false;  ///< to the entity, which lacked one
 };
 
 LIMN_FIELDS(SurfaceBindingState) {
@@ -93,6 +101,7 @@ LIMN_FIELDS(SurfaceBindingState) {
     LIMN_FIELD(rest_patches, "packed patches at rest");
     LIMN_FIELD(patches, "packed patches after the last step");
     LIMN_FIELD(previous_patches, "those of the previous step");
+    LIMN_FIELD(has_added_deformed, "a deformed is there for this binding alone");
 }
 
 /// Not copied with a prefab: an instance has no history.
@@ -107,7 +116,7 @@ surface_shape(const SurfaceBindingState* state, const std::vector<Vec4>& patches
     if (state == nullptr || state->places == nullptr || patches.empty()) {
         return {};
     }
-    return {*state->places, patches};
+    return {*state->places, patches, *state->order};
 }
 
 }  // namespace limn

@@ -34,6 +34,7 @@ inline constexpr std::size_t kPatchTexels = 16;
 struct SurfaceShape {
     std::span<const SurfacePlace> places;  ///< one per vertex
     std::span<const Vec4> patches;
+    std::span<const std::uint32_t> order;  ///< bound vertices, patch by patch
 };
 
 /// No bound vertex moves farther [m] between two shapes of a surface: by as much as a control point

@@ -1,8 +1,8 @@
 #include "systems/animation/deform_mesh.h"
 
 #include "systems/animation/deformer_kernels.h"
+#include "systems/animation/patch_kernels.h"
 #include "systems/animation/skin_kernels.h"
-#include "systems/animation/surface_patches.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -42,7 +42,7 @@ bool deform_positions(
     positions = mesh.positions;
     const SkinnedVertices moved = {positions, {}, {}};
     if (surface.places.size() == positions.size()) {
-        follow_patches(surface.places, surface.patches, positions, {}, {});
+        move_by_patches(surface, positions);
     }
     find_weights(morphs, deformed.first_morph, memory.weights);
     add_morphs(mesh.morphs, memory.weights, moved);

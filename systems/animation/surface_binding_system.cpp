@@ -1,8 +1,10 @@
 #include "systems/animation/surface_binding_system.h"
 
+#include "ecs/base/hash.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "systems/animation/mesh_source.h"
+#include "systems/animation/patch_kernels.h"
 #include "systems/animation/surface_faces.h"
 #include "systems/animation/surface_patches.h"
 
@@ -45,6 +47,26 @@ Entity find_surface(const SurfaceQuery& surfaces, Entity named) {
     return found;
 }
 
+/// How each vertex is moved by joints and morph targets, as a hash: those of a seam are alike.
+std::vector<std::uint64_t> motion_kinds(const MeshData& mesh) {
+    std::vector<std::uint64_t> kinds(mesh.positions.size(), 0);
+    const auto add = [&](std::size_t v, std::uint64_t which, const auto& how) {
+        kinds[v] = hash_combine(kinds[v], which);
+        kinds[v] = hash_combine(kinds[v], hash_bytes(&how, sizeof(how)));
+    };
+    for (std::size_t v = 0; v + 1 < mesh.skin.first.size() && v < kinds.size(); ++v) {
+        for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
+            add(v, mesh.skin.joints[i], mesh.skin.weights[i]);
+        }
+    }
+    for (std::size_t m = 0; m < mesh.morphs.size(); ++m) {
+        for (std::size_t i = 0; i < mesh.morphs[m].vertices.size(); ++i) {
+            add(mesh.morphs[m].vertices[i], m, mesh.morphs[m].positions[i]);
+        }
+    }
+    return kinds;
+}
+
 /// Binds one entity, for bind_surfaces.
 class Binder {
   public:
@@ -62,13 +84,15 @@ class Binder {
         }
         const MeshData& named = assets_.meshes[state.surface_mesh.index];
         const bool by_patches = state.settings.method == SurfaceMethod::Patches;
+        PatchFaces faces_of_patches;
         if (by_patches) {
-            Result<std::vector<std::uint32_t>> corners =
-                make_patch_corners(named.positions, named.indices);
-            if (!corners) {
-                return fail("surface {}: {}", named.name, corners.error().message);
+            Result<PatchFaces> made =
+                make_patch_faces(named.positions, named.indices, motion_kinds(named));
+            if (!made) {
+                return fail("surface {}: {}", named.name, made.error().message);
             }
-            state.corners = *std::move(corners);
+            faces_of_patches = *std::move(made);
+            state.corners = faces_of_patches.corners;
             make_patches(named.positions, state.corners, state.rest_patches);
         } else {
             state.corners = faces_with_area(named.positions, named.indices);
@@ -85,6 +109,7 @@ class Binder {
             state.bound = equal->bound;
             state.skin = equal->skin;
             state.places = equal->places;
+            state.order = equal->order;
             state.largest_offset = equal->largest_offset;
             return Done{};
         }
@@ -94,7 +119,7 @@ class Binder {
         bound.name += " on " + surface.name;
         bound.version = assets_.meshes[state.bound.index].version + 1;
         if (by_patches) {
-            bind_to_patches_of(surface, bound, state);
+            bind_to_patches_of(surface, faces_of_patches, bound, state);
         } else {
             bind_to_faces_of(surface, bound, state);
         }
@@ -102,17 +127,35 @@ class Binder {
         return Done{};
     }
 
+    /// Frees its bound mesh if nothing else uses it.
+    void release(Entity entity, SurfaceBindingState& state) {
+        if (is_sole_user(entity, state)) {
+            free_mesh(assets_, state.bound);
+        }
+        state.bound = {};
+    }
+
   private:
-    static void
-    bind_to_patches_of(const MeshData& surface, const MeshData& bound, SurfaceBindingState& state) {
+    static void bind_to_patches_of(
+        const MeshData& surface, const PatchFaces& faces, const MeshData& bound,
+        SurfaceBindingState& state) {
         const float reach = state.settings.reach;
+        std::vector<Vec2> corner_uvs;
+        PatchChart chart;
+        if (state.settings.by_uvs) {
+            for (const std::uint32_t v : faces.named) {
+                corner_uvs.push_back(surface.uvs[v]);
+            }
+            chart = {bound.uvs, corner_uvs};
+        }
         std::vector<SurfacePlace> places = bind_to_patches(
-            bound.positions, bound.normals, bound.tangents, surface.positions, state.corners,
-            std::isfinite(reach) ? reach : 0.0f);
+            bound.positions, bound.normals, bound.tangents, surface.positions, faces.corners,
+            std::isfinite(reach) ? reach : 0.0f, chart);
         state.largest_offset = 0.0f;
         for (const SurfacePlace& place : places) {
             state.largest_offset = std::max(state.largest_offset, glm::length(place.offset));
         }
+        state.order = std::make_shared<const std::vector<std::uint32_t>>(order_by_patch(places));
         state.places = std::make_shared<const std::vector<SurfacePlace>>(std::move(places));
     }
 
@@ -124,6 +167,7 @@ class Binder {
             static_cast<std::size_t>(std::max(settings.faces, 1)));
         assets_.skins[state.skin.index] = make_face_skin(surface.positions, state.corners);
         state.places = nullptr;
+        state.order = nullptr;
     }
 
     /// Another that is bound alike.
@@ -192,12 +236,39 @@ void add_surface_binding_states(
     Query<const SurfaceBinding, With<MeshInstance>, Without<SurfaceBindingState>> bare,
     Query<const Deformed> deformed, Commands commands) {
     bare.each([&](Entity entity, const SurfaceBinding&) {
-        commands.add(entity, SurfaceBindingState{});
+        SurfaceBindingState state;
         if (deformed.find<const Deformed>(entity) == nullptr) {
             Deformed by_itself;
             by_itself.character = entity;
             commands.add(entity, by_itself);
+            state.has_added_deformed = true;
         }
+        commands.add(entity, std::move(state));
+    });
+}
+
+void release_surface_bindings(
+    Query<const SurfaceBindingState, Without<SurfaceBinding>> released,
+    Query<const SurfaceBindingState, With<SurfaceBinding>> bound, Query<const Deformers> deformers,
+    Query<MeshInstance> instances, Res<Assets> assets, Commands commands) {
+    released.each([&](Entity entity, const SurfaceBindingState& state) {
+        auto* const instance = instances.find<MeshInstance>(entity);
+        if (state.bound != MeshId{}) {
+            if (instance != nullptr && instance->mesh == state.bound) {
+                instance->mesh = state.rest;
+            }
+            bool is_used = false;
+            bound.each([&](Entity, const SurfaceBindingState& other) {
+                is_used = is_used || other.bound == state.bound;
+            });
+            if (!is_used) {
+                free_mesh(*assets, state.bound);
+            }
+        }
+        if (state.has_added_deformed && deformers.find<const Deformers>(entity) == nullptr) {
+            commands.remove<Deformed>(entity);
+        }
+        commands.remove<SurfaceBindingState>(entity);
     });
 }
 
@@ -206,20 +277,23 @@ void bind_surfaces(
     bindings.each([&](Entity entity, const SurfaceBinding& binding, SurfaceBindingState& state,
                       const MeshInstance& instance) {
         const bool is_bound = state.bound != MeshId{} && instance.mesh == state.bound;
+        const bool has_surface = is_bound && mesh_of(surfaces, state.surface) == state.surface_mesh;
         const bool has_places =
             state.places != nullptr || state.settings.method != SurfaceMethod::Patches;
         const bool failed =
             state.bound == MeshId{} && state.rest == instance.mesh && state.rest != MeshId{};
-        if (((is_bound && has_places) || failed) && binding == state.settings) {
+        if (((has_surface && has_places) || failed) && binding == state.settings) {
             return;
         }
         state.rest = is_bound ? state.rest : instance.mesh;
         state.settings = binding;
-        Status bound = Binder(bindings, surfaces, *assets).bind(entity, state);
+        Binder binder(bindings, surfaces, *assets);
+        Status bound = binder.bind(entity, state);
         if (!bound) {
-            state.bound = {};
+            binder.release(entity, state);
             state.corners.clear();
             state.places = nullptr;
+            state.order = nullptr;
             const bool named = state.rest.index < assets->meshes.size();
             log_warn(
                 "surface_binding of mesh {}: {}; it is not bound",

@@ -24,7 +24,14 @@ void add_surface_binding_states(
     Query<const SurfaceBinding, With<MeshInstance>, Without<SurfaceBindingState>> bare,
     Query<const Deformed> deformed, Commands commands);
 
-/// Binds what is not bound, or has other settings or another mesh than when it was.
+/// What has lost its SurfaceBinding gets its own mesh back, and loses what was added for it.
+void release_surface_bindings(
+    Query<const SurfaceBindingState, Without<SurfaceBinding>> released,
+    Query<const SurfaceBindingState, With<SurfaceBinding>> bound, Query<const Deformers> deformers,
+    Query<MeshInstance> instances, Res<Assets> assets, Commands commands);
+
+/// Binds what is not bound, or has other settings, another mesh or another surface than when it
+/// was. Where the surface is gone, the mesh is as if it had no binding.
 void bind_surfaces(
     Query<const SurfaceBinding, SurfaceBindingState, const MeshInstance> bindings,
     Query<MeshInstance> instances, SurfaceQuery surfaces, Res<Assets> assets);

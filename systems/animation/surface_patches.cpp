@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kGrain = 64;       ///< points per task
 constexpr std::size_t kCandidates = 24;  ///< patches that are tried for a point
+constexpr std::size_t kNeighbors = 8;    ///< likewise with a chart
 constexpr int kSamples = 8;              ///< per edge of a patch, for the start of Newton's method
 constexpr int kSteps = 20;               ///< of Newton's method
 constexpr float kInside = 1e-4f;         ///< by which (u, v) may leave the triangle
@@ -99,8 +100,9 @@ Vec2 clamp_place(Vec3 place) {
 class PatchBinder {
   public:
     PatchBinder(
-        std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach)
-        : positions_(positions), corners_(corners), reach_(reach) {
+        std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach,
+        std::span<const Vec2> chart)
+        : positions_(positions), corners_(corners), reach_(reach), chart_(chart) {
         make_patches(positions, corners, patches_);
         std::map<Edge, int> edges;
         for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -113,12 +115,36 @@ class PatchBinder {
 
     [[nodiscard]] SurfacePlace
     bind(const Vec3& point, const Vec3& normal, const Vec3& tangent) const {
-        SurfacePlace place;
-        const Faces near = candidates(point);
+        const auto in_space = [&](std::size_t i) { return corner(i); };
+        const Faces near = nearest_faces(point, kCandidates, in_space);
         const Faces facing = facing_along(near, normal);
+        SurfacePlace place;
         const bool found = find_inside(point, facing, place) || find_beside(point, facing, place)
                            || find_inside(point, near, place) || find_beside(point, near, place);
-        if (!found || glm::length(place.offset) > reach_) {
+        return found ? finished(place, normal, tangent) : SurfacePlace{};
+    }
+
+    /// `at`: of the point in the chart.
+    [[nodiscard]] SurfacePlace bind_by_chart(
+        const Vec3& point, const Vec3& normal, const Vec3& tangent, const Vec2& at) const {
+        const auto in_chart = [&](std::size_t i) { return Vec3(chart_[i], 0); };
+        const Faces near = nearest_faces(Vec3(at, 0), kNeighbors, in_chart);
+        SurfacePlace place;
+        for (std::size_t i = 0; i < near.size() && place.patch == kNoPatch; ++i) {
+            find_inside(point, {near[i]}, place);
+        }
+        const bool found = place.patch != kNoPatch || find_beside(point, {near[0]}, place);
+        return found ? finished(place, normal, tangent) : SurfacePlace{};
+    }
+
+  private:
+    /// Faces, with the distances of their flat triangles.
+    using Faces = std::vector<std::pair<float, std::uint32_t>>;
+
+    /// With normal and tangent, or not bound.
+    [[nodiscard]] SurfacePlace
+    finished(SurfacePlace place, const Vec3& normal, const Vec3& tangent) const {
+        if (glm::length(place.offset) > reach_) {
             return {};
         }
         const PatchPoint at = evaluate_patch(patch(place.patch), place.u, place.v);
@@ -131,10 +157,6 @@ class PatchBinder {
         return place;
     }
 
-  private:
-    /// Faces, with the distances of their flat triangles.
-    using Faces = std::vector<std::pair<float, std::uint32_t>>;
-
     [[nodiscard]] std::span<const Vec4> patch(std::size_t f) const {
         return std::span(patches_).subspan(f * kPatchTexels, kPatchTexels);
     }
@@ -146,14 +168,19 @@ class PatchBinder {
     }
     [[nodiscard]] Vec3 corner(std::size_t i) const { return positions_[corners_[i]]; }
 
-    /// The nearest faces, by their flat triangles.
-    [[nodiscard]] Faces candidates(const Vec3& p) const {
+    /// The nearest faces, by their flat triangles; `corner_at`: where corner i of all is.
+    template <typename CornerAt>
+    [[nodiscard]] Faces
+    nearest_faces(const Vec3& p, std::size_t count, const CornerAt& corner_at) const {
         Faces nearest;
         for (std::uint32_t f = 0; f < corners_.size() / 3; ++f) {
+            const std::size_t first = std::size_t{3} * f;
             nearest.emplace_back(
-                distance_to_triangle(p, corner(3 * f), corner(3 * f + 1), corner(3 * f + 2)), f);
+                distance_to_triangle(
+                    p, corner_at(first), corner_at(first + 1), corner_at(first + 2)),
+                f);
         }
-        const auto kept = static_cast<std::ptrdiff_t>(std::min(kCandidates, nearest.size()));
+        const auto kept = static_cast<std::ptrdiff_t>(std::min(count, nearest.size()));
         std::partial_sort(nearest.begin(), nearest.begin() + kept, nearest.end());
         nearest.resize(static_cast<std::size_t>(kept));
         return nearest;
@@ -236,6 +263,7 @@ class PatchBinder {
     std::span<const Vec3> positions_;
     std::span<const std::uint32_t> corners_;
     float reach_;
+    std::span<const Vec2> chart_;  ///< per corner, or empty
     std::vector<Vec4> patches_;
     std::vector<bool> borders_;  ///< of the edge from each corner to the next
 };
@@ -256,16 +284,20 @@ Vec3 edge_normal(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3&
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>>
-make_patch_corners(std::span<const Vec3> positions, std::span<const std::uint32_t> indices) {
-    std::map<std::tuple<float, float, float>, std::uint32_t> first;
-    std::vector<std::uint32_t> corners;
+Result<PatchFaces> make_patch_faces(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+    std::span<const std::uint64_t> kinds) {
+    LIMN_CHECK(kinds.empty() || kinds.size() == positions.size());
+    std::map<std::tuple<float, float, float, std::uint64_t>, std::uint32_t> first;
+    PatchFaces faces;
     std::map<Edge, int> edges;  // directed
     for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
         std::array<std::uint32_t, 3> face{};
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 p = positions[indices[i + k]];
-            face[k] = first.try_emplace({p.x, p.y, p.z}, indices[i + k]).first->second;
+            const std::uint32_t v = indices[i + k];
+            const Vec3 p = positions[v];
+            const std::uint64_t kind = kinds.empty() ? 0 : kinds[v];
+            face[k] = first.try_emplace({p.x, p.y, p.z, kind}, v).first->second;
         }
         if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
             continue;
@@ -287,18 +319,20 @@ make_patch_corners(std::span<const Vec3> positions, std::span<const std::uint32_
                                : "one that faces the opposite side or is the same");
             }
         }
-        corners.insert(corners.end(), face.begin(), face.end());
+        faces.corners.insert(faces.corners.end(), face.begin(), face.end());
+        faces.named.insert(faces.named.end(), {indices[i], indices[i + 1], indices[i + 2]});
     }
-    if (corners.empty()) {
+    if (faces.corners.empty()) {
         return fail("it has no triangles");
     }
-    return corners;
+    return faces;
 }
 
 void make_patches(
     std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
     std::vector<Vec4>& patches) {
-    std::vector<Vec3> normals(positions.size(), Vec3(0));
+    thread_local std::vector<Vec3> normals;  // reused from step to step
+    normals.assign(positions.size(), Vec3(0));
     for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
         const Vec3 a = positions[corners[i]];
         const Vec3 area = glm::cross(positions[corners[i + 1]] - a, positions[corners[i + 2]] - a);
@@ -389,12 +423,17 @@ PatchPoint evaluate_patch(std::span<const Vec4> patch, float u, float v) {
 
 std::vector<SurfacePlace> bind_to_patches(
     std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec4> tangents,
-    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach) {
-    const PatchBinder binder(positions, corners, reach);
+    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach,
+    const PatchChart& chart) {
+    LIMN_CHECK(chart.corners.empty() || chart.corners.size() == corners.size());
+    const PatchBinder binder(positions, corners, reach, chart.corners);
     std::vector<SurfacePlace> places(points.size());
     parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            places[i] = binder.bind(points[i], normals[i], Vec3(tangents[i]));
+            const Vec3 tangent = Vec3(tangents[i]);
+            places[i] = chart.corners.empty()
+                            ? binder.bind(points[i], normals[i], tangent)
+                            : binder.bind_by_chart(points[i], normals[i], tangent, chart.points[i]);
         }
     });
     return places;

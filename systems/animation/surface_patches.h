@@ -30,12 +30,19 @@ struct PatchPoint {
     Vec3 normal_by_u, normal_by_v;
 };
 
-/// Faces of a triangle mesh as three markers each: of vertices at one place, as on both sides of a
-/// seam, the first stands for all; triangles between such vertices are left out. Fails with one
-/// line at a triangle without area, an edge of more than two triangles, or two triangles at an edge
-/// that face opposite sides.
-[[nodiscard]] Result<std::vector<std::uint32_t>>
-make_patch_corners(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
+/// Faces of a triangle mesh as three markers each.
+struct PatchFaces {
+    std::vector<std::uint32_t> corners;  ///< of vertices at one place the first
+    std::vector<std::uint32_t> named;    ///< the same as the mesh names them
+};
+
+/// Of vertices at one place, as on both sides of a seam, the first stands for all, if their kinds
+/// are the same: lips that touch are of different ones. `kinds`: one per vertex, or empty: all
+/// alike. Triangles between such vertices are left out. Fails with one line at a triangle without
+/// area, an edge of more than two triangles, or two triangles at an edge that face opposite sides.
+[[nodiscard]] Result<PatchFaces> make_patch_faces(
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+    std::span<const std::uint64_t> kinds = {});
 
 /// Packs the patches over the faces `corners`, kPatchTexels each (surface_places.h). Normals at
 /// markers are those of the triangles around, weighted by area.
@@ -46,11 +53,20 @@ void make_patches(
 /// `patch`: the texels of one patch. u belongs to its first corner, v to the second.
 [[nodiscard]] PatchPoint evaluate_patch(std::span<const Vec4> patch, float u, float v);
 
+/// A plane on which points and faces lie side by side that touch, or nearly, in space.
+struct PatchChart {
+    std::span<const Vec2> points;   ///< one per point
+    std::span<const Vec2> corners;  ///< one per corner of the faces
+};
+
 /// Where the points are on the surface. A point above which no patch lies within `reach` [m] is not
-/// bound: patch = kNoPatch. Time grows as points * patches.
+/// bound: patch = kNoPatch. With a chart the nearest patch there that is below it carries
+/// it, or the nearest of all; without one, those that are nearest in space and do not face away
+/// from its normal. Time grows as points * patches.
 [[nodiscard]] std::vector<SurfacePlace> bind_to_patches(
     std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec4> tangents,
-    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach);
+    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach,
+    const PatchChart& chart = {});
 
 /// The vertices of bound places, in place; what is not bound stays. All three spans have the length
 /// of `places`; normals and tangents may be empty, both.

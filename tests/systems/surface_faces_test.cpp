@@ -271,6 +271,7 @@ struct BoundWorld {
         sheet = world.create(MeshInstance{{0}, {}}, binding);
     }
     void step() {
+        world.run(release_surface_bindings);
         world.run(add_surface_binding_states);
         world.run(bind_surfaces);
         world.run(update_surface_bindings);
@@ -409,10 +410,43 @@ TEST_CASE("surface binding: what cannot be bound is named once, and stays as it 
     bound.world.get<SurfaceBinding>(bound.sheet).surface = bound.surface;
     bound.step();
     CHECK(bound.world.get<MeshInstance>(bound.sheet).mesh != MeshId{0});
-    // A surface that is gone leaves the last shape.
-    bound.world.destroy(bound.surface);
+}
+
+TEST_CASE("surface binding: without it, or without its surface, the mesh is its own again") {
+    BoundWorld bound;
     bound.step();
-    CHECK(bound.shape().size() == 169);
+    Assets& assets = bound.world.resource<Assets>();
+    const MeshId copy = bound.world.get<MeshInstance>(bound.sheet).mesh;
+    REQUIRE(copy != MeshId{0});
+    const SurfaceBinding binding = bound.world.get<SurfaceBinding>(bound.sheet);
+    const Entity other = bound.world.create(MeshInstance{{0}, {}}, SurfaceBinding(binding));
+    bound.step();
+    bound.world.remove<SurfaceBinding>(bound.sheet);
+    bound.step();
+    CHECK(bound.world.get<MeshInstance>(bound.sheet).mesh == MeshId{0});
+    CHECK(bound.world.find<SurfaceBindingState>(bound.sheet) == nullptr);
+    CHECK(bound.world.find<Deformed>(bound.sheet) == nullptr);
+    // The copy serves the other one; then nothing.
+    CHECK(bound.world.get<MeshInstance>(other).mesh == copy);
+    CHECK_FALSE(assets.meshes[copy.index].positions.empty());
+    bound.world.remove<SurfaceBinding>(other);
+    bound.step();
+    CHECK(assets.meshes[copy.index].positions.empty());
+    // What deforms a mesh besides the binding goes on.
+    bound.world.add(bound.sheet, SurfaceBinding(binding));
+    Deformed by_morphs;
+    by_morphs.character = bound.surface;
+    bound.world.add(bound.sheet, by_morphs);
+    bound.step();
+    CHECK(bound.world.get<MeshInstance>(bound.sheet).mesh != MeshId{0});
+    const std::vector<std::string> messages = test::messages_of([&] {
+        bound.world.destroy(bound.surface);
+        bound.step();
+        bound.step();
+    });
+    CHECK(messages.size() == 1);
+    CHECK(bound.world.get<MeshInstance>(bound.sheet).mesh == MeshId{0});
+    CHECK(bound.world.find<Deformed>(bound.sheet) != nullptr);
 }
 
 }  // namespace limn

@@ -1,4 +1,5 @@
 #include "ecs/base/rng.h"
+#include "systems/animation/patch_kernels.h"
 #include "systems/animation/surface_patches.h"
 #include "tests/near.h"
 
@@ -419,6 +420,82 @@ TEST_CASE("patches: of two surfaces that touch, each carries what faces its way"
     }
 }
 
+TEST_CASE(
+    "patches: with a chart, what touches in space goes with its own side, whatever faces it") {
+    // A sheet and a copy of it that nearly touches and faces the same way: beside it in the chart.
+    Surface lips = make_bumpy();
+    const std::size_t lower = lips.faces();
+    const auto count = static_cast<std::uint32_t>(lips.positions.size());
+    std::vector<Vec2> corner_chart;
+    for (const std::uint32_t corner : lips.corners) {
+        corner_chart.emplace_back(lips.positions[corner].x, lips.positions[corner].z);
+    }
+    for (std::size_t i = 0; i < 3 * lower; ++i) {
+        lips.corners.push_back(lips.corners[i] + count);
+        corner_chart.push_back(corner_chart[i] + Vec2(3, 0));
+    }
+    for (std::uint32_t v = 0; v < count; ++v) {
+        lips.positions.push_back(lips.positions[v] + Vec3(0, 1e-3f, 0));
+    }
+    lips.update();
+    Skin skin;
+    std::vector<Vec2> chart;
+    for (std::size_t f = 0; f < lower; ++f) {
+        const Vec3 on = evaluate_patch(lips.patch(f), 0.3f, 0.4f).position;
+        skin.positions.insert(skin.positions.end(), {on, on});
+        chart.insert(chart.end(), {{on.x, on.z}, {on.x + 3, on.z}});
+    }
+    const std::vector<Vec3> normals(skin.positions.size(), Vec3(0, 1, 0));
+    const std::vector<Vec4> tangents(skin.positions.size(), Vec4(1, 0, 0, 1));
+    const std::vector<SurfacePlace> places = bind_to_patches(
+        skin.positions, normals, tangents, lips.positions, lips.corners, 1, {chart, corner_chart});
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        REQUIRE(places[i].patch != kNoPatch);
+        CHECK((places[i].patch < lower) == (i % 2 == 0));
+        CHECK(std::abs(places[i].offset.z - (i % 2 == 0 ? 0.0f : -1e-3f)) < 2e-4f);
+    }
+}
+
+TEST_CASE("patches: SIMD, patch by patch, moves vertices as one by one") {
+    const Surface surface = make_bumpy();
+    Skin skin = skin_over(surface);
+    skin.positions.emplace_back(0.3f, 1, 0.2f);  // is not bound
+    Random random(5, 5, 5, 5);
+    for (int i = 0; i < 60; ++i) {  // beside what lies below: offsets along the surface
+        skin.positions.push_back(skin.positions[static_cast<std::size_t>(i)]);
+    }
+    skin.bind(surface, 0.3f);
+    for (std::size_t i = skin.places.size() - 60; i < skin.places.size(); ++i) {
+        skin.places[i].offset.x = 0.05f * random.uniform();
+        skin.places[i].offset.y = -0.03f * random.uniform();
+    }
+    const std::vector<std::uint32_t> order = order_by_patch(skin.places);
+    CHECK(order.size() + 1 <= skin.places.size());
+    Surface bent = map_surface(surface, bend);
+    for (const bool crushed : {false, true}) {
+        if (crushed) {  // the first triangle has neither normals nor tangents
+            for (std::size_t k = 0; k < 3; ++k) {
+                bent.positions[bent.corners[k]] = Vec3(1, 2, 3);
+            }
+            bent.update();
+            for (std::size_t i = 0; i < kPatchTexels; ++i) {
+                bent.patches[i] = Vec4(1, 2, 3, 0) * (i < kPatchPoints ? 1.0f : 0.0f);
+            }
+        }
+        const SurfaceShape shape = {skin.places, bent.patches, order};
+        std::vector<Vec3> at_once = skin.positions;
+        std::vector<Vec3> one_by_one = skin.positions;
+        move_by_patches(shape, at_once);
+        move_by_patches_scalar(shape, one_by_one);
+        float moved = 0.0f;
+        for (std::size_t i = 0; i < at_once.size(); ++i) {
+            CHECK(glm::distance(at_once[i], one_by_one[i]) < 1e-6f);
+            moved = std::max(moved, glm::distance(at_once[i], skin.positions[i]));
+        }
+        CHECK(moved > 0.1f);
+    }
+}
+
 TEST_CASE("patches: no vertex moves farther than the bound") {
     const Surface surface = make_bumpy();
     const Surface bent = map_surface(surface, bend);
@@ -447,28 +524,38 @@ TEST_CASE("patches: seams are closed, and triangulations that are no surface are
         each.push_back(static_cast<std::uint32_t>(apart.size()));
         apart.push_back(surface.positions[corner]);
     }
-    const std::vector<std::uint32_t> closed = *make_patch_corners(apart, each);
+    const std::vector<std::uint32_t> closed = make_patch_faces(apart, each)->corners;
     std::vector<Vec4> patches;
     make_patches(apart, closed, patches);
     CHECK(patches == surface.patches);
+    CHECK(make_patch_faces(apart, each)->named == each);
+    // Of different kinds, vertices at one place stay apart.
+    std::vector<std::uint64_t> kinds(apart.size());
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        kinds[i] = i / 3 % 2;
+    }
+    const std::vector<std::uint32_t> torn = make_patch_faces(apart, each, kinds)->corners;
+    for (std::size_t i = 0; i < torn.size(); ++i) {
+        CHECK(kinds[torn[i]] == kinds[i]);
+    }
 
     const auto error = [&](std::vector<std::uint32_t> more) {
         std::vector<std::uint32_t> indices = surface.corners;
         indices.insert(indices.end(), more.begin(), more.end());
-        const auto result = make_patch_corners(surface.positions, indices);
+        const auto result = make_patch_faces(surface.positions, indices);
         return result ? std::string("none") : result.error().message;
     };
     CHECK(error({}) == "none");
     CHECK(error({0, 0, 1}) == "none");
     const std::vector<Vec3> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
     CHECK(
-        make_patch_corners(line, std::vector<std::uint32_t>{0, 1, 2}).error().message
+        make_patch_faces(line, std::vector<std::uint32_t>{0, 1, 2}).error().message
         == "triangle 0 has no area");
     CHECK(
         error({0, 3, 1}).find("vertices 0 and 3 with one that faces the opposite side")
         != std::string::npos);
     CHECK(error({1, 3, 8}).find("vertices 1 and 3 with two others") != std::string::npos);
-    CHECK(make_patch_corners(surface.positions, {}).error().message == "it has no triangles");
+    CHECK(make_patch_faces(surface.positions, {}).error().message == "it has no triangles");
 }
 
 TEST_CASE("patches: markers that meet, cross or leave numbers behind give finite vertices") {

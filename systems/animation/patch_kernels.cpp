@@ -1,0 +1,200 @@
+#include "systems/animation/patch_kernels.h"
+
+#include "ecs/base/check.h"
+#include "systems/animation/surface_patches.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "systems/animation/patch_kernels.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace limn::HWY_NAMESPACE {
+
+#if HWY_TARGET == HWY_SCALAR  // no vectors here
+
+void move_by_patches_vector(const SurfaceShape& shape, std::span<Vec3> positions) {
+    move_by_patches_scalar(shape, positions);
+}
+
+#else
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::ScalableTag<float>;
+using V = hn::Vec<Floats>;
+constexpr Floats d;
+constexpr std::size_t kMaxLanes = hn::MaxLanes(d);
+
+namespace {
+
+/// Lengths squared from which a direction is told, those of evaluate_patch and normalize_or.
+constexpr float kMinNormal = 1e-20f;
+constexpr float kMinTangent = 1e-30f;
+
+struct V3 {
+    V x, y, z;
+};
+
+HWY_INLINE V3 all(const Vec4& p) {
+    return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
+}
+HWY_INLINE V3 add(const V3& a, const V3& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE V3 subtract(const V3& a, const V3& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE V3 scale(V by, const V3& a) {
+    return {hn::Mul(by, a.x), hn::Mul(by, a.y), hn::Mul(by, a.z)};
+}
+HWY_INLINE V dot(const V3& a, const V3& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE V3 cross(const V3& a, const V3& b) {
+    return {
+        hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
+        hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+        hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
+
+/// Barycentric coordinates.
+struct Share {
+    V u, v, w;
+};
+
+/// One step of de Casteljau.
+HWY_INLINE V3 mix(const Share& at, const V3& a, const V3& b, const V3& c) {
+    return add(add(scale(at.u, a), scale(at.v, b)), scale(at.w, c));
+}
+
+/// Places of some vertices, side by side.
+struct Lanes {
+    HWY_ALIGN float u[kMaxLanes];
+    HWY_ALIGN float v[kMaxLanes];
+    HWY_ALIGN float x[kMaxLanes];
+    HWY_ALIGN float y[kMaxLanes];
+    HWY_ALIGN float z[kMaxLanes];
+};
+
+/// As evaluate_patch and the place on it. False where a vertex has no normal or no tangent, as
+/// markers have met: that is for the scalar version.
+HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
+    Share at = {hn::Load(d, lanes.u), hn::Load(d, lanes.v), hn::Zero(d)};
+    at.w = hn::Sub(hn::Sub(hn::Set(d, 1.0f), at.u), at.v);
+    const auto step = [&](std::size_t a, std::size_t b, std::size_t c)
+                          HWY_ATTR { return mix(at, all(patch[a]), all(patch[b]), all(patch[c])); };
+    const V3 q200 = step(0, 3, 8);
+    const V3 q020 = step(4, 1, 5);
+    const V3 q002 = step(7, 6, 2);
+    const V3 q110 = step(3, 4, 9);
+    const V3 q011 = step(9, 5, 6);
+    const V3 q101 = step(8, 9, 7);
+    const V3 r100 = mix(at, q200, q110, q101);
+    const V3 r010 = mix(at, q110, q020, q011);
+    const V3 r001 = mix(at, q101, q011, q002);
+    const V3 sum = mix(at, step(10, 13, 15), step(13, 11, 14), step(15, 14, 12));
+    const V length2 = dot(sum, sum);
+    if (!hn::AllTrue(d, hn::Gt(length2, hn::Set(d, kMinNormal)))) {
+        return false;
+    }
+    const V3 normal = scale(hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)), sum);
+    V3 p = mix(at, r100, r010, r001);
+    const V x = hn::Load(d, lanes.x);
+    const V y = hn::Load(d, lanes.y);
+    // Most are straight above their places.
+    if (!hn::AllTrue(d, hn::And(hn::Eq(x, hn::Zero(d)), hn::Eq(y, hn::Zero(d))))) {
+        const V3 by_u = scale(hn::Set(d, 3.0f), subtract(r100, r001));
+        const V3 along = subtract(by_u, scale(dot(by_u, normal), normal));
+        const V along2 = dot(along, along);
+        if (!hn::AllTrue(d, hn::Gt(along2, hn::Set(d, kMinTangent)))) {
+            return false;
+        }
+        const V3 tangent = scale(hn::Div(hn::Set(d, 1.0f), hn::Sqrt(along2)), along);
+        p = add(p, add(scale(x, tangent), scale(y, cross(normal, tangent))));
+    }
+    p = add(p, scale(hn::Load(d, lanes.z), normal));
+    hn::Store(p.x, d, lanes.x);
+    hn::Store(p.y, d, lanes.y);
+    hn::Store(p.z, d, lanes.z);
+    return true;
+}
+
+/// Vertices of one patch, at most as many as there are lanes.
+HWY_INLINE void move_vertices(
+    const SurfaceShape& shape, std::span<const std::uint32_t> vertices, std::span<Vec3> positions) {
+    Lanes lanes;
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {  // the last one again in lanes left over
+        const SurfacePlace& place = shape.places[vertices[std::min(i, vertices.size() - 1)]];
+        lanes.u[i] = place.u;
+        lanes.v[i] = place.v;
+        lanes.x[i] = place.offset.x;
+        lanes.y[i] = place.offset.y;
+        lanes.z[i] = place.offset.z;
+    }
+    const std::size_t patch = shape.places[vertices[0]].patch;
+    const bool moved = move_lanes(&shape.patches[patch * kPatchTexels], lanes);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const std::uint32_t v = vertices[i];
+        if (moved) {
+            positions[v] = {lanes.x[i], lanes.y[i], lanes.z[i]};
+        } else {
+            follow_patches(
+                shape.places.subspan(v, 1), shape.patches, positions.subspan(v, 1), {}, {});
+        }
+    }
+}
+
+}  // namespace
+
+void move_by_patches_vector(const SurfaceShape& shape, std::span<Vec3> positions) {
+    const std::span<const std::uint32_t> order = shape.order;
+    for (std::size_t i = 0; i < order.size();) {
+        const std::uint32_t patch = shape.places[order[i]].patch;
+        std::size_t count = 1;
+        while (count < hn::Lanes(d) && i + count < order.size()
+               && shape.places[order[i + count]].patch == patch) {
+            ++count;
+        }
+        move_vertices(shape, order.subspan(i, count), positions);
+        i += count;
+    }
+}
+
+#endif
+
+}  // namespace limn::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace limn {
+
+HWY_EXPORT(move_by_patches_vector);
+
+std::vector<std::uint32_t> order_by_patch(std::span<const SurfacePlace> places) {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t v = 0; v < places.size(); ++v) {
+        if (places[v].patch != kNoPatch) {
+            order.push_back(v);
+        }
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return places[a].patch < places[b].patch;
+    });
+    return order;
+}
+
+void move_by_patches(const SurfaceShape& shape, std::span<Vec3> positions) {
+    LIMN_CHECK(shape.places.size() == positions.size());
+    HWY_DYNAMIC_DISPATCH(move_by_patches_vector)(shape, positions);
+}
+
+void move_by_patches_scalar(const SurfaceShape& shape, std::span<Vec3> positions) {
+    follow_patches(shape.places, shape.patches, positions, {}, {});
+}
+
+}  // namespace limn
+#endif  // HWY_ONCE

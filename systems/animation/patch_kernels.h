@@ -1,0 +1,23 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/surface_places.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Positions of a mesh on patches (surface_patches.h), for whoever needs the deformed surface. SIMD
+// moves many vertices of one patch at once, so they are visited patch by patch.
+
+/// Vertices that are bound, patch by patch.
+[[nodiscard]] std::vector<std::uint32_t> order_by_patch(std::span<const SurfacePlace> places);
+
+/// Positions of the vertices that are bound; the others stay. Both agree within 1e-6 of the size of
+/// the patches.
+void move_by_patches(const SurfaceShape& shape, std::span<Vec3> positions);
+void move_by_patches_scalar(const SurfaceShape& shape, std::span<Vec3> positions);
+
+}  // namespace limn
