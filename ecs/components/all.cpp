@@ -42,6 +42,7 @@
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/shoaling_waves.h"
+#include "ecs/components/skin_pull.h"
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_binding.h"
@@ -114,6 +115,8 @@ void register_all_components() {
     register_component<Deformed>();
     register_component<Deformers>();
     register_component<DeformerState>();
+    register_component<PullableSkin>();
+    register_component<SkinPulls>();
     register_component<ControlSurface>();
     register_component<SurfaceBinding>();
     register_component<SurfaceBindingState>();
