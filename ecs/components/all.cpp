@@ -63,6 +63,7 @@
 #include "ecs/components/water_waves.h"
 #include "ecs/components/weather.h"
 #include "ecs/components/wrinkle.h"
+#include "ecs/components/wrinkle_comparison.h"
 #include "ecs/components/wrinkle_maps.h"
 #include "ecs/components/wrinkle_response.h"
 #include "ecs/hierarchy.h"
@@ -183,6 +184,7 @@ void register_all_components() {
     register_resource<Rendering>();
     register_resource<ShadingComparison>();
     register_resource<ScanlinePlot>();
+    register_resource<WrinkleComparison>();
     register_resource<Exposure>();
     register_resource<Glow>();
     register_resource<Glare>();
