@@ -12,6 +12,7 @@
 #include "systems/animation/surface_binding_system.h"
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
+#include "systems/faces/skin_pull_system.h"
 #include "systems/faces/wrinkle_response_system.h"
 #include "systems/faces/wrinkle_system.h"
 #include "systems/faces/wrinkle_track_system.h"
@@ -70,12 +71,14 @@ void add_object_systems(SystemList& systems) {
 
 void add_animation_systems(SystemList& systems) {
     systems.add<add_poses>(Create, Both);
+    systems.add<add_skin_pulls>(Create, Both);
     systems.add<add_deformer_states>(Create, Both);
     systems.add<release_surface_bindings>(Create, Both);
     systems.add<add_surface_binding_states>(Create, Both);
     systems.add<bind_surfaces>(Move, Both);
     systems.add<add_rotation_track_states>(Create, Both);
     systems.add<prepare_rotation_tracks>(Move);
+    systems.add<update_skin_pulls>(Move);  // takes what is displayed: the previous pose
     systems.add<update_rotation_tracks>(Move, Both);
     systems.add<update_wrinkle_tracks>(Move, Both);
     systems.add<advance_clips>(Animate);

@@ -215,6 +215,8 @@ Deformers face_controls() {
         box.offsets[point] = {0, -0.004f, 0.02f};
     }
     controls.lattices.push_back(std::move(box));
+    controls.tugs.push_back(
+        {.at = {0.035f, -0.02f, 0.08f}, .offset = {0.004f, 0.012f, 0.003f}, .radius = 0.04f});
     return controls;
 }
 
@@ -223,7 +225,7 @@ double squared_cosine(double quarters) {
     return cosine * cosine;
 }
 
-/// Where the controls take a point, by their definitions (face.waters-muscle, face.ffd).
+/// Where the controls take a point, by their definitions (face.waters-muscle, face.ffd, face.pull).
 dvec3 exact_point(const Deformers& controls, dvec3 p) {
     dvec3 pull(0);
     double farthest = 0;
@@ -287,6 +289,10 @@ dvec3 exact_point(const Deformers& controls, dvec3 p) {
             }
         }
         p += points[0];
+    }
+    for (const Tug& tug : controls.tugs) {
+        const double share = glm::distance(p, dvec3(tug.at)) / double{tug.radius};
+        p += share < 1 ? std::pow(1 - share * share, 3) * dvec3(tug.offset) : dvec3(0);
     }
     return p;
 }

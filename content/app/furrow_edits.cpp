@@ -5,6 +5,7 @@
 #include "content/load/component_json.h"
 #include "content/load/json_document.h"
 #include "ecs/base/check.h"
+#include "ecs/base/triangle.h"
 #include "ecs/components/surface.h"
 
 #include <glm/geometric.hpp>
@@ -41,7 +42,7 @@ bool is_hidden(const SeenMesh& seen, const Vec3& point) {
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const auto corner = [&](std::size_t k) { return mesh.positions[mesh.indices[i + k]]; };
         const auto hit = hit_triangle(seen.eye, way, corner(0), corner(1), corner(2));
-        if (hit && *hit < 1.0f - kHidden) {
+        if (hit && hit->distance < 1.0f - kHidden) {
             return true;
         }
     }

@@ -1,6 +1,7 @@
 #include "content/app/pick.h"
 
 #include "content/app/posed_mesh.h"
+#include "ecs/base/triangle.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -68,36 +69,17 @@ std::optional<float> hit_mesh(const Candidate& candidate, float nearest) {
     };
     std::optional<float> hit;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const std::optional<float> distance = hit_triangle(
+        const auto found = hit_triangle(
             candidate.origin, candidate.direction, corner(i), corner(i + 1), corner(i + 2));
-        if (distance && *distance < nearest) {
-            nearest = *distance;
-            hit = distance;
+        if (found && found->distance < nearest) {
+            nearest = found->distance;
+            hit = nearest;
         }
     }
     return hit;
 }
 
 }  // namespace
-
-// Moeller and Trumbore 1997.
-std::optional<float> hit_triangle(
-    const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 edge1 = b - a;
-    const Vec3 edge2 = c - a;
-    const Vec3 p = glm::cross(direction, edge2);
-    const float determinant = glm::dot(edge1, p);
-    if (std::abs(determinant) < 1e-20f) {
-        return std::nullopt;
-    }
-    const Vec3 from_a = origin - a;
-    const float u = glm::dot(from_a, p) / determinant;
-    const Vec3 q = glm::cross(from_a, edge1);
-    const float v = glm::dot(direction, q) / determinant;
-    const float distance = glm::dot(edge2, q) / determinant;
-    return u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance >= 0.0f ? std::optional(distance)
-                                                                       : std::nullopt;
-}
 
 Ray ray_through(const RenderView& view, const Vec2& point) {
     const Vec2 ndc = {2.0f * point.x - 1.0f, 1.0f - 2.0f * point.y};

@@ -22,10 +22,6 @@ struct Ray {
 /// The camera ray through the point (x, y) of the image, 0 .. 1 from the top left.
 [[nodiscard]] Ray ray_through(const RenderView& view, const Vec2& point);
 
-/// Distance along a ray, in units of `direction`, to the triangle a b c, from either side.
-[[nodiscard]] std::optional<float> hit_triangle(
-    const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c);
-
 struct Hit {
     Entity entity;
     float distance = 0.0f;  ///< along the ray [m]

@@ -14,6 +14,7 @@
 #include "content/app/profiler_panel.h"
 #include "content/app/render_scale.h"
 #include "content/app/shows_panel.h"
+#include "content/app/skin_drag.h"
 #include "content/app/stage.h"
 #include "content/app/window.h"
 #include "content/game/wrinkle_trial.h"
@@ -159,6 +160,7 @@ class Player {
     ModelPanel model_panel_;
     FurrowPanel furrows_;
     LightDrag light_;
+    SkinDrag skin_;
     LeaveDialog leave_;
     PlayerCamera camera_;
     RenderScale scale_;

@@ -30,6 +30,7 @@ struct HelpState {
     bool edited = false;     ///< there is something to undo or to redo
     bool inspector = false;  ///< its panel is open
     bool furrows = false;    ///< the editor of furrows is open
+    bool skin = false;       ///< some skin can be pulled
     bool panel = false;      ///< some panel is open
 };
 

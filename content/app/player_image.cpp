@@ -9,6 +9,7 @@
 #include "content/game/stones.h"
 #include "ecs/base/log.h"
 #include "ecs/components/rendering.h"
+#include "ecs/components/skin_pull.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/weather.h"
 #include "render/gpu_particle_pools.h"
@@ -246,6 +247,7 @@ HelpState Player::help_state() const {
         .edited = undo.undo_count() + undo.redo_count() > 0,
         .inspector = inspector_.open,
         .furrows = furrows_.is_open(),
+        .skin = !std::as_const(stage_->world).query<const PullableSkin>().empty(),
         .panel = inspector_.open || profiler_.open || buffers_->open || shows_.open
                  || model_panel_.open};
 }

@@ -73,6 +73,9 @@ Input Player::read_input(const WindowEvents& events, float dt) {
             read(binding.action, binding.keys);
         }
     }
+    if (skin_.pulls()) {
+        set_action(input, "pull_skin");
+    }
     const GamepadInput gamepad = poll_gamepad();
     add_gamepad(gamepad, dt, input);
     const bool gamepad_clicked = gamepad.click && !gamepad_click_;
@@ -80,7 +83,7 @@ Input Player::read_input(const WindowEvents& events, float dt) {
     orbit_model(events, input, on_panel);
     const Ray ray = pointer_ray();
     input.eye = ray.origin;
-    input.pointing = on_panel ? Vec3(0) : ray.direction;
+    input.pointing = on_panel && !skin_.pulls() ? Vec3(0) : ray.direction;
     input.click = (events.left_clicked && !on_panel) || gamepad_clicked;
     // Moving or looking around takes over from the level's camera.
     const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera);
@@ -114,9 +117,10 @@ bool Player::edit_by_pointer(const WindowEvents& events) {
     }
     const bool directs = pointer.left && window_->is_key_down(GLFW_KEY_L) && !pointer.blocked
                          && !hud_->wants_keyboard();
+    skin_.follow(std::as_const(world), pointer_ray(), pointer.left, pointer.blocked || directs);
     if (!directs) {
         light_.release();
-        return false;
+        return skin_.pulls();
     }
     const std::optional<Hit> ahead = pick_entity(world, ray_through(view_, {0.5f, 0.5f}));
     const Vec3 center =

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace limn {
 
@@ -40,6 +42,34 @@ nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) 
 [[nodiscard]] inline float
 distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return glm::distance(p, nearest_on_triangle(p, a, b, c));
+}
+
+/// Where a ray meets a triangle a b c.
+struct TriangleHit {
+    float distance = 0;  ///< along the ray, in units of its direction
+    float b = 0;         ///< share of the corner b in the point, 0 .. 1
+    float c = 0;
+};
+
+/// Nothing where it passes by, or lies in the plane; of either side.
+/// T. Moeller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+[[nodiscard]] inline std::optional<TriangleHit> hit_triangle(
+    const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 edge1 = b - a;
+    const Vec3 edge2 = c - a;
+    const Vec3 p = glm::cross(direction, edge2);
+    const float determinant = glm::dot(edge1, p);
+    if (std::abs(determinant) < 1e-20f) {
+        return std::nullopt;
+    }
+    const Vec3 from_a = origin - a;
+    const float u = glm::dot(from_a, p) / determinant;
+    const Vec3 q = glm::cross(from_a, edge1);
+    const float v = glm::dot(direction, q) / determinant;
+    const float distance = glm::dot(edge2, q) / determinant;
+    return u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance >= 0.0f
+               ? std::optional(TriangleHit{distance, u, v})
+               : std::nullopt;
 }
 
 }  // namespace limn

@@ -42,6 +42,7 @@
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/shoaling_waves.h"
+#include "ecs/components/skin_pull.h"
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_binding.h"
@@ -62,6 +63,7 @@
 #include "ecs/components/water_waves.h"
 #include "ecs/components/weather.h"
 #include "ecs/components/wrinkle.h"
+#include "ecs/components/wrinkle_comparison.h"
 #include "ecs/components/wrinkle_maps.h"
 #include "ecs/components/wrinkle_response.h"
 #include "ecs/hierarchy.h"
@@ -114,6 +116,8 @@ void register_all_components() {
     register_component<Deformed>();
     register_component<Deformers>();
     register_component<DeformerState>();
+    register_component<PullableSkin>();
+    register_component<SkinPulls>();
     register_component<ControlSurface>();
     register_component<SurfaceBinding>();
     register_component<SurfaceBindingState>();
@@ -180,6 +184,7 @@ void register_all_components() {
     register_resource<Rendering>();
     register_resource<ShadingComparison>();
     register_resource<ScanlinePlot>();
+    register_resource<WrinkleComparison>();
     register_resource<Exposure>();
     register_resource<Glow>();
     register_resource<Glare>();

@@ -72,6 +72,17 @@ class Packer {
         }
     }
 
+    void add(const Tug& tug) {
+        const float share = 1.0f / square(tug.radius);
+        if (tug.offset == Vec3(0) || !(tug.radius > kMinSize) || !std::isfinite(share)
+            || !is_finite(tug.offset) || !is_finite(tug.at)) {
+            return;
+        }
+        begin(tug.radius);
+        packed_.emplace_back(kTug, tug.offset.x, tug.offset.y, tug.offset.z);
+        packed_.emplace_back(tug.at, share);
+    }
+
     std::vector<Vec4> finish() {
         if (records_ == 0) {
             return {};
@@ -93,7 +104,7 @@ class Packer {
 
 }  // namespace
 
-std::vector<Vec4> pack_deformers(const Deformers& deformers) {
+std::vector<Vec4> pack_deformers(const Deformers& deformers, std::span<const Tug> more) {
     Packer packer;
     for (const LinearMuscle& muscle : deformers.muscles) {
         packer.add(muscle);
@@ -103,6 +114,12 @@ std::vector<Vec4> pack_deformers(const Deformers& deformers) {
     }
     for (const Lattice& lattice : deformers.lattices) {
         packer.add(lattice);
+    }
+    for (const Tug& tug : deformers.tugs) {
+        packer.add(tug);
+    }
+    for (const Tug& tug : more) {
+        packer.add(tug);
     }
     return packer.finish();
 }
@@ -119,6 +136,9 @@ float max_displacement(std::span<const Vec4> packed) {
                 1.0f / glm::length(Vec3(packed[i + 2])), 1.0f / glm::length(Vec3(packed[i + 3])));
             most += 0.25f * std::abs(packed[i].y) * axis;
             i += kSphincterTexels;
+        } else if (packed[i].x == kTug) {
+            most += glm::length(Vec3(packed[i].y, packed[i].z, packed[i].w));
+            i += kTugTexels;
         } else {
             float farthest = 0.0f;
             for (std::size_t k = 0; k < kLatticePoints; ++k) {

@@ -74,18 +74,35 @@ LIMN_FIELDS(Lattice) {
 
 inline constexpr std::size_t kLatticePoints = 64;
 
+/// A pull at one place of the skin, as by two fingers: what is nearer to `at` than `radius` moves
+/// along `offset`, by (1 - (distance / radius)^2)^3 of it. The surface stays smooth at the border,
+/// to its curvature; it folds over itself where |offset| is more than 0.58 radius.
+struct Tug {
+    Vec3 at{0, 0, 0};
+    Vec3 offset{0, 0, 0};
+    float radius = 0.04f;
+};
+
+LIMN_FIELDS(Tug) {
+    LIMN_FIELD(at, "the place that moves by all of the offset", "m");
+    LIMN_FIELD(offset, "by which it moves; 0: nothing does", "m");
+    LIMN_FIELD(radius, "distance at which nothing moves", "m", 1e-4f, 1e4f);
+}
+
 /// With a MeshInstance. Pulls of all muscles add, but move nothing farther than the most distant
-/// attachment or center that pulls; then the lattices act in turn.
+/// attachment or center that pulls; then the lattices act in turn, and the tugs on what they leave.
 struct Deformers {
-    std::vector<LinearMuscle> muscles;
-    std::vector<SphincterMuscle> sphincters;
-    std::vector<Lattice> lattices;
+    std::vector<LinearMuscle> muscles{};
+    std::vector<SphincterMuscle> sphincters{};
+    std::vector<Lattice> lattices{};
+    std::vector<Tug> tugs{};
 };
 
 LIMN_FIELDS(Deformers) {
     LIMN_FIELD(muscles, "muscles that pull toward bone");
     LIMN_FIELD(sphincters, "rings of muscle");
     LIMN_FIELD(lattices, "free-form deformation, one after the other");
+    LIMN_FIELD(tugs, "pulls at single places of the skin, one after the other");
 }
 
 /// The Deformers packed for whoever moves vertices; written by update_deformers.
@@ -111,18 +128,24 @@ struct ComponentTraits<DeformerState> : DefaultTraits {
 //              the center to the unit ball: (row of right, 0) (row of up, 0) (row of depth, depth)
 //   lattice    (kLattice, 0, 0, 0) (origin, 0), three rows that take the vector from the origin to
 //              the unit cube, (row, 0) each, and the offsets of 64 points, (offset, 0) each
+//   tug        (kTug, offset) (at, 1 / radius^2)
+// Muscles and sphincters come first.
 // shaders/lib/deformers.glsl reads the same.
 
 inline constexpr float kMuscle = 1.0f;
 inline constexpr float kSphincter = 2.0f;
 inline constexpr float kLattice = 3.0f;
+inline constexpr float kTug = 4.0f;
 inline constexpr std::size_t kMuscleTexels = 3;
 inline constexpr std::size_t kSphincterTexels = 5;
 inline constexpr std::size_t kLatticeTexels = 5 + kLatticePoints;
+inline constexpr std::size_t kTugTexels = 2;
 
 /// Controls without extent (a muscle of no length or with full >= reach, an ellipse or a box of no
-/// area or volume) and controls that are not finite are left out. Empty if nothing is left.
-[[nodiscard]] std::vector<Vec4> pack_deformers(const Deformers& deformers);
+/// area or volume), tugs without offset or radius and controls that are not finite are left out.
+/// Empty if nothing is left. `more` act after the tugs of `deformers`.
+[[nodiscard]] std::vector<Vec4>
+pack_deformers(const Deformers& deformers, std::span<const Tug> more = {});
 
 /// No vertex moves farther [m], whatever its place.
 [[nodiscard]] float max_displacement(std::span<const Vec4> packed);

@@ -1,6 +1,7 @@
 #include "ecs/components/input.h"
 
 #include "ecs/components/camera_lens.h"
+#include "ecs/components/skin_pull.h"
 #include "ecs/components/weather.h"
 #include "ecs/world.h"
 
@@ -96,6 +97,10 @@ void register_engine_actions() {
           {"shutter_shorter", "shutter: shorter, longer", {"9"}},
           {"shutter_longer", "shutter: shorter, longer", {"0"}}},
          [](const World& world, Entity) { return !world.query<const Lens>().empty(); }});
+    register_actions(
+        {"Skin",
+         {{"pull_skin", "pull the skin under the pointer, as dragging it does", {"P"}}},
+         [](const World& world, Entity) { return !world.query<const PullableSkin>().empty(); }});
     register_actions(
         {"Weather",
          {{"wind_stronger", "wind: stronger, weaker", {"I"}},

@@ -91,7 +91,7 @@ struct ActionGroup {
 
 /// Makes the group known; a second one with the same title is ignored.
 void register_actions(ActionGroup group);
-/// Those of the engine: camera, lens, weather. Called by register_all_components.
+/// Those of the engine: camera, lens, skin, weather. Called by register_all_components.
 void register_engine_actions();
 [[nodiscard]] std::span<const ActionGroup> action_groups();
 /// The names of all actions.

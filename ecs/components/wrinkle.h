@@ -29,6 +29,9 @@ enum class WrinkleMethod : std::uint8_t {
     Photo,  ///< as a photograph in one light: shading that does not move (face.wrinkle-options)
 };
 
+inline constexpr const char* kWrinkleMethodNames =
+    "none alpha directional bump sphere isometric blend strain_view model photo";
+
 /// Shares of the triangles at a vertex in its compression (wrinkle.compression.vertex-weight).
 enum class WrinkleWeight : std::uint8_t {
     Angle,    ///< at the vertex: does not depend on how the surface is divided into triangles
@@ -88,7 +91,7 @@ LIMN_FIELDS(WrinkleSurface) {
             "the principal directions, on all of any deformed mesh; model: as its material's "
             "wrinkle texture, a fitted model of a mesh with tangents, says of the strain; photo: "
             "as in a photograph, lit from above the map whatever the lights",
-        .values = "none alpha directional bump sphere isometric blend strain_view model photo");
+        .values = kWrinkleMethodNames);
     LIMN_FIELD(
         regions,
         "of the mesh, by name, that wrinkle; none: all that it has, or all of a mesh that has "

@@ -2,6 +2,7 @@
 
 #include "ecs/base/log.h"
 #include "ecs/components/shading_comparison.h"
+#include "ecs/components/wrinkle_comparison.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
@@ -13,6 +14,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -32,6 +35,18 @@ unsigned block_count(const ClusterShape& shape) {
     return divide_up(shape.columns, layout::kBlockColumns)
            * divide_up(shape.rows, layout::kBlockRows)
            * divide_up(shape.slices, layout::kBlockSlices);
+}
+
+/// As ViewBlock::wrinkle_columns has them.
+layout::uvec4 pack_columns(const std::vector<WrinkleMethod>& methods, const Vec2& borders) {
+    layout::uvec4 packed;
+    packed.z = std::bit_cast<std::uint32_t>(borders.x);
+    packed.w = std::bit_cast<std::uint32_t>(borders.y);
+    for (const WrinkleMethod method : methods) {
+        packed.y |= static_cast<std::uint32_t>(method) << (4 * packed.x);
+        ++packed.x;
+    }
+    return packed;
 }
 
 /// Sizes vary from frame to frame; rounding to powers of two lets the pool reuse the buffer.
@@ -198,6 +213,8 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     layout::ViewBlock block =
         make_view_block(view.camera, placed.shape, lights, method.infinite_viewer);
     block.blinn_axis = Vec4(blinn_axis(rendering, view.camera), 0);
+    const auto* const wrinkles = frame.world->find_resource<WrinkleComparison>();
+    block.wrinkle_columns = pack_columns(wrinkle_columns(wrinkles), column_borders(wrinkles));
     view.block = frame.ring->push_value(block);
 
     Variant& variant = view.lighting.variant;

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "ecs/components/shading_comparison.h"
 #include "render/effect.h"
 
 namespace limn {
 
-// Marks over the image: the divider of a comparison and the names of its methods, a scanline, and
-// the plot of its brightness.
+// Marks over the image: the divider of a comparison and the names of its methods, those of columns
+// with wrinkles by different methods, a scanline, and the plot of its brightness.
 //
-// Reads    ComparedRadiance, or radiance where nothing is compared; ShadingComparison, ScanlinePlot
+// Reads    ComparedRadiance, or radiance where nothing is compared; ShadingComparison,
+//          WrinkleComparison, ScanlinePlot
 // Writes   radiance
 // Order    after the lens, which does not blur them
 // Shaders  shading_marks.frag

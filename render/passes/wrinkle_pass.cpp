@@ -234,6 +234,9 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
             surface, distance_to(frame, entity, shape),
             frame.meshes->meshes()[shape.mesh.index].tangents);
         layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), shares);
+        if (shape.wrinkle_columns) {
+            job.method = layout::kWrinkleColumns;
+        }
         job.vertex_count = count;
         job.slot = slot;
         job.first_group = static_cast<std::uint32_t>(group_list.size());

@@ -1,4 +1,4 @@
-// The divider of a comparison, a scanline and the plot of its brightness, over the image (shading_marks_pass.h).
+// The divider of a comparison, columns with their names, a scanline and the plot of its brightness, over the image (shading_marks_pass.h).
 #version 450
 #include "lib/small_text.glsl"
 #include "lib/tone.glsl"
@@ -14,6 +14,12 @@ uniform int curves;         // 1: of the left image alone
 uniform mat4 left_label;    // glyphs of lib/small_text.glsl, three in each number, lowest byte first
 uniform mat4 right_label;
 uniform ivec2 label_lengths;  // left, right; without a divider the left one alone, in the middle
+uniform int columns;              // of the same width, each with a name; 0: none
+uniform vec2 column_borders;      // of the first and the last, 0 .. 1 of the width
+uniform mat4 column_labels_low;   // of the first four, then of the others, as left_label
+uniform mat4 column_labels_high;
+uniform vec4 column_lengths_low;
+uniform vec4 column_lengths_high;
 
 layout(location = 0) out vec4 radiance;
 
@@ -96,15 +102,8 @@ void paint_divider(vec2 p, vec2 size, float unit) {
     paint(kPaper, clamp(arrow * unit + 0.5, 0.0, 1.0));
 }
 
-// One glyph of a label.
-int glyph_of(bool of_right, int i) {
-    vec4 twelve = of_right ? right_label[i / 12] : left_label[i / 12];
-    return int(twelve[i / 3 % 4]) >> 8 * (i % 3) & 255;
-}
-
 // A label on a dark plate; `from` is its upper left corner [px], `dot` the side of a dot.
-void paint_label(bool of_right, vec2 from, float dot_size, vec3 srgb) {
-    int count = of_right ? label_lengths.y : label_lengths.x;
+void paint_label(mat4 glyphs, int count, vec2 from, float dot_size, vec3 srgb) {
     vec2 at = (gl_FragCoord.xy - from) * vec2(1.0, -1.0) / dot_size;  // y down [dots]
     vec2 extent = vec2(float(count), 1.0) * kGlyphCell - 1.0;
     vec2 outside = max(-at, at - extent);
@@ -112,9 +111,9 @@ void paint_label(bool of_right, vec2 from, float dot_size, vec3 srgb) {
         paint(kPaper, 0.85);
         ivec2 dot = ivec2(floor(at));
         int i = dot.x / int(kGlyphCell.x);
-        if (dot.x >= 0 && i < count
-            && has_dot(glyph_of(of_right, i), ivec2(dot.x % int(kGlyphCell.x), dot.y))) {
-            paint(srgb, 1.0);
+        if (dot.x >= 0 && i < count) {
+            int glyph = int(glyphs[i / 12][i / 3 % 4]) >> 8 * (i % 3) & 255;
+            paint(srgb, has_dot(glyph, ivec2(dot.x % int(kGlyphCell.x), dot.y)) ? 1.0 : 0.0);
         }
     }
 }
@@ -125,12 +124,34 @@ void paint_labels(vec2 size, float plot, float unit) {
     vec2 widths = vec2(label_lengths) * kGlyphCell.x * dot_size;
     float gap = 10.0 * dot_size;
     if (divider < 0.0) {
-        paint_label(false, floor(vec2(0.5 * (size.x - widths.x), top)), dot_size, kMark);
+        paint_label(left_label, label_lengths.x, floor(vec2(0.5 * (size.x - widths.x), top)), dot_size, kMark);
         return;
     }
     float x = floor(divider * size.x);
-    paint_label(false, floor(vec2(x - gap - widths.x, top)), dot_size, kLeft);
-    paint_label(true, floor(vec2(x + gap, top)), dot_size, kRight);
+    paint_label(left_label, label_lengths.x, floor(vec2(x - gap - widths.x, top)), dot_size, kLeft);
+    paint_label(right_label, label_lengths.y, floor(vec2(x + gap, top)), dot_size, kRight);
+}
+
+// Lines between columns, and their names below, on two levels where they are too wide for one.
+void paint_columns(vec2 p, vec2 size, float plot, float unit) {
+    float begin = column_borders.x * size.x;
+    float width = (column_borders.y - column_borders.x) * size.x / float(columns);
+    float edge = round((p.x - begin) / width);
+    if (edge > 0.5 && edge < float(columns) - 0.5) {
+        float x = abs(p.x - floor(begin + edge * width));
+        paint(vec3(0.0), 0.45 * (1.0 - smoothstep(1.0 * unit, 4.0 * unit, x)));
+        paint(kMark, clamp(0.8 * unit + 0.5 - x, 0.0, 1.0));
+    }
+    float dot_size = max(floor(2.0 * unit), 1.0);
+    bool two_levels = width < 12.0 * kGlyphCell.x * dot_size;
+    for (int i = 0; i < columns; ++i) {
+        mat4 glyphs = mat4(0.0);
+        glyphs[0] = i < 4 ? column_labels_low[i] : column_labels_high[i - 4];
+        int count = int(i < 4 ? column_lengths_low[i] : column_lengths_high[i - 4]);
+        float left = begin + (float(i) + 0.5) * width - 0.5 * float(count) * kGlyphCell.x * dot_size;
+        float top = plot + (two_levels && i % 2 == 1 ? 32.0 : 16.0) * dot_size;
+        paint_label(glyphs, count, floor(vec2(left, top)), dot_size, kMark);
+    }
 }
 
 void main() {
@@ -152,5 +173,8 @@ void main() {
         paint_plot(p, plot, unit);
     }
     paint_labels(size, plot, unit);
+    if (columns > 0) {
+        paint_columns(p, size, plot, unit);
+    }
     radiance = vec4(image_color, scene.a);
 }

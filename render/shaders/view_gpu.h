@@ -19,9 +19,11 @@ struct ViewBlock {
                                // spot light with a shadow or a cookie
     vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
     vec4 blinn_axis;           // world: fixes the axes of Blinn maps, unit or zero (lib/highlight_map.glsl)
+    uvec4 wrinkle_columns;     // x: columns with wrinkles by different methods; y: those, four bits each, the first lowest;
+                               // z, w: floats, where they begin and end, 0 .. 1 of the width
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 272);
+static_assert(sizeof(ViewBlock) == 288);
 }  // namespace limn::layout
 #endif

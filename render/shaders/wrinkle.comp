@@ -53,11 +53,15 @@ float fold_strength(int job, float e) {
     return mix(low, high, place - float(i)) * sqrt(clamp(e, 0.0, 1.0));
 }
 
-// Of the wrinkles at a vertex of this compression, without its mask.
+// Of the wrinkles at a vertex of this compression, without its mask: of isometric folds, and of all other methods.
+float folded_strength(int job, uvec4 job1, float share, float ratio) {
+    return fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), share));
+}
+float raised_strength(uvec4 job1, float ratio) {
+    return max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
+}
 float strength_of(int job, uvec4 job1, float share, float ratio) {
-    return job1.x == kWrinkleIsometric
-        ? fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), share))
-        : max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
+    return job1.x == kWrinkleIsometric ? folded_strength(job, job1, share, ratio) : raised_strength(job1, ratio);
 }
 
 void main() {
@@ -95,6 +99,12 @@ void main() {
     uint method = job1.x;
     float activation = uintBitsToFloat(job2.w);
     float share = uintBitsToFloat(job2.x);
+    if (method == kWrinkleColumns) {
+        vec2 both = vec2(folded_strength(job, job1, share, ratio), raised_strength(job1, ratio));
+        both = mask * activation * (job2.y == kWrinkleByRadius ? vec2(1.0) : both);
+        wrinkles[first + number] = uvec2(packHalf2x16(both), 0u);
+        return;
+    }
     float strength = mask * activation * (job2.y == kWrinkleByRadius ? 1.0 : strength_of(job, job1, share, ratio));
     bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
     float own = strength * uintBitsToFloat(job3.z);

@@ -5,6 +5,7 @@
 #include "ecs/base/log.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/wrinkle.h"
+#include "ecs/components/wrinkle_comparison.h"
 #include "ecs/world.h"
 #include "render/buffer_texture.h"
 #include "render/mesh_pool.h"
@@ -37,6 +38,14 @@ std::uint32_t wrinkle_features(const WrinkleSurface& surface) {
            | (surface.method == WrinkleMethod::Model ? kWrinkleModel : 0u)
            | (surface.method == WrinkleMethod::Photo ? kWrinklePhoto : 0u) | layer_features(surface)
            | (surface.fade ? kWrinkleFade : 0u) | (surface.interpolate ? 0u : kWrinkleFlat);
+}
+
+/// The same where each column of the image has one of these methods.
+std::uint32_t
+column_features(const WrinkleSurface& surface, const std::vector<WrinkleMethod>& columns) {
+    const bool blends = std::ranges::find(columns, WrinkleMethod::Blend) != columns.end();
+    return kWrinkleColumns | (blends ? kWrinkleBlend : 0u) | (surface.fade ? kWrinkleFade : 0u)
+           | (surface.interpolate ? 0u : kWrinkleFlat);
 }
 
 /// Hash of the state between `before` and `now` at time `alpha`; equal bytes give equal hashes.
@@ -241,6 +250,8 @@ void DeformedList::update(
             }
         });
     // Adding a mesh may have reallocated the pool.
+    const std::vector<WrinkleMethod> columns =
+        wrinkle_columns(world.find_resource<WrinkleComparison>());
     for (const std::uint32_t i : active_) {
         Entry& entry = entries_[i];
         entry.rest = &rest_.get(*assets, entry.mesh, places_of(world, entry.entity));
@@ -249,7 +260,11 @@ void DeformedList::update(
         entry.wrinkled = wrinkles != nullptr && surface != nullptr
                          && surface->method != WrinkleMethod::None
                          && wrinkles->mask.size() == entry.rest->vertex_count;
-        entry.wrinkle_features = entry.wrinkled ? wrinkle_features(*surface) : 0;
+        entry.wrinkle_columns = entry.wrinkled && !columns.empty() && has_columns(*surface)
+                                && meshes.meshes()[entry.mesh.index].tangents;
+        entry.wrinkle_features = !entry.wrinkled         ? 0
+                                 : entry.wrinkle_columns ? column_features(*surface, columns)
+                                                         : wrinkle_features(*surface);
     }
     for (std::uint32_t i = 0; i < entries_.size(); ++i) {
         Entry& entry = entries_[i];

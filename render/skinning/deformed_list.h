@@ -38,6 +38,7 @@ struct DeformedInstance {
     std::uint64_t shape = 0;  ///< hash: equal for equal shapes; never 0
     MeshId mesh;
     bool wrinkled = false;               ///< has a WrinkleState, and draws it
+    bool wrinkle_columns = false;        ///< by the methods of a WrinkleComparison
     std::uint32_t wrinkle_features = 0;  ///< of SurfaceFeature, if it is wrinkled
 };
 

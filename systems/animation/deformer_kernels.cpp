@@ -202,6 +202,21 @@ HWY_INLINE void pass_lattice(const Vec4* record, Points& p) {
     p.z = hn::IfThenElse(inside, to_z, p.z);
 }
 
+HWY_INLINE void pass_tug(const Vec4* record, Points& p) {
+    const V x = hn::Sub(p.x, set(record[1].x));
+    const V y = hn::Sub(p.y, set(record[1].y));
+    const V z = hn::Sub(p.z, set(record[1].z));
+    const V left = hn::Sub(set(1.0f), hn::Mul(set(record[1].w), dot3(x, y, z, x, y, z)));
+    const Mask inside = hn::Gt(left, hn::Zero(d));
+    if (hn::AllFalse(d, inside)) {
+        return;
+    }
+    const V share = hn::IfThenElseZero(inside, hn::Mul(hn::Mul(left, left), left));
+    p.x = hn::IfThenElse(inside, hn::Add(p.x, hn::Mul(share, set(record[0].y))), p.x);
+    p.y = hn::IfThenElse(inside, hn::Add(p.y, hn::Mul(share, set(record[0].z))), p.y);
+    p.z = hn::IfThenElse(inside, hn::Add(p.z, hn::Mul(share, set(record[0].w))), p.z);
+}
+
 }  // namespace
 
 std::size_t deform_points_vector(std::span<const Vec4> packed, std::span<Vec3> points) {
@@ -212,7 +227,7 @@ std::size_t deform_points_vector(std::span<const Vec4> packed, std::span<Vec3> p
         Points p = {none, none, none, none, none, none, none};
         hn::LoadInterleaved3(d, &points[at].x, p.x, p.y, p.z);
         std::size_t i = 1;
-        while (i < packed.size() && packed[i].x != kLattice) {
+        while (i < packed.size() && packed[i].x < kLattice) {
             if (packed[i].x == kMuscle) {
                 add_muscle(&packed[i], p);
                 i += kMuscleTexels;
@@ -222,8 +237,14 @@ std::size_t deform_points_vector(std::span<const Vec4> packed, std::span<Vec3> p
             }
         }
         follow_pulls(p);
-        for (; i < packed.size(); i += kLatticeTexels) {
-            pass_lattice(&packed[i], p);
+        while (i < packed.size()) {
+            if (packed[i].x == kLattice) {
+                pass_lattice(&packed[i], p);
+                i += kLatticeTexels;
+            } else {
+                pass_tug(&packed[i], p);
+                i += kTugTexels;
+            }
         }
         hn::StoreInterleaved3(p.x, p.y, p.z, d, &points[at].x);
     }
@@ -338,12 +359,19 @@ Vec3 through_lattice(const Vec4* record, const Vec3& p) {
     return moved;
 }
 
+Vec3 through_tug(const Vec4* record, const Vec3& p) {
+    const Vec3 from = p - Vec3(record[1]);
+    const float left = 1.0f - record[1].w * glm::dot(from, from);
+    const Vec3 offset(record[0].y, record[0].z, record[0].w);
+    return left > 0.0f ? p + left * left * left * offset : p;
+}
+
 }  // namespace
 
 Vec3 deform_point(std::span<const Vec4> packed, const Vec3& point) {
     Pull pull;
     std::size_t i = 1;
-    while (i < packed.size() && packed[i].x != kLattice) {
+    while (i < packed.size() && packed[i].x < kLattice) {
         if (packed[i].x == kMuscle) {
             add_muscle(&packed[i], point, pull);
             i += kMuscleTexels;
@@ -354,8 +382,14 @@ Vec3 deform_point(std::span<const Vec4> packed, const Vec3& point) {
     }
     const float length = glm::length(pull.sum);
     Vec3 moved = point + (length > pull.farthest ? (pull.farthest / length) * pull.sum : pull.sum);
-    for (; i < packed.size(); i += kLatticeTexels) {
-        moved = through_lattice(&packed[i], moved);
+    while (i < packed.size()) {
+        if (packed[i].x == kLattice) {
+            moved = through_lattice(&packed[i], moved);
+            i += kLatticeTexels;
+        } else {
+            moved = through_tug(&packed[i], moved);
+            i += kTugTexels;
+        }
     }
     return moved;
 }

@@ -1,8 +1,18 @@
 #include "systems/animation/deformer_system.h"
 
 #include <utility>
+#include <vector>
 
 namespace limn {
+
+namespace {
+
+struct CharacterTug {
+    Entity character;
+    Tug tug;
+};
+
+}  // namespace
 
 void add_deformer_states(
     Query<const Deformers, Without<DeformerState>> bare, Query<const Deformed> deformed,
@@ -17,10 +27,26 @@ void add_deformer_states(
     });
 }
 
-void update_deformers(Query<const Deformers, DeformerState> deformers) {
-    deformers.each([](const Deformers& controls, DeformerState& state) {
+void update_deformers(
+    Query<const Deformers, DeformerState> deformers, Query<const Deformed> deformed,
+    Query<const SkinPulls, const Deformed> pulled) {
+    std::vector<CharacterTug> all;
+    pulled.each([&](const SkinPulls& skin, const Deformed& its) {
+        for (const SkinPull& pull : skin.pulls) {
+            all.push_back({its.character, pull.tug});
+        }
+    });
+    std::vector<Tug> tugs;
+    deformers.each([&](Entity entity, const Deformers& controls, DeformerState& state) {
+        tugs.clear();
+        const Deformed* const its = all.empty() ? nullptr : deformed.find<const Deformed>(entity);
+        for (const CharacterTug& one : all) {
+            if (its != nullptr && its->character == one.character) {
+                tugs.push_back(one.tug);
+            }
+        }
         state.previous = std::move(state.now);
-        state.now = pack_deformers(controls);
+        state.now = pack_deformers(controls, tugs);
         if (state.previous.size() != state.now.size()) {
             state.previous = state.now;
         }

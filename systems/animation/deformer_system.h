@@ -3,6 +3,7 @@
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/deformers.h"
+#include "ecs/components/skin_pull.h"
 #include "ecs/components/surface.h"
 #include "ecs/query.h"
 #include "ecs/system.h"
@@ -15,8 +16,11 @@ void add_deformer_states(
     Query<const Deformers, Without<DeformerState>> bare, Query<const Deformed> deformed,
     Commands commands);
 
-/// Packs the controls; keeps those of the previous step for velocities. In the first step, and
-/// where controls came or went, both are the same.
-void update_deformers(Query<const Deformers, DeformerState> deformers);
+/// Packs the controls, and the pulls of the character's skin after them; keeps those of the
+/// previous step for velocities. In the first step, and where controls came or went, both are the
+/// same.
+void update_deformers(
+    Query<const Deformers, DeformerState> deformers, Query<const Deformed> deformed,
+    Query<const SkinPulls, const Deformed> pulled);
 
 }  // namespace limn

@@ -1,5 +1,8 @@
 #include "content/app/pick.h"
+#include "content/app/skin_drag.h"
 #include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
+#include "ecs/components/skin_pull.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -121,6 +124,45 @@ TEST_CASE("pick: the ray through the middle of the image is where the camera loo
     const Vec4 clip = view.unjittered_from_world * Vec4(point, 1.0f);
     CHECK(clip.x / clip.w == test::near(-1.0f).epsilon(1e-4));
     CHECK(clip.y / clip.w == test::near(1.0f).epsilon(1e-4));
+}
+
+TEST_CASE("skin drag: only a drag that begins on skin pulls, until the button is up") {
+    World world;
+    world.insert_resource(Assets{}).meshes.push_back(half_square());
+    const Entity face = place(world, {0, 0, -1});
+    const Entity brow = place(world, {2, 0, -1});
+    const Entity wall = place(world, {4, 0, -1});
+    for (const Entity entity : {face, brow, wall}) {
+        world.add(entity, Deformed{entity == wall ? wall : face, {}});
+    }
+    const auto onto = [](float x) { return Ray{{x - 0.2f, 0.2f, 0}, {0, 0, -1}}; };
+    CHECK_FALSE(is_pullable(world, onto(0)));
+    world.add(face, PullableSkin{});
+    CHECK(is_pullable(world, onto(0)));
+    CHECK_FALSE(is_pullable(world, onto(2)));  // it would not follow
+    world.add(brow, Deformers{});
+    world.add(wall, Deformers{});
+    CHECK(is_pullable(world, onto(2)));
+    CHECK_FALSE(is_pullable(world, onto(4)));
+    CHECK_FALSE(is_pullable(world, onto(9)));
+
+    SkinDrag drag;
+    const auto pulls = [&](float x, bool left, bool blocked = false) {
+        drag.follow(world, onto(x), left, blocked);
+        return drag.pulls();
+    };
+    CHECK_FALSE(pulls(0, false));
+    CHECK(pulls(0, true));
+    CHECK(pulls(9, true));
+    CHECK(pulls(9, true, true));
+    CHECK_FALSE(pulls(0, false));
+    CHECK_FALSE(pulls(9, true));
+    CHECK_FALSE(pulls(0, true));
+    CHECK_FALSE(pulls(0, false));
+    CHECK(pulls(0, true));  // again
+    CHECK_FALSE(pulls(0, false));
+    CHECK_FALSE(pulls(0, true, true));  // on a panel before it
+    CHECK_FALSE(pulls(0, true));
 }
 
 }  // namespace limn

@@ -503,9 +503,10 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: deformers move vertices and normals as on
                   .up = {0, 0.3f, 0},
                   .depth = 0.4f,
                   .contraction = 0.6f}},
-            .lattices = {
-                {.origin = {-0.5f, 0.4f, -0.5f},
-                 .offsets = std::vector<Vec3>(kLatticePoints, Vec3(0.1f, 0.05f, 0))}}});
+            .lattices =
+                {{.origin = {-0.5f, 0.4f, -0.5f},
+                  .offsets = std::vector<Vec3>(kLatticePoints, Vec3(0.1f, 0.05f, 0))}},
+            .tugs = {{.at = {0.2f, 0.7f, 0.1f}, .offset = {0.05f, 0.1f, 0}, .radius = 0.4f}}});
     world.get<Deformers>(entity).lattices[0].offsets[27] = {0.2f, -0.3f, 0.3f};
     world.run(add_deformer_states);
     world.run(update_deformers);

@@ -227,6 +227,33 @@ TEST_CASE("lattice: with two layers at rest the surface is continuous and smooth
     CHECK((through(with(one_layer), p).y - p.y) / 0.001f > 1.0f);
 }
 
+TEST_CASE("tug: without offset nothing changes to the bit, and the place moves by all of it") {
+    const Tug tug{.at = {0.1f, -0.2f, 0.3f}, .offset = {0.02f, 0.01f, -0.005f}, .radius = 0.07f};
+    CHECK(pack_deformers({.tugs = {{.at = tug.at, .radius = tug.radius}}}).empty());
+    CHECK(through({.tugs = {tug}}, tug.at) == tug.at + tug.offset);
+    Random random(9, 8, 7, 6);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 beyond =
+            tug.at + tug.radius * (1.00001f + 3.0f * random.uniform()) * random.direction();
+        CHECK(through({.tugs = {tug}}, beyond) == beyond);
+    }
+}
+
+TEST_CASE("tug: every point moves as double precision says, with no edge at the border") {
+    using glm::dvec3;
+    const Tug tug{.at = {0.1f, -0.2f, 0.3f}, .offset = {0.02f, 0.01f, -0.005f}, .radius = 0.07f};
+    Random random(1, 2, 3, 5);
+    for (int i = 0; i < 5000; ++i) {
+        const Vec3 p = tug.at + tug.radius * random.uniform() * random.direction();
+        const double share = glm::distance(dvec3(p), dvec3(tug.at)) / double{tug.radius};
+        const dvec3 wanted = dvec3(p) + std::pow(1 - share * share, 3) * dvec3(tug.offset);
+        CHECK(glm::distance(dvec3(through({.tugs = {tug}}, p)), wanted) < 1e-7);
+    }
+    // (1 - x^2)^3 is 8 (1 - x)^3 near the border: a thousandth of the radius inside it, 8e-9.
+    const Vec3 inside = tug.at + Vec3(0.999f * tug.radius, 0, 0);
+    CHECK(glm::distance(through({.tugs = {tug}}, inside), inside) < 1e-7f);
+}
+
 TEST_CASE("deformers: normals are perpendicular to the deformed surface") {
     const Lattice lattice = make_lattice([](const Vec3& at, int i, int j, int) {
         return Vec3(
@@ -274,9 +301,10 @@ TEST_CASE("deformers: no vertex moves farther than the bound, which is not idle"
          .up = {0, 0.2f, 0},
          .depth = 0.2f,
          .contraction = -0.8f});
-    const std::vector<Vec4> packed = pack_deformers(deformers);
+    const std::vector<Tug> pull = {{.offset = {0, 0.03f, 0.04f}, .radius = 0.3f}};
+    const std::vector<Vec4> packed = pack_deformers(deformers, pull);
     const float most = max_displacement(packed);
-    CHECK(most == near(0.3 + 0.01 + 0.25 * 0.8 * 0.3));
+    CHECK(most == near(0.3 + 0.01 + 0.25 * 0.8 * 0.3 + 0.05));
     Random random(1, 2, 3, 4);
     for (int i = 0; i < 20000; ++i) {
         const Vec3 p = random.uniform() * 1.5f * random.direction();
@@ -299,6 +327,9 @@ TEST_CASE("deformers: vectors of the machine and plain C++ give the same bits") 
          .up = {0, 0.2f, 0},
          .depth = 0.2f,
          .contraction = 0.8f});
+    deformers.tugs = {
+        {.at = {0.01f, 0.02f, 0}, .offset = {0, 0.02f, 0.01f}, .radius = 0.05f},
+        {.at = {0.3f, 0.3f, 0.4f}, .offset = {0.1f, 0, 0}, .radius = 0.4f}};
     const std::vector<Vec4> packed = pack_deformers(deformers);
     Random random(5, 6, 7, 8);
     std::vector<Vec3> rest;
@@ -341,6 +372,10 @@ TEST_CASE("deformers: controls without extent or with numbers that are not finit
     bad.sphincters.push_back({.center = {kNan, 0, 0}});
     bad.lattices.push_back({.u = {1, 0, 0}, .v = {1, 0, 0}, .offsets = {}});
     bad.lattices.push_back({.u = {kNan, 0, 0}, .offsets = {}});
+    bad.tugs.push_back({.offset = {1, 0, 0}, .radius = 0});
+    bad.tugs.push_back({.offset = {kNan, 0, 0}});
+    bad.tugs.push_back({.at = {0, kNan, 0}, .offset = {1, 0, 0}});
+    bad.tugs.push_back({.offset = {1, 0, 0}, .radius = kNan});
     CHECK(pack_deformers(bad).empty());
     CHECK(pack_deformers({}).empty());
     Lattice part{.offsets = {Vec3(kNan, 0, 0), Vec3(1)}};

@@ -1,12 +1,14 @@
-// Muscles and lattices that move vertices: ecs/components/deformers.h has the layout of the packed controls,
+// Muscles, lattices and tugs that move vertices: ecs/components/deformers.h has the layout of the packed controls,
 // systems/animation/deformer_kernels.cpp the same on the CPU. Needs `samplerBuffer controls`.
 
 const float kMuscle = 1.0;
 const float kSphincter = 2.0;
 const float kLattice = 3.0;
+const float kTug = 4.0;
 const int kMuscleTexels = 3;
 const int kSphincterTexels = 5;
 const int kLatticeTexels = 69;
+const int kTugTexels = 2;
 const float kHalfPi = 1.57079632679;
 
 // Pulls of muscles, which add, and the most distant point that they pull to.
@@ -97,6 +99,14 @@ vec3 through_lattice(int record, vec3 p) {
     return p;
 }
 
+vec3 through_tug(int record, vec3 p) {
+    vec3 offset = texelFetch(controls, record).yzw;
+    vec4 at = texelFetch(controls, record + 1);  // and 1 / radius^2
+    vec3 from = p - at.xyz;
+    float left = 1.0 - at.w * dot(from, from);
+    return left > 0.0 ? p + left * left * left * offset : p;
+}
+
 // Where the list of controls at `first` takes a point.
 vec3 deform_point(int first, vec3 p) {
     int count = int(texelFetch(controls, first).x);
@@ -118,8 +128,13 @@ vec3 deform_point(int first, vec3 p) {
     float size = length(pull.sum);
     p += size > pull.farthest ? (pull.farthest / size) * pull.sum : pull.sum;
     for (; i < count; ++i) {
-        p = through_lattice(record, p);
-        record += kLatticeTexels;
+        if (texelFetch(controls, record).x == kLattice) {
+            p = through_lattice(record, p);
+            record += kLatticeTexels;
+        } else {
+            p = through_tug(record, p);
+            record += kTugTexels;
+        }
     }
     return p;
 }

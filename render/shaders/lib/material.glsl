@@ -17,6 +17,8 @@
 //   WRINKLE_LAYERS  the wrinkle map has two layers: wrinkle_strength is of the slopes and then the shade of both
 //   WRINKLE_INDEPENDENT  the second one covers the first
 //   WRINKLE_PHOTO  light from above the map is painted on
+//   WRINKLE_COLUMNS  each column of the image has a method of its own (ViewBlock): wrinkle_strength is that of isometric
+//                  folds, and that of all others. After lib/view.glsl
 //   WRINKLE_FLAT   strengths are those of one vertex of each triangle
 
 #include "lib/gbuffer.glsl"
@@ -128,17 +130,53 @@ vec2 wrinkle_slope_here() {
 #endif
 #endif
 
+#if defined(WRINKLES) && defined(WRINKLE_COLUMNS)
+// The method of this pixel's column.
+uint column_method() {
+    vec2 borders = uintBitsToFloat(view.wrinkle_columns.zw);
+    float place = (gl_FragCoord.x * view.size.z - borders.x) / (borders.y - borders.x);
+    int column = clamp(int(floor(place * float(view.wrinkle_columns.x))), 0, int(view.wrinkle_columns.x) - 1);
+    return view.wrinkle_columns.y >> (4 * column) & 15u;
+}
+
+// Its strengths, as wrinkle_strength has them where all of the image has one method.
+vec4 column_strength(uint method) {
+    bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
+    return (method == kWrinkleIsometric ? wrinkle_strength.x : wrinkle_strength.y) * vec4(
+        steep ? 1.0 : 0.0,
+        method == kWrinkleSphere ? 1.0 : 0.0,
+        method == kWrinkleAlpha || method == kWrinklePhoto ? 1.0 : 0.0,
+        method == kWrinkleDirectional ? 1.0 : 0.0);
+}
+#endif
+
+#ifdef WRINKLES
+// What is left of the color of slopes that are darkened.
+float shaded_slope(vec2 slope, vec4 strength) {
+    return 1.0 - clamp(strength.z * wrinkle_shade(slope, false) + strength.w * wrinkle_shade(slope, true), 0.0, 1.0);
+}
+
+// The same of slopes in painted light.
+float painted_slope(vec2 slope, float strength) {
+    return mix(1.0, painted_light(slope), clamp(strength, 0.0, 1.0));
+}
+#endif
+
 vec4 surface_color() {
     vec4 color = material_texel(0) * base_color_texel();
 #if defined(WRINKLES) && defined(WRINKLE_LAYERS) && !defined(WRINKLE_MODEL)
     vec4 slopes = wrinkle_slopes_here();
     color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slopes.xy, false), 0.0, 1.0);
     color.rgb *= 1.0 - clamp(wrinkle_strength.w * wrinkle_shade(slopes.zw, false), 0.0, 1.0);
-#elif defined(WRINKLES) && defined(WRINKLE_PHOTO)
-    color.rgb *= mix(1.0, painted_light(wrinkle_slope_here()), clamp(wrinkle_strength.z, 0.0, 1.0));
-#elif defined(WRINKLES) && !defined(WRINKLE_MODEL)
+#elif defined(WRINKLES) && defined(WRINKLE_COLUMNS)
+    uint method = column_method();
+    vec4 strength = column_strength(method);
     vec2 slope = wrinkle_slope_here();
-    color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slope, false) + wrinkle_strength.w * wrinkle_shade(slope, true), 0.0, 1.0);
+    color.rgb *= method == kWrinklePhoto ? painted_slope(slope, strength.z) : shaded_slope(slope, strength);
+#elif defined(WRINKLES) && defined(WRINKLE_PHOTO)
+    color.rgb *= painted_slope(wrinkle_slope_here(), wrinkle_strength.z);
+#elif defined(WRINKLES) && !defined(WRINKLE_MODEL)
+    color.rgb *= shaded_slope(wrinkle_slope_here(), wrinkle_strength);
 #endif
 #ifdef VERTEX_COLOR
     color *= max(vertex_color, 0.0);
@@ -176,6 +214,11 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
 #ifdef WRINKLE_MODEL
     slope *= wrinkle_strength.w;
 #elif defined(WRINKLE_LAYERS)
+#elif defined(WRINKLE_COLUMNS)
+    uint method = column_method();
+    vec4 strength_here = column_strength(method);
+    vec2 raised = strength_here.x * slope + lifted_slope(slope, strength_here.y);
+    slope = method == kWrinkleBlend ? slope : raised;
 #elif !defined(WRINKLE_BLEND)
     slope = wrinkle_strength.x * slope + lifted_slope(slope, wrinkle_strength.y);
 #endif
@@ -267,9 +310,18 @@ SurfaceSample surface_sample(vec3 albedo) {
 #if defined(WRINKLES) && defined(SMOOTH_NORMALS)
     s.smooth_normal_ws = smooth_normal;
 #ifdef WRINKLE_BLEND
-    s.raised = clamp(wrinkle_strength.x, 0.0, 1.0);
-    s.smooth_is_stored = s.model != kModelUnlit && s.raised > 0.0;
-    s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
+#ifdef WRINKLE_COLUMNS
+    bool blends = column_method() == kWrinkleBlend;
+    float raised = wrinkle_strength.y;
+#else
+    const bool blends = true;
+    float raised = wrinkle_strength.x;
+#endif
+    if (blends) {
+        s.raised = clamp(raised, 0.0, 1.0);
+        s.smooth_is_stored = s.model != kModelUnlit && s.raised > 0.0;
+        s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
+    }
 #endif
 #ifdef WRINKLE_FADE
     s.fades = true;
