@@ -1,12 +1,12 @@
 #include "bench/faces/face_crowd.h"
 #include "bench/faces/face_rows.h"
 #include "ecs/base/jobs.h"
+#include "ecs/base/weld.h"
 #include "systems/animation/deformer_kernels.h"
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/skin_kernels.h"
 #include "systems/animation/surface_patches.h"
 #include "systems/faces/skin_strain.h"
-#include "systems/faces/weld.h"
 #include "systems/faces/wrinkle_measure.h"
 
 #include <fmt/format.h>

@@ -48,6 +48,22 @@ bool is_named(const World& world, Entity entity, std::string_view name) {
     return own != nullptr && own->text == name;
 }
 
+/// Whether it is one of several parts of a node, with a material of that name.
+bool is_part(const World& world, Entity entity, std::string_view material) {
+    const auto* const instance = world.find<MeshInstance>(entity);
+    const auto* const assets = world.find_resource<Assets>();
+    return instance != nullptr && assets != nullptr && !world.has<Name>(entity)
+           && instance->material.index < assets->materials.size()
+           && assets->materials[instance->material.index].name == material;
+}
+
+/// Whether a node of several parts has one with a material of that name.
+bool has_part(const GltfScene& scene, const GltfNode& node, std::string_view material) {
+    return node.parts.size() > 1 && std::ranges::any_of(node.parts, [&](const GltfPart& part) {
+               return scene.materials[part.material].name == material;
+           });
+}
+
 /// The entities of a node that have the component, or get it.
 std::vector<Entity> find_targets(World& world, Entity node, const ComponentInfo& info) {
     std::vector<Entity> targets;
@@ -110,7 +126,8 @@ Status find_changed_nodes(Level& level) {
             for (GltfNode& node : level.scenes[i].nodes) {
                 names.emplace_back(node.name);
                 node.is_named = node.is_named || node.name == change.node;
-                found = found || node.name == change.node;
+                found = found || node.name == change.node
+                        || has_part(level.scenes[i], node, change.node);
             }
             if (!found) {
                 return error_at(
@@ -136,7 +153,7 @@ void apply_node_changes(
             collect_nodes(world, entities[changes[i].entity], nodes);
         }
         for (const Entity node : nodes) {
-            if (!is_named(world, node, changes[i].node)) {
+            if (!is_named(world, node, changes[i].node) && !is_part(world, node, changes[i].node)) {
                 continue;
             }
             for (const Entity target : find_targets(world, node, *changes[i].info)) {

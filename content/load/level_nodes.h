@@ -23,7 +23,8 @@ struct Level;
 //       "nodes": {
 //         "Bulb": {"point_light": {"intensity": 40}},  // other fields keep the file's values
 //         "Glass": {"mesh_instance": {"material": "amber"}, "no_shadow": {}},
-//         "Sun": {"directional_light": null}           // removes it
+//         "Sun": {"directional_light": null},          // removes it
+//         "skin": {"wrinkle_surface": {}}              // of a node's parts, that of this material
 //       }
 //     }
 
@@ -45,8 +46,9 @@ struct NodeChange {
 /// Fails where a file has no node of that name; others become entities, even joints.
 [[nodiscard]] Status find_changed_nodes(Level& level);
 
-/// Changes the nodes below `entities`, which spawn_level has created. All nodes of a name change. A
-/// mesh_instance of a node of several parts is that of each part.
+/// Changes the nodes below `entities`, which spawn_level has created. All nodes of a name change,
+/// and all parts, of nodes of several, whose material has that name. A mesh_instance of a node of
+/// several parts is that of each part.
 void apply_node_changes(
     World& world, std::span<const NodeChange> changes, std::span<const Entity> entities);
 

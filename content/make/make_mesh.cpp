@@ -7,6 +7,7 @@
 #include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
 #include "content/make/plants.h"
+#include "content/make/refine_mesh.h"
 #include "content/make/retargeted.h"
 #include "content/make/shapes.h"
 #include "content/make/simplify_mesh.h"
@@ -68,6 +69,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<PlantShape, make_plants>(
             "plants", "grass, bushes or trees of blades that branch, standing on y = 0"),
+        mesh_kind<RefinedShape, make_refined>(
+            "refined", "another mesh of the level with more triangles where its skin folds"),
         mesh_kind<RetargetedShape, make_retargeted>(
             "retargeted", "the surface of one face fitted onto another, with its motion"),
         mesh_kind<SimplifiedShape, make_simplified>(

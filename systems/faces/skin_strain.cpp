@@ -1,7 +1,7 @@
 #include "systems/faces/skin_strain.h"
 
 #include "ecs/base/check.h"
-#include "systems/faces/weld.h"
+#include "ecs/base/weld.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -34,7 +34,9 @@ constexpr const char* kLamp = R"({
      "extensions": {"KHR_lights_punctual": {"light": 0}}},
     {"name": "Case", "mesh": 0},
     {"name": "arm.L"}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}}]}],
+  "materials": [{"name": "glass"}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}},
+                             {"attributes": {"POSITION": 0}, "material": 0}]}],
   "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"},
                 {"componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1],
                  "bufferView": 0},
@@ -119,6 +121,21 @@ TEST_CASE("level nodes: a material of the level goes to all parts of a node") {
         ++parts;
     });
     CHECK(parts == 2);
+}
+
+TEST_CASE("level nodes: a part of a node of several goes by the name of its material") {
+    Scene scene(
+        R"({"name": "left", "gltf": "lamp.gltf", "nodes": {"glass": {"spin": {},
+            "mesh_instance": {"material": "amber"}}}})");
+    REQUIRE_MESSAGE(scene.error.empty(), scene.error);
+    const auto& assets = scene.world.resource<Assets>();
+    int spinning = 0;
+    scene.world.query<const MeshInstance>().each([&](Entity part, const MeshInstance& instance) {
+        const bool amber = assets.materials[instance.material.index].name == "amber";
+        CHECK(scene.world.has<Spin>(part) == amber);
+        spinning += amber ? 1 : 0;
+    });
+    CHECK(spinning == 1);
 }
 
 TEST_CASE("level nodes: a joint that is named becomes an entity, which follows the joint") {

@@ -1,4 +1,4 @@
-#include "systems/faces/weld.h"
+#include "ecs/base/weld.h"
 
 #include <algorithm>
 #include <array>
