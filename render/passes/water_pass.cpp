@@ -25,6 +25,7 @@ namespace {
 
 constexpr unsigned kPatchesUnit = 0;
 constexpr unsigned kBehindUnit = 5;
+constexpr unsigned kHighestUnit = 13;
 constexpr unsigned kReflectionMapUnit = 22;
 constexpr unsigned kDetailMapUnit = 23;
 constexpr unsigned kDetailWavesUnit = 24;
@@ -118,6 +119,17 @@ void copy_behind(
         [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
 }
 
+/// Heights of the highest surfaces, tile by tile.
+TextureId find_highest(
+    FrameGraph& graph, const gpu::Program* program, const ViewData& view, TextureId distance) {
+    const IVec2 tiles = (view.size() + layout::kHighestTile - 1) / layout::kHighestTile;
+    const TextureId highest = create_target(graph, "highest surfaces", GL_R32F, tiles);
+    add_fullscreen_pass(
+        graph, "highest surfaces", {sampled(distance, kDistanceUnit)}, {discarded(highest)},
+        program, [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
+    return highest;
+}
+
 bool any_water(const FrameData& frame) {
     return !frame.world->query<const Water>().empty();
 }
@@ -143,6 +155,8 @@ Result<WaterEffect> WaterEffect::create(gpu::Device& device, const RenderSetting
         .surface = ProgramVariants(device, {.vertex = "water.vert", .fragment = "water.frag"}),
         .behind =
             LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_behind.frag"})),
+        .highest =
+            LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_highest.frag"})),
         .waves = LIMN_TRY(
             shaders.load({.vertex = "fullscreen.vert", .fragment = "texture_waves.frag"}))};
     const std::array<std::uint16_t, kIndices> indices = grid_indices();
@@ -192,6 +206,10 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
 
     std::vector<Use> reads =
         lighting_reads(view, {sampled(scene, kBehindUnit), sampled(distance, kDistanceUnit)});
+    if (waters->list.traced || waters->list.seen_from_below) {
+        const TextureId surfaces = find_highest(graph, highest, view, distance);
+        reads.push_back(sampled(surfaces, kHighestUnit));
+    }
     const auto* reflection = frame.data.find<PlanarReflection>();
     if (waters->list.planar) {
         reads.push_back(

@@ -12,7 +12,7 @@ namespace limn {
 // Reads    WaterList, radiance, depth, light clusters, environment
 // Writes   radiance, depth, velocity and, if requested, surface attributes where there is water
 // Order    after lights and sky, before blended surfaces
-// Shaders  water_behind.frag, water.vert, water.frag, lib/water_surface.glsl,
+// Shaders  water_behind.frag, water_highest.frag, water.vert, water.frag, lib/water_surface.glsl,
 //          lib/water_reflection.glsl, lib/water_refraction.glsl,
 //          lib/water_tracing.glsl, lib/water_foam.glsl
 //
@@ -25,6 +25,7 @@ namespace limn {
 struct WaterEffect {
     ProgramVariants surface;
     const gpu::Program* behind = nullptr;
+    const gpu::Program* highest = nullptr;
     const gpu::Program* waves = nullptr;  ///< texture_waves.frag
     gpu::VertexArray grid{};
     gpu::Buffer indices{};

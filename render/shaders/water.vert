@@ -22,10 +22,11 @@ vec3 surface_ws(WaterRecord water, vec2 q, vec3 offset) {
 
 void main() {
     vec4 square = texelFetch(patches, 2 * gl_InstanceID);
-    vec2 morph = texelFetch(patches, 2 * gl_InstanceID + 1).xy;
+    vec4 morph = texelFetch(patches, 2 * gl_InstanceID + 1);
     vec2 grid = vec2(gl_VertexID % kCorners, gl_VertexID / kCorners);
     body = int(square.w);
     WaterRecord water = water_record(body);
+    water.waves.y = morph.z;  // only lines that its vertices resolve
 
     vec2 half_size = water.shape.yz;
     vec2 bounds = mix(vec2(1e9), half_size, greaterThan(half_size, vec2(0.0)));
@@ -40,7 +41,7 @@ void main() {
     rest = q;
     float spacing = cell * (1.0 + slid);
     WaterMotion waves = wave_motion(water, q, spacing, false);
-    wave_by_x = vec4(waves.bend.by_x, waves.bend.variance);
+    wave_by_x = vec4(waves.bend.by_x, waves.bend.variance + morph.w);
     wave_by_z = waves.bend.by_z;
     vec3 offset = waves.offset + field_offset(water, q, spacing, false);
     gl_Position = view.clip_from_world * vec4(surface_ws(water, q, offset), 1.0);

@@ -33,6 +33,8 @@ struct WaveRingRecord {
                  // frame [m]; 0
 };
 
+const int kHighestTile = 32;    // side of the tiles of water_highest.frag [px]
+const float kNoHeight = 1e9;
 const int kWaterGrid = 8;  // cells along a side of a patch; even
 
 const uint kWaterTexels = 10u;

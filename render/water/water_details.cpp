@@ -1,5 +1,7 @@
 #include "render/water/water_details.h"
 
+#include "render/water/water_patches.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +13,6 @@ constexpr float kTexelsPerWave = 4;
 
 float length_of(const WaveLine& line) {
     return 2 * kPi / std::max(glm::length(line.k), 1e-9f);
-}
-
-float slope_variance(const WaveLine& line) {
-    return 0.5f * square(line.amplitude) * glm::dot(line.k, line.k);
 }
 
 /// Scroll offset of a layer, in tiles.

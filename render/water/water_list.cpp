@@ -169,7 +169,13 @@ void add_body(
     source.finest = finest_of(body.table, lines, ripples, sea);
     source.detail = detail_of(view);
     source.body = static_cast<float>(index);
+    const std::size_t first_patch = list.patches.size();
     append_water_patches(source, list.patches);
+    if (body.table != nullptr) {
+        resolve_lines(
+            std::span(body.table->lines).first(lines),
+            std::span(list.patches).subspan(first_patch));
+    }
     list.seen_from_below |= !(source.camera.y > source.margin.y);
     if (!list.around) {
         list.around = find_around(source, body.water->depth, view.near);

@@ -1,5 +1,9 @@
 #include "render/water/water_patches.h"
 
+#include "render/shaders/water_gpu.h"
+
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 
 namespace limn {
@@ -52,6 +56,21 @@ void walk(
 }
 
 }  // namespace
+
+void resolve_lines(std::span<const WaveLine> lines, std::span<WaterPatch> patches) {
+    for (WaterPatch& patch : patches) {
+        const float spacing = patch.size / static_cast<float>(layout::kWaterGrid);
+        const auto first =
+            std::partition_point(lines.begin(), lines.end(), [&](const WaveLine& line) {
+                return spacing * glm::length(line.k) < kPi;
+            });
+        patch.lines = static_cast<float>(first - lines.begin());
+        patch.variance = 0;
+        for (auto line = first; line != lines.end(); ++line) {
+            patch.variance += slope_variance(*line);
+        }
+    }
+}
 
 void append_water_patches(const PatchSource& source, std::vector<WaterPatch>& patches) {
     if (source.half.x > 0 && source.half.y > 0) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/water_waves.h"
 #include "render/culling.h"
 
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -25,7 +27,8 @@ struct WaterPatch {
     float body = 0;         ///< index of the body of water
     float morph_begin = 0;  ///< distance from the camera at which morphing begins [m]
     float morph_end = 1;    ///< distance at which it ends [m]
-    Vec2 unused = {0, 0};
+    float lines = 0;        ///< number of leading, longest wave lines that its vertices resolve
+    float variance = 0;     ///< of the slopes of the other lines
 };
 static_assert(sizeof(WaterPatch) == 32);
 
@@ -39,6 +42,14 @@ struct PatchSource {
     float detail = kMinPatchDetail;  ///< ratio of distance to patch side, >= 2
     float body = 0;
 };
+
+[[nodiscard]] inline float slope_variance(const WaveLine& line) {
+    return 0.5f * square(line.amplitude) * glm::dot(line.k, line.k);
+}
+
+/// Sets the lines of patches by the distance of their vertices; `lines`: longest first. The rule is
+/// wave_share() of lib/water_surface.glsl: those left out would be multiplied by 0.
+void resolve_lines(std::span<const WaveLine> lines, std::span<WaterPatch> patches);
 
 /// Appends the patches that may be visible, at most kMaxWaterPatches in total; beyond that the last
 /// ones are too large or missing.

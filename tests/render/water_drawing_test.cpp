@@ -6,6 +6,9 @@
 #include "ecs/components/water_ripples.h"
 #include "ecs/components/water_waves.h"
 #include "render/gpu/readback.h"
+#include "render/graph/frame_graph.h"
+#include "render/render_frame.h"
+#include "render/shaders/water_gpu.h"
 #include "render/water/foam_pattern.h"
 #include "render/water/ripple_atlas.h"
 #include "systems/water/ocean_system.h"
@@ -415,6 +418,43 @@ TEST_CASE_FIXTURE(Lake, "water: a camera exactly on the surface sees numbers, wh
                 REQUIRE(value >= 0);
             }
         }
+    }
+}
+
+TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface that any of their pixels shows") {
+    pour({.size = {40, 40}});
+    const MaterialId white = add(Material{});
+    place(add(make_square()), white, affine_from({-3, 1, -4}, {1, 0, 0, 0}, {1, 2.5f, 1}));
+    place(add(make_square()), white, affine_from({2, -1, -1}, {1, 0, 0, 0}, Vec3(1)));
+    const RenderView view = look({0, 2, 4}, {0, 1, 0}, 150, 70);
+    FrameGraph& graph = frame_graph(shared_renderer());
+    const std::string names[] = {"highest surfaces", "distance behind water"};
+    for (const std::string& name : names) {
+        graph.keep_named(name);
+    }
+    draw(view);
+    const gpu::FloatImage tiles = gpu::read_floats(*graph.texture(graph.find(names[0])));
+    const gpu::FloatImage seen = gpu::read_floats(*graph.texture(graph.find(names[1])));
+    for (const std::string& name : names) {
+        graph.forget_named(name);
+    }
+    REQUIRE(tiles.width == 5);
+    REQUIRE(tiles.height == 3);
+    std::vector<float> highest(15, -layout::kNoHeight);
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const float d = seen.at(x, y, 0);
+            const int row = 2 - (view.height - 1 - y) / layout::kHighestTile;  // from the top
+            float& its = highest[static_cast<std::size_t>(5 * row + x / layout::kHighestTile)];
+            its = d > 0 ? std::max(its, eye_of(view).y + ray_through(view, x, y).y * d) : its;
+        }
+    }
+    CHECK(std::ranges::count(highest, -layout::kNoHeight) >= 5);
+    CHECK(std::ranges::count_if(highest, [](float h) { return h > 3; }) >= 1);
+    for (int i = 0; i < 15; ++i) {
+        CAPTURE(i);
+        const float found = tiles.at(i % 5, i / 5, 0);
+        CHECK(found == test::near(highest[static_cast<std::size_t>(i)]).epsilon(1e-3));
     }
 }
 

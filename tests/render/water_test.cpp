@@ -147,6 +147,27 @@ TEST_CASE("water patches: they stay where they are in the water, however the cam
     }
 }
 
+TEST_CASE(
+    "water patches: vertices leave out the waves that are too short for them, and only these") {
+    std::vector<WaveLine> lines;
+    for (const float length : {19.0f, 11.0f, 4.0f, 2.5f, 0.9f, 0.8f}) {
+        lines.push_back({.k = {0, 2 * kPi / length}, .amplitude = 0.02f * length});
+    }
+    std::vector<WaterPatch> patches;
+    for (const float size : {0.4f, 3.5f, 15.9f, 16.1f, 200.0f}) {
+        patches.push_back({.size = size});
+    }
+    resolve_lines(lines, patches);
+    const float expected[] = {6, 5, 3, 2, 0};  // two vertices per wave, eight cells per side
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        CAPTURE(patches[i].size);
+        CHECK(patches[i].lines == expected[i]);
+        // Each of these waves is as steep as the others: slopes of 0.04 pi times a sine.
+        const float steepness = 0.5f * square(0.04f * kPi);
+        CHECK(patches[i].variance == test::near((6 - expected[i]) * steepness));
+    }
+}
+
 TEST_CASE("water patches: there are never too many, whatever is asked for") {
     std::vector<WaterPatch> patches;
     PatchSource source = source_of({0, 0}, {0, 0.1f, 0});

@@ -3,12 +3,14 @@
 
 layout(binding = 5) uniform sampler2D behind_radiance;   // water_behind.frag
 layout(binding = 26) uniform sampler2D behind_distance;
+layout(binding = 13) uniform sampler2D highest_surfaces;  // water_highest.frag
 
 // Of reflected rays.
 const float kMirrorStep = 10.0;       // [px] on average; what is narrower may be missed
 const float kMinMirrorSteps = 10.0;
 const float kMaxMirrorSteps = 48.0;
 const float kMirrorReach = 2000.0;    // [m]
+const int kMaxClearTiles = 64;
 const float kMirrorThickness = 0.2;   // of what they meet, relative to the path, by eye
 const int kBendSteps = 8;
 // Once they have met something, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel goes on as long as the
@@ -72,9 +74,27 @@ float blocking_distance(vec2 pixel, Side side) {
     return blocks ? seen : kInfiniteDistance;
 }
 
+// How far a ray from `from` [px] along the image goes, in units of `along` and up to `end`, through tiles without
+// anything above the level of a side that is above water.
+float clear_way(vec2 from, vec2 along, float end, Side side) {
+    vec2 slope = mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
+    vec2 beyond = step(0.0, slope) + 1e-3 * sign(slope);  // the next tile [tiles]
+    ivec2 last = textureSize(highest_surfaces, 0) - 1;
+    float way = 0.0;
+    bool clear;
+    int tiles = 0;
+    do {
+        ivec2 tile = clamp(ivec2(from + way * along) / kHighestTile, ivec2(0), last);
+        clear = side.up > 0.0 && texelFetch(highest_surfaces, tile, 0).r <= side.level;
+        vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) / slope;
+        way = clear ? max(way, min(leaving.x, leaving.y)) : way;
+    } while (clear && way < end && ++tiles < kMaxClearTiles);
+    return min(way, end);
+}
+
 // Radiance along a reflected ray: from the image where the ray hits something on screen, else `around`, at infinite
 // distance. The ray is followed in the image, where pixels and the reciprocal of the distance are linear, up to where it
-// leaves the screen; steps grow from the surface on.
+// leaves the screen; steps grow from the first tile on in which anything is above the water.
 RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     ScreenRay ray = screen_ray(position, direction);
     vec2 from = gl_FragCoord.xy;
@@ -84,17 +104,19 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     float reach = ray.along.z < 0.0 ? min(kMirrorReach, -0.95 * ray.from.z / ray.along.z) : kMirrorReach;
     float u_reach = reach / (ray.from.z + reach * ray.along.z);
     float u_end = max(min(u_reach, min(leaving.x, leaving.y)), 0.0);
-    float count = ceil(clamp(u_end * length(along) / kMirrorStep, kMinMirrorSteps, kMaxMirrorSteps));
-    float low = 0.0;
-    float high = 0.0;
-    float z = ray.from.z;
+    float u_begin = clear_way(from, along, u_end, side);
+    float rest = u_end - u_begin;
+    float count = rest > 0.0 ? ceil(clamp(rest * length(along) / kMirrorStep, kMinMirrorSteps, kMaxMirrorSteps)) : 1.0;
+    float low = u_begin;
+    float high = u_begin;
+    float z = ray.from.z / (1.0 - u_begin * ray.along.z);
     float ahead = 1.0;  // reciprocal distances of the ray and of what is seen, apart: at low
     float behind;       // and at high
     bool met = false;
     float step = 0.0;
     do {
         float share = min(++step / count, 1.0);
-        high = met ? high : u_end * share * (0.3 + 0.7 * share);
+        high = met ? high : u_begin + rest * share * (0.3 + 0.7 * share);
         float seen = blocking_distance(from + high * along, side);
         // What it passes far behind does not stop it. Under water, where no sky can take its place, anything does.
         bool near = side.up < 0.0 || z < seen + kMirrorThickness * low * z + 0.05;
