@@ -61,7 +61,8 @@ constexpr EffectEntry kImage[] = {
     effect<ShadingComparisonEffect>(kMainViews),         // two methods as one image
     effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // light that spreads within surfaces
     effect<SkyEffect>(kSceneViews), effect<MirrorCausticEffect>(kSceneViews),
-    effect<WaterEffect>(kSceneViews),      // over all that is opaque
+    effect<ParticlesUnderWaterEffect>(kSceneViews),  // seen through it
+    effect<WaterEffect>(kSceneViews),                // over all that is opaque
     effect<WaterVeilEffect>(kSceneViews),  // what lies between a camera in the water and all else
     effect<ParticleEffect>(kSceneViews),   // what is behind blended surfaces
     effect<BlendEffect>(kSceneViews),      // after sky and water, which are seen through it

@@ -314,6 +314,11 @@ void ParticleEffect::collect(FrameData& frame) {
     billboards.quads.clear();
     billboards.places.clear();
     extents.clear();
+    waters.clear();
+    world.query<const Water, const WorldTransform>().each(
+        [&](const Water& water, const WorldTransform& its) {
+            waters.push_back({&water, water_frame(its.world)});
+        });
     features = {};
     lit = soft = moving = focused = has_ribbons = has_billboards = has_halves = has_weighted =
         false;
@@ -409,6 +414,7 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     seen.half_bounds = {};
     seen.weighted_bounds = {};
     seen.half_begin = 0;
+    seen.effect = this;
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     cull_particles(sorted, extents, frustum, visible);
     if (frame.warm_up) {
@@ -434,6 +440,7 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
             seen.weighted_bounds,
             layers[pool->look] == LookLayer::Weighted ? extents[pool->look].ways : Bounds{});
     }
+    append_under_water(frame, view, seen);
     seen.texels.upload(*frame.ring, seen.instances);
     return !seen.runs.empty() || !gpu.pools().empty();
 }
@@ -469,6 +476,32 @@ bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
            && (is_flat || run.arrays.negative_lights == arrays[look].negative_lights);
 }
 
+void ParticleEffect::append_instance(
+    const RenderView& camera, std::size_t index, float scale, std::size_t first_run,
+    ViewParticles& seen) {
+    const ParticleInstance& instance = sorted[index];
+    const std::uint32_t look = instance.look_and_share >> 16;
+    if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
+        seen.runs.push_back(
+            {.arrays = arrays[look],
+             .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::SmallDisc,
+             .magnified = true,
+             .first = static_cast<int>(seen.instances.size()),
+             .count = 0});
+    }
+    ParticleRun& run = seen.runs.back();
+    const float texels = extents[look].texels;
+    const float pixels = scale * least_pixels(instance, looks[look], camera);
+    const bool is_small_disc =
+        texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxPoint;
+    run.magnified = run.magnified && (texels == 0 || pixels > 0.999f * texels);
+    if (run.shape == SpriteShape::SmallDisc && !is_small_disc) {
+        run.shape = SpriteShape::Quad;
+    }
+    ++run.count;
+    seen.instances.push_back(instance);
+}
+
 /// Those of this layer in [first, last) that are visible, from back to front.
 void ParticleEffect::append_runs(
     const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
@@ -480,25 +513,7 @@ void ParticleEffect::append_runs(
         if (visible[i] == 0 || layers[look] != layer) {
             continue;
         }
-        if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
-            seen.runs.push_back(
-                {.arrays = arrays[look],
-                 .shape = is_point(looks[look]) ? SpriteShape::Point : SpriteShape::SmallDisc,
-                 .magnified = true,
-                 .first = static_cast<int>(seen.instances.size()),
-                 .count = 0});
-        }
-        ParticleRun& run = seen.runs.back();
-        const float texels = extents[look].texels;
-        const float pixels = scale * least_pixels(sorted[i], looks[look], camera);
-        const bool is_small_disc =
-            texels == 0 && looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxPoint;
-        run.magnified = run.magnified && (texels == 0 || pixels > 0.999f * texels);
-        if (run.shape == SpriteShape::SmallDisc && !is_small_disc) {
-            run.shape = SpriteShape::Quad;
-        }
-        ++run.count;
-        seen.instances.push_back(sorted[i]);
+        append_instance(camera, i, scale, first_run, seen);
         if (layer == LookLayer::Half) {
             grow(seen.half_bounds, bounds_of(sorted[i], looks[look]));
         } else if (layer == LookLayer::Weighted) {
@@ -507,8 +522,44 @@ void ParticleEffect::append_runs(
     }
 }
 
+/// Below the rest level of some water, wherever its waves are.
+bool ParticleEffect::is_under_water(const Vec3& place) const {
+    return std::any_of(waters.begin(), waters.end(), [&](const WaterBody& body) {
+        const Vec3 local = body.frame.local(place);
+        return local.y < 0 && is_inside(*body.water, {local.x, local.z});
+    });
+}
+
+/// Whatever their layer, at full resolution; none where the camera is in the water, too.
+void ParticleEffect::append_under_water(
+    const FrameData& frame, const ViewData& view, ViewParticles& seen) {
+    seen.under_begin = seen.runs.size();
+    if (waters.empty() || is_clipped(view)
+        || is_under_water(transform_point(view.camera.world_from_camera, Vec3(0)))) {
+        return;
+    }
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        if (visible[i] != 0 && (frame.warm_up || is_under_water(sorted[i].position))) {
+            append_instance(view.camera, i, 1, seen.under_begin, seen);
+        }
+    }
+}
+
 void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData&) {
     gpu.update(graph, gpu_view);
+}
+
+void ParticleEffect::draw_under_water(FrameGraph& graph, ViewData& view) {
+    const Use targets[] = {view.radiance};
+    add_sprites(
+        graph, view, "particles.under water", view.gbuffer.depth, targets, Part::UnderWater);
+}
+
+void ParticlesUnderWaterEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    const auto* const seen = view.data.find<ParticleEffect::ViewParticles>();
+    if (seen != nullptr && seen->under_begin < seen->runs.size()) {
+        seen->effect->draw_under_water(graph, view);
+    }
 }
 
 void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const {
@@ -521,18 +572,17 @@ void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) 
 
 void ParticleEffect::add_sprites(
     FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
-    std::span<const Use> targets, Part part, bool behind) {
+    std::span<const Use> targets, Part part, const std::optional<TextureId>& veil, bool behind) {
     std::vector<Use> reads =
         lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
-    const std::optional<TextureId> veil = view.data.get<ParticlesInFront>().veil;
     if (veil) {
         reads.push_back(sampled(*veil, kVeilUnit));
     }
     add_pool_reads(graph, reads);
     graph.add_pass(
         name, std::span<const Use>(reads), targets,
-        [this, &view, part, behind](PassContext& context) {
-            draw_sprites(context, view, part, behind);
+        [this, &view, part, veiled = veil.has_value(), behind](PassContext& context) {
+            draw_sprites(context, view, part, veiled, behind);
         });
 }
 
@@ -566,11 +616,12 @@ void ParticleFrontEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDa
 void ParticleEffect::add_layers(
     FrameGraph& graph, const FrameData& frame, ViewData& view, bool behind) {
     const auto& seen = view.data.get<ViewParticles>();
+    const std::optional<TextureId> veil = view.data.get<ParticlesInFront>().veil;
     const auto add_pass = [&](const char* name, const char* veiled, TextureId depth,
                               std::initializer_list<Use> targets, Part part) {
         add_sprites(
             graph, view, behind ? veiled : name, depth, std::span(targets.begin(), targets.size()),
-            part, behind);
+            part, veil, behind);
     };
     create_layer_programs(*frame.device);
     if (seen.half_begin > 0) {
@@ -701,9 +752,8 @@ void ParticleEffect::draw_lens_depth(PassContext& context, const ViewData& view)
 
 /// What the GPU moves at full resolution is in front.
 void ParticleEffect::draw_sprites(
-    PassContext& context, const ViewData& view, Part part, bool behind) {
+    PassContext& context, const ViewData& view, Part part, bool veiled, bool behind) {
     const bool is_weighted = part == Part::Weighted;
-    const bool is_veiled = view.data.get<ParticlesInFront>().veil.has_value();
     gpu::PipelineState state = kWeightedState;
     if (!is_weighted) {
         state.blend = gpu::kBlendPremultiplied;
@@ -716,7 +766,7 @@ void ParticleEffect::draw_sprites(
         variant.add_if(lit && shape != SpriteShape::SmallDisc, "LIT");
         variant.add_if(features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
-        variant.add_if(is_veiled, "VEILED");
+        variant.add_if(veiled, "VEILED");
         variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {
@@ -755,11 +805,13 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
     };
     const std::span<const ParticleRun> all(seen.runs);
     const auto runs =
-        part == Part::Behind     ? all.first(seen.half_begin)
-        : part == Part::Half     ? all.subspan(seen.half_begin, seen.half_end - seen.half_begin)
-        : part == Part::Front    ? all.subspan(seen.half_end, seen.weighted_begin - seen.half_end)
-        : part == Part::Weighted ? all.subspan(seen.weighted_begin)
-                                 : all;
+        part == Part::Behind  ? all.first(seen.half_begin)
+        : part == Part::Half  ? all.subspan(seen.half_begin, seen.half_end - seen.half_begin)
+        : part == Part::Front ? all.subspan(seen.half_end, seen.weighted_begin - seen.half_end)
+        : part == Part::Weighted
+            ? all.subspan(seen.weighted_begin, seen.under_begin - seen.weighted_begin)
+        : part == Part::UnderWater ? all.subspan(seen.under_begin)
+                                   : all.first(seen.under_begin);
     const gpu::Program* program = nullptr;
     std::optional<SpriteShape> shape;
     const auto draw_run = [&](const ParticleRun& run) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "ecs/components/particles.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_frame.h"
 #include "render/billboard_list.h"
 #include "render/buffer_texture.h"
 #include "render/effect.h"
@@ -25,7 +27,8 @@ namespace limn {
 // Reads    depth, light clusters, environment, InstanceList; ParticlePool, Trail, Beam, Billboard
 //          with ParticleLook
 // Writes   radiance; velocity and LensDepth, where they cover more than their look states
-// Order    what is behind blended surfaces before these, the rest after them and before the lens
+// Order    what is in water before it, what is behind blended surfaces before these, the rest after
+//          them and before the lens
 // Shaders  particle.vert, particle.frag, particle_velocity.frag, particle_focus.frag,
 // particle_weighted.frag; layout in particle_gpu.h
 //
@@ -52,8 +55,8 @@ enum class LookLayer : std::uint8_t { Full, Half, Weighted };
 
 struct ParticleEffect {
     /// What is drawn at half the resolution, and what the middle one of it hides or is hidden by;
-    /// what is weighted.
-    enum class Part { Behind, Half, Front, Weighted, All };
+    /// what is weighted; what is drawn once more, before the water that it is in.
+    enum class Part { Behind, Half, Front, Weighted, UnderWater, All };
 
     /// What a view draws.
     struct ViewParticles {
@@ -63,8 +66,10 @@ struct ParticleEffect {
             0;  ///< of the runs at half the resolution; those before are behind
         std::size_t half_end = 0;
         Bounds half_bounds{};            ///< of those
-        std::size_t weighted_begin = 0;  ///< of the runs that are weighted, to the end
+        std::size_t weighted_begin = 0;  ///< of the runs that are weighted
         Bounds weighted_bounds{};        ///< of those
+        std::size_t under_begin = 0;     ///< of the runs under water, to the end
+        ParticleEffect* effect = nullptr;
         BufferTexture texels = BufferTexture("particles in view", GL_R32UI);
     };
 
@@ -84,6 +89,11 @@ struct ParticleEffect {
     DistanceOrder order = {};
     std::vector<ParticleInstance> sorted = {};
     std::vector<std::uint8_t> visible = {};
+    struct WaterBody {
+        const Water* water = nullptr;
+        WaterFrame frame{};
+    };
+    std::vector<WaterBody> waters = {};
     GpuParticlePools gpu = {};  ///< drawn after the others
     GpuParticleView gpu_view = {};
     bool lit = false;
@@ -110,6 +120,8 @@ struct ParticleEffect {
     void collect(FrameData& frame);
     bool prepare(const FrameData& frame, ViewData& view);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
+    /// What is seen through water.
+    void draw_under_water(FrameGraph& graph, ViewData& view);
     /// What is behind blended surfaces.
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
     /// The rest, after these.
@@ -124,17 +136,24 @@ struct ParticleEffect {
     void collect_billboards(const FrameData& frame, float back);
     [[nodiscard]] std::size_t middle_half() const;
     [[nodiscard]] bool fits(const ParticleRun& run, std::uint32_t look) const;
+    void append_instance(
+        const RenderView& camera, std::size_t index, float scale, std::size_t first_run,
+        ViewParticles& seen);
     void append_runs(
         const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
         ViewParticles& seen);
+    [[nodiscard]] bool is_under_water(const Vec3& place) const;
+    void append_under_water(const FrameData& frame, const ViewData& view, ViewParticles& seen);
     void add_layers(FrameGraph& graph, const FrameData& frame, ViewData& view, bool behind);
     void add_sprites(
         FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
-        std::span<const Use> targets, Part part, bool behind);
+        std::span<const Use> targets, Part part, const std::optional<TextureId>& veil = {},
+        bool behind = false);
     void create_layer_programs(gpu::Device& device);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
     [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape) const;
-    void draw_sprites(PassContext& context, const ViewData& view, Part part, bool behind);
+    void
+    draw_sprites(PassContext& context, const ViewData& view, Part part, bool veiled, bool behind);
     void draw_velocity(PassContext& context, const ViewData& view);
     void add_lens_depth(FrameGraph& graph, ViewData& view);
     void draw_lens_depth(PassContext& context, const ViewData& view);
@@ -146,6 +165,16 @@ struct ParticleEffect {
 struct ParticlesInFront {
     ParticleEffect* effect = nullptr;
     std::optional<TextureId> veil{};  ///< depth of the nearest blended surface, if one may be seen
+};
+
+/// From above the water; what is in it is absorbed as far as the ground behind it is.
+struct ParticlesUnderWaterEffect {
+    [[nodiscard]] static Result<ParticlesUnderWaterEffect>
+    create(gpu::Device&, const RenderSettings&) {
+        return ParticlesUnderWaterEffect{};
+    }
+    static bool is_used(const FrameData& frame) { return ParticleEffect::is_used(frame); }
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 };
 
 struct ParticleFrontEffect {

@@ -179,4 +179,25 @@ TEST_CASE_FIXTURE(
     CHECK(red() == test::near(bare).epsilon(0.01));
 }
 
+TEST_CASE_FIXTURE(OrderScene, "particle order: below clear water they are seen from above") {
+    // A floor in the way of the light that comes back, so that only what is before it is seen.
+    place(
+        add(make_square()), add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
+        affine_from({0, -2, 0}, Quat(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0), Vec3(9)));
+    world.create(
+        Water{.size = {16, 16}, .depth = 2, .absorption = Vec3(0), .scattering = Vec3(0)},
+        WorldTransform{at({0, 0, 0})});
+    const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
+    const auto red = [&] { return rgb_at(radiance(view), 16, 16).x; };
+    const float bare = red();
+    const Entity below = emit({0, -1, 0}, {1, 0, 0}, 0.5f);
+    // All but the 2 % that are mirrored on the way out, by light that spreads over n^2.
+    const float seen = red();
+    CHECK(seen > bare + 0.3f);
+    CHECK(seen < bare + 0.5f);
+    world.destroy(below);
+    emit({0, 0.5f, 0}, {1, 0, 0}, 0.5f);
+    CHECK(red() == test::near(0.5f + 0.5f * bare).epsilon(0.02));
+}
+
 }  // namespace limn::test
