@@ -9,8 +9,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <string_view>
+#include <utility>
 
 namespace limn {
 

@@ -13,6 +13,7 @@
 #include "systems/animation/pose_system.h"
 #include "systems/animation/skin_kernels.h"
 #include "systems/animation/surface_binding_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -200,7 +201,7 @@ TEST_CASE("head markers: triangles are a surface with one border, the end of the
         area += 0.5 * static_cast<double>(p.y * q.x - p.x * q.y);
     }
     // Their convex hull: the grid, and on either side a triangle below the middle of the crown.
-    CHECK(area == doctest::Approx(kHeadColumns * kHeadRows + 2 * 0.5 * 48 * 12).epsilon(1e-4));
+    CHECK(area == test::near(kHeadColumns * kHeadRows + 2 * 0.5 * 48 * 12));
     for (const auto& [a, b] : edges) {
         if (!edges.contains({b, a})) {
             const bool seam =
