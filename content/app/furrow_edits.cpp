@@ -90,9 +90,9 @@ pick_furrow_vertex(const SeenMesh& seen, const Vec2& pointer, float reach) {
 
 std::optional<int> pick_furrow_tip(
     const SeenMesh& seen, const Vec3& position, const FurrowVectors& vectors, float length,
-    const Vec2& pointer) {
+    const Vec2& pointer, float reach) {
     std::optional<int> found;
-    float least = kFurrowReach;
+    float least = reach;
     for (int f = 0; f < 2; ++f) {
         const auto pixel = pixel_of(seen, position + length * vectors[static_cast<std::size_t>(f)]);
         const float pixels = pixel ? glm::distance(*pixel, pointer) : INFINITY;

@@ -46,10 +46,10 @@ struct SeenMesh {
 pick_furrow_vertex(const SeenMesh& seen, const Vec2& pointer, float reach = kFurrowReach);
 
 /// Which of the two vectors drawn at `position` with this `length` per magnitude has its tip
-/// nearest to the pointer, within kFurrowReach.
+/// nearest to the pointer, at most `reach` pixels away.
 [[nodiscard]] std::optional<int> pick_furrow_tip(
     const SeenMesh& seen, const Vec3& position, const FurrowVectors& vectors, float length,
-    const Vec2& pointer);
+    const Vec2& pointer, float reach = kFurrowReach);
 
 /// The vector whose tip is where `ray` meets the plane through `position` with unit `normal`,
 /// perpendicular to it and of a magnitude of at most 2. Where they hardly meet, the point of the

@@ -7,6 +7,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/passes/furrow_pass.h"
 #include "render/render_view.h"
 
 #include <fmt/format.h>
@@ -91,6 +92,12 @@ void record_edit(
     last = what;
     edit.after = std::move(after);
     undo.record(std::move(edit));
+}
+
+/// Of the tips as they are drawn in a window, whose image may have fewer rows [px].
+float tip_radius(const RenderView& view, const IVec2& window) {
+    const float rows = static_cast<float>(std::max(view.height, 1));
+    return furrow_mark_pixels(view.height, kFurrowTipRadius) * static_cast<float>(window.y) / rows;
 }
 
 void draw_heading(const char* text) {
@@ -182,7 +189,7 @@ bool FurrowPanel::take_pointer(
     if (!is_open()) {
         return false;
     }
-    const bool pressed = pointer.left && !std::exchange(was_left_, pointer.left);
+    const bool pressed = left_.begins(pointer.left);
     if (!pointer.left && !pointer.right && !ImGui::IsAnyItemActive()) {
         tip_.reset();
         last_edit_.clear();
@@ -208,7 +215,8 @@ bool FurrowPanel::take_pointer(
     if (pressed && vertex) {
         tip_ = pick_furrow_tip(
             seen, target->mesh->positions[*vertex], target->skin->field[*vertex],
-            furrow_vector_length(*target->view, *target->skin), pointer.at);
+            furrow_vector_length(*target->view, *target->skin), pointer.at,
+            std::max(kFurrowReach, tip_radius(view, pointer.window)));
     }
     if (tip_ && pointer.left) {
         drag_tip(world, undo, view, pointer);

@@ -2,6 +2,7 @@
 
 #include "content/app/furrow_edits.h"
 #include "content/app/light_drag.h"
+#include "content/app/press_edge.h"
 #include "ecs/base/math.h"
 #include "ecs/entity.h"
 
@@ -67,7 +68,7 @@ class FurrowPanel {
     Entity entity_;
     std::optional<FurrowView> before_;  ///< of the entity, when it was opened
     std::optional<int> tip_;            ///< of the selected vertex, that is dragged
-    bool was_left_ = false;
+    PressEdge left_;
     LightDrag light_;
     std::string last_edit_;  ///< what the last edit changed, that a drag extends
     bool reset_view_ = false;

@@ -7,12 +7,15 @@
 #include "render/image_pool.h"
 #include "render/material_pool.h"
 
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -25,26 +28,49 @@ constexpr unsigned kSceneUnit = 3;
 
 constexpr float kLineRadius = 0.75f;    // [px]
 constexpr float kEditedRadius = 1.25f;  // of the lines of edited vertices
-constexpr float kTipRadius = 3.5f;
 constexpr float kVertexRadius = 1.5f;
 constexpr float kEditedVertexRadius = 3;
 constexpr float kHaloRadius = 6.5f;
-constexpr float kRows = 720;  // of the image that these are for
 
+/// Mean length of the edges at each vertex [m]; 0 without any.
+std::vector<float> vertex_spacings(const MeshData& mesh) {
+    std::vector<float> sums(mesh.positions.size(), 0.0f);
+    std::vector<float> counts(mesh.positions.size(), 0.0f);
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = mesh.indices[i + k];
+            const std::uint32_t b = mesh.indices[i + (k + 1) % 3];
+            const float length = glm::distance(mesh.positions[a], mesh.positions[b]);
+            for (const std::uint32_t v : {a, b}) {
+                sums[v] += length;
+                counts[v] += 1;
+            }
+        }
+    }
+    for (std::size_t v = 0; v < sums.size(); ++v) {
+        sums[v] /= std::max(counts[v], 1.0f);
+    }
+    return sums;
+}
+
+/// `spacing`: 0 for edited vertices, which are few.
 void append_vectors(
-    const Vec3& at, const FurrowVectors& vectors, float length, bool edited,
+    const Vec3& at, const FurrowVectors& vectors, float length, float spacing,
     std::vector<FurrowMark>& marks) {
     for (std::size_t f = 0; f < 2; ++f) {
         marks.push_back(
             {.from = at,
-             .radius = edited ? kEditedRadius : kLineRadius,
+             .radius = spacing > 0 ? kLineRadius : kEditedRadius,
              .to = at + length * vectors[f],
+             .spacing = spacing,
              .color = kFurrowFieldColor[f]});
     }
 }
 
-void append_dot(const Vec3& at, float radius, const Vec4& color, std::vector<FurrowMark>& marks) {
-    marks.push_back({.from = at, .radius = radius, .to = at, .color = color});
+void append_dot(
+    const Vec3& at, float radius, float spacing, const Vec4& color,
+    std::vector<FurrowMark>& marks) {
+    marks.push_back({.from = at, .radius = radius, .to = at, .spacing = spacing, .color = color});
 }
 
 /// Two texels a vertex: position and u; v.
@@ -141,6 +167,7 @@ furrow_marks(const MeshData& mesh, const FurrowSkin& skin, const FurrowView& vie
     std::vector<FurrowMark> marks;
     const std::size_t vertices = std::min(mesh.positions.size(), skin.field.size());
     const float length = furrow_vector_length(view, skin);
+    const std::vector<float> spacings = vertex_spacings(mesh);
     std::vector<bool> edited(vertices, false);
     for (const std::uint32_t vertex : skin.edited) {
         if (vertex < vertices) {
@@ -150,26 +177,27 @@ furrow_marks(const MeshData& mesh, const FurrowSkin& skin, const FurrowView& vie
     for (const bool now : {false, true}) {
         for (std::size_t v = 0; v < vertices; ++v) {
             if (edited[v] == now && (now || !view.only_edited)) {
-                append_vectors(mesh.positions[v], skin.field[v], length, now, marks);
+                append_vectors(
+                    mesh.positions[v], skin.field[v], length, now ? 0 : spacings[v], marks);
             }
         }
     }
     for (std::size_t v = 0; v < vertices; ++v) {
         for (std::size_t f = 0; f < 2 && edited[v]; ++f) {
             append_dot(
-                mesh.positions[v] + length * skin.field[v][f], kTipRadius, kFurrowFieldColor[f],
-                marks);
+                mesh.positions[v] + length * skin.field[v][f], kFurrowTipRadius, 0,
+                kFurrowFieldColor[f], marks);
         }
     }
     if (view.selected >= 0 && static_cast<std::size_t>(view.selected) < vertices) {
         append_dot(
-            mesh.positions[static_cast<std::size_t>(view.selected)], kHaloRadius, kFurrowHaloColor,
-            marks);
+            mesh.positions[static_cast<std::size_t>(view.selected)], kHaloRadius, 0,
+            kFurrowHaloColor, marks);
     }
     for (std::size_t v = 0; v < vertices; ++v) {
         append_dot(
-            mesh.positions[v], edited[v] ? kEditedVertexRadius : kVertexRadius, kFurrowVertexColor,
-            marks);
+            mesh.positions[v], edited[v] ? kEditedVertexRadius : kVertexRadius,
+            edited[v] ? 0 : spacings[v], kFurrowVertexColor, marks);
     }
     return marks;
 }
@@ -245,7 +273,7 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
             set(*marks);
             const IVec2 size = context.size();
             marks->set("size", Vec2(size));
-            marks->set("pixels", std::max(static_cast<float>(size.y) / kRows, 0.5f));
+            marks->set("pixels", furrow_mark_pixels(size.y, 1));
             its.mark_records.bind(context.device(), kMarksUnit);
             context.device().draw_ids(6 * its.marks);
         },

@@ -5,6 +5,7 @@
 #include "render/effect.h"
 #include "render/gpu/texture.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -30,11 +31,17 @@ struct FurrowMark {
     Vec3 from = {0, 0, 0};
     float radius = 1;  ///< [px] of an image of 720 rows
     Vec3 to = {0, 0, 0};
-    float unused = 0;
+    float spacing = 0;  ///< of marks like it [m], into which the radius fits; 0: none is near
     Vec4 color = {1, 1, 1, 1};  ///< display values
 };
 static_assert(sizeof(FurrowMark) == 48);
 
+/// Of a mark in an image of this many rows [px].
+[[nodiscard]] inline float furrow_mark_pixels(int rows, float radius) {
+    return radius * std::max(static_cast<float>(rows) / 720.0f, 0.5f);
+}
+
+inline constexpr float kFurrowTipRadius = 3.5f;  ///< of vectors that can be dragged
 inline constexpr Vec4 kFurrowVertexColor = {0, 0, 1, 1};
 inline constexpr Vec4 kFurrowFieldColor[2] = {{1, 0, 0, 1}, {0, 1, 0, 1}};
 inline constexpr Vec4 kFurrowHaloColor = {1, 0.6f, 0, 1};  ///< around the selected vertex

@@ -148,6 +148,8 @@ TEST_CASE("furrow edits: of two tips the nearer one is taken, none beyond 6 px")
         const Vec2 tip = *pixel_of(tube.seen, p + kLength * vectors[static_cast<std::size_t>(f)]);
         CHECK(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(3, 3)) == f);
         CHECK_FALSE(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(5, 5)).has_value());
+        // A tip that is drawn larger, of an image with few rows.
+        CHECK(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(5, 5), 8) == f);
     }
 }
 

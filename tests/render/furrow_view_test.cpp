@@ -181,4 +181,27 @@ TEST_CASE_FIXTURE(FurrowScene, "furrow view: what stands before the mesh hides i
     CHECK(right > 500);
 }
 
+TEST_CASE_FIXTURE(
+    FurrowScene,
+    "furrow view: of a dense mesh in a small image faces stay in sight between marks") {
+    show({.mode = FurrowMode::Vectors});
+    for (const int size : {512, 40, 20}) {  // the last has less than one pixel per vertex
+        CAPTURE(size);
+        const gpu::ByteImage image = shot(size);
+        double face = 0;
+        double marks = 0;  // faces are gray, marks are not
+        for (int y = 2; y < size - 2; ++y) {
+            for (int x = 2; x < size - 2; ++x) {
+                const auto [low, high] =
+                    std::minmax({image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)});
+                face += low;
+                marks += high - low;
+            }
+        }
+        const double pixels = (size - 4.0) * (size - 4.0);
+        CHECK(face / pixels > 80);
+        CHECK(marks / pixels > 10);
+    }
+}
+
 }  // namespace limn::test
