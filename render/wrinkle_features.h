@@ -8,6 +8,7 @@ namespace limn {
 /// SurfaceFeature, whose last bits these are: definitions of lib/material.glsl. Added by the
 /// instance.
 enum WrinkleFeature : std::uint32_t {
+    kWrinkleDisplaced = 1u << 27,    // folds move its vertices
     kWrinkleModel = 1u << 28,        // its wrinkle map is a model of the strain
     kWrinkleLayers = 1u << 29,       // the map has two layers, each with a strength of its own
     kWrinkleIndependent = 1u << 30,  // with kWrinkleLayers: the second one covers the first
