@@ -204,7 +204,9 @@ std::uint32_t InstanceCollector::level_of(
     const DrawState state = draw_state(block.keys[i]);
     const std::vector<CoarseRange>& coarse = mesh_of(items, state).coarse;
     const bool holes = items.materials().batch(state.batch).features.has(kAlphaMask);
-    if (coarse.empty() || state.inflated || holes) {
+    // Coarse triangles have none where skin was flat before it folded.
+    const bool folded = state.deformed && items.shapes()[state.index].displacement > 0;
+    if (coarse.empty() || state.inflated || holes || folded) {
         return 0;
     }
     const float scale2 = largest_scale2(block.now[i].world);

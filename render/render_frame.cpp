@@ -411,7 +411,10 @@ FrameOutput Renderer::draw(
             effect.entry->request_views(effect.state, frame_);
         }
     }
-    shapes_.update(world, meshes_, camera.alpha, camera.previous_alpha);
+    const Affine& eye = camera.world_from_camera;
+    shapes_.update(
+        world, meshes_, camera.alpha, camera.previous_alpha,
+        {eye.row[0].w, eye.row[1].w, eye.row[2].w});
     items_.update(world, meshes_, materials_, shapes_, camera.alpha);
     prepare_views();
     const auto end_time = std::chrono::steady_clock::now();

@@ -45,7 +45,7 @@ void draw_depth(
     ProgramVariants& programs, const gpu::PipelineState& state) {
     constexpr std::uint32_t kHoles = kAlphaMask | kUvMap | kUvMaps | kVertexColor;
     const bool holes = run.features.has(kAlphaMask);
-    SurfaceFeatures features = {.bits = run.features.bits & kInflate};
+    SurfaceFeatures features = {.bits = run.features.bits & kMovedVertices};
     if (holes) {
         features.bits |= run.features.bits & kHoles;
         features.maps = run.features.maps.only(layout::kBaseColorSlot);

@@ -4,6 +4,7 @@
 #include "render/instance_list.h"
 #include "render/light_objects.h"
 #include "render/variant.h"
+#include "render/wrinkle_features.h"
 
 #include <cstdint>
 #include <span>
@@ -72,6 +73,9 @@ mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {
 
 // ---- parts of the above ----
 
+/// What decides where the vertices of a mesh are drawn.
+inline constexpr std::uint32_t kMovedVertices = kInflate | std::uint32_t{kWrinkleDisplaced};
+
 /// Binds instance streams, material records and draw commands of a list.
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list);
 /// `state` with the sides culled that a run does not show.
@@ -86,8 +90,8 @@ void draw_motions(
     const auto& list = view.data.get<InstanceList>();
     bind_instances(context.device(), *view.frame, list);
     for (const DrawRun& run : list.opaque) {
-        const gpu::Program* program =
-            programs.get({}, {.bits = (run.features.bits & (kInflate | kDeformed)) | kVelocity});
+        const gpu::Program* program = programs.get(
+            {}, {.bits = (run.features.bits & (kMovedVertices | kDeformed)) | kVelocity});
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, visible_sides(state, run)});
             prepare(*program);

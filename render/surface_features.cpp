@@ -27,6 +27,7 @@ constexpr FeatureName kNames[] = {
     {kWrinkleView, "WRINKLE_VIEW"},
     {kTransmission, "TRANSMISSION"},
     {kRefraction, "REFRACTION"},
+    {kWrinkleDisplaced, "WRINKLE_DISPLACED"},
     {kWrinkleColumns, "WRINKLE_COLUMNS"},
     {kWrinkleModel, "WRINKLE_MODEL"},
     {kWrinkleLayers, "WRINKLE_LAYERS"},

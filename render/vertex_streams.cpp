@@ -18,7 +18,7 @@ struct StreamInfo {
     const char* name;
     std::size_t stride;
     bool always;              ///< every mesh has it
-    VertexStream stand_in{};  ///< read in its place while it is absent; itself: white
+    VertexStream stand_in{};  ///< read in its place while it is absent; itself: a constant
 };
 /// In the order of VertexStream.
 constexpr StreamInfo kStreams[kVertexStreams] = {
@@ -29,6 +29,7 @@ constexpr StreamInfo kStreams[kVertexStreams] = {
     {"colors", 8, false, VertexStream::Color},
     {"previous positions", sizeof(Vec3), false, VertexStream::Position},
     {"wrinkles", 8, false, VertexStream::Wrinkle},
+    {"fold heights", sizeof(float), false, VertexStream::FoldHeight},
 };
 
 constexpr std::uint16_t kWhite[4] = {0x3c00, 0x3c00, 0x3c00, 0x3c00};  // half floats
@@ -40,6 +41,7 @@ constexpr GLuint kUv1 = static_cast<GLuint>(VertexStream::Uv1);
 constexpr GLuint kColor = static_cast<GLuint>(VertexStream::Color);
 constexpr GLuint kPreviousPosition = static_cast<GLuint>(VertexStream::PreviousPosition);
 constexpr GLuint kWrinkle = static_cast<GLuint>(VertexStream::Wrinkle);
+constexpr GLuint kFoldHeight = static_cast<GLuint>(VertexStream::FoldHeight);
 
 constexpr gpu::VertexAttribute kMeshAttributes[] = {
     {.location = 0, .stream = kPosition, .components = 3},
@@ -72,6 +74,7 @@ constexpr gpu::VertexAttribute kMeshAttributes[] = {
     {.location = 12, .stream = kPreviousPosition, .components = 3},
     {.location = 13, .stream = kUv1, .components = 2},
     {.location = 14, .stream = kWrinkle, .components = 4, .type = GL_HALF_FLOAT},
+    {.location = 15, .stream = kFoldHeight, .components = 1},
 };
 
 }  // namespace
@@ -116,11 +119,13 @@ void VertexStreams::require(VertexStream stream) {
         return;
     }
     const StreamInfo& info = kStreams[index_of(stream)];
-    const bool white = info.stand_in == stream;
+    const bool constant = info.stand_in == stream;
     const std::size_t bytes = capacity_ * info.stride;
     gpu::Buffer made = gpu::grown_buffer(
-        name_ + ", " + info.name, buffer(info.stand_in), white ? 0 : bytes, bytes);
-    if (white) {
+        name_ + ", " + info.name, buffer(info.stand_in), constant ? 0 : bytes, bytes);
+    if (stream == VertexStream::FoldHeight) {
+        glClearNamedBufferData(made.id(), GL_R32F, GL_RED, GL_FLOAT, nullptr);  // to 0
+    } else if (constant) {
         glClearNamedBufferData(made.id(), GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, kWhite);
     }
     buffers_[index_of(stream)] = std::move(made);

@@ -21,9 +21,10 @@ enum class VertexStream : std::uint8_t {
     Uv1,               ///< Vec2, the second set; absent: the first
     Color,             ///< four half floats; absent: white
     PreviousPosition,  ///< Vec3, of deformed meshes; absent: the current one
-    Wrinkle,  ///< four half floats, of deformed meshes: strength of wrinkles (wrinkle_pass.h)
+    Wrinkle,     ///< four half floats, of deformed meshes: strength of wrinkles (wrinkle_pass.h)
+    FoldHeight,  ///< float, of deformed meshes: how far folds move them along their normals [m]
 };
-inline constexpr int kVertexStreams = 7;
+inline constexpr int kVertexStreams = 8;
 
 /// Normal and tangent as 16-bit snorm, -32767 .. 32767 for -1 .. 1.
 struct PackedFrame {

@@ -9,6 +9,7 @@
 #include "render/passes/wrinkle_pass.h"
 #include "render/render_frame.h"
 #include "render/skinning/deformed_list.h"
+#include "render/wrinkle_features.h"
 
 #include <glm/gtc/packing.hpp>
 
@@ -119,6 +120,9 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
                  read<std::uint64_t>(vertices.wrinkles(), first, count)) {
                 skin.wrinkles.push_back(glm::unpackHalf4x16(packed));
             }
+        }
+        if ((m.shapes[index].wrinkle_features & kWrinkleDisplaced) != 0) {
+            skin.folds = read<float>(vertices.fold_heights(), first, count);
         }
         for (const PackedFrame& v : read<PackedFrame>(vertices.frames(), first, count)) {
             skin.normals.emplace_back(

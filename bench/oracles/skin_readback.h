@@ -24,6 +24,7 @@ struct SkinReadbackVertices {
     std::vector<Vec3> normals;
     std::vector<Vec4> tangents;
     std::vector<Vec4> wrinkles;  ///< their strengths, see lib/material.glsl; empty: it has none
+    std::vector<float> folds;    ///< by which they move along their normals [m]; empty: by none
 };
 
 /// Runs only the passes that deform and measure skin, frame by frame, and reads back their results.

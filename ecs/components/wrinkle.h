@@ -4,6 +4,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/reflect.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -73,6 +74,8 @@ struct WrinkleSurface {
     float activation = 1;
     float shade_from = 0;
     float none_from = 0;
+    float displacement = 0;
+    float displacement_until = 1.2f;
 };
 
 /// The driver that is used: the strain where that is drawn.
@@ -147,6 +150,17 @@ LIMN_FIELDS(WrinkleSurface) {
         "m", 0, 1e6);
     LIMN_FIELD(
         none_from, "distance beyond which there are no wrinkles; the same; 0: never", "m", 0, 1e6);
+    LIMN_FIELD(
+        displacement,
+        "share of their height by which folds also move the skin, so that its outline and its "
+        "shadow fold, where four edges of the mesh or more cover a fold (mesh refined); for bump "
+        "and isometric; 0: only light falls as on folds",
+        "", 0, 1);
+    LIMN_FIELD(
+        displacement_until,
+        "distance from the camera beyond which folds move nothing; fades over the last fifth; 0: "
+        "never",
+        "m", 0, 1e6);
 }
 
 /// A triangle at a vertex, and its share of the vertex's compression.
@@ -181,6 +195,20 @@ inline bool has_layers(const WrinkleSurface& surface) {
            && (!surface.second_regions.empty() || surface.second_turned);
 }
 
+/// Share of what ends at a distance: 1 until the last fifth before `end`, 0 beyond it; 1 if `end`
+/// is 0.
+inline float share_until(float end, float distance) {
+    const float t = end > 0 ? std::clamp((distance / end - 0.8f) / 0.2f, 0.0f, 1.0f) : 0.0f;
+    return 1 - t * t * (3 - 2 * t);
+}
+
+/// Whether its folds move the skin.
+inline bool is_displaced(const WrinkleSurface& surface) {
+    const bool covered = has_layers(surface) && surface.combine == WrinkleCombine::Independent;
+    return surface.displacement > 0 && !covered
+           && (surface.method == WrinkleMethod::Bump || surface.method == WrinkleMethod::Isometric);
+}
+
 /// What the wrinkle system prepares for each WrinkleSurface on a mesh that has such regions.
 struct WrinkleState {
     /// None for a radial driver; for strain three, along u, v and (u + v) / sqrt(2) of axes u and v
@@ -192,6 +220,10 @@ struct WrinkleState {
     /// Strain of a mesh with tangents, per vertex: the angle from the axis u to the tangent [rad],
     /// and the side of the bitangent, 1 or -1. Or empty.
     std::vector<Vec2> frames;
+    /// Displaced skin: per vertex the height of the folds of both layers where slopes are those of
+    /// the map [m of the mesh at rest]. Or empty: there are none that the mesh can show.
+    std::vector<Vec2> heights;
+    float largest_fold = 0;    ///< bound of how far folds move a vertex [m]
     std::uint64_t source = 0;  ///< hash of the mesh, its version, the map and the regions
 };
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -22,6 +23,7 @@ constexpr unsigned kGroupsUnit = 1;
 constexpr unsigned kRestUnit = 2;
 constexpr unsigned kPositionsBinding = 0;
 constexpr unsigned kWrinklesBinding = 1;
+constexpr unsigned kFoldHeightsBinding = 2;
 constexpr std::uint32_t kInitialTexels = 1 << 14;
 
 static_assert(kFoldSteps == layout::kFoldSteps);
@@ -71,7 +73,7 @@ void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number num
     }
 }
 
-/// All blocks; without any, one of vertices without triangles.
+/// All blocks; without any, one of vertices without triangles. Then the heights.
 std::vector<Texel> rest_texels(const WrinkleState& state) {
     std::vector<Texel> texels;
     const auto number = [&state](std::size_t block) {
@@ -93,6 +95,9 @@ std::vector<Texel> rest_texels(const WrinkleState& state) {
         WrinkleRest none;
         none.first.resize(state.mask.size() + 1);
         append_rest(none, texels, number(0));
+    }
+    for (const Vec2& height : state.heights) {
+        texels.push_back({bits(height.x), bits(height.y)});
     }
     return texels;
 }
@@ -149,12 +154,6 @@ struct TierShares {
     float shade = 0;
 };
 
-/// 1 until the last fifth before `end`, 0 beyond it; 1 if `end` is 0.
-float share_until(float end, float distance) {
-    const float t = end > 0 ? std::clamp((distance / end - 0.8f) / 0.2f, 0.0f, 1.0f) : 0.0f;
-    return 1 - t * t * (3 - 2 * t);
-}
-
 /// Whether it can be drawn without tangents.
 bool is_shade(WrinkleMethod method) {
     return method == WrinkleMethod::Alpha || method == WrinkleMethod::Directional
@@ -180,9 +179,13 @@ float distance_to(const FrameData& frame, Entity entity, const DeformedInstance&
 
 layout::WrinkleJob make_job(
     const WrinkleSurface& surface, const WrinkleState& state, const WrinkleRestPool::Range& rest,
-    const TierShares& shares) {
+    const TierShares& shares, float displacement) {
     layout::WrinkleJob job{};
     job.rest = rest.first_texel;
+    job.displacement = displacement;
+    if (!state.heights.empty()) {
+        job.heights = rest.texel_count - static_cast<std::uint32_t>(state.heights.size());
+    }
     job.method = static_cast<std::uint32_t>(surface.method);
     job.lambda = surface.lambda;
     job.beta = surface.beta;
@@ -223,6 +226,7 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     std::vector<std::uint32_t> group_list;
     std::uint32_t first = ~0u;
     std::uint32_t end = 0;
+    bool displaced = false;
     frame.shapes->each_requested([&](Entity entity, const DeformedInstance& shape,
                                      std::uint32_t slot, std::uint32_t count) {
         if (!shape.wrinkled) {
@@ -233,7 +237,9 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         const TierShares shares = tier_shares(
             surface, distance_to(frame, entity, shape),
             frame.meshes->meshes()[shape.mesh.index].tangents);
-        layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), shares);
+        layout::WrinkleJob job =
+            make_job(surface, state, find_rest(pool, state), shares, shape.displacement);
+        displaced = displaced || job.heights != 0;
         if (shape.wrinkle_columns) {
             job.method = layout::kWrinkleColumns;
         }
@@ -255,13 +261,19 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     rest.set(pool.texels);
     DeformedVertices& vertices = frame.shapes->vertices();
     vertices.require_wrinkles();
-    const BufferId positions = graph.import("deformed positions", vertices.positions());
-    const BufferId strengths = graph.import("wrinkle strengths", vertices.wrinkles());
+    if (displaced) {
+        vertices.require_fold_heights();
+    }
+    const Use positions = graph.import("deformed positions", vertices.positions());
+    std::vector<Use> writes = {graph.import("wrinkle strengths", vertices.wrinkles())};
+    if (displaced) {
+        writes.emplace_back(graph.import("fold heights", vertices.fold_heights()));
+    }
     const std::uint32_t aligned = first / layout::kWrinkleGroup * layout::kWrinkleGroup;
     const auto group_count = static_cast<std::uint32_t>(group_list.size());
     graph.add_pass(
-        "wrinkles", {positions}, {strengths},
-        [this, &vertices, aligned, end, group_count](PassContext& context) {
+        "wrinkles", std::span<const Use>(&positions, 1), std::span<const Use>(writes),
+        [this, &vertices, aligned, end, group_count, displaced](PassContext& context) {
             gpu::Device& device = context.device();
             device.use(*program);
             jobs.bind(device, kJobsUnit);
@@ -273,6 +285,9 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
             };
             bind(kPositionsBinding, vertices.positions(), sizeof(Vec3));
             bind(kWrinklesBinding, vertices.wrinkles(), stream_stride(VertexStream::Wrinkle));
+            // Without displaced skin none are written.
+            const VertexStream last = displaced ? VertexStream::FoldHeight : VertexStream::Wrinkle;
+            bind(kFoldHeightsBinding, vertices.streams().buffer(last), stream_stride(last));
             program->set("group_count", group_count);
             program->set("first_vertex", aligned);
             const unsigned wide = std::min(group_count, layout::kWrinkleGroupsWide);

@@ -1,5 +1,5 @@
 // How strong wrinkles are at each vertex of deformed skin: measures how much shorter its triangles are across them, in
-// the buffers that deform.comp wrote. One invocation per vertex gathers its triangles in a fixed order.
+// the buffers that deform.comp wrote, and how far folds move it. One invocation per vertex gathers its triangles in a fixed order.
 #version 450
 #include "lib/wrinkle.glsl"
 
@@ -12,6 +12,9 @@ layout(std430, binding = 0) readonly buffer Positions {
 };
 layout(std430, binding = 1) writeonly buffer Wrinkles {
     uvec2 wrinkles[];  // four half floats, as mesh.vert reads them
+};
+layout(std430, binding = 2) writeonly buffer FoldHeights {
+    float fold_heights[];  // along the normal, in mesh space [m]; written for displaced skin alone
 };
 
 uniform uint group_count;
@@ -115,13 +118,21 @@ void main() {
         method == kWrinkleAlpha || method == kWrinklePhoto ? 1.0 : 0.0,
         method == kWrinkleDirectional ? 1.0 : 0.0);
     by_method.z += shade;
+    vec2 own_ratio = vec2(ratio, 1.0);
     if (job3.x != 0u && job2.y != kWrinkleByStrain) {  // a second layer: its strengths are y and w
         float second_mask = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.x + number)).y);
-        float second = second_mask * activation
-            * strength_of(job, job1, share, block_compression(job0.x, job3.x, number, first, mean_length));
+        own_ratio.y = block_compression(job0.x, job3.x, number, first, mean_length);
+        float second = second_mask * activation * strength_of(job, job1, share, own_ratio.y);
         float second_own = second * uintBitsToFloat(job3.z);
         by_method.y = steep ? second_own : 0.0;
         by_method.w = (steep ? 0.0 : second_own) + min(second, 1.0) * uintBitsToFloat(job3.w);
     }
     wrinkles[first + number] = uvec2(packHalf2x16(by_method.xy), packHalf2x16(by_method.zw));
+
+    uvec4 job8 = texelFetch(jobs, job + 8);  // heights, displacement
+    if (job8.x != 0u) {
+        // Slopes are of the skin as it is now, heights of skin at rest, where their folds are longer.
+        vec2 heights = uintBitsToFloat(texelFetch(rest, int(job0.x + job8.x + number)).xy) * sqrt(own_ratio);
+        fold_heights[first + number] = uintBitsToFloat(job8.y) * dot(heights, by_method.xy);
+    }
 }

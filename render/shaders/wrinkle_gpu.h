@@ -4,7 +4,8 @@
 // first triangle as a texel of the first block, and its mask as a float; in the second and third block the
 // angle and the side of its tangent instead (WrinkleState::frames; 0: none). A second layer is another block, with its own mask. Then two per triangle at a vertex, whose third corner
 // is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
-// root of the triangle's weight at the vertex (the weight itself where means are of lengths).
+// root of the triangle's weight at the vertex (the weight itself where means are of lengths). Last, of displaced skin,
+// the heights of the folds of both layers per vertex.
 
 #ifdef __cplusplus
 #pragma once
@@ -12,7 +13,7 @@
 namespace limn::layout {
 #endif
 
-// One instance: eight texels of four 32-bit numbers.
+// One instance: nine texels of four 32-bit numbers.
 struct WrinkleJob {
     uint rest;         // first texel of the mesh
     uint vertex_count;
@@ -31,9 +32,12 @@ struct WrinkleJob {
     float own_share;   // of the method, and of alpha in its place
     float shade_share;
     vec4 folds[4];     // FoldTable
+    uint heights;      // where the heights begin, from the first texel of the mesh; 0: none
+    float displacement; // share of them that moves vertices
+    uint unused[2];
 };
 
-const uint kWrinkleJobTexels = 8u;
+const uint kWrinkleJobTexels = 9u;
 const uint kWrinkleGroup = 64u;        // vertices
 const uint kWrinkleGroupsWide = 1024u; // groups of a dispatch along x
 

@@ -15,6 +15,7 @@
 #include "render/wrinkle_features.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -46,6 +47,17 @@ column_features(const WrinkleSurface& surface, const std::vector<WrinkleMethod>&
     const bool blends = std::ranges::find(columns, WrinkleMethod::Blend) != columns.end();
     return kWrinkleColumns | (blends ? kWrinkleBlend : 0u) | (surface.fade ? kWrinkleFade : 0u)
            | (surface.interpolate ? 0u : kWrinkleFlat);
+}
+
+/// Of all by which folds move vertices, beside the positions. Not 0.
+std::uint64_t hash_folds(const WrinkleSurface& surface, std::uint64_t source, float displacement) {
+    std::uint64_t hash = hash_combine(source, static_cast<std::uint64_t>(surface.method));
+    for (const float number :
+         {surface.lambda, surface.beta, surface.slack, surface.share, surface.activation,
+          displacement}) {
+        hash = hash_combine(hash, std::bit_cast<std::uint32_t>(number));
+    }
+    return hash | 1;
 }
 
 /// Hash of the state between `before` and `now` at time `alpha`; equal bytes give equal hashes.
@@ -164,6 +176,38 @@ bool DeformedList::resolve(
     return fault.empty();
 }
 
+void DeformedList::find_wrinkles(
+    const World& world, const std::vector<WrinkleMethod>& columns, const Vec3& eye,
+    Entry& entry) const {
+    const auto* wrinkles = world.find<WrinkleState>(entry.entity);
+    const auto* surface = world.find<WrinkleSurface>(entry.entity);
+    entry.wrinkled = wrinkles != nullptr && surface != nullptr
+                     && surface->method != WrinkleMethod::None
+                     && wrinkles->mask.size() == entry.rest->vertex_count;
+    entry.wrinkle_columns = entry.wrinkled && !columns.empty() && has_columns(*surface)
+                            && meshes_->meshes()[entry.mesh.index].tangents;
+    entry.wrinkle_features = !entry.wrinkled         ? 0
+                             : entry.wrinkle_columns ? column_features(*surface, columns)
+                                                     : wrinkle_features(*surface);
+    entry.displacement = 0;
+    entry.folds = 0;
+    entry.largest_fold = 0;
+    if (!entry.wrinkled || entry.wrinkle_columns || !is_displaced(*surface)
+        || wrinkles->heights.size() != entry.rest->vertex_count) {
+        return;
+    }
+    entry.wrinkle_features |= kWrinkleDisplaced;
+    const Vec3 middle = transform_point(
+        world.get<WorldTransform>(entry.entity).world,
+        center(meshes_->meshes()[entry.mesh.index].bounds));
+    entry.displacement = surface->displacement
+                         * share_until(surface->displacement_until, glm::distance(middle, eye));
+    if (entry.displacement > 0) {
+        entry.largest_fold = wrinkles->largest_fold;
+        entry.folds = hash_folds(*surface, wrinkles->source, entry.displacement);
+    }
+}
+
 void DeformedList::evaluate(Entry& entry) const {
     const Deformed& settings = entry.settings;
     const auto hash_shape = [&](float alpha) {
@@ -186,6 +230,9 @@ void DeformedList::evaluate(Entry& entry) const {
             shape = hash_combine(
                 shape, hash_at(entry.surface->previous_patches, entry.surface->patches, alpha));
         }
+        if (entry.folds != 0) {
+            shape = hash_combine(shape, entry.folds);
+        }
         return shape | 1;
     };
     entry.shape = hash_shape(alpha_);
@@ -200,7 +247,7 @@ void DeformedList::evaluate(Entry& entry) const {
         entry.weights);
     entry.controls = make_controls(entry.deformers, alpha_);
     entry.patches = make_patches(entry.surface, alpha_);
-    float displacement = max_displacement(entry.controls);
+    float displacement = max_displacement(entry.controls) + entry.largest_fold;
     if (entry.surface != nullptr) {
         displacement +=
             max_motion(entry.surface->rest_patches, entry.patches, entry.surface->largest_offset);
@@ -210,7 +257,8 @@ void DeformedList::evaluate(Entry& entry) const {
 }
 
 void DeformedList::update(
-    const World& world, const MeshPool& meshes, float alpha, float previous_alpha) {
+    const World& world, const MeshPool& meshes, float alpha, float previous_alpha,
+    const Vec3& eye) {
     meshes_ = &meshes;
     alpha_ = alpha;
     previous_alpha_ = previous_alpha;
@@ -255,16 +303,7 @@ void DeformedList::update(
     for (const std::uint32_t i : active_) {
         Entry& entry = entries_[i];
         entry.rest = &rest_.get(*assets, entry.mesh, places_of(world, entry.entity));
-        const auto* wrinkles = world.find<WrinkleState>(entry.entity);
-        const auto* surface = world.find<WrinkleSurface>(entry.entity);
-        entry.wrinkled = wrinkles != nullptr && surface != nullptr
-                         && surface->method != WrinkleMethod::None
-                         && wrinkles->mask.size() == entry.rest->vertex_count;
-        entry.wrinkle_columns = entry.wrinkled && !columns.empty() && has_columns(*surface)
-                                && meshes.meshes()[entry.mesh.index].tangents;
-        entry.wrinkle_features = !entry.wrinkled         ? 0
-                                 : entry.wrinkle_columns ? column_features(*surface, columns)
-                                                         : wrinkle_features(*surface);
+        find_wrinkles(world, columns, eye, entry);
     }
     for (std::uint32_t i = 0; i < entries_.size(); ++i) {
         Entry& entry = entries_[i];

@@ -40,6 +40,7 @@ struct DeformedInstance {
     bool wrinkled = false;               ///< has a WrinkleState, and draws it
     bool wrinkle_columns = false;        ///< by the methods of a WrinkleComparison
     std::uint32_t wrinkle_features = 0;  ///< of SurfaceFeature, if it is wrinkled
+    float displacement = 0;              ///< share of their heights by which folds move the skin
 };
 
 /// Jobs that share one dispatch: of the same kind, with their vertices within the range that a
@@ -73,7 +74,10 @@ class DeformedList {
     explicit DeformedList(std::size_t storage_bytes) : storage_bytes_(storage_bytes) {}
 
     /// Visits the world at time `alpha` (RenderView). Frees the vertices of removed instances.
-    void update(const World& world, const MeshPool& meshes, float alpha, float previous_alpha);
+    /// Folds move the skin that is near `eye`.
+    void update(
+        const World& world, const MeshPool& meshes, float alpha, float previous_alpha,
+        const Vec3& eye = {0, 0, 0});
     /// Discards all shapes, for other assets.
     void forget();
 
@@ -126,6 +130,8 @@ class DeformedList {
         std::uint64_t drawn_previous = 0;  ///< shape of its previous positions
         std::uint64_t previous_shape = 0;  ///< shape of the previous frame
         std::uint64_t evaluated = 0;       ///< shape of the bounds and palette
+        std::uint64_t folds = 0;           ///< hash of how folds move the skin; 0: they do not
+        float largest_fold = 0;            ///< bound of how far
         std::vector<Affine> palette;       ///< mesh from rest pose, one per joint
         std::vector<float> weights;
         std::vector<Vec4> controls;  ///< packed deformers
@@ -142,6 +148,9 @@ class DeformedList {
     Entry& entry_of(Entity entity);
     /// False, with the reason in `fault`, if it is drawn in rest pose.
     bool resolve(const World& world, const Assets& assets, Entry& entry, std::string& fault);
+    void find_wrinkles(
+        const World& world, const std::vector<WrinkleMethod>& columns, const Vec3& eye,
+        Entry& entry) const;
     void evaluate(Entry& entry) const;
     void release(Entry& entry);
     void report(const std::string& fault);

@@ -39,6 +39,9 @@ std::vector<BufferId> import_deformed(FrameGraph& graph, const DeformedVertices&
     if (vertices.wrinkles()) {
         buffers.push_back(graph.import("wrinkle strengths", vertices.wrinkles()));
     }
+    if (vertices.fold_heights()) {
+        buffers.push_back(graph.import("fold heights", vertices.fold_heights()));
+    }
     return buffers;
 }
 

@@ -28,6 +28,7 @@ class DeformedVertices {
     void clear() { slots_.clear(); }
     void require_previous_positions() { streams_.require(VertexStream::PreviousPosition); }
     void require_wrinkles() { streams_.require(VertexStream::Wrinkle); }
+    void require_fold_heights() { streams_.require(VertexStream::FoldHeight); }
     /// Binds the mesh pool's index buffer, which is replaced when it grows.
     void use_indices_of(const MeshPool& meshes);
 
@@ -42,6 +43,10 @@ class DeformedVertices {
     /// Null until needed.
     [[nodiscard]] const gpu::Buffer& wrinkles() const {
         return streams_.buffer(VertexStream::Wrinkle);
+    }
+    /// Null until needed.
+    [[nodiscard]] const gpu::Buffer& fold_heights() const {
+        return streams_.buffer(VertexStream::FoldHeight);
     }
     [[nodiscard]] VertexStreams& streams() { return streams_; }
     [[nodiscard]] const SlotAllocator& slots() const { return slots_; }

@@ -1,12 +1,14 @@
 #include "systems/faces/wrinkle_system.h"
 
 #include "ecs/base/hash.h"
+#include "systems/faces/fold_height.h"
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_fold.h"
 #include "systems/faces/wrinkle_measure.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -23,12 +25,15 @@ const MeshData* mesh_of(const MeshInstance& instance, const Assets& assets) {
     return index < assets.meshes.size() ? &assets.meshes[index] : nullptr;
 }
 
-const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
+const TextureSlot* slot_of(const MeshInstance& instance, const Assets& assets) {
     const std::uint32_t material = instance.material.index;
-    if (material >= assets.materials.size()) {
-        return nullptr;
-    }
-    const std::uint32_t image = assets.materials[material].wrinkle_texture.image.index;
+    return material < assets.materials.size() ? &assets.materials[material].wrinkle_texture
+                                              : nullptr;
+}
+
+const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
+    const TextureSlot* const slot = slot_of(instance, assets);
+    const std::uint32_t image = slot != nullptr ? slot->image.index : kNoAsset;
     return image < assets.images.size() ? &assets.images[image] : nullptr;
 }
 
@@ -110,6 +115,15 @@ std::vector<WrinkleRest> make_rests(
     return rests;
 }
 
+/// The strength of folds is below 1, or that of the table for skin without length.
+float largest_fold(const WrinkleState& state) {
+    float highest = 0;
+    for (const Vec2& height : state.heights) {
+        highest = std::max(highest, std::abs(height.x) + std::abs(height.y));
+    }
+    return highest * std::max(1.0f, *std::ranges::max_element(state.folds));
+}
+
 }  // namespace
 
 float radial_share(const Vec3& position, const Vec3& center, float radius) {
@@ -146,6 +160,13 @@ wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, cons
             any = true;
         }
     }
+    if (is_displaced(surface) && map != nullptr) {
+        const TextureSlot& slot = *slot_of(instance, assets);
+        for (const float number :
+             {slot.scale.x, slot.scale.y, slot.offset.x, slot.offset.y, slot.rotation}) {
+            hash = hash_combine(hash, std::bit_cast<std::uint32_t>(number));
+        }
+    }
     return any ? hash | 1 : 0;
 }
 
@@ -174,6 +195,11 @@ WrinkleState make_wrinkle_state(
     if (const ImageData* const map = map_of(instance, assets)) {
         state.folds =
             make_fold_table(has_layers(surface) ? layered_slopes(*map) : wrinkle_slopes(*map));
+        if (is_displaced(surface)) {
+            state.heights =
+                fold_heights(mesh, *map, *slot_of(instance, assets), has_layers(surface));
+            state.largest_fold = largest_fold(state);
+        }
     }
     return state;
 }

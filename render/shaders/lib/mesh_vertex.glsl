@@ -1,5 +1,6 @@
 // Inputs and transforms of vertex shaders of mesh instances. Definition:
 //   INFLATE  vertices move along their normals
+//   WRINKLE_DISPLACED  vertices of skin move with its folds
 
 #include "lib/inflate.glsl"
 
@@ -18,8 +19,15 @@ layout(location = 13) in vec2 second_uv;
 layout(location = 14) in vec4 wrinkle;    // strengths, see lib/material.glsl
 #endif
 
-// Inflated or not.
+#ifdef WRINKLE_DISPLACED
+layout(location = 15) in float fold_height;  // along the normal [m]
+#endif
+
+// Inflated or not, folded or not.
 vec3 moved_vertex(vec3 position) {
+#ifdef WRINKLE_DISPLACED
+    position += fold_height * normal_ms;
+#endif
 #ifdef INFLATE
     return inflate(position, normal_ms, uintBitsToFloat(instance.w));
 #else
