@@ -3,6 +3,7 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/wrinkle.h"
 #include "ecs/entity.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/shaders/deform_gpu.h"
