@@ -145,7 +145,6 @@ class Player {
     std::unique_ptr<Stage> stage_;
     MadeAssets made_;
     std::size_t trials_saved_ = 0;  ///< answers of the level's WrinkleTrial that are in the file
-    TrialStage trial_stage_ = TrialStage::FirstClip;
 
     // The level without the technique of options_.show, beside the one with it.
     std::unique_ptr<Stage> off_stage_;

@@ -97,12 +97,11 @@ void Player::follow_trial() {
         trials_saved_ = 0;
         return;
     }
-    if (state->stage != std::exchange(trial_stage_, state->stage)) {
-        if (state->stage == TrialStage::AnyDifference) {
-            hud_->toast("Did the two differ?  N: no, Y: yes");
-        } else if (state->stage == TrialStage::Preference) {
-            hud_->toast("Which was better?  1: the first, 2: the second");
-        }
+    // In each frame: a question stays until it is answered.
+    if (state->stage == TrialStage::AnyDifference) {
+        hud_->toast("Did the two differ?  N: no, Y: yes");
+    } else if (state->stage == TrialStage::Preference) {
+        hud_->toast("Which was better?  1: the first, 2: the second");
     }
     trials_saved_ = std::min(trials_saved_, state->records.size());
     if (trials_saved_ == state->records.size()) {
