@@ -27,6 +27,7 @@ constexpr FeatureName kNames[] = {
     {kWrinkleView, "WRINKLE_VIEW"},
     {kTransmission, "TRANSMISSION"},
     {kRefraction, "REFRACTION"},
+    {kStrands, "STRANDS"},
     {kWrinkleModel, "WRINKLE_MODEL"},
     {kWrinkleLayers, "WRINKLE_LAYERS"},
     {kWrinkleIndependent, "WRINKLE_INDEPENDENT"},
