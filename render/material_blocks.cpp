@@ -2,6 +2,7 @@
 
 #include "ecs/components/surface.h"
 #include "render/diffusion_profile.h"
+#include "render/hair_lobes.h"
 #include "render/material_maps.h"
 #include "render/shaders/material_blocks_gpu.h"
 #include "render/shaders/material_classic_gpu.h"
@@ -64,6 +65,10 @@ std::optional<LafortuneBlock> make_lafortune_block(const Material& m) {
     return block;
 }
 
+std::optional<layout::HairBlock> make_block_of_hair(const Material& m) {
+    return m.shading == ShadingModel::Hair ? std::optional(make_hair_block(m)) : std::nullopt;
+}
+
 std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) {
     if (m.shading != ShadingModel::Subsurface) {
         return std::nullopt;
@@ -107,6 +112,7 @@ constexpr BlockKind kKinds[] = {
     block_kind<make_skin_block>(layout::kSkinBlock),
     block_kind<make_lafortune_block>(layout::kLafortuneBlock),
     block_kind<make_clear_block>(layout::kClearBlock),
+    block_kind<make_block_of_hair>(layout::kHairBlock),
     block_kind<make_subsurface_block>(layout::kSubsurfaceBlock),
 };
 

@@ -132,6 +132,7 @@ void MaterialPool::add_material(const Material& material) {
     batch.features.bits = uv_feature(material);
     batch.features.bits |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
     batch.features.bits |= material.double_sided ? kDoubleSided : 0u;
+    batch.features.bits |= material.shading == ShadingModel::Hair ? kStrands : 0u;
     if (material.transmission > 0) {
         batch.features.bits |= kTransmission | (material.thickness > 0 ? kRefraction : 0u);
     }

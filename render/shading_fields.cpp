@@ -12,6 +12,7 @@ constexpr unsigned bit(ShadingModel model) {
 constexpr unsigned kMirrors = bit(ShadingModel::Pbr) | bit(ShadingModel::Unlit);
 constexpr unsigned kClassic =
     bit(ShadingModel::Blinn) | bit(ShadingModel::Phong) | bit(ShadingModel::Skin);
+constexpr unsigned kHair = bit(ShadingModel::Hair);
 
 /// A field that some models do not read, and those that do.
 struct FieldReaders {
@@ -20,8 +21,10 @@ struct FieldReaders {
 };
 constexpr FieldReaders kFieldReaders[] = {
     {"metalness", kMirrors},
-    {"roughness", kMirrors | bit(ShadingModel::Subsurface)},
-    {"metal_rough_texture", kMirrors | bit(ShadingModel::Subsurface)},
+    {"roughness", kMirrors | bit(ShadingModel::Subsurface) | kHair},
+    {"metal_rough_texture", kMirrors | bit(ShadingModel::Subsurface) | kHair},
+    {"emission", ~kHair},
+    {"emission_texture", ~kHair},
     {"specular", kClassic | bit(ShadingModel::Subsurface)},
     {"shininess", kClassic},
     {"skin_color", bit(ShadingModel::Skin)},
@@ -30,6 +33,9 @@ constexpr FieldReaders kFieldReaders[] = {
     {"scatter", bit(ShadingModel::Subsurface)},
     {"gloss", bit(ShadingModel::Subsurface)},
     {"gloss_roughness", bit(ShadingModel::Subsurface)},
+    {"roughness_across", kHair},
+    {"scale_tilt", kHair},
+    {"hair_scatter", kHair},
 };
 
 }  // namespace

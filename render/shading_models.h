@@ -34,6 +34,7 @@ inline constexpr ShadingModelRow kShadingModels[] = {
     {ShadingModel::Lafortune, "lafortune", "kModelLafortune", "SHADE_LAFORTUNE", "lafortune", true},
     {ShadingModel::Subsurface, "subsurface", "kModelSubsurface", "SHADE_SUBSURFACE", "subsurface",
      true},
+    {ShadingModel::Hair, "hair", "kModelHair", "SHADE_HAIR", "hair", true},
 };
 static_assert(std::size(kShadingModels) < 16, "four bits in the G-buffer, and 0 is no surface");
 

@@ -27,6 +27,7 @@ constexpr FeatureName kNames[] = {
     {kWrinkleView, "WRINKLE_VIEW"},
     {kTransmission, "TRANSMISSION"},
     {kRefraction, "REFRACTION"},
+    {kStrands, "STRANDS"},
     {kWrinkleDisplaced, "WRINKLE_DISPLACED"},
     {kWrinkleColumns, "WRINKLE_COLUMNS"},
     {kWrinkleModel, "WRINKLE_MODEL"},

@@ -27,6 +27,7 @@ enum SurfaceFeature : std::uint32_t {
     kWrinkleView = 1u << 13,  // needs no wrinkle map
     kTransmission = 1u << 14,
     kRefraction = 1u << 15,  // with kTransmission: the medium has a thickness
+    kStrands = 1u << 16,     // of hair
 };
 
 struct SurfaceFeatures {

@@ -126,6 +126,7 @@ enum class ShadingModel : std::uint8_t {
     Skin,        ///< Blinn plus a rim glow from all sides that imitates soft skin (char.skin-shade)
     Lafortune,   ///< the base color and lobes fitted to a measured BRDF (skin.brdf-lafortune)
     Subsurface,  ///< two GGX lobes over diffuse light that scatters under the surface
+    Hair,        ///< strands along v, from roots to tips: reflected, transmitted, scattered light
 };
 
 /// How the amounts of melanin and blood color skin.
@@ -174,6 +175,9 @@ struct Material {
     Vec3 scatter = {3.67e-3f, 1.37e-3f, 0.68e-3f};
     float gloss = 0.2f;
     float gloss_roughness = 0.3f;
+    float roughness_across = 0.3f;
+    float scale_tilt = radians(3.0f);
+    float hair_scatter = 0.7f;
     float normal_scale = 1.0f;
     float occlusion_strength = 1.0f;
     float transmission = 0.0f;
@@ -193,16 +197,16 @@ struct Material {
 LIMN_FIELDS(Material) {
     LIMN_FIELD(
         shading, .doc = "shading model",
-        .values = "pbr blinn phong unlit skin lafortune subsurface");
+        .values = "pbr blinn phong unlit skin lafortune subsurface hair");
     LIMN_FIELD(alpha_mode, .doc = "how alpha is used", .values = "opaque mask blend");
     LIMN_FIELD(double_sided, "back faces are drawn too");
     LIMN_FIELD(alpha_cutoff, "with mask: lower alpha is discarded", "", 0, 1);
     LIMN_FIELD(base_color, .doc = "linear RGB and opacity", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(metalness, "0 dielectric, 1 metal; mirror fraction of unlit", "", 0, 1);
-    LIMN_FIELD(roughness, "perceptual roughness", "", 0, 1);
+    LIMN_FIELD(roughness, "perceptual roughness; of hair that along a strand", "", 0, 1);
     LIMN_FIELD(
-        emission, .doc = "emitted radiance", .unit = "W/(sr m^2)", .min = 0, .max = 1e6,
-        .color = true);
+        emission, .doc = "emitted radiance, of all models but hair", .unit = "W/(sr m^2)", .min = 0,
+        .max = 1e6, .color = true);
     LIMN_FIELD(
         specular,
         .doc = "specular color ks of blinn, phong and skin; of subsurface its reflectance head on",
@@ -224,6 +228,19 @@ LIMN_FIELDS(Material) {
         0, 1);
     LIMN_FIELD(gloss, "subsurface: share of the second lobe, that of the oily film", "", 0, 1);
     LIMN_FIELD(gloss_roughness, "subsurface: perceptual roughness of the second lobe", "", 0, 1);
+    LIMN_FIELD(
+        roughness_across, "hair: perceptual roughness around a strand, of light that passes it", "",
+        0, 1);
+    LIMN_FIELD(
+        scale_tilt,
+        "hair: tilt of a strand's scales, which shifts the white highlight toward the root and the "
+        "colored one toward the tip",
+        "rad", 0, 0.35);
+    LIMN_FIELD(
+        hair_scatter,
+        "hair: share of the light through a strand that others scatter, in the base color; 0: a "
+        "single strand, 1: a dense mass",
+        "", 0, 1);
     LIMN_FIELD(normal_scale, "strength of the normal map", "", 0, 10);
     LIMN_FIELD(occlusion_strength, "strength of the occlusion map", "", 0, 1);
     LIMN_FIELD(
@@ -235,7 +252,8 @@ LIMN_FIELDS(Material) {
         refractive_index, "of the medium, with transmission; glass 1.5, water 1.33", "", 1, 3);
     LIMN_FIELD(
         thickness,
-        "with transmission: of the medium behind the surface, scaled with the mesh; 0: a thin "
+        "with transmission: of the medium behind the surface, scaled with the mesh. The bent ray "
+        "ends there or at something opaque within it; light is absorbed over all of it. 0: a thin "
         "sheet, which does not refract",
         "m", 0, 1000);
     LIMN_FIELD(

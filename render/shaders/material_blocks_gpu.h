@@ -14,7 +14,8 @@ const uint kClassicBlock = 1u;     // material_classic_gpu.h
 const uint kSkinBlock = 2u;        // material_skin_gpu.h
 const uint kLafortuneBlock = 3u;   // material_lafortune_gpu.h
 const uint kClearBlock = 4u;       // material_clear_gpu.h
-const uint kSubsurfaceBlock = 5u;  // material_subsurface_gpu.h; the last: its end lies beyond what offsets can say
+const uint kHairBlock = 5u;        // material_hair_gpu.h
+const uint kSubsurfaceBlock = 6u;  // material_subsurface_gpu.h; the last: its end lies beyond what offsets can say
 
 const uint kBlockOffsetBits = 6u;
 const uint kBlocksPerFloat = 4u;

@@ -76,7 +76,7 @@ void main() {
     s.metalness = 0.0;
     s.material = 0u;
     s.model = kModelPbr;
-    set_no_smooth_normal(s);
+    set_plain(s);
     Reflector r = make_reflector(s, to_camera);
     float head_on = (water.shape.w - 1.0) / (water.shape.w + 1.0);
     r.specular_0 = vec3(head_on * head_on);

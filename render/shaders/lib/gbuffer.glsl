@@ -12,7 +12,11 @@
 //
 //     w   smooth normal, octahedral 11 + 11,  share of the wrinkles 9,  fades 1
 //
-// and the shading model has its highest bit set. All zero: no surface here. The index of the
+// and the shading model has its highest bit set. Hair emits nothing: w is
+//
+//     w   direction of the strand, octahedral 16 + 16, or 0: unknown
+//
+// All zero: no surface here. The index of the
 // material is in a target of its own, which exists only where shading models read their material's record when lit
 // (lib/stored_surface.glsl).
 
@@ -21,6 +25,9 @@
 
 #if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE)) && !defined(SMOOTH_NORMALS)
 #define SMOOTH_NORMALS
+#endif
+#if defined(SHADE_HAIR) && !defined(STRANDS)
+#define STRANDS
 #endif
 
 struct SurfaceSample {
@@ -38,17 +45,23 @@ struct SurfaceSample {
     bool fades;             // light that grazes smooth_normal_ws
     bool smooth_is_stored;  // otherwise raised is 1
 #endif
+#ifdef STRANDS
+    vec3 strand_ws;  // of Hair: unit, from root to tip; 0: unknown
+#endif
 };
 
 const uint kSmoothNormalBit = 16u;  // of the stored shading model
 
-// Sets what only wrinkled skin has otherwise.
-void set_no_smooth_normal(inout SurfaceSample s) {
+// Sets what only wrinkled skin and hair have otherwise.
+void set_plain(inout SurfaceSample s) {
 #ifdef SMOOTH_NORMALS
     s.smooth_normal_ws = s.normal_ws;
     s.raised = 1.0;
     s.fades = false;
     s.smooth_is_stored = false;
+#endif
+#ifdef STRANDS
+    s.strand_ws = vec3(0.0);
 #endif
 }
 
@@ -80,6 +93,16 @@ vec3 unpack_rgb9e5(uint bits) {
 const vec3 kAlbedoRange = vec3(2047.0, 2047.0, 4095.0);
 const vec3 kFactorRange = vec3(255.0, 1023.0, 127.0);  // occlusion, roughness, metalness
 
+// Unit vector in 16 + 16 bits, never 0.
+uint pack_direction(vec3 direction) {
+    uvec2 n = uvec2(clamp(octahedral_encode(direction) * 32767.0 + 32768.5, 1.0, 65535.0));
+    return n.x | n.y << 16;
+}
+
+vec3 unpack_direction(uint bits) {
+    return octahedral_decode((vec2(bits & 0xffffu, bits >> 16) - 32768.0) / 32767.0);
+}
+
 #ifdef SMOOTH_NORMALS
 uint pack_smooth_normal(SurfaceSample s) {
     uvec2 n = uvec2(clamp(octahedral_encode(s.smooth_normal_ws) * 1023.0 + 1024.5, 1.0, 2047.0));
@@ -95,7 +118,6 @@ void unpack_smooth_normal(inout SurfaceSample s, uint bits) {
 #endif
 
 uvec4 pack_surface(SurfaceSample s) {
-    uvec2 n = uvec2(clamp(octahedral_encode(s.normal_ws) * 32767.0 + 32768.5, 1.0, 65535.0));
     uvec3 a = uvec3(sqrt(clamp(s.albedo, 0.0, 1.0)) * kAlbedoRange + 0.5);
     uvec3 factors = uvec3(clamp(vec3(s.occlusion, s.roughness, s.metalness), 0.0, 1.0) * kFactorRange + 0.5);
     uint emission = pack_rgb9e5(s.emission);
@@ -104,8 +126,12 @@ uvec4 pack_surface(SurfaceSample s) {
     emission = s.smooth_is_stored ? pack_smooth_normal(s) : emission;
     model |= s.smooth_is_stored ? kSmoothNormalBit : 0u;
 #endif
+#ifdef STRANDS
+    uint strand = s.strand_ws == vec3(0.0) ? 0u : pack_direction(s.strand_ws);
+    emission = s.model == kModelHair ? strand : emission;
+#endif
     return uvec4(
-        n.x | n.y << 16,
+        pack_direction(s.normal_ws),
         a.r | a.g << 11 | a.b << 22,
         factors.x | factors.y << 8 | factors.z << 18 | model << 25 | a.b >> 10 << 30,
         emission);
@@ -113,7 +139,7 @@ uvec4 pack_surface(SurfaceSample s) {
 
 SurfaceSample unpack_surface(uvec4 g) {
     SurfaceSample s;
-    s.normal_ws = octahedral_decode((vec2(g.x & 0xffffu, g.x >> 16) - 32768.0) / 32767.0);
+    s.normal_ws = unpack_direction(g.x);
     vec3 root = vec3(g.y & 2047u, g.y >> 11 & 2047u, g.y >> 22 | g.z >> 30 << 10) / kAlbedoRange;
     s.albedo = root * root;
     vec3 factors = vec3(g.z & 255u, g.z >> 8 & 1023u, g.z >> 18 & 127u) / kFactorRange;
@@ -123,10 +149,13 @@ SurfaceSample unpack_surface(uvec4 g) {
     s.material = 0u;
     s.model = g.z >> 25 & 15u;
     bool is_smooth_normal = (g.z >> 25 & kSmoothNormalBit) != 0u;
-    s.emission = is_smooth_normal ? vec3(0.0) : unpack_rgb9e5(g.w);
+    s.emission = is_smooth_normal || s.model == kModelHair ? vec3(0.0) : unpack_rgb9e5(g.w);
 #ifdef SMOOTH_NORMALS
     s.smooth_is_stored = is_smooth_normal;
     unpack_smooth_normal(s, g.w);
+#endif
+#ifdef STRANDS
+    s.strand_ws = s.model == kModelHair && g.w != 0u ? unpack_direction(g.w) : vec3(0.0);
 #endif
     return s;
 }

@@ -37,7 +37,7 @@ SurfaceSample point_surface(MeshPoint p) {
     s.normal_ws *= dot(s.normal_ws, view.camera_ws.xyz - p.position_ws) < 0.0 ? -1.0 : 1.0;
 #endif
     split_unlit(s);
-    set_no_smooth_normal(s);
+    set_plain(s);
     return s;
 }
 

@@ -9,6 +9,7 @@
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
 //   LIT_AT_VERTICES  no normals, only colors
+//   STRANDS        of hair, which lies along v
 //   WRINKLE_BLEND  light of wrinkles in full and of smooth skin is blended
 //   WRINKLE_FADE   light that grazes smooth skin fades
 //   WRINKLE_VIEW   in place of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and w
@@ -238,6 +239,16 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
     return n;
 }
 
+#ifdef STRANDS
+// From root to tip, along v: against the bitangent, in the surface that `normal` is of.
+vec3 strand_direction(vec3 normal) {
+    vec3 along = -tangent_ws.w * cross(normal_ws, tangent_ws.xyz);
+    along -= normal * dot(normal, along);
+    float length2 = dot(along, along);
+    return length2 > 1e-8 ? along * inversesqrt(length2) : vec3(0.0);
+}
+#endif
+
 // Widens the specular lobe by the variation of a normal map within a pixel, against sparkling. Not for the curvature
 // of meshes, since roughness blurs their reflections too.
 // Tokuyoshi and Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
@@ -305,10 +316,15 @@ SurfaceSample surface_sample(vec3 albedo) {
 #ifdef OCCLUSION_MAP
     s.occlusion = 1.0 + factors.z * (texture(material_maps[OCCLUSION_MAP], map_place(kOcclusionSlot)).r - 1.0);
 #endif
-    s.roughness = widen_roughness(s.roughness, s.normal_ws);
-    set_no_smooth_normal(s);
+    // Highlights of strands follow their direction, not the normal.
+    s.roughness = s.model == kModelHair ? s.roughness : widen_roughness(s.roughness, s.normal_ws);
+    set_plain(s);
+#ifdef STRANDS
+    s.strand_ws = strand_direction(s.normal_ws);
+#endif
 #if defined(WRINKLES) && defined(SMOOTH_NORMALS)
     s.smooth_normal_ws = smooth_normal;
+    bool stores = s.model != kModelUnlit && s.model != kModelHair;  // in place of the emission
 #ifdef WRINKLE_BLEND
 #ifdef WRINKLE_COLUMNS
     bool blends = column_method() == kWrinkleBlend;
@@ -319,13 +335,13 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
     if (blends) {
         s.raised = clamp(raised, 0.0, 1.0);
-        s.smooth_is_stored = s.model != kModelUnlit && s.raised > 0.0;
+        s.smooth_is_stored = stores && s.raised > 0.0;
         s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
     }
 #endif
 #ifdef WRINKLE_FADE
     s.fades = true;
-    s.smooth_is_stored = s.model != kModelUnlit;
+    s.smooth_is_stored = stores;
 #endif
 #endif
     split_unlit(s);

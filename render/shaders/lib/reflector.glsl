@@ -11,6 +11,7 @@
 
 #include "lib/brdf.glsl"
 #include "lib/gbuffer.glsl"
+#include "lib/hair.glsl"
 
 struct Incoming {
     vec3 to_light;    // unit
@@ -33,17 +34,21 @@ struct Reflector {
 #ifdef SHADE_SUBSURFACE
     vec3 diffusion;    // d of the profile of Subsurface [m]
 #endif
+#ifdef SHADE_HAIR
+    HairLobes hair;
+#endif
 #ifdef SMOOTH_NORMALS
     vec4 fading;       // normal without wrinkles; w: 1 = light that grazes it fades
 #endif
 };
 
-// Between normal, light, viewer and the half vector h.
+// Between normal, light, viewer and the half vector h; and where the light is.
 struct Cosines {
     float n_l;  // >= 0
     float n_h;
     float v_h;
     float l_v;
+    vec3 to_light;  // unit
 };
 
 // What a surface makes of an irradiance of 1, before the factors of its Reflector.
@@ -95,7 +100,7 @@ void add_light(inout LightSum sum, Reflector r, Incoming light) {
 #ifdef SMOOTH_NORMALS
     light.irradiance *= mix(1.0, grazing_fade(dot(r.fading.xyz, light.to_light)), r.fading.w);
 #endif
-    Response response = model_response(r, Cosines(n_l, h.x, h.y, l_v));
+    Response response = model_response(r, Cosines(n_l, h.x, h.y, l_v, light.to_light));
     sum.diffuse += light.irradiance * response.diffuse;
     sum.specular += light.irradiance * response.specular;
     sum.fresnel += light.irradiance * response.fresnel;

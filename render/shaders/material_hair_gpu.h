@@ -1,0 +1,16 @@
+// Of materials with the shading model Hair; made by render/hair_lobes.h.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+struct HairBlock {
+    vec4 azimuth;  // concentration and peak of the lobe TT, then of TRT
+    vec4 fiber;    // absorption by the square of the color's logarithm; scattered share; cosine, sine of the scales' tilt
+};
+
+#ifdef __cplusplus
+}  // namespace limn::layout
+#endif
