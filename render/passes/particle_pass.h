@@ -167,7 +167,8 @@ struct ParticlesInFront {
     std::optional<TextureId> veil{};  ///< depth of the nearest blended surface, if one may be seen
 };
 
-/// From above the water; what is in it is absorbed as far as the ground behind it is.
+/// From above the water; what is in it is absorbed as far as the ground behind it is. Not what the
+/// GPU moves.
 struct ParticlesUnderWaterEffect {
     [[nodiscard]] static Result<ParticlesUnderWaterEffect>
     create(gpu::Device&, const RenderSettings&) {
