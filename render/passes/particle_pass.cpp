@@ -43,6 +43,19 @@ constexpr float kMaxPoint = 4;              // [px] across, above which a disc i
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
 constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 
+/// Surrounds the image with as much on each side, so that quads which its border cuts are not
+/// clipped: one of them would send its neighbors through llvmpipe's slow clipper. Returns the
+/// extent of the image as a share of the viewport's.
+float set_wide_viewport(PassContext& context) {
+    constexpr int kMaxViewport = 16384;  // that every OpenGL 4.5 has
+    const IVec2 size = context.size();
+    if (3 * std::max(size.x, size.y) > kMaxViewport) {
+        return 1;
+    }
+    context.device().set_viewport(-size.x, -size.y, 3 * size.x, 3 * size.y);
+    return 1.0f / 3;
+}
+
 /// As an entity is seen; none without a transform.
 std::optional<Affine> pose_of(const World& world, Entity entity, float alpha) {
     const auto* const now = world.find<WorldTransform>(entity);
@@ -785,6 +798,7 @@ void ParticleEffect::draw_sprites(
 template <typename Use>
 void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use) {
     gpu::Device& device = context.device();
+    const float framed = set_wide_viewport(context);
     const auto& seen = view.data.get<ViewParticles>();
     seen.texels.bind(device, kParticlesUnit);
     look_texels.bind(device, kLooksUnit);
@@ -821,6 +835,7 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
             return;
         }
         program->set("first", run.first);
+        program->set("framed", framed);
         program->set("resolution", part == Part::Half ? 0.5f : 1.0f);
         bind_images(run.arrays, run.magnified);
         if (run.shape == SpriteShape::Quad) {

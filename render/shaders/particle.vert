@@ -33,6 +33,7 @@ layout(location = 6) out vec3 previous_clip;  // clip x, y, w
 
 uniform int first;         // of the particles to draw
 uniform float resolution;  // of the image, as a share of the view's
+uniform float framed;      // extent of the image, as a share of the viewport's
 
 #ifdef WEIGHTED
 uniform vec2 weight_range;  // nearest distance ahead [m], 1 / (farthest - nearest)
@@ -331,6 +332,7 @@ void main() {
 #endif
     vec3 corner_ws = p.position + offset;
     gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
+    gl_Position.xy *= framed;
     distance_ahead = gl_Position.w;
 #ifdef WEIGHTED
     weight = weight_at(distance_ahead);
@@ -425,6 +427,10 @@ void main() {
     is_gone = is_billboard ? color.a <= 0.0 : is_gone;
 #endif
     if (is_gone) {
+#ifdef POINTS
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+#else
+        gl_Position = vec4(0.0, 0.0, 0.5, 1.0);  // without area: outside the image, it would have to be clipped
+#endif
     }
 }

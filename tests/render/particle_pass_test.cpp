@@ -83,6 +83,27 @@ TEST_CASE(
     CHECK(mixed.w == test::near(0.75));
 }
 
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a quad that the border cuts looks as within a wider image") {
+    emit({{0.9f, 0.5f, 0}, {-0.2f, -1.3f, 0}, {-2.5f, 0, 0}}, disc({1, 0.5f, 0.25f}, 1, 1));
+    const Affine pose = look_at({0, 0, 1}, {0, 0, 0});
+    const RenderView wide = make_render_view(
+        {.fov_y = 2 * std::atan(2.0f), .near = 0.05f}, pose, pose, {.width = 96, .height = 96});
+    const gpu::FloatImage whole = radiance(wide);
+    const gpu::FloatImage cut = radiance(look({0, 0, 1}, {0, 0, 0}, 48, 48));
+    float worst = 0;
+    for (int y = 0; y < 48; ++y) {
+        for (int x = 0; x < 48; ++x) {
+            const Vec3 off = rgb_at(cut, x, y) - rgb_at(whole, x + 24, y + 24);
+            worst = std::max({worst, std::abs(off.x), std::abs(off.y), std::abs(off.z)});
+        }
+    }
+    CHECK(worst < 0.002f);
+    // The first disc begins at pixel 33.6 and has its middle at 45.6.
+    CHECK(cut.at(33, 12, 0) < 1e-6f);
+    CHECK(cut.at(45, 12, 0) > 0.95f);
+}
+
 TEST_CASE(
     "particle pass: they are ordered from back to front, equal ones as they were, NaN first") {
     std::vector<ParticleInstance> instances(100);
