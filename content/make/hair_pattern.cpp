@@ -38,7 +38,7 @@ std::vector<PatternStrand> strands_of(const HairPattern& pattern) {
         strand.phase = 2 * kPi * random.uniform();
         strand.length = glm::mix(pattern.shortest, 1.0f, std::sqrt(random.uniform()));
         strand.shade = 1 + pattern.variation * signed_value();
-        strand.slope = 0.10f * signed_value();
+        strand.slope = 0.22f * signed_value();
         strand.layer = random.uniform();
         strands.push_back(strand);
     }

@@ -61,6 +61,7 @@ struct Card {
     float length, width;   ///< [cm]
     float lift;            ///< of its tip from the scalp [cm]
     float shade;
+    float root_shade;  ///< factor of the shade at the root: less light comes there
 };
 
 void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
@@ -83,9 +84,10 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
             const Vec3 p = at + 0.5f * card.width * (1 - 0.3f * t) * edge * across;
             part.points.push_back(bone_point(p, 0));
             part.mesh.positions.push_back(p);
-            part.mesh.normals.push_back(glm::normalize(out + 0.45f * edge * across));
+            part.mesh.normals.push_back(glm::normalize(out + 0.2f * edge * across));
             part.mesh.uvs.emplace_back(0.5f + 0.5f * edge, t);
-            part.mesh.colors.emplace_back(Vec3(card.shade * glm::mix(0.55f, 1.0f, t)), 1.0f);
+            part.mesh.colors.emplace_back(
+                Vec3(card.shade * glm::mix(card.root_shade, 1.0f, t)), 1.0f);
         }
     }
     append_grid(part.mesh, kRows, 2, false);
@@ -98,7 +100,7 @@ float scalp_hair_cover(const Vec3& p) {
 }
 
 HeadPart make_scalp_hair(const HeadShape& shape) {
-    constexpr int kCards = 2400;  // on the whole ball around the skull; some 1100 grow
+    constexpr int kCards = 4200;  // on the whole ball around the skull; some 2700 grow
     HeadPart part;
     part.mesh.name = "scalp";
     Random random(0, 0, name_hash("scalp_hair"), 0);
@@ -124,12 +126,13 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         card.out = glm::normalize(head_gradient(root, shape, 0));
         const Vec3 flow = hair_flow(root, card.out);
         const Vec3 aside = glm::cross(card.out, flow);
-        card.flow = glm::normalize(flow + 0.5f * (chance[0] - 0.5f) * aside);
+        card.flow = glm::normalize(flow + 0.4f * (chance[0] - 0.5f) * aside);
         const float top = glm::smoothstep(3.0f, 11.0f, root.y);
-        card.length = glm::mix(1.5f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
-        card.width = glm::mix(1.0f, 1.5f, top) * (0.8f + 0.4f * chance[0]);
-        card.lift = glm::mix(0.12f, 0.75f, top) * (0.35f + 0.75f * chance[2]);
+        card.length = glm::mix(2.3f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
+        card.width = glm::mix(0.8f, 1.1f, top) * (0.8f + 0.4f * chance[0]);
+        card.lift = glm::mix(0.1f, 0.75f, top) * (0.35f + 0.75f * chance[2]);
         card.shade = 0.8f + 0.4f * chance[3];
+        card.root_shade = glm::mix(0.85f, 0.6f, top);
         append_card(part, card, shape);
     }
     return part;

@@ -12,5 +12,6 @@ struct HairBlock {
 };
 
 #ifdef __cplusplus
+static_assert(sizeof(HairBlock) == 32);
 }  // namespace limn::layout
 #endif
