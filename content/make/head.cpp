@@ -10,6 +10,7 @@
 #include "content/make/head_parts.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
+#include "ecs/base/check.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -190,25 +191,54 @@ SkinWeights head_weights(std::span<const HeadPoint> points) {
     return skin;
 }
 
-}  // namespace
-
-MeshData make_head(const HeadShape& shape) {
+/// With positions [cm] of the head that `shape` asks for, and normals.
+HeadPart make_placed_part(const HeadShape& shape) {
     HeadPart part = make_part(shape);
     MeshData& mesh = part.mesh;
     const bool is_skin = shape.part == HeadPartKind::Skin || shape.part == HeadPartKind::Markers;
     if (!is_skin) {  // whose points are those of a skewed head already
-        for (std::size_t v = 0; v < part.points.size(); ++v) {
-            mesh.positions[v] = skew_head(mesh.positions[v], shape);
+        for (Vec3& p : mesh.positions) {
+            p = skew_head(p, shape);
         }
         if (shape.part != HeadPartKind::Scalp) {
             generate_normals(mesh);
         }
     }
+    return part;
+}
+
+/// From `positions` [m], which are those of `shape`, to the same head of seventy years.
+MorphTarget make_aging(std::span<const Vec3> positions, const HeadShape& shape) {
+    constexpr float kMinOffset = 1e-5f;
+    HeadShape old = shape;
+    old.age = 1;
+    const MeshData aged = make_placed_part(old).mesh;
+    LIMN_CHECK(aged.positions.size() == positions.size());
+    MorphTarget target;
+    target.name = "age";
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        const Vec3 offset = kMeters * aged.positions[v] - positions[v];
+        if (glm::dot(offset, offset) > square(kMinOffset)) {
+            target.vertices.push_back(v);
+            target.positions.push_back(offset);
+        }
+    }
+    return target;
+}
+
+}  // namespace
+
+MeshData make_head(const HeadShape& shape) {
+    HeadPart part = make_placed_part(shape);
+    MeshData& mesh = part.mesh;
     for (Vec3& p : mesh.positions) {
         p *= kMeters;
     }
     mesh.skin = head_weights(part.points);
     mesh.morphs = make_expressions(part.points, shape);
+    if (shape.grows_old) {
+        mesh.morphs.push_back(make_aging(mesh.positions, shape));
+    }
     generate_morph_normals(mesh);
     generate_tangents(mesh);
     generate_morph_tangents(mesh);
@@ -233,7 +263,7 @@ MeshRig make_head_rig(const HeadShape& shape) {
             affine_from(-kMeters * places[i], Quat(1, 0, 0, 0), Vec3(1)));
     }
     if (shape.part == HeadPartKind::Skin) {
-        rig.clips = make_head_clips(shape.says);
+        rig.clips = make_head_clips(shape.says, shape.grows_old);
     }
     return rig;
 }

@@ -36,6 +36,7 @@ struct HeadShape {
     float build = 0.0f;
     float asymmetry = 0.0f;
     float scalp_shade = 0.0f;
+    bool grows_old = false;
     std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
 
@@ -49,6 +50,9 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);
     LIMN_FIELD(asymmetry, "of the left and right half; 0: mirror images", "", 0, 1);
     LIMN_FIELD(scalp_shade, "of the skin: how much it is darkened where hair grows", "", 0, 1);
+    LIMN_FIELD(
+        grows_old, "adds the shape `age`, which at weight 1 makes it seventy years old; set it of "
+                   "all parts of a head");
     LIMN_FIELD(says, "what it says in its clip talk, English");
 }
 
@@ -56,8 +60,8 @@ LIMN_FIELDS(HeadShape) {
 [[nodiscard]] MeshData make_head(const HeadShape& shape);
 
 /// The same skeleton for all parts. The skin has clips: each face of head_clips.h for a few
-/// seconds, "expressions" with all of them, "talk", "relax", and "blink", for a morph animation
-/// beside others.
+/// seconds, "expressions" with all of them, "talk", "relax", and "blink" and "old", for morph
+/// animations beside others.
 [[nodiscard]] MeshRig make_head_rig(const HeadShape& shape);
 
 }  // namespace limn

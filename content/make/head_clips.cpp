@@ -233,7 +233,7 @@ ClipData make_relax(const ClipData& talk) {
 
 }  // namespace
 
-std::vector<ClipData> make_head_clips(std::string_view says) {
+std::vector<ClipData> make_head_clips(std::string_view says, bool grows_old) {
     std::vector<ClipData> clips;
     for (const Face& face : kFaces) {
         clips.push_back(make_face_clip(face));
@@ -242,6 +242,11 @@ std::vector<ClipData> make_head_clips(std::string_view says) {
     clips.push_back(make_talk(says));
     clips.push_back(make_relax(clips.back()));
     clips.push_back(make_blink());
+    if (grows_old) {
+        ClipData& old = clips.emplace_back();
+        old.name = "old";
+        add_curve(old, expression_count(), {0, 1}, {1, 1});
+    }
     return clips;
 }
 

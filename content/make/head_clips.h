@@ -13,7 +13,8 @@ namespace limn {
 /// Clips of make_head_rig: "smile", "surprise", "frown", "sadness", "disgust", "fear", "pucker",
 /// "puff", "wink", "doubt" and "gape", each from rest to rest; "expressions", all of them with a
 /// gaze that wanders; "talk", which says the English text `says` by the rules of content/speech,
-/// with its blinks, gaze and nods; "relax", the same with brows that rise and relax; and "blink".
-[[nodiscard]] std::vector<ClipData> make_head_clips(std::string_view says);
+/// with its blinks, gaze and nods; "relax", the same with brows that rise and relax; "blink"; and,
+/// of a head that grows old, "old", a morph animation whose weight is its age.
+[[nodiscard]] std::vector<ClipData> make_head_clips(std::string_view says, bool grows_old);
 
 }  // namespace limn

@@ -134,6 +134,10 @@ std::vector<std::string> expression_names() {
     return names;
 }
 
+std::uint16_t expression_count() {
+    return static_cast<std::uint16_t>(expressions().size());
+}
+
 std::uint16_t expression_index(std::string_view name) {
     const auto found = std::ranges::find(expressions(), name, &Expression::name);
     LIMN_CHECK(found != expressions().end());

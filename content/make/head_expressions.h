@@ -22,6 +22,9 @@ make_expressions(std::span<const HeadPoint> points, const HeadShape& shape);
 /// Of all targets that have no drivers, in their order, from the first on.
 [[nodiscard]] std::vector<std::string> expression_names();
 
+/// How many targets there are; the index of one that is added to them.
+[[nodiscard]] std::uint16_t expression_count();
+
 /// Index of the target called `name`, which must exist.
 [[nodiscard]] std::uint16_t expression_index(std::string_view name);
 

@@ -245,6 +245,29 @@ TEST_CASE("head: hair grows on the scalp alone, its cards lie outside of the sku
     }
 }
 
+TEST_CASE("head: at weight 1 of the shape age every part is that of seventy years") {
+    for (const HeadPartKind part : {HeadPartKind::Skin, HeadPartKind::Hair, HeadPartKind::Scalp}) {
+        const MeshData mesh =
+            make_head({.part = part, .age = 0.2f, .asymmetry = 0.5f, .grows_old = true});
+        const MeshData old = make_head({.part = part, .age = 1, .asymmetry = 0.5f});
+        REQUIRE(mesh.morphs.back().name == "age");
+        const MorphTarget& age = mesh.morphs.back();
+        std::vector<Vec3> positions = mesh.positions;
+        float most = 0;
+        for (std::size_t i = 0; i < age.vertices.size(); ++i) {
+            positions[age.vertices[i]] += age.positions[i];
+            most = std::max(most, glm::length(age.positions[i]));
+        }
+        REQUIRE(positions.size() == old.positions.size());
+        float farthest = 0;
+        for (std::size_t v = 0; v < positions.size(); ++v) {
+            farthest = std::max(farthest, glm::distance(positions[v], old.positions[v]));
+        }
+        CHECK(farthest < 2e-5f);
+        CHECK(most > 5e-4f);
+    }
+}
+
 TEST_CASE("head: no number of a made mesh is NaN at the ends of all parameters") {
     for (const float end : {0.0f, 1.0f}) {
         const MeshData mesh =
