@@ -100,7 +100,7 @@ float scalp_hair_cover(const Vec3& p) {
 }
 
 HeadPart make_scalp_hair(const HeadShape& shape) {
-    constexpr int kCards = 4200;  // on the whole ball around the skull; some 2700 grow
+    constexpr int kCards = 2600;  // on the whole ball around the skull; some 1700 grow
     HeadPart part;
     part.mesh.name = "scalp";
     Random random(0, 0, name_hash("scalp_hair"), 0);
@@ -128,8 +128,8 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         const Vec3 aside = glm::cross(card.out, flow);
         card.flow = glm::normalize(flow + 0.4f * (chance[0] - 0.5f) * aside);
         const float top = glm::smoothstep(3.0f, 11.0f, root.y);
-        card.length = glm::mix(2.3f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
-        card.width = glm::mix(0.8f, 1.1f, top) * (0.8f + 0.4f * chance[0]);
+        card.length = glm::mix(2.1f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
+        card.width = glm::mix(0.95f, 1.25f, top) * (0.8f + 0.4f * chance[0]);
         card.lift = glm::mix(0.1f, 0.75f, top) * (0.35f + 0.75f * chance[2]);
         card.shade = 0.8f + 0.4f * chance[3];
         card.root_shade = glm::mix(0.85f, 0.6f, top);
