@@ -1,7 +1,7 @@
 #include "bench/faces/face_crowd.h"
 #include "bench/faces/face_rows.h"
 #include "ecs/base/jobs.h"
-#include "ecs/base/weld.h"
+#include "ecs/components/weld.h"
 #include "systems/animation/deformer_kernels.h"
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/skin_kernels.h"

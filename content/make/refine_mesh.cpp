@@ -1,7 +1,7 @@
 #include "content/make/refine_mesh.h"
 
 #include "content/bake/tangents.h"
-#include "ecs/base/weld.h"
+#include "ecs/components/weld.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

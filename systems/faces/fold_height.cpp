@@ -1,6 +1,6 @@
 #include "systems/faces/fold_height.h"
 
-#include "ecs/base/weld.h"
+#include "ecs/components/weld.h"
 #include "systems/faces/wrinkle_fold.h"
 
 #include <glm/common.hpp>

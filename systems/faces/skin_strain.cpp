@@ -1,7 +1,7 @@
 #include "systems/faces/skin_strain.h"
 
 #include "ecs/base/check.h"
-#include "ecs/base/weld.h"
+#include "ecs/components/weld.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "systems/faces/wrinkle_measure.h"
 
 #include "ecs/base/check.h"
-#include "ecs/base/weld.h"
+#include "ecs/components/weld.h"
 
 #include <algorithm>
 #include <array>

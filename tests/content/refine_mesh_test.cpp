@@ -1,7 +1,7 @@
 #include "content/bake/tangents.h"
 #include "content/make/refine_mesh.h"
 #include "content/make/shapes.h"
-#include "ecs/base/weld.h"
+#include "ecs/components/weld.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

@@ -281,7 +281,7 @@ TEST_CASE_FIXTURE(
         for (const std::vector<gpu::ShaderDefine>& defines :
              {std::vector<gpu::ShaderDefine>{},
               {{"NORMAL_MAP"}, {"BASE_COLOR_MAP"}, {"UV_MAP"}, {"VERTEX_COLOR"}, {"VELOCITY"}},
-              {{"WRINKLE_MAP"}},
+              {{"WRINKLE_MAP"}, {"WRINKLE_DISPLACED"}},
               {{"VELOCITY"}, {"DEFORMED"}},
               {{"INFLATE"}, {"ALPHA_MASK"}}}) {
             const auto program = device().shaders().load(

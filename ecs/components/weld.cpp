@@ -1,4 +1,4 @@
-#include "ecs/base/weld.h"
+#include "ecs/components/weld.h"
 
 #include <algorithm>
 #include <array>
