@@ -151,7 +151,7 @@ TEST_CASE("refined: weights sum to 1, and morph targets move middles by the mean
     }
 }
 
-TEST_CASE("refined: without a mesh, without regions, not finite, or without end") {
+TEST_CASE("refined: a missing mesh, no regions, a NaN, and edges too short to reach") {
     CHECK(make_refined({.mesh = {3}}, Assets{}).positions.empty());
     MeshData ball = make_ball();
     ball.positions[5].x = std::numeric_limits<float>::quiet_NaN();

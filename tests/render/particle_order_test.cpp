@@ -36,13 +36,17 @@ struct OrderScene : Scene {
     }
     /// A square of 6 m that gives off `color` and hides `opacity` of what is behind it.
     void add_pane(float z, const Vec3& color, float opacity) {
+        add_pane(affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(3)), color, opacity);
+    }
+    void add_pane(const Affine& world_from_square, const Vec3& color, float opacity) {
         place(
             add(make_square()),
             add(Material{
                 .shading = ShadingModel::Unlit,
                 .alpha_mode = AlphaMode::Blend,
+                .double_sided = true,
                 .base_color = Vec4(color, opacity)}),
-            affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(3)));
+            world_from_square);
     }
     Vec3 middle() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33)), 16, 16); }
 
@@ -103,14 +107,9 @@ TEST_CASE_FIXTURE(OrderScene, "particle order: a mirror shows them behind a pane
             WorldTransform{at({0, 0, 0})}),
         WaterLook{.reflection = WaterReflection::Planar, .map_scale = 1});
     // A ceiling, as the water sees it.
-    place(
-        add(make_square()),
-        add(Material{
-            .shading = ShadingModel::Unlit,
-            .alpha_mode = AlphaMode::Blend,
-            .double_sided = true,
-            .base_color = {0, 0, 1, 0.5f}}),
-        affine_from({0, 5, 0}, Quat(std::sqrt(0.5f), std::sqrt(0.5f), 0, 0), Vec3(9)));
+    add_pane(
+        affine_from({0, 5, 0}, Quat(std::sqrt(0.5f), std::sqrt(0.5f), 0, 0), Vec3(9)), {0, 0, 1},
+        0.5f);
     const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
     const auto mirrored = [&](float height) {
         const Entity one = emit({0, height, 0}, {1, 0, 0});
@@ -129,14 +128,9 @@ TEST_CASE_FIXTURE(OrderScene, "particle order: a mirror shows them behind a pane
 TEST_CASE_FIXTURE(
     OrderScene, "particle order: a sprite that a pane cuts is behind it in part of its pixels") {
     // From the lower left of the image away to the upper right.
-    place(
-        add(make_square()),
-        add(Material{
-            .shading = ShadingModel::Unlit,
-            .alpha_mode = AlphaMode::Blend,
-            .double_sided = true,
-            .base_color = {0, 0, 1, 0.5f}}),
-        affine_from({0, 0, 0}, Quat(std::cos(0.4f), 0, std::sin(0.4f), 0), Vec3(3)));
+    add_pane(
+        affine_from({0, 0, 0}, Quat(std::cos(0.4f), 0, std::sin(0.4f), 0), Vec3(3)), {0, 0, 1},
+        0.5f);
     emit({0, 0, 0}, {1, 0, 0});
     const gpu::FloatImage image = radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33));
     const Vec3 left = rgb_at(image, 10, 16);
