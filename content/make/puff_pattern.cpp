@@ -49,18 +49,25 @@ float density_at(const PuffPattern& pattern, const Vec3& p, float time) {
     const Vec3 q = p / radius - time * Vec3(0.1f, 0.35f, 0.5f);
     const float bend = noise(1.3f * q, seed, 1) - 0.5f;
     const Vec3 bent = q + 0.5f * bend;
-    // Creases between round lumps: the noise is folded where it crosses 0.
-    float lumps = 0;
+    // Creases between round lumps: the noise is folded where it crosses 0. Most places are decided
+    // before the finest lumps and the fray, whose shares are known, are evaluated.
+    const float max_fray = 0.5f * pattern.fray * time;
+    float depth = inside;
     float share = 0.6f;
+    float rest = 1.125f;  // sum of the shares left
     float frequency = 1.6f;
     for (std::uint32_t octave = 1; octave <= 4; ++octave) {
         const float n = gradient_noise(frequency * bent, seed + octave);
-        lumps += share * (2.0f * std::sqrt(std::min(1.8f * std::abs(n), 1.0f)) - 1.0f);
+        depth += lump * share * (2.0f * std::sqrt(std::min(1.8f * std::abs(n), 1.0f)) - 1.0f);
+        rest -= share;
+        if (depth + lump * rest < 0 || depth - lump * rest - max_fray > kRim) {
+            return depth < 0 ? 0.0f : 1.0f;
+        }
         share *= 0.5f;
         frequency *= 2.1f;
     }
-    const float frayed = pattern.fray * time * noise(3.1f * q, seed + 9, 3);
-    return glm::smoothstep(0.0f, kRim, inside + lump * lumps - 0.5f * frayed);
+    const float frayed = max_fray > 0 ? max_fray * noise(3.1f * q, seed + 9, 3) : 0.0f;
+    return glm::smoothstep(0.0f, kRim, depth - frayed);
 }
 
 /// Light that reaches a part through an optical depth, of all orders of scattering: each order is
@@ -108,7 +115,9 @@ PuffFrame make_frame(const PuffPattern& pattern, int side, float time) {
                 const std::size_t along = from_end ? n - 1 - k : k;
                 const std::size_t i =
                     along * stride[axis] + line % n * stride[b] + line / n * stride[c];
-                pixel_of(i).light[s] += seen[i] * light_through(before + 0.5f * depths[i]);
+                if (seen[i] > 0) {
+                    pixel_of(i).light[s] += seen[i] * light_through(before + 0.5f * depths[i]);
+                }
                 before += depths[i];
             }
         }

@@ -46,15 +46,8 @@ template <typename T>
     return 2.0f * (low + quintic_fade(t) * (slope(1) * (t - 1.0f) - low));
 }
 
-/// Value and gradient of the noise.
-struct NoiseSample {
-    float value;
-    Vec2 slope;
-};
-
-/// `period` > 0 makes the noise tile with that many lattice cells; 0 = not periodic.
-[[nodiscard]] inline NoiseSample
-gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
+/// The gradient at a lattice point of the plane.
+[[nodiscard]] inline Vec2 lattice_gradient(int x, int y, std::uint32_t seed) {
     constexpr float kLong = 0.92387953f;
     constexpr float kShort = 0.38268343f;
     constexpr float kDiagonal = 0.70710678f;
@@ -75,31 +68,60 @@ gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0
         {-kDiagonal, kDiagonal},
         {kDiagonal, -kDiagonal},
         {-kDiagonal, -kDiagonal}};
+    return kDirections[lattice_hash(x, y, seed) >> 28];
+}
+
+/// The cell of the lattice around a point of the plane.
+struct NoiseCell {
+    Vec2 fraction;     ///< of the point, from the corner (0, 0)
+    Vec2 gradient[4];  ///< at the corners (0, 0), (1, 0), (0, 1), (1, 1)
+    float ramp[4];     ///< of each gradient, at the point
+};
+
+/// `period` > 0 makes the noise tile with that many lattice cells; 0 = not periodic.
+[[nodiscard]] inline NoiseCell
+noise_cell(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
     const auto wrap = [](int x, int cells) {
         const int rest = cells > 0 ? x % cells : x;
         return cells > 0 && rest < 0 ? rest + cells : rest;
     };
-    const float cell_x = std::floor(p.x);
-    const float cell_y = std::floor(p.y);
-    const int x0 = static_cast<int>(cell_x);
-    const int y0 = static_cast<int>(cell_y);
-    const float fx = p.x - cell_x;
-    const float fy = p.y - cell_y;
-
-    // The gradient and its linear ramp at the four corners.
-    Vec2 gradient[4];
-    float ramp[4];
+    const Vec2 low = {std::floor(p.x), std::floor(p.y)};
+    NoiseCell cell;
+    cell.fraction = p - low;
     for (int corner = 0; corner < 4; ++corner) {
         const int dx = corner % 2;
         const int dy = corner / 2;
-        const std::uint32_t h =
-            lattice_hash(wrap(x0 + dx, period.x), wrap(y0 + dy, period.y), seed);
-        gradient[corner] = kDirections[h >> 28];
-        ramp[corner] = gradient[corner].x * (fx - static_cast<float>(dx))
-                       + gradient[corner].y * (fy - static_cast<float>(dy));
+        cell.gradient[corner] = lattice_gradient(
+            wrap(static_cast<int>(low.x) + dx, period.x),
+            wrap(static_cast<int>(low.y) + dy, period.y), seed);
+        cell.ramp[corner] = cell.gradient[corner].x * (cell.fraction.x - static_cast<float>(dx))
+                            + cell.gradient[corner].y * (cell.fraction.y - static_cast<float>(dy));
     }
+    return cell;
+}
 
-    const Vec2 t = {fx, fy};
+inline constexpr float kPlaneNoiseScale = 1.41421356f;
+
+[[nodiscard]] inline float
+gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
+    const NoiseCell cell = noise_cell(p, seed, period);
+    const auto& ramp = cell.ramp;
+    const Vec2 w = quintic_fade(cell.fraction);
+    const float low = ramp[0] + w.x * (ramp[1] - ramp[0]);
+    const float high = ramp[2] + w.x * (ramp[3] - ramp[2]);
+    return kPlaneNoiseScale * (low + w.y * (high - low));
+}
+
+/// Value and gradient of the noise.
+struct NoiseSample {
+    float value;
+    Vec2 slope;
+};
+
+[[nodiscard]] inline NoiseSample
+gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
+    const NoiseCell cell = noise_cell(p, seed, period);
+    const auto& [t, gradient, ramp] = cell;
     const Vec2 w = quintic_fade(t);
     const Vec2 dw = 30.0f * t * t * (t - 1.0f) * (t - 1.0f);
     const float low = ramp[0] + w.x * (ramp[1] - ramp[0]);
@@ -110,13 +132,7 @@ gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0
         gradient[2] + w.x * (gradient[3] - gradient[2]) + Vec2(dw.x * (ramp[3] - ramp[2]), 0);
     const float value = low + w.y * (high - low);
     const Vec2 slope = slope_low + w.y * (slope_high - slope_low) + Vec2(0, dw.y * (high - low));
-    constexpr float kScale = 1.41421356f;
-    return {kScale * value, kScale * slope};
-}
-
-[[nodiscard]] inline float
-gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
-    return gradient_noise_slope(p, seed, period).value;
+    return {kPlaneNoiseScale * value, kPlaneNoiseScale * slope};
 }
 
 [[nodiscard]] inline float gradient_noise(const Vec3& p, std::uint32_t seed) {
@@ -124,14 +140,16 @@ gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) 
     const Vec3 t = p - cell;
     const Vec3 w = quintic_fade(t);
     // Gradients toward the midpoints of a cube's twelve edges, four of them listed twice.
+    static constexpr Vec3 kDirections[16] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0},
+                                             {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
+                                             {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1},
+                                             {1, 1, 0}, {0, -1, 1}, {-1, 1, 0}, {0, -1, -1}};
     const auto ramp = [&](int dx, int dy, std::uint32_t plane, float z) {
-        const float x = t.x - static_cast<float>(dx);
-        const float y = t.y - static_cast<float>(dy);
         const std::uint32_t h =
             lattice_hash(static_cast<int>(cell.x) + dx, static_cast<int>(cell.y) + dy, plane) >> 28;
-        const float u = h < 8 ? x : y;
-        const float v = h < 4 ? y : h == 12 || h == 14 ? x : z;
-        return ((h & 1) != 0 ? -u : u) + ((h & 2) != 0 ? -v : v);
+        const Vec3& gradient = kDirections[h];
+        return gradient.x * (t.x - static_cast<float>(dx))
+               + gradient.y * (t.y - static_cast<float>(dy)) + gradient.z * z;
     };
     const auto plane = [&](int dz) {
         const std::uint32_t h = lattice_hash(static_cast<int>(cell.z) + dz, 1, seed);
