@@ -1,23 +1,77 @@
 #include "content/load/made_assets.h"
 
 #include "content/load/component_json.h"
+#include "ecs/base/hash.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <type_traits>
 
 namespace limn {
 namespace {
 
-/// The kind and all parameters as text.
-std::string key_of(const char* kind, const AnyComponent& parameters) {
-    const NameProvider no_names = {
-        .asset = [](std::string_view, std::uint32_t) { return std::string(); },
-        .entity = [](Entity) { return std::string(); }};
-    return kind + write_json(write_component(parameters.info(), parameters.data(), no_names));
+template <typename T>
+std::uint64_t hash_of(std::uint64_t hash, const std::vector<T>& values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return hash_bytes(values.data(), values.size() * sizeof(T), hash_combine(hash, values.size()));
 }
 
-bool names_assets(AnyComponent parameters) {
+/// Of all that another mesh can be made from.
+std::uint64_t hash_of(const MeshData& mesh) {
+    std::uint64_t hash = hash_text(mesh.name);
+    hash = hash_of(hash, mesh.positions);
+    hash = hash_of(hash, mesh.normals);
+    hash = hash_of(hash, mesh.tangents);
+    hash = hash_of(hash, mesh.uvs);
+    hash = hash_of(hash, mesh.uvs1);
+    hash = hash_of(hash, mesh.colors);
+    hash = hash_of(hash, mesh.indices);
+    hash = hash_of(hash, mesh.skin.first);
+    hash = hash_of(hash, mesh.skin.joints);
+    hash = hash_of(hash, mesh.skin.weights);
+    for (const MorphTarget& morph : mesh.morphs) {
+        hash = hash_text(morph.name + ' ' + morph.action_unit, hash);
+        hash = hash_of(hash, morph.vertices);
+        hash = hash_of(hash, morph.positions);
+        hash = hash_of(hash, morph.normals);
+        hash = hash_of(hash, morph.tangents);
+        for (const ShapeDriver& driver : morph.drivers) {
+            hash = hash_combine(hash, driver.target);
+            hash = hash_combine(hash, std::bit_cast<std::uint32_t>(driver.peak));
+        }
+    }
+    for (const VertexRegion& region : mesh.regions) {
+        hash = hash_text(region.name, hash);
+        hash = hash_of(hash, region.weights);
+        hash = hash_of(hash, region.across);
+    }
+    return hash;
+}
+
+/// The kind and all parameters as text; meshes that they name by their content.
+std::string key_of(const char* kind, const AnyComponent& parameters, const Assets* assets) {
+    const NameProvider names = {
+        .asset =
+            [assets](std::string_view, std::uint32_t index) {
+                return assets != nullptr && index < assets->meshes.size()
+                           ? fmt::format("{:016x}", hash_of(assets->meshes[index]))
+                           : std::string();
+            },
+        .entity = [](Entity) { return std::string(); }};
+    return kind + write_json(write_component(parameters.info(), parameters.data(), names));
+}
+
+/// Names assets other than meshes, or meshes in pieces.
+bool names_more_than_meshes(AnyComponent parameters, const Assets& assets) {
     bool found = false;
     for_each_asset(
         parameters.info().fields, parameters.data(),
-        [&found](std::string_view, std::uint32_t&) { found = true; });
+        [&](std::string_view kind, const std::uint32_t& index) {
+            const bool in_pieces =
+                index < assets.meshes.size() && !assets.meshes[index].pieces.empty();
+            found = found || kind != asset_kind<MeshId> || in_pieces;
+        });
     return found;
 }
 
@@ -40,10 +94,10 @@ void MadeAssets::begin_level() {
 
 MadeMesh
 MadeAssets::mesh(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets) {
-    if (names_assets(parameters)) {
+    if (names_more_than_meshes(parameters, assets)) {
         return make(kind, parameters, assets);
     }
-    const auto [found, is_new] = meshes_.try_emplace(key_of(kind.name, parameters));
+    const auto [found, is_new] = meshes_.try_emplace(key_of(kind.name, parameters, &assets));
     if (is_new) {
         found->second.value = make(kind, parameters, assets);
     }
@@ -52,7 +106,7 @@ MadeAssets::mesh(const MeshKind& kind, const AnyComponent& parameters, const Ass
 }
 
 PatternMaps MadeAssets::pattern(const PatternKind& kind, const AnyComponent& parameters) {
-    const auto [found, is_new] = patterns_.try_emplace(key_of(kind.name, parameters));
+    const auto [found, is_new] = patterns_.try_emplace(key_of(kind.name, parameters, nullptr));
     if (is_new) {
         found->second.value = kind.make(parameters.data());
     }

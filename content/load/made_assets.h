@@ -23,8 +23,8 @@ class MadeAssets {
     /// Forgets what the last kKeptLoads levels did not use.
     void begin_level();
 
-    /// Of equal parameters an equal mesh. One whose parameters name assets of the level is
-    /// generated each time.
+    /// Of equal parameters, and equal meshes that they name, an equal mesh. One whose parameters
+    /// name other assets is generated each time.
     [[nodiscard]] MadeMesh
     mesh(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets);
     [[nodiscard]] PatternMaps pattern(const PatternKind& kind, const AnyComponent& parameters);
