@@ -2,7 +2,10 @@
 
 #include "ecs/components/surface.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -28,5 +31,18 @@ struct CoarseTriangles {
 /// Coarser levels of a mesh with valid indices, each with at most 3/4 of the triangles of the one
 /// before; none for a mesh that is small already or has positions that are not finite.
 [[nodiscard]] std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh);
+
+/// Remembers the coarser levels of meshes, for worlds that are loaded again.
+class CoarseMemory {
+  public:
+    /// simplify_triangles of each mesh that is not null, else nothing.
+    [[nodiscard]] std::vector<std::vector<CoarseTriangles>>
+    simplify(std::span<const MeshData* const> meshes);
+
+  private:
+    static constexpr std::size_t kMaxIndices = std::size_t{1} << 24;  // then it forgets all
+    std::map<std::uint64_t, std::vector<CoarseTriangles>> levels_;    // by what they depend on
+    std::size_t indices_ = 0;
+};
 
 }  // namespace limn

@@ -1,6 +1,5 @@
 #include "render/mesh_pool.h"
 
-#include "ecs/base/jobs.h"
 #include "ecs/base/log.h"
 #include "render/gpu/grown_buffer.h"
 
@@ -86,20 +85,15 @@ MeshPool::MeshPool() : streams_("meshes") {
 void MeshPool::update(std::span<const MeshData> meshes) {
     const std::size_t known = std::min(meshes_.size(), meshes.size());
     meshes_.resize(std::max(meshes_.size(), meshes.size()));
-    // Levels of the meshes that can be drawn, and are new.
-    std::vector<std::vector<CoarseTriangles>> coarse(meshes.size());
     std::vector<char> drawable(meshes.size());
-    parallel_for(meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const bool fresh = i >= known;
-            if (fresh || meshes_[i].version != meshes[i].version) {
-                drawable[i] = is_drawable(meshes[i]) ? 1 : 0;
-                if (fresh && drawable[i] != 0) {
-                    coarse[i] = simplify_triangles(meshes[i]);
-                }
-            }
+    std::vector<const MeshData*> fresh(meshes.size());  // of which coarser levels are made
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (i >= known || meshes_[i].version != meshes[i].version) {
+            drawable[i] = is_drawable(meshes[i]) ? 1 : 0;
+            fresh[i] = i >= known && drawable[i] != 0 ? &meshes[i] : nullptr;
         }
-    });
+    }
+    const std::vector<std::vector<CoarseTriangles>> coarse = coarse_memory_.simplify(fresh);
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i >= known || meshes_[i].version != meshes[i].version) {
             release(meshes_[i]);

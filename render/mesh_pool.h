@@ -60,6 +60,7 @@ class MeshPool {
     void upload(const MeshData& mesh, std::span<const CoarseTriangles> coarse, MeshRange& range);
 
     std::vector<MeshRange> meshes_;
+    CoarseMemory coarse_memory_;
     std::uint64_t revision_ = 0;
     VertexStreams streams_;
     gpu::Buffer indices_;

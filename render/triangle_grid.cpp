@@ -51,6 +51,15 @@ TriangleGrid::TriangleGrid(std::span<const Vec3> positions, std::span<const std:
         for_cells(
             cell_of(glm::min(glm::min(a, b), c)), cell_of(glm::max(glm::max(a, b), c)), visit);
     };
+    for (std::size_t t = 0; t < triangles; ++t) {
+        const Vec3& a = positions[indices[3 * t]];
+        const Vec3& b = positions[indices[3 * t + 1]];
+        const Vec3& c = positions[indices[3 * t + 2]];
+        const Vec3 center = (a + b + c) / 3.0f;
+        const float radius = std::max(
+            {glm::distance(center, a), glm::distance(center, b), glm::distance(center, c)});
+        balls_.push_back({center, 1.0001f * radius});  // against rounding
+    }
     first_.resize(number_of(cells_ - 1) + 2);
     for (std::size_t t = 0; t < triangles; ++t) {
         for_cells_of(t, [&](const IVec3& cell) { ++first_[number_of(cell) + 1]; });
@@ -90,6 +99,11 @@ float TriangleGrid::distance(const Vec3& p, float enough) const {
             }
             const std::size_t number = number_of(cell);
             for (std::uint32_t i = first_[number]; i < first_[number + 1]; ++i) {
+                const Ball& ball = balls_[triangles_[i]];
+                const Vec3 offset = p - ball.center;
+                if (glm::dot(offset, offset) >= square(nearest + ball.radius)) {
+                    continue;
+                }
                 const std::uint32_t* corner = &indices_[std::size_t{3} * triangles_[i]];
                 nearest = std::min(
                     nearest,

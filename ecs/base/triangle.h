@@ -23,17 +23,20 @@ namespace limn {
 [[nodiscard]] inline Vec3
 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 normal = glm::cross(b - a, c - a);
-    const float length = glm::length(normal);
-    const bool above = length > 0 && glm::dot(glm::cross(b - a, p - a), normal) >= 0
+    const float length2 = glm::dot(normal, normal);
+    const bool above = length2 > 0 && glm::dot(glm::cross(b - a, p - a), normal) >= 0
                        && glm::dot(glm::cross(c - b, p - b), normal) >= 0
                        && glm::dot(glm::cross(a - c, p - c), normal) >= 0;
     if (above) {
-        const Vec3 up = normal / length;
-        return p - glm::dot(p - a, up) * up;
+        return p - glm::dot(p - a, normal) / length2 * normal;
     }
+    const auto distance2 = [&](const Vec3& q) { return glm::dot(q - p, q - p); };
     Vec3 nearest = nearest_on_segment(p, a, b);
+    float smallest = distance2(nearest);
     for (const Vec3& other : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)}) {
-        nearest = glm::distance(p, other) < glm::distance(p, nearest) ? other : nearest;
+        const float away = distance2(other);
+        nearest = away < smallest ? other : nearest;
+        smallest = std::min(smallest, away);
     }
     return nearest;
 }
