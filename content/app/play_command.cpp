@@ -49,9 +49,10 @@ Status play_headless(const PlayOptions& options, bool no_display) {
         return fits.error();
     }
     fmt::print(
-        "{}Rendering {} frames along the camera path of {} on {}.\n",
+        "{}Rendering {} frame{} along the camera path of {} on {}.\n",
         no_display ? "There is no display, so no window is opened. " : "", options.headless_frames,
-        stage.scene.name, headless->device->caps().renderer);
+        options.headless_frames == 1 ? "" : "s", stage.scene.name,
+        headless->device->caps().renderer);
     std::fflush(stdout);
 
     const double duration = stage.scene.duration > 0.0 ? stage.scene.duration : kStillDuration;

@@ -1,7 +1,7 @@
 // Every level: loads, runs for a second without a logged error, repeats bit for bit, and looks like
 // the image in tests/golden that we last agreed is right. `limn` draws software and GPU images
 // with other roundings, so the comparison is FLIP's, not equality. The target `golden` draws them
-// anew.
+// anew. With the formats and definitions of a GPU it looks the same.
 
 #include "content/app/headless.h"
 #include "content/app/stage.h"
@@ -21,7 +21,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -30,17 +34,16 @@ constexpr int kWidth = 320;
 constexpr int kHeight = 180;
 constexpr int kSamples = 4;
 constexpr int kSteps = 60;
+constexpr int kStepsToRepeat = 10;
+constexpr double kMinPsnr = 45;  // between the profiles [dB]
 
-HeadlessRenderer& shared_renderer() {
-    static HeadlessRenderer shared = [] {
-        Result<HeadlessRenderer> made = create_headless_renderer();
-        if (!made) {
-            std::fprintf(stderr, "%s\n", made.error().message.c_str());
-            std::exit(1);
-        }
-        return *std::move(made);
-    }();
-    return shared;
+HeadlessRenderer create_renderer(std::optional<gpu::Profile> profile) {
+    Result<HeadlessRenderer> made = create_headless_renderer(profile);
+    if (!made) {
+        std::fprintf(stderr, "%s\n", made.error().message.c_str());
+        std::exit(1);
+    }
+    return *std::move(made);
 }
 
 /// Meshes and images that levels make, which the test cases share.
@@ -49,11 +52,10 @@ MadeAssets& shared_assets() {
     return shared;
 }
 
-gpu::ByteImage draw_level(Stage& stage) {
+gpu::ByteImage draw_level(HeadlessRenderer& headless, const Stage& stage) {
     const RenderView view =
         make_render_view(stage.world, stage.scene.camera, {.width = kWidth, .height = kHeight});
-    const FrameOutput frame =
-        render_accumulated(*shared_renderer().renderer, stage.world, view, kSamples);
+    const FrameOutput frame = render_accumulated(*headless.renderer, stage.world, view, kSamples);
     return gpu::read_bytes(*frame.display);
 }
 
@@ -64,6 +66,63 @@ ColorImage color_image(int width, int height, int channels, const std::uint8_t* 
         image.pixels.push_back(Vec3(pixel[0], pixel[1], pixel[2]) / 255.0f);
     }
     return image;
+}
+
+ColorImage color_image(const gpu::ByteImage& image) {
+    return color_image(image.width, image.height, image.channels, image.pixels.data());
+}
+
+/// A level after a second, of which the test cases look at what they are about.
+struct PlayedLevel {
+    std::string name;
+    std::unique_ptr<Stage> stage;
+    std::uint64_t hash = 0;  ///< of the state after kStepsToRepeat
+    bool logged_error = false;
+};
+
+std::unique_ptr<Stage> open_level(const LevelEntry& level) {
+    Result<std::unique_ptr<Stage>> stage = open_stage(level.path, {.made = &shared_assets()});
+    REQUIRE_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
+    return *std::move(stage);
+}
+
+void step_times(Stage& stage, int steps) {
+    for (int i = 0; i < steps; ++i) {
+        step_stage(stage);
+    }
+}
+
+const std::vector<PlayedLevel>& played_levels() {
+    static const std::vector<PlayedLevel> played = [] {
+        std::vector<PlayedLevel> levels;
+        for (const LevelEntry& level : list_levels()) {
+            CAPTURE(level.name);
+            const std::uint64_t errors_before = logged_error_count();
+            PlayedLevel made = {.name = level.name, .stage = open_level(level)};
+            step_times(*made.stage, kStepsToRepeat);
+            made.hash = state_hash(made.stage->world);
+            step_times(*made.stage, kSteps - kStepsToRepeat);
+            made.logged_error = logged_error_count() != errors_before;
+            levels.push_back(std::move(made));
+        }
+        return levels;
+    }();
+    return played;
+}
+
+/// Of each level, by one profile's renderer.
+std::vector<gpu::ByteImage> draw_levels(gpu::Profile profile) {
+    HeadlessRenderer headless = create_renderer(profile);
+    std::vector<gpu::ByteImage> images;
+    for (const PlayedLevel& level : played_levels()) {
+        images.push_back(draw_level(headless, *level.stage));
+    }
+    return images;
+}
+
+const std::vector<gpu::ByteImage>& software_images() {
+    static const std::vector<gpu::ByteImage> images = draw_levels(gpu::Profile::Software);
+    return images;
 }
 
 void write_image_file(const std::string& path, const gpu::ByteImage& image) {
@@ -89,21 +148,15 @@ void leave_mismatch(
 
 TEST_CASE("level: every level runs for a second without an error and looks as agreed") {
     const bool update = std::getenv("LIMN_UPDATE_GOLDEN") != nullptr;
-    const std::vector<LevelEntry> levels = list_levels();
+    const std::vector<PlayedLevel>& levels = played_levels();
     REQUIRE(levels.size() >= 2);
-    for (const LevelEntry& level : levels) {
-        CAPTURE(level.name);
-        const std::uint64_t errors_before = logged_error_count();
-        Result<std::unique_ptr<Stage>> stage = open_stage(level.path, {.made = &shared_assets()});
-        REQUIRE_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
-        for (int i = 0; i < kSteps; ++i) {
-            step_stage(**stage);
-        }
-        CHECK(logged_error_count() == errors_before);
-
-        const gpu::ByteImage drawn = draw_level(**stage);
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const std::string& name = levels[i].name;
+        CAPTURE(name);
+        CHECK_FALSE(levels[i].logged_error);
+        const gpu::ByteImage& drawn = software_images()[i];
         const std::string golden_path =
-            std::string(LIMN_SOURCE_DIR) + "/tests/golden/" + level.name + ".png";
+            std::string(LIMN_SOURCE_DIR) + "/tests/golden/" + name + ".png";
         if (update) {
             write_image_file(golden_path, drawn);
             continue;
@@ -113,14 +166,21 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
         REQUIRE(golden->width == kWidth);
         REQUIRE(golden->height == kHeight);
         const ColorImage expected = color_image(kWidth, kHeight, 4, golden->pixels.data());
-        const ColorImage found = color_image(kWidth, kHeight, drawn.channels, drawn.pixels.data());
-        const std::vector<float> errors = flip_map(expected, found);
+        const std::vector<float> errors = flip_map(expected, color_image(drawn));
         const ErrorSummary summary = summarize_errors(errors);
         CHECK(summary.mean <= 0.01);
         CHECK(summary.p99 <= 0.1);
         if (summary.mean > 0.01 || summary.p99 > 0.1) {
-            leave_mismatch(level.name, drawn, errors);
+            leave_mismatch(name, drawn, errors);
         }
+    }
+}
+
+TEST_CASE("level: every level looks the same with the formats and definitions of a GPU") {
+    const std::vector<gpu::ByteImage> images = draw_levels(gpu::Profile::Gpu);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        CAPTURE(played_levels()[i].name);
+        CHECK(psnr(color_image(images[i]), color_image(software_images()[i])) >= kMinPsnr);
     }
 }
 
@@ -141,10 +201,11 @@ TEST_CASE("level: the cloister has shadows of every method, and no light is refu
     set_log_sink([](LogLevel, std::string_view) { ++warnings; });
     const RenderView view =
         make_render_view((*stage)->world, (*stage)->scene.camera, {.width = 64, .height = 36});
-    render_frame(*shared_renderer().renderer, (*stage)->world, view);
+    HeadlessRenderer headless = create_renderer({});
+    render_frame(*headless.renderer, (*stage)->world, view);
     // What stays where it is has been drawn once and for all; the cages turn, but no map sees them.
     step_stage(**stage);
-    const FrameOutput next = render_frame(*shared_renderer().renderer, (*stage)->world, view);
+    const FrameOutput next = render_frame(*headless.renderer, (*stage)->world, view);
     set_log_sink(nullptr);
     CHECK(warnings == 0);
     CHECK(next.statistics.shadow_views >= 14 * 6);
@@ -152,19 +213,12 @@ TEST_CASE("level: the cloister has shadows of every method, and no light is refu
 }
 
 TEST_CASE("level: the same level runs to the same state twice") {
-    for (const LevelEntry& level : list_levels()) {
-        CAPTURE(level.name);
-        std::uint64_t hashes[2] = {};
-        for (std::uint64_t& hash : hashes) {
-            Result<std::unique_ptr<Stage>> stage =
-                open_stage(level.path, {.made = &shared_assets()});
-            REQUIRE(stage.ok());
-            for (int i = 0; i < 10; ++i) {
-                step_stage(**stage);
-            }
-            hash = state_hash((*stage)->world);
-        }
-        CHECK(hashes[0] == hashes[1]);
+    const std::vector<LevelEntry> levels = list_levels();
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        CAPTURE(levels[i].name);
+        const std::unique_ptr<Stage> again = open_level(levels[i]);
+        step_times(*again, kStepsToRepeat);
+        CHECK(state_hash(again->world) == played_levels()[i].hash);
     }
 }
 
