@@ -1,5 +1,6 @@
 #include "content/make/patterns.h"
 
+#include "content/make/bubble_pattern.h"
 #include "content/make/crown_pattern.h"
 #include "content/make/face_fold_pattern.h"
 #include "content/make/fold_pattern.h"
@@ -383,6 +384,7 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<BricksPattern, make_bricks>("bricks", "a wall of rough bricks"),
         pattern_kind<BrushedMetalPattern, make_brushed_metal>(
             "brushed_metal", "metal with fine streaks along u"),
+        pattern_kind<BubblePattern, make_bubble>("bubble", "a flipbook of air bubbles in water"),
         pattern_kind<CheckerPattern, make_checker>("checker", "two colors in squares, polished"),
         pattern_kind<ConcretePattern, make_concrete>("concrete", "stained gray with pores"),
         pattern_kind<ConfettiPattern, make_confetti>(

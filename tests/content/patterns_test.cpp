@@ -1,3 +1,4 @@
+#include "content/make/bubble_pattern.h"
 #include "content/make/crown_pattern.h"
 #include "content/make/glow_pattern.h"
 #include "content/make/mask_pattern.h"
@@ -79,7 +80,7 @@ std::vector<PatternKind> plain_kinds() {
 }  // namespace
 
 TEST_CASE("patterns: every kind makes three whole images of the size asked for") {
-    REQUIRE(pattern_kinds().size() == 37);
+    REQUIRE(pattern_kinds().size() == 38);
     for (const PatternKind& kind : plain_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 64);
@@ -97,9 +98,9 @@ TEST_CASE("patterns: every kind makes three whole images of the size asked for")
 
 TEST_CASE("patterns: frames of a flipbook end before their border, and differ") {
     for (const PatternKind& kind : plain_kinds()) {
-        const std::vector<std::string> flipbooks = {"confetti", "crown",     "fire",   "fireball",
-                                                    "flame",    "leaf",      "ring",   "shard",
-                                                    "smoke",    "snowflake", "splash", "tree"};
+        const std::vector<std::string> flipbooks = {
+            "bubble", "confetti", "crown", "fire",      "fireball", "flame", "leaf",
+            "ring",   "shard",    "smoke", "snowflake", "splash",   "tree"};
         if (std::find(flipbooks.begin(), flipbooks.end(), kind.name) == flipbooks.end()) {
             continue;
         }
@@ -311,6 +312,36 @@ TEST_CASE("patterns: a crown widens from frame to frame, rises, and falls back t
     CHECK(highest < tops.end() - 2);
     CHECK(tops.front() < *highest / 2);
     CHECK(tops.back() < *highest - 8);
+}
+
+TEST_CASE("patterns: a bubble reflects all beyond the critical angle, the sky above, and is clear "
+          "within") {
+    constexpr int kSide = 512;
+    constexpr float kRadius = 0.4f * kSide;
+    const ImageData image =
+        make_bubble({.image = {.size = kSide}, .frames = 1, .flatness = 0}).base_color;
+    const auto texel = [&](float radius, float angle) {
+        const int x = static_cast<int>(0.5f * kSide + kRadius * radius * std::cos(angle));
+        const int y = static_cast<int>(0.5f * kSide - kRadius * radius * std::sin(angle));
+        return &image.pixels[static_cast<std::size_t>(y * kSide + x) * 4];
+    };
+    // By Snell: light from water to air is refracted up to this share of the radius.
+    constexpr float kCritical = 1.0f / 1.333f;
+    for (int i = 0; i < 360; i += 5) {
+        CAPTURE(i);
+        const float angle = radians(static_cast<float>(i));
+        CHECK(texel(kCritical + 0.03f, angle)[3] > 250);
+        CHECK(texel(kCritical - 0.1f, angle)[3] < 60);
+        CHECK(texel(0.3f, angle)[3] < 0.021f * 255 + 1);  // ((n - 1) / (n + 1))^2 in the middle
+        CHECK(texel(1.05f, angle)[3] == 0);
+    }
+    // A mirror at 50 degrees shows what is 80 degrees from straight ahead.
+    CHECK(texel(0.77f, radians(90.0f))[0] > 250);
+    CHECK(texel(0.77f, radians(270.0f))[0] < 120);
+    for (int i = 0; i < 90; i += 10) {
+        const float angle = radians(static_cast<float>(i));
+        CHECK(std::abs(texel(0.8f, angle)[0] - texel(0.8f, kPi - angle)[0]) <= 6);
+    }
 }
 
 TEST_CASE("fluid: pressure takes out the divergence, heat rises, cools and spreads by expansion") {
