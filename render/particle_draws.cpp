@@ -18,7 +18,7 @@
 #include <cmath>
 #include <set>
 #include <span>
-#include <utility>
+#include <tuple>
 
 namespace limn {
 namespace {
@@ -233,9 +233,10 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
 
 /// For a warm-up, whose image nobody sees: a particle for each program that some look needs.
 void append_one_of_each(ParticleDraws& draws) {
-    std::set<std::pair<LookLayer, bool>> made;
+    std::set<std::tuple<LookLayer, bool, bool>> made;
     for (std::uint32_t i = 0; i < draws.looks.size(); ++i) {
-        if (made.emplace(draws.layers[i], is_point(draws.looks[i])).second) {
+        const bool is_six_way = draws.arrays[i].negative_lights != 0;
+        if (made.emplace(draws.layers[i], is_point(draws.looks[i]), is_six_way).second) {
             auto& its = draws.layers[i] == LookLayer::Weighted ? draws.weighted : draws.instances;
             its.emplace_back().look_and_share = i << 16;
         }

@@ -17,7 +17,6 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <utility>
 
 namespace limn {
 namespace {
@@ -43,6 +42,11 @@ float set_wide_viewport(PassContext& context) {
     }
     context.device().set_viewport(-size.x, -size.y, 3 * size.x, 3 * size.y);
     return 1.0f / 3;
+}
+
+/// Others would evaluate the six sides in vain.
+bool is_six_way(const ParticleRun& run) {
+    return run.arrays.negative_lights != 0 && run.shape == SpriteShape::Quad;
 }
 
 }  // namespace
@@ -277,9 +281,9 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
     const bool crosses = time + back > 0.999f * step;  // the beginning of the step
     const float bend = crosses ? step * (back + time - 0.5f * step) : 0.0f;
     bind_view(context, view);
-    draw_runs(context, view, Part::All, [&](SpriteShape shape) {
+    draw_runs(context, view, Part::All, [&](const ParticleRun& run) {
         Variant variant("VELOCITY");
-        variant.add(sprite_variant(view, shape));
+        variant.add(sprite_variant(view, run.shape));
         const gpu::Program* const program = velocity_programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{
@@ -292,9 +296,9 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
 
 void ParticleEffect::draw_lens_depth(PassContext& context, const ViewData& view) {
     bind_view(context, view);
-    draw_runs(context, view, Part::All, [&](SpriteShape shape) {
+    draw_runs(context, view, Part::All, [&](const ParticleRun& run) {
         Variant variant("FOCUS");
-        variant.add(sprite_variant(view, shape));
+        variant.add(sprite_variant(view, run.shape));
         const gpu::Program* const program = focus_programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, {.cull = GL_NONE}});
@@ -314,10 +318,11 @@ void ParticleEffect::draw_sprites(
     }
     state.clip = is_clipped(view);
     bind_lighting(context, view);
-    draw_runs(context, view, part, [&](SpriteShape shape) {
+    draw_runs(context, view, part, [&](const ParticleRun& run) {
+        const SpriteShape shape = run.shape;
         Variant variant = view.lighting.variant;
         variant.add_if(draws.lit && shape != SpriteShape::SmallDisc, "LIT");
-        variant.add_if(draws.features.six_way && shape == SpriteShape::Quad, "SIX_WAY");
+        variant.add_if(is_six_way(run), "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
         variant.add_if(veiled, "VEILED");
         variant.add(sprite_variant(view, shape));
@@ -334,7 +339,7 @@ void ParticleEffect::draw_sprites(
     });
 }
 
-/// `use(shape)` uses the program for it and returns it, or null.
+/// `use(run)` uses the program for it and returns it, or null.
 template <typename Use>
 void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part part, Use&& use) {
     gpu::Device& device = context.device();
@@ -354,7 +359,7 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         if (draws.features.motions) {
             device.bind_texture(kMotionsUnit, pool.array(its.motions), &finest_sampler);
         }
-        if (draws.features.six_way) {
+        if (its.negative_lights != 0) {
             device.bind_texture(kNegativeLightsUnit, pool.array(its.negative_lights), &sampler);
         }
     };
@@ -368,10 +373,12 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
         : part == Part::UnderWater ? all.subspan(seen.under_begin)
                                    : all.first(seen.under_begin);
     const gpu::Program* program = nullptr;
-    std::optional<SpriteShape> shape;
+    std::optional<ParticleRun> last;
     const auto draw_run = [&](const ParticleRun& run) {
-        program = shape == run.shape ? program : use(run.shape);
-        shape = run.shape;
+        const bool is_alike =
+            last && last->shape == run.shape && is_six_way(*last) == is_six_way(run);
+        program = is_alike ? program : use(run);
+        last = run;
         if (program == nullptr) {
             return;
         }
@@ -391,6 +398,9 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
             ParticleRun other = run;
             other.shape =
                 run.shape == SpriteShape::Quad ? SpriteShape::SmallDisc : SpriteShape::Quad;
+            draw_run(other);
+            other = run;
+            other.arrays.negative_lights = 0;
             draw_run(other);
         }
     }
