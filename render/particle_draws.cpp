@@ -111,7 +111,7 @@ std::uint32_t add_look(
     draws.layers.push_back(layer_of(look));
     draws.has_halves = draws.has_halves || draws.layers.back() == LookLayer::Half;
     draws.has_weighted = draws.has_weighted || draws.layers.back() == LookLayer::Weighted;
-    draws.lit = draws.lit || look.lit > 0;
+    draws.lit_in_middle = draws.lit_in_middle || is_lit_in_middle(draws.looks.back());
     draws.features.images = draws.features.images || has_image;
     draws.features.flipbooks = draws.features.flipbooks || look.columns > 1 || look.rows > 1;
     draws.features.motions = draws.features.motions || has_motion;
@@ -137,6 +137,7 @@ void collect_ribbons(const FrameData& frame, float back, float step, ParticleDra
         draws.has_ribbons = true;
         const std::uint32_t index = add_look(frame, look, draws);
         draws.looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
+        draws.looks[index][layout::kLookFocus].y = 0;    // lit at its corners
         draws.looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
         draws.looks[index][layout::kLookMotion].w = -1;
         draws.extents[index] = {};
@@ -177,6 +178,7 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
     const auto add_once = [&](const ParticleLook& look) {
         const std::uint32_t index = add_look(frame, look, draws);
         draws.looks[index][2].w = static_cast<float>(layout::kFacingBillboard);
+        draws.looks[index][layout::kLookFocus].y = 0;
         draws.looks[index][layout::kLookMore + 1].w = 0;  // no life to fade at the end of
         const bool is_repeated =
             index > 0 && draws.looks[index] == draws.looks[index - 1]
@@ -233,10 +235,14 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
 
 /// For a warm-up, whose image nobody sees: a particle for each program that some look needs.
 void append_one_of_each(ParticleDraws& draws) {
-    std::set<std::tuple<LookLayer, bool, bool>> made;
+    std::set<std::tuple<LookLayer, bool, bool, bool>> made;
     for (std::uint32_t i = 0; i < draws.looks.size(); ++i) {
         const bool is_six_way = draws.arrays[i].negative_lights != 0;
-        if (made.emplace(draws.layers[i], is_point(draws.looks[i]), is_six_way).second) {
+        const LookRecord& look = draws.looks[i];
+        const bool is_new =
+            made.emplace(draws.layers[i], is_point(look), is_six_way, is_lit_at_corners(look))
+                .second;
+        if (is_new) {
             auto& its = draws.layers[i] == LookLayer::Weighted ? draws.weighted : draws.instances;
             its.emplace_back().look_and_share = i << 16;
         }
@@ -256,7 +262,7 @@ void clear(ParticleDraws& draws) {
     draws.extents.clear();
     draws.waters.clear();
     draws.features = {};
-    draws.lit = draws.soft = draws.moving = draws.focused = false;
+    draws.lit_in_middle = draws.soft = draws.moving = draws.focused = false;
     draws.has_ribbons = draws.has_billboards = draws.has_halves = draws.has_weighted = false;
 }
 
@@ -311,6 +317,7 @@ void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& d
                   const GpuParticles& particles, const ParticleCollision* collision) {
             if (draws.looks.size() < kMaxLooks) {
                 const std::uint32_t index = add_look(frame, enlarged(look, stride), draws);
+                draws.looks[index][layout::kLookFocus].y = 0;
                 add_pull(world, entity, index, draws);
                 gpu.add(
                     frame, entity, emitter, particles, index, sort_passes(look), collision, stride);

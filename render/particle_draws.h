@@ -44,7 +44,7 @@ struct ParticleDraws {
     DistanceOrder order = {};
     std::vector<ParticleWater> waters = {};
     SpriteFeatures features = {};
-    bool lit = false;
+    bool lit_in_middle = false;
     bool soft = false;     ///< some fade where they meet a surface
     bool moving = false;   ///< some look may cover enough to move pixels
     bool focused = false;  ///< some look may cover enough for the lens to focus on

@@ -69,6 +69,7 @@ void append_instance(
     if (run.shape == SpriteShape::SmallDisc && !is_small_disc) {
         run.shape = SpriteShape::Quad;
     }
+    run.lit = run.lit || is_lit_at_corners(draws.looks[look]);
     ++run.count;
     seen.instances.push_back(instance);
 }

@@ -14,6 +14,7 @@
 #include "render/view_block.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -30,6 +31,9 @@ constexpr unsigned kRibbonsUnit = 8;
 constexpr unsigned kVeilUnit = 23;
 constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
+constexpr unsigned kMiddleLightUnit = 28;
+constexpr unsigned kMiddleLightBinding = 0;
+constexpr int kLightGroup = 64;  // invocations of a work group
 
 /// Surrounds the image with as much on each side, so that quads which its border cuts are not
 /// clipped: one of them would send its neighbors through llvmpipe's slow clipper. Returns the
@@ -54,6 +58,7 @@ bool is_six_way(const ParticleRun& run) {
 Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
     ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
+        ProgramVariants(device, {.compute = "particle_light.comp"}),
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"}),
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_focus.frag"}),
         ProgramVariants::of_meshes(device, "depth_first.frag")};
@@ -99,6 +104,7 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     its.effect = this;
     select_particles(draws, gpu, frame, view, its.seen);
     its.texels.upload(*frame.ring, its.seen.instances);
+    its.is_lit = false;
     return !its.seen.runs.empty() || !gpu.pools().empty();
 }
 
@@ -127,11 +133,53 @@ void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) 
     }
 }
 
+/// Once a view, before any are drawn.
+void ParticleEffect::add_light(FrameGraph& graph, ViewData& view) {
+    auto& drawn = view.data.publish<ViewParticles>();  // as prepare() left it
+    const std::size_t count = drawn.seen.instances.size();
+    if (drawn.is_lit || !draws.lit_in_middle) {
+        return;
+    }
+    drawn.is_lit = true;
+    if (drawn.capacity <= count) {
+        drawn.capacity = std::bit_ceil(count + 1);
+        drawn.light = gpu::Buffer(
+            "light of particles", drawn.capacity * sizeof(Vec4), gpu::BufferUse::GpuOnly);
+        drawn.light_texels.set(drawn.light);
+    }
+    const std::vector<Use> reads = lighting_reads(view, {});
+    const Use writes[] = {graph.import("particles.light", drawn.light)};
+    graph.add_pass(
+        "particles.light", std::span(reads), writes,
+        [this, &view](PassContext& context) { evaluate_light(context, view); });
+}
+
+void ParticleEffect::evaluate_light(PassContext& context, const ViewData& view) {
+    const auto& drawn = view.data.get<ViewParticles>();
+    const gpu::Program* const program = light_programs.get(view.lighting.variant);
+    if (program == nullptr) {
+        return;
+    }
+    const int count = static_cast<int>(drawn.seen.instances.size());
+    gpu::Device& device = context.device();
+    bind_lighting(context, view);
+    drawn.texels.bind(device, kParticlesUnit);
+    look_texels.bind(device, kLooksUnit);
+    device.bind_storage(kMiddleLightBinding, drawn.light);
+    device.use(*program);
+    program->set("count", count);
+    device.dispatch(static_cast<std::uint32_t>((count + kLightGroup - 1) / kLightGroup));
+}
+
 void ParticleEffect::add_sprites(
     FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
     std::span<const Use> targets, Part part, const std::optional<TextureId>& veil, bool behind) {
+    add_light(graph, view);
     std::vector<Use> reads =
         lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+    if (const auto& drawn = view.data.get<ViewParticles>(); drawn.is_lit) {
+        reads.emplace_back(graph.import("particles.light", drawn.light));
+    }
     if (veil) {
         reads.push_back(sampled(*veil, kVeilUnit));
     }
@@ -321,7 +369,8 @@ void ParticleEffect::draw_sprites(
     draw_runs(context, view, part, [&](const ParticleRun& run) {
         const SpriteShape shape = run.shape;
         Variant variant = view.lighting.variant;
-        variant.add_if(draws.lit && shape != SpriteShape::SmallDisc, "LIT");
+        variant.add_if(run.lit && shape != SpriteShape::SmallDisc, "LIT");
+        variant.add_if(draws.lit_in_middle && shape == SpriteShape::Quad, "LIT_MIDDLE");
         variant.add_if(is_six_way(run), "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
         variant.add_if(veiled, "VEILED");
@@ -347,6 +396,9 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
     const auto& drawn = view.data.get<ViewParticles>();
     const ParticlesInView& seen = drawn.seen;
     drawn.texels.bind(device, kParticlesUnit);
+    if (drawn.is_lit) {
+        drawn.light_texels.bind(device, kMiddleLightUnit);
+    }
     look_texels.bind(device, kLooksUnit);
     ribbon_texels.bind(device, kRibbonsUnit);
     billboard_texels.bind(device, kBillboardsUnit);
@@ -375,8 +427,8 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
     const gpu::Program* program = nullptr;
     std::optional<ParticleRun> last;
     const auto draw_run = [&](const ParticleRun& run) {
-        const bool is_alike =
-            last && last->shape == run.shape && is_six_way(*last) == is_six_way(run);
+        const bool is_alike = last && last->shape == run.shape && last->lit == run.lit
+                              && is_six_way(*last) == is_six_way(run);
         program = is_alike ? program : use(run);
         last = run;
         if (program == nullptr) {
@@ -402,6 +454,8 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
             other = run;
             other.arrays.negative_lights = 0;
             draw_run(other);
+            other.lit = false;
+            draw_run(other);
         }
     }
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
@@ -418,6 +472,7 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
                 {.arrays = draws.arrays[pool->look],
                  .shape =
                      is_point(draws.looks[pool->look]) ? SpriteShape::Point : SpriteShape::Quad,
+                 .lit = is_lit_at_corners(draws.looks[pool->look]),
                  .count = static_cast<int>(count)});
         }
     }

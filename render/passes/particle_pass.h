@@ -14,8 +14,8 @@
 
 namespace limn {
 
-// Draws the particles of all emitters, back to front, as quads that are lit at their corners
-// (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
+// Draws the particles of all emitters, back to front, as quads that are lit at their corners or
+// once (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
 // among them, as quads that share their corners (engine.trail).
 //
 // Reads    depth, light clusters, environment, InstanceList; ParticlePool, Trail, Beam, Billboard
@@ -23,8 +23,8 @@ namespace limn {
 // Writes   radiance; velocity and LensDepth, where they cover more than their look states
 // Order    what is in water before it, what is behind blended surfaces before these, the rest after
 //          them and before the lens
-// Shaders  particle.vert, particle.frag, particle_velocity.frag, particle_focus.frag,
-// particle_weighted.frag; layout in particle_gpu.h
+// Shaders  particle_light.comp, particle.vert, particle.frag, particle_velocity.frag,
+// particle_focus.frag, particle_weighted.frag; layout in particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
@@ -44,10 +44,15 @@ struct ParticleEffect {
     struct ViewParticles {
         ParticlesInView seen{};
         BufferTexture texels = BufferTexture("particles in view", GL_R32UI);  ///< of its instances
+        gpu::Buffer light{};       ///< vec4 of each instance, of those that are lit in the middle
+        std::size_t capacity = 0;  ///< of `light`
+        bool is_lit = false;       ///< the pass that writes it has been added
+        BufferTexture light_texels = BufferTexture("light of particles", GL_RGBA32F);
         ParticleEffect* effect = nullptr;
     };
 
     ProgramVariants programs;
+    ProgramVariants light_programs;
     ProgramVariants velocity_programs;
     ProgramVariants focus_programs;
     ProgramVariants veil_programs;  ///< depth of blended surfaces
@@ -78,6 +83,8 @@ struct ParticleEffect {
 
   private:
     void add_layers(FrameGraph& graph, const FrameData& frame, ViewData& view, bool behind);
+    void add_light(FrameGraph& graph, ViewData& view);
+    void evaluate_light(PassContext& context, const ViewData& view);
     void add_sprites(
         FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
         std::span<const Use> targets, Part part, const std::optional<TextureId>& veil = {},
