@@ -46,6 +46,9 @@ LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers) 
         is_streak ? 1.0f : to_share(look.velocity_cover),
         static_cast<float>(layers.negative_light)};
     record[layout::kLookFocus].x = to_share(look.velocity_cover);
+    const bool in_middle = look.lit_at == ParticleLitAt::Middle && look.lit > 0
+                           && layers.negative_light < 0 && !is_point(record);
+    record[layout::kLookFocus].y = in_middle ? 1.0f : 0.0f;
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
@@ -71,6 +74,14 @@ float size_factor(const ParticleInstance& instance, const LookRecord& look) {
         return look[layout::kLookSizes + n / 4][static_cast<int>(n % 4)];
     };
     return glm::mix(sample(i), sample(i + 1), at - static_cast<float>(i));
+}
+
+bool is_lit_in_middle(const LookRecord& look) {
+    return look[layout::kLookFocus].y > 0;
+}
+
+bool is_lit_at_corners(const LookRecord& look) {
+    return look[2].y > 0 && !is_lit_in_middle(look);
 }
 
 bool moves_pixels(const LookRecord& look) {

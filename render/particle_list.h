@@ -33,6 +33,10 @@ struct LookLayers {
 /// Whether it is drawn as points: discs that face the camera, of a size in pixels or of specks.
 [[nodiscard]] bool is_point(const LookRecord& look);
 
+/// Whether a look scatters light that is evaluated once a particle, or at the corners of quads.
+[[nodiscard]] bool is_lit_in_middle(const LookRecord& look);
+[[nodiscard]] bool is_lit_at_corners(const LookRecord& look);
+
 /// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
 [[nodiscard]] bool moves_pixels(const LookRecord& look);
 
@@ -82,6 +86,7 @@ enum class SpriteShape : std::uint8_t { Quad, SmallDisc, Point };
 struct ParticleRun {
     ParticleArrays arrays{};
     SpriteShape shape = SpriteShape::Quad;
+    bool lit = false;        ///< some are lit at their corners
     bool magnified = false;  ///< none is smaller than a frame of its image
     int first = 0;
     int count = 0;

@@ -173,20 +173,36 @@ machine_report(const Stage& stage, const HeadlessRenderer& headless, const Bench
         .gl_version = headless.device->caps().version};
 }
 
-Status run_bench(const BenchOptions& options) {
-    if (options.scene == kParticlesName || options.scene == kFacesName) {
-        std::vector<std::string> arguments = {
-            "--repeats", std::to_string(std::min(options.frames, 400))};
-        for (const auto& [option, file] :
-             {std::pair{"--json", options.json}, {"--csv", options.csv}, {"--svg", options.svg}}) {
-            if (!file.empty()) {
-                arguments.insert(arguments.end(), {option, file});
-            }
+std::vector<std::string> bench_program_arguments(const BenchOptions& options) {
+    std::vector<std::string> arguments = {
+        "--repeats", std::to_string(std::min(options.frames, 400))};
+    for (const auto& [option, value] :
+         {std::pair{"--json", options.json},
+          {"--csv", options.csv},
+          {"--svg", options.svg},
+          {"--only", options.only},
+          {"--most", options.most > 0 ? std::to_string(options.most) : std::string()}}) {
+        if (!value.empty()) {
+            arguments.insert(arguments.end(), {option, value});
         }
-        return run_sibling("limn bench", "limn-bench-" + options.scene, std::move(arguments));
     }
-    if (!options.svg.empty()) {
-        return fail("limn bench: --svg is for `particles` and `faces`, found `{}`", options.scene);
+    return arguments;
+}
+
+Status run_bench(const BenchOptions& options) {
+    if (options.most > 0 && options.scene != kParticlesName) {
+        return fail("limn bench: --most is for `particles`, found `{}`", options.scene);
+    }
+    if (options.scene == kParticlesName || options.scene == kFacesName) {
+        return run_sibling(
+            "limn bench", "limn-bench-" + options.scene, bench_program_arguments(options));
+    }
+    for (const auto& [option, value] :
+         {std::pair{"--svg", options.svg}, {"--only", options.only}}) {
+        if (!value.empty()) {
+            return fail(
+                "limn bench: {} is for `particles` and `faces`, found `{}`", option, options.scene);
+        }
     }
     if (options.scene == kLensName) {
         return run_lens_bench(options);

@@ -25,8 +25,14 @@ struct BenchOptions {
     std::string json;  ///< file, or "-" for stdout instead of the table; empty = none
     std::string csv;   ///< the same
     std::string svg;   ///< file, of `particles` and `faces`; empty = none
+    std::string only;  ///< one part of `particles` or `faces`; empty = all
+    std::size_t most =
+        0;  ///< particles of the last point of their curves; 0 = as the program has it
     std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
+
+/// The command line of the program that measures `particles` or `faces`.
+[[nodiscard]] std::vector<std::string> bench_program_arguments(const BenchOptions& options);
 
 /// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the
 /// next frame. Adds the times to `report` unless it is null.

@@ -170,6 +170,10 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option(
            "--svg", options.svg, "of `particles`, `faces`: draw the cost over their number")
         ->type_name("FILE");
+    app->add_option("--only", options.only, "of `particles`, `faces`: one part")->type_name("PART");
+    add_integer(
+        *app, "--most", "of `particles`: of the last point of the curves; default: 10000000",
+        options.most, 1000, 100'000'000);
     app->footer(
         R"(Every frame simulates one step and renders off screen. Times are in milliseconds; "all threads" is
 processor time, which depends less on other programs. Shaders are compiled before the first frame
@@ -207,7 +211,8 @@ model,method,lightings,additions,multiplications,divisions,roots,powers,fetches,
 
 `limn bench particles` holds particles to their gates, ratios to loops that people write by hand,
 and shows what a particle costs among a thousand to ten million. It draws nothing; --frames is how
-often each is run at most, and the best counts.
+often each is run at most, and the best counts. --only update, sort, collision, world, draw or growth
+measures that part.
 JSON: {"threads", "gates": [{"gate", "name", "ours", "other", "against", "unit", "ratio", "limit",
 "met"}], "growth": [{"curve", "points": [{"count", "ns"}]}], "notes"}
 CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, curve,count,ns
@@ -226,6 +231,7 @@ Examples:
   limn bench gallery --size 640x360 --set glow.strength=0.1
   limn bench stress-instances --frames 600 --json numbers.json
   limn bench particles --csv particles.csv --svg particles.svg
+  limn bench particles --only growth --most 100000
   limn bench faces --csv faces.csv --svg faces.svg)");
     return {app, [&options] { return run_bench(options); }};
 }

@@ -305,6 +305,12 @@ enum class ParticleResolution : std::uint8_t {
     Half,  ///< a quarter of the pixels, enlarged along depth edges; as one layer in their middle
 };
 
+/// Where the light that a particle scatters is evaluated.
+enum class ParticleLitAt : std::uint8_t {
+    Corners,  ///< at each corner of its quad
+    Middle,   ///< once, as the mean of its corners: for what is small in the image
+};
+
 struct ParticleLook {
     ImageId image;
     std::uint32_t columns = 1;
@@ -325,6 +331,7 @@ struct ParticleLook {
     float cover = 1;
     float forward = 0;
     ParticleFacing facing = ParticleFacing::Camera;
+    ParticleLitAt lit_at = ParticleLitAt::Corners;
     Vec3 attenuation = {1, 0, 0};
     ParticleSort sort = ParticleSort::Distance;
     float stretch = 0.02f;
@@ -379,6 +386,12 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(color_spread, "give or take of red, green and blue, once for each", "", 0, 1000);
     LIMN_FIELD(emission, .doc = "radiance of a white particle by itself", .min = 0, .max = 1e6);
     LIMN_FIELD(lit, .doc = "factor on the light that it scatters; 0: unlit", .min = 0, .max = 10);
+    LIMN_FIELD(
+        lit_at,
+        .doc = "where that light is evaluated; middle: once, as the mean of the corners, at a "
+               "fraction of the cost, for what is too small in the image to show a gradient; with "
+               "`negative_light`, as a trail, beam or billboard and on the GPU: at the corners",
+        .values = "corners middle");
     LIMN_FIELD(cover, "1: hides what is behind by its opacity, 0: only adds light", "", 0, 1);
     LIMN_FIELD(
         forward,

@@ -1,27 +1,21 @@
 #pragma once
 
-#include "ecs/components/particles.h"
-#include "ecs/components/water.h"
-#include "ecs/components/water_frame.h"
-#include "render/billboard_list.h"
 #include "render/buffer_texture.h"
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
-#include "render/particle_culling.h"
+#include "render/particle_draws.h"
 #include "render/particle_layer.h"
-#include "render/particle_list.h"
-#include "render/ribbon_list.h"
+#include "render/particle_runs.h"
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace limn {
 
-// Draws the particles of all emitters, back to front, as quads that are lit at their corners
-// (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
+// Draws the particles of all emitters, back to front, as quads that are lit at their corners or
+// once (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
 // among them, as quads that share their corners (engine.trail).
 //
 // Reads    depth, light clusters, environment, InstanceList; ParticlePool, Trail, Beam, Billboard
@@ -29,8 +23,8 @@ namespace limn {
 // Writes   radiance; velocity and LensDepth, where they cover more than their look states
 // Order    what is in water before it, what is behind blended surfaces before these, the rest after
 //          them and before the lens
-// Shaders  particle.vert, particle.frag, particle_velocity.frag, particle_focus.frag,
-// particle_weighted.frag; layout in particle_gpu.h
+// Shaders  particle_light.comp, particle.vert, particle.frag, particle_velocity.frag,
+// particle_focus.frag, particle_weighted.frag; layout in particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
@@ -42,69 +36,29 @@ namespace limn {
 // sorted (particle_weighted.h) are one layer before all others. Where blended surfaces are seen
 // there are two of each layer, one on each side of these.
 
-/// Length of a step [s].
-[[nodiscard]] float particle_step(const FrameData& frame);
-/// Time of the frame before the end of the last step [s].
-[[nodiscard]] float particle_lag(const FrameData& frame);
-
-/// Of an entity in the last step [m/s]; 0 where it jumped.
-[[nodiscard]] Vec3 entity_velocity(const World& world, Entity entity, float step);
-
-/// What the particles of a look are drawn into.
-enum class LookLayer : std::uint8_t { Full, Half, Weighted };
-
 struct ParticleEffect {
     /// What is drawn at half the resolution, and what the middle one of it hides or is hidden by;
     /// what is weighted; what is drawn once more, before the water that it is in.
     enum class Part { Behind, Half, Front, Weighted, UnderWater, All };
 
-    /// What a view draws.
     struct ViewParticles {
-        std::vector<ParticleInstance> instances{};  ///< those in view
-        std::vector<ParticleRun> runs{};
-        std::size_t half_begin =
-            0;  ///< of the runs at half the resolution; those before are behind
-        std::size_t half_end = 0;
-        Bounds half_bounds{};            ///< of those
-        std::size_t weighted_begin = 0;  ///< of the runs that are weighted
-        Bounds weighted_bounds{};        ///< of those
-        std::size_t under_begin = 0;     ///< of the runs under water, to the end
+        ParticlesInView seen{};
+        BufferTexture texels = BufferTexture("particles in view", GL_R32UI);  ///< of its instances
+        gpu::Buffer light{};       ///< vec4 of each instance, of those that are lit in the middle
+        std::size_t capacity = 0;  ///< of `light`
+        bool is_lit = false;       ///< the pass that writes it has been added
+        BufferTexture light_texels = BufferTexture("light of particles", GL_RGBA32F);
         ParticleEffect* effect = nullptr;
-        BufferTexture texels = BufferTexture("particles in view", GL_R32UI);
     };
 
     ProgramVariants programs;
+    ProgramVariants light_programs;
     ProgramVariants velocity_programs;
     ProgramVariants focus_programs;
     ProgramVariants veil_programs;  ///< depth of blended surfaces
-    std::vector<LookRecord> looks = {};
-    std::vector<ParticleArrays> arrays = {};  ///< of each look
-    std::vector<LookLayer> layers = {};       ///< of each look
-    RibbonList ribbons = {};
-    BillboardList billboards = {};
-    std::vector<LookExtent> extents = {};          ///< of each look
-    std::vector<ParticleInstance> instances = {};  ///< first those that are sorted
-    std::vector<ParticleInstance> weighted = {};   ///< appended to those
-    std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
-    DistanceOrder order = {};
-    std::vector<ParticleInstance> sorted = {};
-    std::vector<std::uint8_t> visible = {};
-    struct WaterBody {
-        const Water* water = nullptr;
-        WaterFrame frame{};
-    };
-    std::vector<WaterBody> waters = {};
+    ParticleDraws draws = {};
     GpuParticlePools gpu = {};  ///< drawn after the others
     GpuParticleView gpu_view = {};
-    bool lit = false;
-    bool soft = false;  ///< some fade where they meet a surface
-    SpriteFeatures features = {};
-    bool moving = false;   ///< some look may cover enough to move pixels
-    bool focused = false;  ///< some look may cover enough for the lens to focus on
-    bool has_ribbons = false;
-    bool has_billboards = false;
-    bool has_halves = false;
-    bool has_weighted = false;
     std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
     const gpu::Program* resolve = nullptr;  ///< of weighted ones, created with the first
     const gpu::Program* depth_copy = nullptr;
@@ -128,23 +82,9 @@ struct ParticleEffect {
     void draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
   private:
-    std::uint32_t add_look(
-        const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
-    void add_pull(const World& world, Entity emitter, std::uint32_t look);
-    void append_one_of_each();
-    void collect_ribbons(const FrameData& frame, float back, float step);
-    void collect_billboards(const FrameData& frame, float back);
-    [[nodiscard]] std::size_t middle_half() const;
-    [[nodiscard]] bool fits(const ParticleRun& run, std::uint32_t look) const;
-    void append_instance(
-        const RenderView& camera, std::size_t index, float scale, std::size_t first_run,
-        ViewParticles& seen);
-    void append_runs(
-        const RenderView& camera, LookLayer layer, std::size_t first, std::size_t last,
-        ViewParticles& seen);
-    [[nodiscard]] bool is_under_water(const Vec3& place) const;
-    void append_under_water(const FrameData& frame, const ViewData& view, ViewParticles& seen);
     void add_layers(FrameGraph& graph, const FrameData& frame, ViewData& view, bool behind);
+    void add_light(FrameGraph& graph, ViewData& view);
+    void evaluate_light(PassContext& context, const ViewData& view);
     void add_sprites(
         FrameGraph& graph, ViewData& view, const char* name, TextureId depth,
         std::span<const Use> targets, Part part, const std::optional<TextureId>& veil = {},

@@ -1,5 +1,6 @@
 // A particle as a quad, lit at its corners. Definitions: those of lib/lighting.glsl, and
-//   LIT      some particle scatters light
+//   LIT      some particle scatters light that is evaluated at its corners
+//   LIT_MIDDLE  some scatters light that particle_light.comp has evaluated
 //   SIX_WAY  some have images of the light from six sides
 //   POINTS   all are discs that face the camera: one vertex each, a point
 //   RIBBONS  some are segments of ribbons
@@ -13,8 +14,14 @@
 #include "lib/particle.glsl"
 #include "lib/particle_varyings.glsl"
 #include "lib/view.glsl"
+
+#include "lib/particle_quad.glsl"
 #ifdef LIT
 #include "lib/lighting.glsl"
+#include "lib/particle_scattering.glsl"
+#endif
+#ifdef LIT_MIDDLE
+layout(binding = 28) uniform samplerBuffer middle_light;  // of each particle to draw
 #endif
 #ifdef RIBBONS
 #include "lib/ribbon.glsl"
@@ -45,34 +52,7 @@ float weight_at(float ahead) {
 }
 #endif
 
-const int kFacingCamera = 0;
-const int kFacingVelocity = 1;
-const int kFacingGround = 2;
-const int kFacingPixels = 3;
-const float kRoundness = 0.8;  // how far the normals at the corners lean outward, by eye
-const float kShadeReach = 0.5;  // of the way to its corners at which it is shadowed by others, by eye
-
 #ifdef LIT
-// Radiance that a white puff scatters toward `to_camera`: around its round surface, and forward through it (Henyey and
-// Greenstein 1941).
-vec3 scattered(Incoming light, vec3 normal, vec3 to_camera, float forward) {
-    float wrapped = 0.5 + 0.5 * dot(normal, light.to_light);
-    float g2 = forward * forward;
-    float base = 1.0 + g2 + 2.0 * forward * dot(light.to_light, to_camera);
-    float lobe = (1.0 - g2) / (4.0 * max(base * sqrt(base), 1e-4));
-    return light.irradiance * (mix(wrapped * wrapped, lobe, abs(forward)) / kPi);
-}
-
-#ifdef LOCAL_LIGHTS
-Incoming incoming_shadowed(int index, vec3 position_ws, vec3 normal, vec2 pixel, WaterMedium medium) {
-    Incoming light = incoming_local(index, position_ws, normal, medium);
-    light.irradiance *= index < int(view.grid_depth.w)
-                            ? vec3(1.0)
-                            : light_transmittance(index, position_ws, normal, light.to_light, pixel);
-    return light;
-}
-#endif
-
 #ifdef SIX_WAY
 // Radiance of white surfaces that face the sides.
 struct SixWayLight {
@@ -114,77 +94,12 @@ SixWayLight six_way_light(vec3 position_ws, vec3 normal, mat3 axes, vec2 pixel, 
 }
 #endif
 
-vec3 scattered_light(vec3 position_ws, vec3 normal, float forward, vec2 pixel, float distance) {
-    vec3 to_camera = to_viewer(position_ws);
-    vec3 sum = environment_light(position_ws, normal, normal, 1.0).irradiance;
-#ifdef DIRECTIONAL_LIGHTS
-    for (int i = 0; i < int(view.grid_depth.z); ++i) {
-        sum += scattered(incoming_directional(i, position_ws, normal, pixel), normal, to_camera, forward);
-    }
 #endif
-#ifdef LOCAL_LIGHTS
-    WaterMedium medium = water_medium(position_ws);
-    uvec2 list = cell_list(clamp(pixel, vec2(0.0), view.size.xy - 1.0), distance);
-    for (uint i = list.x; i < list.x + list.y; ++i) {
-        int index = int(texelFetch(light_indices, int(i)).x);
-        sum += scattered(incoming_shadowed(index, position_ws, normal, pixel, medium), normal, to_camera, forward);
-    }
-#endif
-    return sum;
-}
-#endif
-
-// Where a corner is lit: where shadows of particles are, it varies over the quad.
-vec3 lit_place(Particle p, vec3 offset) {
-#ifdef PARTICLE_SHADOWS
-    return p.position + kShadeReach * offset;
-#else
-    return p.position;
-#endif
-}
 
 // Extent of a pixel at this place [m].
 float pixel_extent(vec3 position_ws) {
     float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
     return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
-}
-
-// Half the extents of the quad in world space: along x and y of `corner`.
-struct Quad {
-    vec3 right;
-    vec3 up;
-};
-Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, float size) {
-    float angle = angle_of(p, shape, streak);
-    vec3 to_camera = normalize(view.camera_ws.xyz - p.position);
-    vec3 right = normalize(view.ray_right.xyz);
-    vec3 up = normalize(cross(to_camera, right));
-    right = cross(up, to_camera);
-    if (facing == kFacingPixels) {  // in the plane of the image, where its extent is the same everywhere
-        right = normalize(view.ray_right.xyz);
-        up = normalize(view.ray_up.xyz);
-    }
-    if (facing == kFacingGround) {
-        right = vec3(1.0, 0.0, 0.0);
-        up = vec3(0.0, 0.0, -1.0);
-    }
-    vec3 turned = cos(angle) * right + sin(angle) * up;
-    up = cos(angle) * up - sin(angle) * right;
-    right = turned;
-    float half_size = 0.5 * size;
-    if (facing == kFacingVelocity) {
-        float speed = length(p.velocity);
-        vec3 along = speed > 1e-6 ? p.velocity / speed : up;
-        vec3 across = cross(along, to_camera);
-        float seen = length(across);  // its length in the image, of what it would be from the side
-        across = seen > 1e-3 ? across / seen : right;
-        return Quad(half_size * across, (half_size + 0.5 * streak.y * speed) * along);
-    }
-    if (tumble > 0.0) {
-        float lean = tumble * (0.6 + 0.4 * random_share(p.random, 3u)) * p.age + 3.14159 * random_share(p.random, 4u);
-        right = cos(lean) * right + sin(lean) * cross(right, up);
-    }
-    return Quad(half_size * right, half_size * up);
 }
 
 #ifdef BILLBOARDS
@@ -355,6 +270,12 @@ void main() {
 #endif
 
     vec3 radiance = vec3(glow.x);
+    bool is_lit = glow.y > 0.0;
+#ifdef LIT_MIDDLE
+    bool at_middle = look_texel(look, kLookFocus).y > 0.0;
+    radiance += at_middle ? texelFetch(middle_light, first + index).rgb : vec3(0.0);
+    is_lit = is_lit && !at_middle;
+#endif
 #ifdef SIX_WAY
     float negative_layer = look_texel(look, kLookMotion).w;
     bool is_six_way = negative_layer >= 0.0;
@@ -381,14 +302,14 @@ void main() {
 #endif
 #ifdef LIT
 #ifdef SIX_WAY
-    if (glow.y > 0.0 && !is_six_way) {
+    if (is_lit && !is_six_way) {
 #else
-    if (glow.y > 0.0) {
+    if (is_lit) {
 #endif
 #ifdef POINTS
         vec3 normal = to_viewer(p.position);
 #else
-        vec3 normal = normalize(to_viewer(p.position) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
+        vec3 normal = rounded_normal(p.position, offset);
 #endif
         vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
         vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;

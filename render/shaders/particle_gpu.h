@@ -54,7 +54,7 @@ const uint kLookShadow = 48u;
 //      move with it, 1: never; layer of the image of light from negative sides, -1: none
 const uint kLookMotion = 49u;
 //  50  acceleration at rest [m/s^2]; drag [1/s]
-//  51  opacity above which the lens focuses on them, 1: never
+//  51  opacity above which the lens focuses on them, 1: never; 1: lit in the middle, by particle_light.comp
 const uint kLookFocus = 51u;
 const uint kLookTexels = 52u;
 

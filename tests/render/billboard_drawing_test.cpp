@@ -2,7 +2,7 @@
 #include "ecs/components/time.h"
 #include "render/billboard_list.h"
 #include "render/culling.h"
-#include "render/passes/particle_pass.h"
+#include "render/particle_culling.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"

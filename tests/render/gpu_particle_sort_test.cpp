@@ -3,7 +3,7 @@
 #include "ecs/base/depth_sort.h"
 #include "ecs/base/rng.h"
 #include "render/gpu_particle_sort.h"
-#include "render/passes/particle_pass.h"
+#include "render/particle_list.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
 

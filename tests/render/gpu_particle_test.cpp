@@ -9,7 +9,7 @@
 #include "ecs/components/trail.h"
 #include "ecs/components/weather.h"
 #include "render/gpu_particle_pools.h"
-#include "render/passes/particle_pass.h"
+#include "render/particle_list.h"
 #include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"

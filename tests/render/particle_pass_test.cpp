@@ -2,7 +2,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "render/light_list.h"
-#include "render/passes/particle_pass.h"
+#include "render/particle_draws.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

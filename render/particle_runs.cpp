@@ -1,0 +1,164 @@
+#include "render/particle_runs.h"
+
+#include "render/frame_data.h"
+#include "render/gpu_particle_pools.h"
+#include "render/particle_draws.h"
+#include "render/view_block.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace limn {
+namespace {
+
+constexpr float kMaxPoint = 4;  // [px] across, above which a disc is drawn as a quad
+constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
+
+/// Of those that are visible and drawn at half the resolution, the index of the middle one in the
+/// order; 0 without one.
+std::size_t middle_half(const ParticleDraws& draws, const std::vector<std::uint8_t>& visible) {
+    const auto is_seen_half = [&](std::size_t i) {
+        return visible[i] != 0
+               && draws.layers[draws.sorted[i].look_and_share >> 16] == LookLayer::Half;
+    };
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < draws.sorted.size(); ++i) {
+        count += is_seen_half(i) ? 1 : 0;
+    }
+    std::size_t rank = count / 2;
+    for (std::size_t i = 0; i < draws.sorted.size(); ++i) {
+        if (is_seen_half(i) && rank-- == 0) {
+            return i;
+        }
+    }
+    return 0;
+}
+
+/// Discs fit any arrays.
+bool fits(const ParticleDraws& draws, const ParticleRun& run, std::uint32_t look) {
+    const bool is_disc = draws.looks[look][3].w < 0;
+    const Vec4& its = draws.looks[look][layout::kLookMotion];
+    const bool is_still = its.x < 0;
+    const bool is_flat = its.w < 0;
+    return (run.shape == SpriteShape::Point) == is_point(draws.looks[look])
+           && (is_disc || run.arrays.images == draws.arrays[look].images)
+           && (is_still || run.arrays.motions == draws.arrays[look].motions)
+           && (is_flat || run.arrays.negative_lights == draws.arrays[look].negative_lights);
+}
+
+void append_instance(
+    const ParticleDraws& draws, const RenderView& camera, std::size_t index, float scale,
+    std::size_t first_run, ParticlesInView& seen) {
+    const ParticleInstance& instance = draws.sorted[index];
+    const std::uint32_t look = instance.look_and_share >> 16;
+    if (seen.runs.size() == first_run || !fits(draws, seen.runs.back(), look)) {
+        seen.runs.push_back(
+            {.arrays = draws.arrays[look],
+             .shape = is_point(draws.looks[look]) ? SpriteShape::Point : SpriteShape::SmallDisc,
+             .magnified = true,
+             .first = static_cast<int>(seen.instances.size()),
+             .count = 0});
+    }
+    ParticleRun& run = seen.runs.back();
+    const float texels = draws.extents[look].texels;
+    const float pixels = scale * least_pixels(instance, draws.looks[look], camera);
+    const bool is_small_disc =
+        texels == 0 && draws.looks[look][2].y == 0 && pixels > 0 && pixels <= kMaxPoint;
+    run.magnified = run.magnified && (texels == 0 || pixels > 0.999f * texels);
+    if (run.shape == SpriteShape::SmallDisc && !is_small_disc) {
+        run.shape = SpriteShape::Quad;
+    }
+    run.lit = run.lit || is_lit_at_corners(draws.looks[look]);
+    ++run.count;
+    seen.instances.push_back(instance);
+}
+
+/// Those of this layer in [first, last) that are visible, from back to front.
+void append_runs(
+    const ParticleDraws& draws, const RenderView& camera, LookLayer layer, std::size_t first,
+    std::size_t last, ParticlesInView& seen) {
+    const float scale = layer == LookLayer::Half ? 0.5f : 1.0f;
+    const std::size_t first_run = seen.runs.size();
+    for (std::size_t i = first; i < last; ++i) {
+        const std::uint32_t look = draws.sorted[i].look_and_share >> 16;
+        if (seen.visible[i] == 0 || draws.layers[look] != layer) {
+            continue;
+        }
+        append_instance(draws, camera, i, scale, first_run, seen);
+        if (layer == LookLayer::Half) {
+            grow(seen.half_bounds, bounds_of(draws.sorted[i], draws.looks[look]));
+        } else if (layer == LookLayer::Weighted) {
+            grow(seen.weighted_bounds, {draws.sorted[i].position, draws.sorted[i].position});
+        }
+    }
+}
+
+/// Below the rest level of some water, wherever its waves are.
+bool is_under_water(std::span<const ParticleWater> waters, const Vec3& place) {
+    return std::any_of(waters.begin(), waters.end(), [&](const ParticleWater& body) {
+        const Vec3 local = body.frame.local(place);
+        return local.y < 0 && is_inside(*body.water, {local.x, local.z});
+    });
+}
+
+/// Whatever their layer, at full resolution; none where the camera is in the water, too.
+void append_under_water(
+    const ParticleDraws& draws, const FrameData& frame, const ViewData& view,
+    ParticlesInView& seen) {
+    seen.under_begin = seen.runs.size();
+    if (draws.waters.empty() || is_clipped(view)
+        || is_under_water(draws.waters, transform_point(view.camera.world_from_camera, Vec3(0)))) {
+        return;
+    }
+    for (std::size_t i = 0; i < draws.sorted.size(); ++i) {
+        if (seen.visible[i] != 0
+            && (frame.warm_up || is_under_water(draws.waters, draws.sorted[i].position))) {
+            append_instance(draws, view.camera, i, 1, seen.under_begin, seen);
+        }
+    }
+}
+
+}  // namespace
+
+void select_particles(
+    const ParticleDraws& draws, const GpuParticlePools& gpu, const FrameData& frame,
+    const ViewData& view, ParticlesInView& seen) {
+    seen.instances.clear();
+    seen.runs.clear();
+    seen.half_bounds = {};
+    seen.weighted_bounds = {};
+    seen.half_begin = 0;
+    const Frustum frustum = make_frustum(view.camera.clip_from_world);
+    cull_particles(draws.sorted, draws.extents, frustum, seen.visible);
+    if (frame.warm_up) {
+        seen.visible.assign(draws.sorted.size(), 1);
+    }
+    std::size_t middle = 0;
+    if (draws.has_halves) {
+        middle = middle_half(draws, seen.visible);
+        append_runs(draws, view.camera, LookLayer::Full, 0, middle, seen);
+        seen.half_begin = seen.runs.size();
+        append_runs(draws, view.camera, LookLayer::Half, 0, draws.sorted.size(), seen);
+        for (const auto& [entity, pool] : gpu.pools()) {
+            grow(
+                seen.half_bounds,
+                draws.layers[pool->look] == LookLayer::Half ? kAnywhere : Bounds{});
+        }
+    }
+    seen.half_end = seen.runs.size();
+    append_runs(draws, view.camera, LookLayer::Full, middle, draws.sorted.size(), seen);
+    seen.weighted_begin = seen.runs.size();
+    append_runs(
+        draws, view.camera, LookLayer::Weighted, draws.sorted.size() - draws.weighted.size(),
+        draws.sorted.size(), seen);
+    for (const auto& [entity, pool] : gpu.pools()) {
+        grow(
+            seen.weighted_bounds, draws.layers[pool->look] == LookLayer::Weighted
+                                      ? draws.extents[pool->look].ways
+                                      : Bounds{});
+    }
+    append_under_water(draws, frame, view, seen);
+}
+
+}  // namespace limn

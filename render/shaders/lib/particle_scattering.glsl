@@ -1,0 +1,92 @@
+// Light that particles scatter: after lib/particle.glsl and lib/lighting.glsl. Definitions: those of that file, and
+//   MEAN_OF_CORNERS  as the mean of a quad's corners, whose normals are columns of a matrix
+
+#ifdef MEAN_OF_CORNERS
+#define NORMALS mat4x3
+#else
+#define NORMALS vec3
+#endif
+
+const float kRoundness = 0.8;   // how far the normals at the corners lean outward, by eye
+const float kShadeReach = 0.5;  // of the way to its corners at which it is shadowed by others, by eye
+
+#ifdef MEAN_OF_CORNERS
+vec3 surrounding_light(vec3 position_ws, mat4x3 normals) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        sum += environment_light(position_ws, normals[i], normals[i], 1.0).irradiance;
+    }
+    return 0.25 * sum;
+}
+float squared_wrap(mat4x3 normals, vec3 to_light) {
+    vec4 wrapped = 0.5 + 0.5 * (to_light * normals);
+    return 0.25 * dot(wrapped, wrapped);
+}
+vec3 one_normal(mat4x3 normals, vec3 to_camera) {
+    return to_camera;
+}
+#else
+vec3 surrounding_light(vec3 position_ws, vec3 normal) {
+    return environment_light(position_ws, normal, normal, 1.0).irradiance;
+}
+float squared_wrap(vec3 normal, vec3 to_light) {
+    float wrapped = 0.5 + 0.5 * dot(normal, to_light);
+    return wrapped * wrapped;
+}
+vec3 one_normal(vec3 normal, vec3 to_camera) {
+    return normal;
+}
+#endif
+
+// Radiance that a white puff scatters toward `to_camera`: around its round surface, and forward through it (Henyey and
+// Greenstein 1941).
+vec3 scattered(Incoming light, NORMALS normals, vec3 to_camera, float forward) {
+    float g2 = forward * forward;
+    float base = 1.0 + g2 + 2.0 * forward * dot(light.to_light, to_camera);
+    float lobe = (1.0 - g2) / (4.0 * max(base * sqrt(base), 1e-4));
+    return light.irradiance * (mix(squared_wrap(normals, light.to_light), lobe, abs(forward)) / kPi);
+}
+
+#ifdef LOCAL_LIGHTS
+Incoming incoming_shadowed(int index, vec3 position_ws, vec3 normal, vec2 pixel, WaterMedium medium) {
+    Incoming light = incoming_local(index, position_ws, normal, medium);
+    light.irradiance *= index < int(view.grid_depth.w)
+                            ? vec3(1.0)
+                            : light_transmittance(index, position_ws, normal, light.to_light, pixel);
+    return light;
+}
+#endif
+
+// Toward which a corner, or a place on the way to it, faces.
+vec3 rounded_normal(vec3 position_ws, vec3 offset) {
+    return normalize(to_viewer(position_ws) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
+}
+
+vec3 scattered_light(vec3 position_ws, NORMALS normals, float forward, vec2 pixel, float distance) {
+    vec3 to_camera = to_viewer(position_ws);
+    vec3 normal = one_normal(normals, to_camera);  // for shadows
+    vec3 sum = surrounding_light(position_ws, normals);
+#ifdef DIRECTIONAL_LIGHTS
+    for (int i = 0; i < int(view.grid_depth.z); ++i) {
+        sum += scattered(incoming_directional(i, position_ws, normal, pixel), normals, to_camera, forward);
+    }
+#endif
+#ifdef LOCAL_LIGHTS
+    WaterMedium medium = water_medium(position_ws);
+    uvec2 list = cell_list(clamp(pixel, vec2(0.0), view.size.xy - 1.0), distance);
+    for (uint i = list.x; i < list.x + list.y; ++i) {
+        int index = int(texelFetch(light_indices, int(i)).x);
+        sum += scattered(incoming_shadowed(index, position_ws, normal, pixel, medium), normals, to_camera, forward);
+    }
+#endif
+    return sum;
+}
+
+// Where a corner is lit: where shadows of particles are, it varies over the quad.
+vec3 lit_place(Particle p, vec3 offset) {
+#ifdef PARTICLE_SHADOWS
+    return p.position + kShadeReach * offset;
+#else
+    return p.position;
+#endif
+}

@@ -1,0 +1,47 @@
+// Light that particles scatter whose look is lit in the middle, evaluated once for each. Definitions: those of
+// lib/lighting.glsl.
+#version 450
+#define UNMASKED  // shadow masks are of the surfaces behind
+#define MEAN_OF_CORNERS
+#include "lib/particle.glsl"  // not first within lib/lighting.glsl, where an #ifdef would hide it
+#include "lib/lighting.glsl"
+#include "lib/particle_quad.glsl"
+#include "lib/particle_scattering.glsl"
+#include "lib/view.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) writeonly buffer Light {
+    vec4 middle_light[];  // radiance of a white particle
+};
+
+uniform int count;
+
+mat4x3 corner_normals(vec3 position_ws, Quad quad) {
+    mat4x3 normals;
+    for (int i = 0; i < 4; ++i) {
+        vec2 corner = corner_of(i);
+        normals[i] = rounded_normal(position_ws, corner.x * quad.right + corner.y * quad.up);
+    }
+    return normals;
+}
+
+void main() {
+    int index = int(gl_GlobalInvocationID.x);
+    if (index >= count) {
+        return;
+    }
+    Particle p = read_particle(index);
+    vec4 shape = look_texel(p.look, 0u);
+    vec4 streak = look_texel(p.look, 1u);
+    vec4 glow = look_texel(p.look, 2u);
+    float tumble = look_texel(p.look, kLookMore).w;
+    if (look_texel(p.look, kLookFocus).y == 0.0) {
+        return;
+    }
+    Quad quad = quad_of(p, shape, streak, tumble, int(glow.w), size_of(p, shape));
+    vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
+    vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
+    vec3 light = scattered_light(
+        p.position, corner_normals(p.position, quad), streak.w, pixel, max(middle.w, view.camera_ws.w));
+    middle_light[index] = vec4(glow.y * light, 0.0);
+}

@@ -1,0 +1,41 @@
+#include "content/app/bench_command.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+namespace limn::test {
+
+using Words = std::vector<std::string>;
+
+TEST_CASE("bench_command: what particles and faces are asked for goes to their programs") {
+    BenchOptions options;
+    options.scene = "particles";
+    options.frames = 1000;
+    CHECK(bench_program_arguments(options) == Words{"--repeats", "400"});
+    options.frames = 9;
+    options.csv = "-";
+    options.only = "growth";
+    options.most = 2000;
+    CHECK(
+        bench_program_arguments(options)
+        == Words{"--repeats", "9", "--csv", "-", "--only", "growth", "--most", "2000"});
+}
+
+TEST_CASE("bench_command: parts are for programs that have them") {
+    BenchOptions options;
+    options.scene = "gallery";
+    options.only = "draw";
+    const Status part = run_bench(options);
+    REQUIRE(!part);
+    CHECK(part.error().message.find("--only is for `particles` and `faces`") != std::string::npos);
+    options.only.clear();
+    options.scene = "faces";
+    options.most = 2000;
+    const Status most = run_bench(options);
+    REQUIRE(!most);
+    CHECK(most.error().message.find("--most is for `particles`") != std::string::npos);
+}
+
+}  // namespace limn::test

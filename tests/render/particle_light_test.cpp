@@ -1,0 +1,149 @@
+#include "ecs/components/all.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace limn::test {
+namespace {
+
+// Light on particles, evaluated at their corners or once for each.
+
+struct LitScene : Scene {
+    LitScene() { world.insert_resource(FrameTime{}); }
+
+    /// White, at rest, in the middle of their life of a second.
+    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
+        ParticlePool pool;
+        for (const Vec3& place : places) {
+            pool.x.push_back(place.x);
+            pool.y.push_back(place.y);
+            pool.z.push_back(place.z);
+            pool.vx.push_back(1);
+            pool.vy.push_back(0.5f);
+            pool.vz.push_back(0.25f);
+            pool.age.push_back(0.5f);
+            pool.life.push_back(1);
+            pool.look.push_back(static_cast<std::uint32_t>(pool.look.size()) * 7919);
+        }
+        return world.create(ParticleEmitter{}, look, pool);
+    }
+    Vec3 middle() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 9, 9)), 4, 4); }
+    void light_at(ParticleLitAt where) {
+        world.query<const ParticleLook>().each([&](Entity entity, const ParticleLook&) {
+            world.get<ParticleLook>(entity).lit_at = where;
+        });
+    }
+    /// Of all pixels.
+    Vec3 sum() {
+        const gpu::FloatImage image = radiance(look({0, 0, 4}, {0, 0, 0}, 64, 64));
+        Vec3 all(0);
+        for (int i = 0; i < 64 * 64; ++i) {
+            all += rgb_at(image, i % 64, i / 64);
+        }
+        return all;
+    }
+};
+
+ParticleLook lit_disc(float size, float forward) {
+    ParticleLook look;
+    look.size = size;
+    look.lit_at = ParticleLitAt::Middle;
+    look.forward = forward;
+    look.softness = 0;
+    return look;
+}
+
+/// Radiance of a white disc that faces the camera, as the mean of its four corners: their normals
+/// lean outward by 0.8. `cosine`: between the ways to the light and to the camera.
+double mean_of_corners(double cosine, double forward) {
+    constexpr double kRoundness = 0.8;
+    const double across = std::sqrt(1 - cosine * cosine);
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) {
+        const double angle =
+            0.3 + 0.5 * static_cast<double>(kPi) * i;  // whichever: the mean does not depend on it
+        const double wrapped = 0.5
+                               + 0.5 * (cosine + kRoundness * std::cos(angle) * across)
+                                     / std::sqrt(1 + kRoundness * kRoundness);
+        sum += wrapped * wrapped / 4;
+    }
+    const double g2 = forward * forward;
+    const double lobe = (1 - g2) / (4 * std::pow(1 + g2 + 2 * forward * cosine, 1.5));
+    return (sum + std::abs(forward) * (lobe - sum)) / static_cast<double>(kPi);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(LitScene, "particle light: in the middle it is the mean of the corners") {
+    const Entity one = emit({{0, 0, 0}}, lit_disc(1, 0));
+    for (const float forward : {0.0f, 0.6f, -0.4f}) {
+        world.get<ParticleLook>(one).forward = forward;
+        for (const Vec3 to_light :
+             {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0.6f, 0, 0.8f),
+              Vec3(0.48f, 0.64f, -0.6f)}) {
+            world.query<const DirectionalLight>().each([&](Entity entity, const DirectionalLight&) {
+                world.get<DirectionalLight>(entity).illuminance = 0;
+            });
+            shine(DirectionalLight{.illuminance = 2}, look_at(Vec3(0), -to_light));
+            CAPTURE(forward);
+            CAPTURE(to_light.z);
+            CHECK(
+                static_cast<double>(middle().x)
+                == near(2 * mean_of_corners(to_light.z, forward)).epsilon(2e-3));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    LitScene, "particle light: in the middle and at the corners, small ones give the same light") {
+    world.insert_resource(Environment{.intensity = 0.2f});
+    shine(DirectionalLight{.illuminance = 0.3f}, look_at(Vec3(0), {1, -2, -1}));
+    shine(PointLight{.color = {1, 0.5f, 0.2f}, .intensity = 20}, at({2, 3, 1}));
+    shine(PointLight{.color = {0.2f, 0.5f, 1}, .intensity = 30}, at({-3, 0, -2}));
+    std::vector<Vec3> places;
+    for (int i = 0; i < 200; ++i) {
+        const float turn = 2.4f * static_cast<float>(i);
+        const float away = 0.1f * std::sqrt(static_cast<float>(i));
+        places.emplace_back(away * std::cos(turn), away * std::sin(turn), 0.3f * std::sin(turn));
+    }
+    ParticleLook look = lit_disc(0.12f, 0.5f);
+    look.cover = 0;
+    emit(places, look);
+    look.facing = ParticleFacing::Velocity;
+    emit(places, look);
+    const Vec3 in_middle = sum();
+    light_at(ParticleLitAt::Corners);
+    const Vec3 at_corners = sum();
+    CHECK(at_corners.x > 1);
+    for (int i = 0; i < 3; ++i) {
+        CHECK(in_middle[i] == near(at_corners[i]).epsilon(0.01));
+    }
+}
+
+TEST_CASE_FIXTURE(LitScene, "particle light: lit in the middle or not, each in its place") {
+    shine(DirectionalLight{.illuminance = 2}, look_at(Vec3(0), {0, 0, -1}));
+    ParticleLook look = lit_disc(0.2f, 0);
+    const std::vector<Vec3> left = {{-0.5f, 0.5f, 0}, {-0.5f, -0.5f, 0}};
+    emit(left, look);
+    look.lit_at = ParticleLitAt::Corners;
+    emit({{0.5f, -0.5f, 0}}, look);
+    look.lit = 0;
+    look.emission = 0.1f;
+    emit({{0.5f, 0.5f, 0}}, look);
+    const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 65, 65));
+    const float lit = image.at(16, 48, 0);
+    CHECK(lit > 0.1f);
+    CHECK(image.at(16, 16, 0) == near(lit).epsilon(1e-3));
+    CHECK(std::max(image.at(48, 16, 0), image.at(48, 48, 0)) == near(lit).epsilon(0.05));
+    CHECK(std::min(image.at(48, 16, 0), image.at(48, 48, 0)) == near(0.1f).epsilon(0.02));
+}
+
+}  // namespace limn::test
