@@ -12,7 +12,6 @@
 #include "render/skinning/deform_source.h"
 #include "render/skinning/skin_palette.h"
 #include "render/surface_features.h"
-#include "render/wrinkle_features.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
