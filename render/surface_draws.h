@@ -3,8 +3,8 @@
 #include "render/frame_data.h"
 #include "render/instance_list.h"
 #include "render/light_objects.h"
+#include "render/surface_features.h"
 #include "render/variant.h"
-#include "render/wrinkle_features.h"
 
 #include <cstdint>
 #include <span>
@@ -74,7 +74,7 @@ mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {
 // ---- parts of the above ----
 
 /// What decides where the vertices of a mesh are drawn.
-inline constexpr std::uint32_t kMovedVertices = kInflate | std::uint32_t{kWrinkleDisplaced};
+inline constexpr std::uint32_t kMovedVertices = kInflate | kWrinkleDisplaced;
 
 /// Binds instance streams, material records and draw commands of a list.
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list);

@@ -1,7 +1,6 @@
 #include "render/surface_features.h"
 
 #include "render/variant.h"
-#include "render/wrinkle_features.h"
 
 namespace limn {
 namespace {
@@ -35,6 +34,18 @@ constexpr FeatureName kNames[] = {
     {kWrinkleIndependent, "WRINKLE_INDEPENDENT"},
     {kWrinklePhoto, "WRINKLE_PHOTO"},
 };
+
+constexpr bool has_bits_of_their_own() {
+    std::uint32_t taken = 0;
+    for (const FeatureName& feature : kNames) {
+        if ((taken & feature.bit) != 0) {
+            return false;
+        }
+        taken |= feature.bit;
+    }
+    return true;
+}
+static_assert(has_bits_of_their_own());
 
 }  // namespace
 

@@ -26,8 +26,14 @@ enum SurfaceFeature : std::uint32_t {
     kWrinkleFlat = 1u << 12,
     kWrinkleView = 1u << 13,  // needs no wrinkle map
     kTransmission = 1u << 14,
-    kRefraction = 1u << 15,  // with kTransmission: the medium has a thickness
-    kStrands = 1u << 16,     // of hair
+    kRefraction = 1u << 15,          // with kTransmission: the medium has a thickness
+    kStrands = 1u << 16,             // of hair
+    kWrinkleDisplaced = 1u << 17,    // folds move its vertices
+    kWrinkleColumns = 1u << 18,      // each column of the image has a method of its own
+    kWrinkleModel = 1u << 19,        // the wrinkle map is a model of the strain
+    kWrinkleLayers = 1u << 20,       // the map has two layers, each with a strength of its own
+    kWrinkleIndependent = 1u << 21,  // with kWrinkleLayers: the second one covers the first
+    kWrinklePhoto = 1u << 22,        // light from above is painted on the wrinkles
 };
 
 struct SurfaceFeatures {

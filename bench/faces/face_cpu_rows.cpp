@@ -78,16 +78,16 @@ void add_patch_row(FaceBench& bench, FaceCrowd& crowd) {
     const auto move_by = [&](const auto& move) {
         parallel_for(kCrowd, 1, [&](std::size_t i, std::size_t) {
             CrowdMember& member = crowd.members[i];
-            make_patches(member.markers, crowd.corners, member.patches);
+            make_patches(member.markers, crowd.on_markers.corners, member.patches);
             member.deformed = crowd.mesh.positions;
-            move(SurfaceShape{crowd.places, member.patches, crowd.order}, member.deformed);
+            move(surface_shape(&crowd.on_markers, member.patches), member.deformed);
         });
     };
     const auto [patches, scalar] = race(
         bench.repeats, [&] { move_by(move_by_patches); }, [&] { move_by(move_by_patches_scalar); });
     bench.add(FaceRow{
-        fmt::format("{} patches through markers", crowd.corners.size() / 3), patches, scalar,
-        "scalar", kDeformLimit});
+        fmt::format("{} patches through markers", crowd.on_markers.corners.size() / 3), patches,
+        scalar, "scalar", kDeformLimit});
 }
 
 }  // namespace

@@ -1,14 +1,12 @@
 #include "bench/faces/face_crowd.h"
 
+#include "bench/oracles/marked_head.h"
 #include "content/make/head.h"
 #include "ecs/base/jobs.h"
-#include "ecs/components/surface_binding.h"
-#include "ecs/world.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/deform_mesh.h"
 #include "systems/animation/deformer_kernels.h"
 #include "systems/animation/skin_kernels.h"
-#include "systems/animation/surface_binding_system.h"
 #include "systems/faces/wrinkle_system.h"
 
 #include <algorithm>
@@ -77,25 +75,6 @@ std::vector<WrinkleRest> rests_of(const MeshData& mesh, WrinkleDriver driver) {
     return make_wrinkle_state(surface, {MeshId{0}, {}}, assets).rests;
 }
 
-void bind_to_markers(FaceCrowd& crowd) {
-    const MeshData& mesh = crowd.mesh;
-    crowd.markers = make_head({.part = HeadPartKind::Markers});
-    World world;
-    world.insert_resource(Assets{}).meshes = {mesh, crowd.markers};
-    SurfaceBinding binding;
-    binding.surface = world.create(ControlSurface{MeshId{1}});
-    binding.method = SurfaceMethod::Patches;
-    binding.by_uvs = true;
-    binding.reach = 0.1f;
-    const Entity skin = world.create(MeshInstance{MeshId{0}, {}}, binding);
-    world.run(add_surface_binding_states);
-    world.run(bind_surfaces);
-    const auto& state = world.get<SurfaceBindingState>(skin);
-    crowd.corners = state.corners;
-    crowd.places = *state.places;
-    crowd.order = *state.order;
-}
-
 FaceCrowd make_crowd() {
     FaceCrowd crowd;
     crowd.mesh = make_head({});
@@ -103,7 +82,8 @@ FaceCrowd make_crowd() {
     crowd.skin = rig.skin;
     crowd.chord = rests_of(crowd.mesh, WrinkleDriver::Chord);
     crowd.strain = rests_of(crowd.mesh, WrinkleDriver::Strain);
-    bind_to_markers(crowd);
+    crowd.markers = make_head({.part = HeadPartKind::Markers});
+    crowd.on_markers = oracle::bind_to_markers(crowd.mesh, crowd.markers);
     const auto clip =
         std::ranges::find(rig.clips, std::string_view("expressions"), &ClipData::name);
     for (std::size_t i = 0; i < kCrowd; ++i) {

@@ -4,7 +4,7 @@
 #include "ecs/components/deformers.h"
 #include "ecs/components/skeleton.h"
 #include "ecs/components/surface.h"
-#include "ecs/components/surface_places.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/components/wrinkle.h"
 #include "systems/faces/wrinkle_batch.h"
 
@@ -38,12 +38,10 @@ struct CrowdMember {
 struct FaceCrowd {
     MeshData mesh;
     SkinData skin;
-    MeshData markers;                    ///< what moves the mesh by patches
-    std::vector<std::uint32_t> corners;  ///< of its faces
-    std::vector<SurfacePlace> places;    ///< of the vertices on it
-    std::vector<std::uint32_t> order;    ///< of the places, patch by patch
-    std::vector<WrinkleRest> chord;      ///< one
-    std::vector<WrinkleRest> strain;     ///< three
+    MeshData markers;                 ///< what moves the mesh by patches
+    SurfaceBindingState on_markers;   ///< the mesh on them
+    std::vector<WrinkleRest> chord;   ///< one
+    std::vector<WrinkleRest> strain;  ///< three
     std::vector<CrowdMember> members;
 };
 

@@ -9,7 +9,7 @@
 #include "render/passes/wrinkle_pass.h"
 #include "render/render_frame.h"
 #include "render/skinning/deformed_list.h"
-#include "render/wrinkle_features.h"
+#include "render/surface_features.h"
 
 #include <glm/gtc/packing.hpp>
 

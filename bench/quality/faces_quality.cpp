@@ -1,4 +1,5 @@
 #include "bench/micro/svg_plot.h"
+#include "bench/oracles/marked_head.h"
 #include "bench/oracles/skin_readback.h"
 #include "bench/quality/quality.h"
 #include "content/make/head.h"
@@ -21,7 +22,6 @@
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/skin_kernels.h"
-#include "systems/animation/surface_binding_system.h"
 #include "systems/animation/surface_patches.h"
 #include "systems/faces/skin_strain.h"
 
@@ -385,18 +385,7 @@ double rms_mm(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 Status measure_markers(QualityReport& report) {
     const MeshData head = make_head({});
     const MeshData markers = make_head({.part = HeadPartKind::Markers});
-    World world;
-    auto& assets = world.insert_resource(Assets{});
-    assets.meshes = {head, markers};
-    SurfaceBinding binding;
-    binding.surface = world.create(ControlSurface{MeshId{1}});
-    binding.method = SurfaceMethod::Patches;
-    binding.by_uvs = true;
-    binding.reach = 0.1f;
-    const Entity skin = world.create(MeshInstance{MeshId{0}, {}}, binding);
-    world.run(add_surface_binding_states);
-    world.run(bind_surfaces);
-    const auto& state = world.get<SurfaceBindingState>(skin);
+    const SurfaceBindingState state = oracle::bind_to_markers(head, markers);
     if (state.places == nullptr) {
         return fail("faces: the head is not bound to its markers");
     }

@@ -3,7 +3,9 @@
 #include "content/bake/face_regions.h"
 #include "content/bake/tangents.h"
 #include "content/load/obj_scene.h"
+#include "content/make/face_chart.h"
 #include "ecs/base/check.h"
+#include "ecs/components/weld.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -75,6 +77,28 @@ SkinWeights gather_influences(const SkinWeights& all, std::span<const std::uint3
     }
     skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
     return skin;
+}
+
+/// Along u of the chart, whose v grows downwards on the face; vertices at one place share theirs.
+std::vector<Vec4> chart_tangents(const MeshData& mesh) {
+    const std::vector<std::uint32_t> welded = weld_positions(mesh.positions);
+    std::vector<Vec3> sums(mesh.positions.size(), Vec3(0));
+    for (std::size_t i = 0; i + 3 <= mesh.indices.size(); i += 3) {
+        const std::uint32_t* const v = &mesh.indices[i];
+        const TriangleFrame frame = triangle_frame(
+            {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]},
+            {mesh.uvs1[v[0]], mesh.uvs1[v[1]], mesh.uvs1[v[2]]});
+        for (int k = 0; k < 3; ++k) {
+            sums[welded[v[k]]] += normalize_or(frame.tangent, Vec3(0));
+        }
+    }
+    std::vector<Vec4> tangents;
+    for (std::size_t v = 0; v < sums.size(); ++v) {
+        const Vec3& normal = mesh.normals[v];
+        const Vec3 along = sums[welded[v]] - glm::dot(sums[welded[v]], normal) * normal;
+        tangents.emplace_back(normalize_or(along, any_perpendicular(normal)), 1.0f);
+    }
+    return tangents;
 }
 
 Material pbr(const char* name, const Vec3& color, float roughness) {
@@ -166,7 +190,9 @@ GltfScene make_face_scene(
             }
         }
         if (part.is_skin) {
-            mesh.regions = make_face_regions(gather<Vec3>(reference, made.source), mesh.normals);
+            const std::vector<Vec3> places = gather<Vec3>(reference, made.source);
+            mesh.regions = make_face_regions(places, mesh.normals);
+            mesh.uvs1 = make_face_chart(places);
         }
         node.parts.push_back(
             {static_cast<std::uint32_t>(scene.meshes.size()),
@@ -187,6 +213,11 @@ GltfScene make_face_scene(
         }
         for (std::size_t part = 0; part < sources.size(); ++part) {
             scene.meshes[part].morphs.push_back(make_target(shape, scale, turns, sources[part]));
+        }
+    }
+    for (MeshData& mesh : scene.meshes) {
+        if (!mesh.uvs1.empty()) {
+            mesh.tangents = chart_tangents(mesh);
         }
     }
     if (!shapes.empty()) {

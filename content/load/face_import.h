@@ -26,7 +26,7 @@ struct FacePart {
     Material material;
     std::vector<std::uint32_t> faces;  ///< indices into ObjFile::faces; empty: the part is left out
     std::function<Vec4(std::uint32_t position)> color = {};  ///< factor of a vertex, or none
-    bool is_skin = false;                                    ///< has regions
+    bool is_skin = false;  ///< has regions, and a chart with its tangents (make_face_chart) as uvs1
 };
 
 struct FaceShape {

@@ -25,38 +25,42 @@ struct Crease {
 
 // Places, spacings and widths after anatomy: face_regions.h.
 constexpr Crease kCreases[] = {
-    // forehead
-    {{0, 12.6f}, {5, 11.4f}, {9.5f, 13.2f}, 0.75f, 0.20f},
-    {{0, 15.1f}, {5, 14.0f}, {10.2f, 15.8f}, 0.8f, 0.25f},
-    {{0, 17.8f}, {5, 16.7f}, {10.6f, 18.4f}, 0.8f, 0.25f},
-    {{0.8f, 20.6f}, {5, 19.4f}, {10.4f, 21.0f}, 0.7f, 0.20f},
+    // forehead: over the brows towards the temples, with shorter ones between
+    {{0, 11.9f}, {7.5f, 11.2f}, {15.0f, 13.9f}, 0.75f, 0.20f},
+    {{0, 14.7f}, {8.0f, 13.7f}, {16.5f, 17.6f}, 0.85f, 0.27f},
+    {{0, 17.7f}, {7.5f, 16.5f}, {16.0f, 20.8f}, 0.85f, 0.26f},
+    {{2.6f, 20.3f}, {7.0f, 18.4f}, {14.0f, 22.0f}, 0.7f, 0.20f},
+    {{3.6f, 12.9f}, {7.0f, 12.5f}, {10.4f, 13.4f}, 0.45f, 0.09f},
+    {{5.2f, 16.1f}, {8.6f, 15.9f}, {12.4f, 17.6f}, 0.5f, 0.11f},
     // glabella and root of the nose
-    {{2.3f, 17.8f}, {1.1f, 22}, {2.0f, 27.2f}, 0.85f, 0.30f},
-    {{4.4f, 21.0f}, {3.2f, 23}, {3.6f, 25.4f}, 0.7f, 0.08f},
-    {{0, 27.6f}, {1.2f, 27.8f}, {2.9f, 29.4f}, 0.8f, 0.10f},
+    {{2.7f, 20.6f}, {1.2f, 23.2f}, {2.0f, 27.4f}, 0.95f, 0.30f},
+    {{4.6f, 22.2f}, {3.6f, 23.6f}, {3.7f, 25.8f}, 0.7f, 0.11f},
+    {{0, 27.6f}, {1.2f, 27.8f}, {2.9f, 29.4f}, 0.8f, 0.12f},
+    {{0, 29.4f}, {1.1f, 29.5f}, {2.3f, 30.8f}, 0.6f, 0.08f},
     // crow's feet
-    {{14.1f, 28.2f}, {16, 26.6f}, {18.4f, 25.2f}, 0.4f, 0.13f},
-    {{14.4f, 28.8f}, {16.5f, 28.0f}, {19.2f, 27.4f}, 0.4f, 0.15f},
-    {{14.5f, 29.5f}, {16.5f, 29.5f}, {19.4f, 29.9f}, 0.4f, 0.15f},
-    {{14.3f, 30.2f}, {16.3f, 31.0f}, {18.8f, 32.4f}, 0.4f, 0.13f},
+    {{14.0f, 27.9f}, {16.0f, 26.2f}, {18.6f, 23.8f}, 0.5f, 0.17f},
+    {{14.2f, 28.6f}, {16.6f, 27.7f}, {19.8f, 26.4f}, 0.55f, 0.23f},
+    {{14.4f, 29.4f}, {16.8f, 29.4f}, {20.2f, 30.0f}, 0.55f, 0.24f},
+    {{14.2f, 30.2f}, {16.5f, 31.0f}, {19.6f, 32.8f}, 0.5f, 0.18f},
+    {{15.8f, 28.6f}, {17.6f, 28.3f}, {19.6f, 27.9f}, 0.35f, 0.10f},
     // lower lid
     {{6.4f, 31.4f}, {9.8f, 33.2f}, {13.0f, 31.6f}, 0.35f, 0.10f},
-    {{6.0f, 32.2f}, {9.4f, 34.9f}, {13.4f, 32.8f}, 0.4f, 0.12f},
-    {{6.0f, 33.4f}, {8.6f, 36.4f}, {12.4f, 35.4f}, 0.5f, 0.10f},
+    {{6.0f, 32.2f}, {9.4f, 34.9f}, {13.4f, 32.8f}, 0.4f, 0.13f},
+    {{6.0f, 33.4f}, {8.6f, 36.4f}, {12.4f, 35.4f}, 0.5f, 0.12f},
     // side of the nose
-    {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.4f, 0.13f},
-    {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.4f, 0.13f},
+    {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.45f, 0.14f},
+    {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.45f, 0.14f},
     // nasolabial fold, outside the corner of the mouth, marionette line
-    {{6.2f, 40.4f}, {8.6f, 43.4f}, {8.8f, 50.4f}, 1.0f, 0.45f},
-    {{10.6f, 45.6f}, {11.6f, 48.0f}, {11.6f, 51.2f}, 0.7f, 0.16f},
-    {{7.2f, 51.6f}, {8.2f, 54.0f}, {7.8f, 57.2f}, 0.7f, 0.22f},
+    {{5.8f, 39.4f}, {8.8f, 43.0f}, {9.0f, 51.2f}, 1.1f, 0.50f},
+    {{10.6f, 45.0f}, {11.8f, 48.0f}, {11.4f, 52.0f}, 0.7f, 0.18f},
+    {{7.4f, 51.0f}, {8.6f, 54.0f}, {8.0f, 59.0f}, 0.8f, 0.28f},
     // upper lip
     {{1.3f, 43.6f}, {1.2f, 44.6f}, {1.1f, 45.8f}, 0.3f, 0.08f},
     {{2.7f, 43.7f}, {2.5f, 44.7f}, {2.3f, 45.8f}, 0.3f, 0.09f},
     {{4.2f, 44.0f}, {3.9f, 44.9f}, {3.5f, 45.9f}, 0.3f, 0.09f},
     {{5.8f, 44.5f}, {5.3f, 45.4f}, {4.8f, 46.4f}, 0.3f, 0.08f},
     // below the lower lip
-    {{0, 55.2f}, {3.4f, 55.4f}, {6.2f, 53.8f}, 1.1f, 0.30f},
+    {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.1f, 0.30f},
 };
 
 /// The distance to a crease, 0 .. 1 along it at the nearest place.
@@ -79,7 +83,14 @@ Vec2 nearest_on(const Crease& crease, const Vec2& p) {
     return nearest;
 }
 
-/// A narrow valley between round crests, whose ends fade out.
+/// 0 at the ends of a crease, 1 in its middle; one that crosses the middle of the face has no end
+/// there.
+float crease_taper(const Crease& crease, float along) {
+    const float start = crease.a.x == 0 ? 1 : glm::smoothstep(0.0f, 0.35f, along);
+    return start * (1 - glm::smoothstep(0.45f, 1.0f, along));
+}
+
+/// A narrow valley between round crests, which thins out and fades towards its ends.
 float crease_height(const Crease& crease, const Vec2& p) {
     constexpr float kReach = 3.2f;  // widths
     const Vec2 low = glm::min(crease.a, glm::min(crease.b, crease.c)) - kReach * crease.width;
@@ -88,10 +99,9 @@ float crease_height(const Crease& crease, const Vec2& p) {
         return 0;
     }
     const Vec2 at = nearest_on(crease, p);
-    const float d = at.x / crease.width;
-    const float start = crease.a.x == 0 ? 1 : glm::smoothstep(0.0f, 0.2f, at.y);
-    const float ends = start * (1 - glm::smoothstep(0.75f, 1.0f, at.y));
-    return crease.depth * ends
+    const float taper = crease_taper(crease, at.y);
+    const float d = at.x / (crease.width * (0.55f + 0.45f * taper));
+    return crease.depth * taper
            * (0.45f * std::exp(-square(d - 1.0f)) - std::exp(-square(1.6f * d)));
 }
 
@@ -102,12 +112,15 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
         const Vec2 chart = {(uv.x - 0.5f) * kHeadColumns, uv.y * (kHeadRows + 13) - 13};
         const Vec2 bend = {fbm(uv, 23, seed), fbm(uv, 23, seed + 1)};
-        Vec2 p = chart + pattern.wander * kMm * 2.0f * bend;
+        const Vec2 sway = {fbm(uv, 7, seed + 3, 2), fbm(uv, 7, seed + 4, 2)};
+        Vec2 p = chart + pattern.wander * kMm * (2.0f * bend + 3.0f * sway);
         p.x = std::abs(p.x);
         float height = 0;
         for (const Crease& crease : kCreases) {
             height += crease_height(crease, p);
         }
+        // No fold is as deep all along, or as deep as that of the other side.
+        height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;
         // Dimples of the chin, 2 to 4 mm wide.
         const float chin =
             1 - glm::smoothstep(0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6, 3.4f)));

@@ -4,9 +4,10 @@
 
 namespace limn {
 
-/// Folds of a face as a wrinkle map for the skin of the mesh "head": lines of the forehead, of the
-/// glabella and the root of the nose, crow's feet, folds of the lower lid, nasolabial fold, lines
-/// around the mouth and a dimpled chin. Where they show, and how deep, is up to a wrinkle_surface.
+/// Folds of a face as a wrinkle map for the skin of the mesh "head", and of others by face_chart.h:
+/// lines of the forehead, of the glabella and the root of the nose, crow's feet, folds of the lower
+/// lid, nasolabial fold, lines around the mouth and a dimpled chin. Where they show, and how deep,
+/// is up to a wrinkle_surface.
 struct FaceFoldsPattern {
     PatternSize image;
     float depth = 1;

@@ -54,6 +54,19 @@ enum class WrinkleCombine : std::uint8_t {
     Independent,  ///< the second layer covers the first as far as it is raised; for comparison
 };
 
+/// Folds of a region that stay when its skin is at rest, as of age.
+struct RestingFolds {
+    std::string region{};
+    float shortening = 0.1f;
+};
+
+LIMN_FIELDS(RestingFolds) {
+    LIMN_FIELD(region, "of the mesh, by name");
+    LIMN_FIELD(
+        shortening, "by how much its skin is too long for its place: it folds as if compressed so",
+        "", 0, 0.5);
+}
+
 struct WrinkleSurface {
     WrinkleMethod method = WrinkleMethod::Isometric;
     std::vector<std::string> regions{};
@@ -69,6 +82,8 @@ struct WrinkleSurface {
     float beta = 4;
     float slack = 0.03f;
     float share = 0.3f;
+    std::vector<RestingFolds> resting{};
+    std::string resting_shape{};
     Vec3 center = {0, 0, 0};
     float radius = 0.1f;
     float activation = 1;
@@ -140,6 +155,12 @@ LIMN_FIELDS(WrinkleSurface) {
     LIMN_FIELD(slack, "isometric: shortening that skin takes without folding", "", 0, 1);
     LIMN_FIELD(
         share, "isometric: of the shortening beyond that becomes folds; 1: all of it", "", 0, 1);
+    LIMN_FIELD(
+        resting, "regions whose skin folds at rest, and more easily when it is compressed; not for "
+                 "radial, strain_view and model");
+    LIMN_FIELD(
+        resting_shape, "shape of the mesh whose weight, 0 to 1, is the share of that, as `age` of "
+                       "a head that grows old; none: all of it");
     LIMN_FIELD(center, "radial: where wrinkles are strongest, in mesh space at rest", "m");
     LIMN_FIELD(radius, "radial: where none are left", "m", 1e-6, 1e6);
     LIMN_FIELD(activation, "factor of all strengths; radial: strength at the center", "", 0, 1);
@@ -214,7 +235,10 @@ struct WrinkleState {
     /// None for a radial driver; for strain three, along u, v and (u + v) / sqrt(2) of axes u and v
     /// in the tangent plane of each vertex; otherwise one, and that of the second layer.
     std::vector<WrinkleRest> rests;
-    std::vector<float> mask;         ///< per vertex: 0 .. 1 of the wrinkles
+    std::vector<float> mask;     ///< per vertex: 0 .. 1 of the wrinkles
+    std::vector<float> resting;  ///< per vertex: shortening at which folds stay; or empty
+    /// Index of the shape whose weight is the share of `resting`, or kNoAsset: all of it.
+    std::uint32_t resting_shape = kNoAsset;
     std::vector<float> second_mask;  ///< of a second layer, whose rest is the second one; or empty
     FoldTable folds = {};
     /// Strain of a mesh with tangents, per vertex: the angle from the axis u to the tangent [rad],

@@ -9,6 +9,8 @@
 #include "render/shaders/wrinkle_gpu.h"
 #include "render/skinning/deformed_list.h"
 
+#include <glm/packing.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -66,11 +68,17 @@ void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number num
     for (std::size_t v = 0; v < rest.first.size(); ++v) {
         const auto first =
             static_cast<std::uint32_t>(begin + rest.first.size() + 2 * rest.first[v]);
-        texels.push_back({first, bits(number(v))});
+        texels.push_back({first, number(v)});
     }
     for (const WrinkleCorner& corner : rest.around) {
         append_corner(rest, corner, texels);
     }
+}
+
+/// Of a vertex that wrinkles as far as its mask says, and how much of that at rest.
+std::uint32_t pack_mask(const WrinkleState& state, const std::vector<float>& mask, std::size_t v) {
+    const float resting = v < state.resting.size() ? state.resting[v] : 0.0f;
+    return v < mask.size() ? glm::packUnorm2x16({mask[v], resting}) : 0u;
 }
 
 /// All blocks; without any, one of vertices without triangles. Then the heights.
@@ -79,13 +87,13 @@ std::vector<Texel> rest_texels(const WrinkleState& state) {
     const auto number = [&state](std::size_t block) {
         return [&state, block](std::size_t v) {
             if (block > 0 && !state.second_mask.empty()) {
-                return state.second_mask[std::min(v, state.second_mask.size() - 1)];
+                return pack_mask(state, state.second_mask, v);
             }
             if (block > 0) {
-                return v < state.frames.size() ? state.frames[v][static_cast<int>(block) - 1]
-                                               : 0.0f;
+                return v < state.frames.size() ? bits(state.frames[v][static_cast<int>(block) - 1])
+                                               : 0u;
             }
-            return v < state.mask.size() ? state.mask[v] : 0.0f;
+            return pack_mask(state, state.mask, v);
         };
     };
     for (std::size_t block = 0; block < state.rests.size(); ++block) {
@@ -179,10 +187,11 @@ float distance_to(const FrameData& frame, Entity entity, const DeformedInstance&
 
 layout::WrinkleJob make_job(
     const WrinkleSurface& surface, const WrinkleState& state, const WrinkleRestPool::Range& rest,
-    const TierShares& shares, float displacement) {
+    const TierShares& shares, const DeformedInstance& shape) {
     layout::WrinkleJob job{};
     job.rest = rest.first_texel;
-    job.displacement = displacement;
+    job.displacement = shape.displacement;
+    job.resting = shape.resting;
     if (!state.heights.empty()) {
         job.heights = rest.texel_count - static_cast<std::uint32_t>(state.heights.size());
     }
@@ -237,8 +246,7 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         const TierShares shares = tier_shares(
             surface, distance_to(frame, entity, shape),
             frame.meshes->meshes()[shape.mesh.index].tangents);
-        layout::WrinkleJob job =
-            make_job(surface, state, find_rest(pool, state), shares, shape.displacement);
+        layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), shares, shape);
         displaced = displaced || job.heights != 0;
         if (shape.wrinkle_columns) {
             job.method = layout::kWrinkleColumns;

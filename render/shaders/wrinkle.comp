@@ -82,7 +82,10 @@ void main() {
     uvec4 job2 = texelFetch(jobs, job + 2);  // share, driver, mean_length, activation
     uvec4 job3 = texelFetch(jobs, job + 3);  // second, third, own_share, shade_share
     uint first = job0.z - first_vertex;
-    float mask = uintBitsToFloat(texelFetch(rest, int(job0.x + number)).y);
+    uvec4 job8 = texelFetch(jobs, job + 8);  // heights, displacement, resting
+    float resting = uintBitsToFloat(job8.z);
+    vec2 mask_and_rest = unpackUnorm2x16(texelFetch(rest, int(job0.x + number)).y);
+    float mask = mask_and_rest.x;
     bool mean_length = job2.z != 0u;
     float ratio = block_compression(job0.x, 0u, number, first, mean_length);
     if (job2.y == kWrinkleByStrain) {
@@ -98,6 +101,9 @@ void main() {
         }
         ratio = shortest_ratio(ratio, along_v, between);
     }
+
+    float measured = ratio;
+    ratio = rested_ratio(ratio, resting * mask_and_rest.y);
 
     uint method = job1.x;
     float activation = uintBitsToFloat(job2.w);
@@ -118,18 +124,18 @@ void main() {
         method == kWrinkleAlpha || method == kWrinklePhoto ? 1.0 : 0.0,
         method == kWrinkleDirectional ? 1.0 : 0.0);
     by_method.z += shade;
-    vec2 own_ratio = vec2(ratio, 1.0);
+    vec2 own_ratio = vec2(measured, 1.0);
     if (job3.x != 0u && job2.y != kWrinkleByStrain) {  // a second layer: its strengths are y and w
-        float second_mask = uintBitsToFloat(texelFetch(rest, int(job0.x + job3.x + number)).y);
+        vec2 second_mask = unpackUnorm2x16(texelFetch(rest, int(job0.x + job3.x + number)).y);
         own_ratio.y = block_compression(job0.x, job3.x, number, first, mean_length);
-        float second = second_mask * activation * strength_of(job, job1, share, own_ratio.y);
+        float second_ratio = rested_ratio(own_ratio.y, resting * second_mask.y);
+        float second = second_mask.x * activation * strength_of(job, job1, share, second_ratio);
         float second_own = second * uintBitsToFloat(job3.z);
         by_method.y = steep ? second_own : 0.0;
         by_method.w = (steep ? 0.0 : second_own) + min(second, 1.0) * uintBitsToFloat(job3.w);
     }
     wrinkles[first + number] = uvec2(packHalf2x16(by_method.xy), packHalf2x16(by_method.zw));
 
-    uvec4 job8 = texelFetch(jobs, job + 8);  // heights, displacement
     if (job8.x != 0u) {
         // Slopes are of the skin as it is now, heights of skin at rest, where their folds are longer.
         vec2 heights = uintBitsToFloat(texelFetch(rest, int(job0.x + job8.x + number)).xy) * sqrt(own_ratio);

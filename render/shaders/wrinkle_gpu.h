@@ -1,7 +1,8 @@
 // Input of wrinkle.comp. Shared by C++ and GLSL.
 //
 // A mesh at rest is a block of texels of two 32-bit numbers; three, one after the other, for strain. One per vertex and one more, which ends the last: its
-// first triangle as a texel of the first block, and its mask as a float; in the second and third block the
+// first triangle as a texel of the first block, and its mask and the shortening at which
+// its folds stay, 16 bits each; in the second and third block the
 // angle and the side of its tangent instead (WrinkleState::frames; 0: none). A second layer is another block, with its own mask. Then two per triangle at a vertex, whose third corner
 // is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
 // root of the triangle's weight at the vertex (the weight itself where means are of lengths). Last, of displaced skin,
@@ -34,7 +35,8 @@ struct WrinkleJob {
     vec4 folds[4];     // FoldTable
     uint heights;      // where the heights begin, from the first texel of the mesh; 0: none
     float displacement; // share of them that moves vertices
-    uint unused[2];
+    float resting;      // share of the shortening at which folds stay
+    uint unused;
 };
 
 const uint kWrinkleJobTexels = 9u;

@@ -12,7 +12,6 @@
 #include "render/skinning/deform_source.h"
 #include "render/skinning/skin_palette.h"
 #include "render/surface_features.h"
-#include "render/wrinkle_features.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -104,6 +103,13 @@ std::span<const SurfacePlace> places_of(const World& world, Entity entity) {
                : std::span<const SurfacePlace>{};
 }
 
+/// Of a shape, within 0 and 1; 1 without one.
+float weight_of(const std::vector<float>& weights, std::uint32_t shape) {
+    return shape == kNoAsset        ? 1.0f
+           : shape < weights.size() ? std::clamp(weights[shape], 0.0f, 1.0f)
+                                    : 0.0f;
+}
+
 bool is_finite(const Bounds& box) {
     const Vec3 sum = box.min + box.max;
     return std::isfinite(sum.x + sum.y + sum.z);
@@ -189,6 +195,7 @@ void DeformedList::find_wrinkles(
     entry.wrinkle_features = !entry.wrinkled         ? 0
                              : entry.wrinkle_columns ? column_features(*surface, columns)
                                                      : wrinkle_features(*surface);
+    entry.resting_shape = entry.wrinkled ? wrinkles->resting_shape : kNoAsset;
     entry.displacement = 0;
     entry.folds = 0;
     entry.largest_fold = 0;
@@ -318,7 +325,9 @@ void DeformedList::update(
     }
     parallel_for(active_.size(), kEvaluateGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            evaluate(entries_[active_[i]]);
+            Entry& entry = entries_[active_[i]];
+            evaluate(entry);
+            entry.resting = weight_of(entry.weights, entry.resting_shape);
         }
     });
     for (const std::uint32_t i : active_) {

@@ -41,6 +41,7 @@ struct DeformedInstance {
     bool wrinkled = false;               ///< has a WrinkleState, and draws it
     bool wrinkle_columns = false;        ///< by the methods of a WrinkleComparison
     std::uint32_t wrinkle_features = 0;  ///< of SurfaceFeature, if it is wrinkled
+    float resting = 1;                   ///< share of WrinkleState::resting
     float displacement = 0;              ///< share of their heights by which folds move the skin
 };
 
@@ -131,6 +132,7 @@ class DeformedList {
         std::uint64_t drawn_previous = 0;  ///< shape of its previous positions
         std::uint64_t previous_shape = 0;  ///< shape of the previous frame
         std::uint64_t evaluated = 0;       ///< shape of the bounds and palette
+        std::uint32_t resting_shape = 0;   ///< of WrinkleState
         std::uint64_t folds = 0;           ///< hash of how folds move the skin; 0: they do not
         float largest_fold = 0;            ///< bound of how far
         std::vector<Affine> palette;       ///< mesh from rest pose, one per joint

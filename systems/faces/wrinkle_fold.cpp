@@ -93,6 +93,10 @@ float fold_strength(const FoldTable& table, float e) {
     return factor * std::sqrt(at);
 }
 
+float rested_ratio(float ratio, float resting) {
+    return ratio * square(1 - resting);
+}
+
 float fold_excess(float ratio, float slack, float share) {
     const float shortening = std::max(1 - std::sqrt(std::max(ratio, 0.0f)) - slack, 0.0f);
     return 1 / std::max(1 - share * shortening, 0.5f) - 1;

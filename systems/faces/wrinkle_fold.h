@@ -21,6 +21,10 @@ namespace limn {
 /// The factor for an excess of length `e`: 0 below 0, that at 1 above 1.
 [[nodiscard]] float fold_strength(const FoldTable& table, float e);
 
+/// Square of the length of skin by that which would not fold: `ratio` >= 0 by what it was, and too
+/// long for that by `resting` 0 .. 1 (WrinkleState::resting).
+[[nodiscard]] float rested_ratio(float ratio, float resting);
+
 /// The excess, 1 at most, that becomes folds when lengths are `ratio` >= 0 of what they were,
 /// squared: after `slack`, which passes without, `share` of the shortening.
 [[nodiscard]] float fold_excess(float ratio, float slack, float share);

@@ -115,6 +115,38 @@ std::vector<WrinkleRest> make_rests(
     return rests;
 }
 
+/// Where regions overlap the largest counts. Empty if none of them is of the mesh.
+std::vector<float> resting_folds(const WrinkleSurface& surface, const MeshData& mesh) {
+    std::vector<float> resting;
+    for (const RestingFolds& folds : surface.resting) {
+        for (const VertexRegion& region : mesh.regions) {
+            if (region.name != folds.region || region.weights.size() != mesh.positions.size()) {
+                continue;
+            }
+            resting.resize(mesh.positions.size(), 0.0f);
+            for (std::size_t v = 0; v < resting.size(); ++v) {
+                const float weight = std::clamp(finite_or(region.weights[v], 0), 0.0f, 1.0f);
+                resting[v] = std::max(resting[v], weight * folds.shortening);
+            }
+        }
+    }
+    return resting;
+}
+
+std::uint32_t shape_index(const MeshData& mesh, const std::string& name) {
+    const auto found = std::ranges::find(mesh.morphs, name, &MorphTarget::name);
+    return name.empty() ? kNoAsset : static_cast<std::uint32_t>(found - mesh.morphs.begin());
+}
+
+std::uint64_t hash_resting(const WrinkleSurface& surface) {
+    std::uint64_t hash = hash_text(surface.resting_shape);
+    for (const RestingFolds& folds : surface.resting) {
+        hash = hash_combine(hash, hash_text(folds.region));
+        hash = hash_combine(hash, std::bit_cast<std::uint32_t>(folds.shortening));
+    }
+    return hash;
+}
+
 /// The strength of folds is below 1, or that of the table for skin without length.
 float largest_fold(const WrinkleState& state) {
     float highest = 0;
@@ -160,6 +192,7 @@ wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, cons
             any = true;
         }
     }
+    hash = surface.resting.empty() ? hash : hash_combine(hash, hash_resting(surface));
     if (is_displaced(surface) && map != nullptr) {
         const TextureSlot& slot = *slot_of(instance, assets);
         for (const float number :
@@ -184,6 +217,8 @@ WrinkleState make_wrinkle_state(
     merge_regions(
         mesh, surface.regions, used_driver(surface) == WrinkleDriver::Chord, state.mask, across);
     state.rests = make_rests(surface, mesh, across, state.frames);
+    state.resting = resting_folds(surface, mesh);
+    state.resting_shape = shape_index(mesh, surface.resting_shape);
     if (has_layers(surface)) {
         state.second_mask = add_second_layer(surface, mesh, state.rests);
     }

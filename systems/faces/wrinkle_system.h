@@ -28,6 +28,7 @@ void prepare_wrinkles(
 [[nodiscard]] std::uint64_t
 wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets);
 
+/// A `resting_shape` that the mesh lacks keeps no folds.
 /// Where regions overlap the stronger one gives the direction, and the sum of their weights is cut
 /// off at 1. Without a wrinkle map folds are flat.
 [[nodiscard]] WrinkleState make_wrinkle_state(

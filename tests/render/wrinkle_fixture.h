@@ -45,6 +45,7 @@ struct WrinkleScene : SkinScene {
             flat.vertices.push_back(v);
             flat.positions.push_back(mesh.positions[v] * Vec3{0, -1, 0});
         }
+        mesh.morphs.emplace_back().name = "age";  // moves nothing
         return skin(std::move(mesh), surface, weight);
     }
 

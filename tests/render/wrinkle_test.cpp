@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -74,6 +75,38 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
         CHECK(strong > 3);
         readback->forget();
         world.destroy(entity);
+    }
+}
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: skin that folds at rest is as if compressed so") {
+    Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
+    REQUIRE(readback);
+    const auto strength = [&](const WrinkleSurface& surface, float shortening, float age) {
+        const Entity entity = square(surface, shortening);
+        world.get<MorphWeights>(entity) = {{shortening, age}, {shortening, age}};
+        const float found = readback->run(world, std::vector<Entity>{entity})[0].wrinkles[0].x;
+        readback->forget();
+        world.destroy(entity);
+        return found;
+    };
+    for (const WrinkleMethod method : {WrinkleMethod::Isometric, WrinkleMethod::Bump}) {
+        const WrinkleSurface young = {.method = method, .lambda = 1};
+        WrinkleSurface old = young;
+        old.resting = {{"all", 0.2f}};
+        old.resting_shape = "age";
+        CHECK(strength(young, 0, 0) <= 1e-6f);
+        CHECK(strength(old, 0, 0) <= 1e-6f);
+        CHECK(strength(young, 0.2f, 0) > 0.1f);
+        CHECK(strength(old, 0, 1) == near(strength(young, 0.2f, 0)).epsilon(1e-3));
+        CHECK(strength(old, 0, 0.5f) == near(strength(young, 0.1f, 0)).epsilon(1e-3));
+        const float both = 1 - std::sqrt(rested_ratio(0.9f * 0.9f, 0.2f));
+        CHECK(both == near(1 - 0.9 * 0.8));
+        CHECK(strength(old, 0.1f, 1) == near(strength(young, both, 0)).epsilon(1e-3));
+        CHECK(strength(old, 0, 7) == strength(old, 0, 1));
+        old.resting_shape = "nobody";
+        CHECK(strength(old, 0, 1) <= 1e-6f);
+        old.resting_shape = "";
+        CHECK(strength(old, 0, 0) == near(strength(young, 0.2f, 0)).epsilon(1e-3));
     }
 }
 

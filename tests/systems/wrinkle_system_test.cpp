@@ -47,6 +47,23 @@ TEST_CASE(
     CHECK(cheek.rests[0].across[0] == Vec2{0, 1});
 }
 
+TEST_CASE("wrinkle system: what folds at rest is the largest of the regions, by their weights") {
+    const Assets assets = two_regions();
+    const WrinkleSurface surface = {
+        .resting = {{"brow", 0.2f}, {"cheek", 0.3f}, {"nose", 0.5f}}, .resting_shape = "age"};
+    const WrinkleState state = make_wrinkle_state(surface, kInstance, assets);
+    const float expected[] = {0.2f, 0.16f, 0.14f, 0.18f};
+    REQUIRE(state.resting.size() == 4);
+    for (std::size_t v = 0; v < 4; ++v) {
+        CHECK(state.resting[v] == near(expected[v]));
+    }
+    CHECK(make_wrinkle_state({}, kInstance, assets).resting.empty());
+    CHECK(make_wrinkle_state({.resting = {{"nose", 0.5f}}}, kInstance, assets).resting.empty());
+    WrinkleSurface less = surface;
+    less.resting[0].shortening = 0.1f;
+    CHECK(state.source != make_wrinkle_state(less, kInstance, assets).source);
+}
+
 TEST_CASE("wrinkle system: a state follows its mesh, its regions and what is asked for") {
     World world;
     world.insert_resource(two_regions());

@@ -63,6 +63,11 @@ vec2 strain_cross(vec2 from_center, vec4 principal, vec2 direction, vec2 other) 
     return cover;
 }
 
+// Square of the length by that which would not fold, of skin that is too long by `resting`.
+float rested_ratio(float ratio, float resting) {
+    return ratio * (1.0 - resting) * (1.0 - resting);
+}
+
 // The excess of length that becomes folds, 1 at most.
 float fold_excess(float ratio, float slack, float share) {
     float shortening = max(1.0 - sqrt(ratio) - slack, 0.0);
