@@ -41,8 +41,9 @@ const std::vector<KnownDefine>& known_defines() {
     return known;
 }
 
-/// Shaders that interpolate light have no normals; they define this themselves.
-constexpr const char* kAtVertices = "LIT_AT_VERTICES";
+/// What only a shader's own text defines: that it interpolates light and has no normals, or lights
+/// all corners of a particle at once.
+constexpr const char* kOwnDefines[] = {"LIT_AT_VERTICES", "MEAN_OF_CORNERS"};
 
 std::string text_of(const std::string& path, const std::vector<gpu::ShaderDefine>& defines) {
     const Result<gpu::ShaderSource> source =
@@ -138,7 +139,9 @@ std::string describe(const Defines& defines) {
 /// The errors that glslangValidator reports for a stage, "" if none.
 std::string validate(const test::TemporaryFolder& folder, const std::string& stage) {
     std::set<std::string> names = tested_names(text_of(stage, {}));
-    names.erase(kAtVertices);
+    for (const char* name : kOwnDefines) {
+        names.erase(name);
+    }
     for (const KnownDefine& known : known_defines()) {
         names.erase(std::string(known.name));
     }
