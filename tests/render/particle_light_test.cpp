@@ -2,6 +2,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "tests/near.h"
+#include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -19,19 +20,11 @@ namespace {
 struct LitScene : Scene {
     LitScene() { world.insert_resource(FrameTime{}); }
 
-    /// White, at rest, in the middle of their life of a second.
+    /// White, in the middle of their life of a second.
     Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
-        ParticlePool pool;
-        for (const Vec3& place : places) {
-            pool.x.push_back(place.x);
-            pool.y.push_back(place.y);
-            pool.z.push_back(place.z);
-            pool.vx.push_back(1);
-            pool.vy.push_back(0.5f);
-            pool.vz.push_back(0.25f);
-            pool.age.push_back(0.5f);
-            pool.life.push_back(1);
-            pool.look.push_back(static_cast<std::uint32_t>(pool.look.size()) * 7919);
+        ParticlePool pool = pool_at(places, {1, 0.5f, 0.25f});
+        for (std::uint32_t i = 0; i < pool.look.size(); ++i) {
+            pool.look[i] = i * 7919;
         }
         return world.create(ParticleEmitter{}, look, pool);
     }

@@ -4,6 +4,7 @@
 #include "render/light_list.h"
 #include "render/particle_draws.h"
 #include "tests/near.h"
+#include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/common.hpp>
@@ -21,19 +22,7 @@ struct ParticleScene : Scene {
 
     /// Particles at rest, in the middle of their life of a second.
     Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
-        ParticlePool pool;
-        for (const Vec3& place : places) {
-            pool.x.push_back(place.x);
-            pool.y.push_back(place.y);
-            pool.z.push_back(place.z);
-            for (auto* column : {&pool.vx, &pool.vy, &pool.vz}) {
-                column->push_back(0);
-            }
-            pool.age.push_back(0.5f);
-            pool.life.push_back(1);
-            pool.look.push_back(7);
-        }
-        return world.create(ParticleEmitter{}, look, pool);
+        return world.create(ParticleEmitter{}, look, pool_at(places));
     }
     [[nodiscard]] RenderView view() const { return look({0, 0, 1}, {0, 0, 0}, 9, 9); }
     Vec3 middle() { return rgb_at(radiance(view()), 4, 4); }

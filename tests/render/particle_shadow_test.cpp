@@ -6,6 +6,7 @@
 #include "render/graph/frame_graph.h"
 #include "render/passes/particle_shadow_pass.h"
 #include "tests/near.h"
+#include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
 
@@ -38,19 +39,7 @@ struct ShadowScene : Scene {
     }
     /// Particles at rest, in the middle of their life.
     Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
-        ParticlePool pool;
-        for (const Vec3& place : places) {
-            pool.x.push_back(place.x);
-            pool.y.push_back(place.y);
-            pool.z.push_back(place.z);
-            for (auto* column : {&pool.vx, &pool.vy, &pool.vz}) {
-                column->push_back(0);
-            }
-            pool.age.push_back(0.5f);
-            pool.life.push_back(1);
-            pool.look.push_back(7);
-        }
-        return world.create(ParticleEmitter{}, look, pool);
+        return world.create(ParticleEmitter{}, look, pool_at(places));
     }
     gpu::FloatImage wall_image(float z = 0) { return radiance(look({0, 0, z + 2}, {0, 0, z})); }
     /// At the middle of the wall; a pixel is 1/16 m.
