@@ -71,7 +71,7 @@ int slice_of(const ClusterShape& shape, float distance) {
     return static_cast<int>(std::clamp(slice, 0.0f, static_cast<float>(shape.slices - 1)));
 }
 
-layout::uvec2 pack(const CellBox& box) {
+layout::uvec2 pack(const ClusterBox& box) {
     const auto bits = [](int value, int shift) {
         return static_cast<layout::uint>(value) << shift;
     };
@@ -105,7 +105,7 @@ ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRea
 }
 
 bool find_cells(
-    const RenderView& view, const ClusterShape& shape, const LightReach& light, CellBox& box) {
+    const RenderView& view, const ClusterShape& shape, const LightReach& light, ClusterBox& box) {
     box = {{0, shape.columns - 1}, {0, shape.rows - 1}, {0, shape.slices - 1}};
     if (is_unbounded(light)) {
         return true;
@@ -141,7 +141,7 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
     const Vec3 eye = camera_position(view);
     for (std::size_t i = 0; i < lights.reach.size(); ++i) {
         const LightReach& light = lights.reach[i];
-        CellBox box;
+        ClusterBox box;
         if (!find_cells(view, clusters.shape, light, box)) {
             continue;
         }

@@ -37,7 +37,7 @@ struct ClusterShape {
 };
 
 /// A box of cells, both ends included.
-struct CellBox {
+struct ClusterBox {
     int column[2] = {0, 0};
     int row[2] = {0, 0};
     int slice[2] = {0, 0};
@@ -72,7 +72,7 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
 
 /// The cells that a light may touch; false if it is wholly behind the camera or off screen.
 [[nodiscard]] bool find_cells(
-    const RenderView& view, const ClusterShape& shape, const LightReach& light, CellBox& box);
+    const RenderView& view, const ClusterShape& shape, const LightReach& light, ClusterBox& box);
 
 /// The cell of a pixel at `distance` along the view axis [m]; the same as in lib/lighting.glsl.
 [[nodiscard]] int cell_of(const ClusterShape& shape, float pixel_x, float pixel_y, float distance);

@@ -24,7 +24,7 @@ struct FrameData;
 /// What the particles of a look are drawn into.
 enum class LookLayer : std::uint8_t { Full, Half, Weighted };
 
-struct ParticleWater {
+struct DrawnWater {
     const Water* water = nullptr;
     WaterFrame frame{};
 };
@@ -42,7 +42,7 @@ struct ParticleDraws {
     std::vector<ParticleInstance> instances = {};  ///< those that are sorted, then `weighted`
     std::vector<ParticleInstance> sorted = {};     ///< likewise, from back to front
     DistanceOrder order = {};
-    std::vector<ParticleWater> waters = {};
+    std::vector<DrawnWater> waters = {};
     SpriteFeatures features = {};
     bool lit_in_middle = false;
     bool soft = false;     ///< some fade where they meet a surface

@@ -95,8 +95,8 @@ void append_runs(
 }
 
 /// Below the rest level of some water, wherever its waves are.
-bool is_under_water(std::span<const ParticleWater> waters, const Vec3& place) {
-    return std::any_of(waters.begin(), waters.end(), [&](const ParticleWater& body) {
+bool is_under_water(std::span<const DrawnWater> waters, const Vec3& place) {
+    return std::any_of(waters.begin(), waters.end(), [&](const DrawnWater& body) {
         const Vec3 local = body.frame.local(place);
         return local.y < 0 && is_inside(*body.water, {local.x, local.z});
     });

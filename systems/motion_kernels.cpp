@@ -38,6 +38,7 @@ inline constexpr float kCos2 = 2.443315711809948e-5f;
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
+namespace {
 
 // Each returns the number of entities processed; the scalar version handles the remainder.
 
@@ -285,6 +286,7 @@ sway_positions_vector(const SwayArrays& sway, double time, std::span<Transform> 
 
 #endif  // HWY_TARGET
 
+}  // namespace
 }  // namespace limn::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

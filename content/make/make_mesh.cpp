@@ -83,7 +83,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<TorusShape, make_torus>("torus", "a ring around +y"),
         mesh_kind<TriangleShape, make_triangle>("triangle", "an equilateral triangle that faces z"),
         mesh_kind<VaultShape, make_vault>("vault", "a pointed cross vault over a rectangle"),
-        mesh_kind<WallShape, make_wall>("wall", "a wall with a pointed or round opening, facing z"),
+        mesh_kind<MasonryWall, make_wall>(
+            "wall", "a wall with a pointed or round opening, facing z"),
     };
     return kinds;
 }

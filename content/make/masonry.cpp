@@ -106,7 +106,7 @@ void append_polygon(
 }
 
 /// Right half of the outline of a wall's opening, from the bottom to the top.
-std::vector<CurvePoint> opening_outline(const WallShape& shape, const Vec3& size) {
+std::vector<CurvePoint> opening_outline(const MasonryWall& shape, const Vec3& size) {
     constexpr float kMinMargin = 0.01f;  // beside and above the opening / wall size
     const float span = std::min(shape.span, (1.0f - kMinMargin) * size.x);
     if (shape.round) {
@@ -281,7 +281,7 @@ MeshData make_arch(const ArchShape& shape) {
     return mesh;
 }
 
-MeshData make_wall(const WallShape& shape) {
+MeshData make_wall(const MasonryWall& shape) {
     const Vec3 size = shape.size;
     LIMN_CHECK(size.x > 0 && size.y > 0 && size.z > 0 && shape.span > 0);
     const float half_x = 0.5f * size.x;

@@ -43,7 +43,7 @@ LIMN_FIELDS(ArchShape) {
 }
 
 /// A wall that stands on y = 0, with one opening: pointed, on the ground or on a sill; or round.
-struct WallShape {
+struct MasonryWall {
     Vec3 size = {4, 5, 0.6f};
     float span = 2.8f;
     float spring = 2.0f;
@@ -54,7 +54,7 @@ struct WallShape {
     int segments = 12;
 };
 
-LIMN_FIELDS(WallShape) {
+LIMN_FIELDS(MasonryWall) {
     LIMN_FIELD(size, "width, height and thickness", "m", 1e-2, 1e4);
     LIMN_FIELD(span, "width of the opening, less than the wall's", "m", 1e-3, 1e4);
     LIMN_FIELD(spring, "height where the curve begins; center of a round opening", "m", 0, 1e4);
@@ -87,7 +87,7 @@ LIMN_FIELDS(VaultShape) {
 }
 
 [[nodiscard]] MeshData make_arch(const ArchShape& shape);
-[[nodiscard]] MeshData make_wall(const WallShape& shape);
+[[nodiscard]] MeshData make_wall(const MasonryWall& shape);
 [[nodiscard]] MeshData make_vault(const VaultShape& shape);
 
 /// A point on the right half of a curve that is symmetric about x = 0.

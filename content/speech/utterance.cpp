@@ -125,7 +125,7 @@ Utterance spell_utterance(std::string_view text) {
     return utterance;
 }
 
-Utterance join_phrase(std::span<const Sound> sounds, const Wave& wave) {
+Utterance join_phrase(std::span<const Sound> sounds, const Recording& wave) {
     const WaveRange audible = audible_range(wave);
     Utterance phrase;
     phrase.track = make_speech_track(sounds);
@@ -173,7 +173,7 @@ Result<Utterance> speak_utterance(std::string_view text, const std::string& voic
                 "{}: found no sound for the voice \"{}\", expected one of {} --voices", kProgram,
                 voice, kProgram);
         }
-        const Wave wave = LIMN_TRY(parse_wave(*bytes, file));
+        const Recording wave = LIMN_TRY(parse_wave(*bytes, file));
         append_utterance(utterance, join_phrase(sounds_of_ipa(output.text), wave));
     }
     return utterance;

@@ -15,7 +15,7 @@ namespace limn {
 
 struct Utterance {
     SpeechTrack track;
-    Wave wave;  ///< without samples: no audio
+    Recording wave;  ///< without samples: no audio
 };
 
 /// The phrases of a text, each up to and including its punctuation; none without letters or digits.
@@ -33,7 +33,7 @@ struct Utterance {
 [[nodiscard]] Result<Utterance> speak_utterance(std::string_view text, const std::string& voice);
 
 /// One phrase from its sounds and audio, with a margin of silence on both sides.
-[[nodiscard]] Utterance join_phrase(std::span<const Sound> sounds, const Wave& wave);
+[[nodiscard]] Utterance join_phrase(std::span<const Sound> sounds, const Recording& wave);
 
 /// `next` after the end of `utterance`.
 void append_utterance(Utterance& utterance, const Utterance& next);

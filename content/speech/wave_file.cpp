@@ -40,11 +40,11 @@ void append(std::vector<std::byte>& bytes, std::string_view text) {
 
 }  // namespace
 
-Result<Wave> parse_wave(std::span<const std::byte> bytes, const std::string& file) {
+Result<Recording> parse_wave(std::span<const std::byte> bytes, const std::string& file) {
     if (bytes.size() < kHeader || name_at(bytes, 0) != "RIFF" || name_at(bytes, 8) != "WAVE") {
         return fail("{}: found no RIFF header, expected a .wav file", file);
     }
-    Wave wave;
+    Recording wave;
     bool has_format = false;
     for (std::size_t at = kHeader; at + kChunkHeader <= bytes.size();) {
         const std::string_view name = name_at(bytes, at);
@@ -78,7 +78,7 @@ Result<Wave> parse_wave(std::span<const std::byte> bytes, const std::string& fil
     return fail("{}: found no sound, expected the chunks \"fmt \" and \"data\"", file);
 }
 
-std::vector<std::byte> write_wave(const Wave& wave) {
+std::vector<std::byte> write_wave(const Recording& wave) {
     const auto size = static_cast<std::uint32_t>(wave.samples.size() * sizeof(std::int16_t));
     std::vector<std::byte> bytes;
     append(bytes, std::string_view("RIFF"));
@@ -98,7 +98,7 @@ std::vector<std::byte> write_wave(const Wave& wave) {
     return bytes;
 }
 
-WaveRange audible_range(const Wave& wave) {
+WaveRange audible_range(const Recording& wave) {
     const auto is_audible = [](std::int16_t sample) {
         return sample > kAudible || sample < -kAudible;
     };

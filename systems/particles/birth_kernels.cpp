@@ -14,6 +14,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
+namespace {
 
 #if HWY_TARGET == HWY_SCALAR  // no vectors here
 
@@ -423,6 +424,7 @@ std::size_t draw_births_vector(
 
 #endif
 
+}  // namespace
 }  // namespace limn::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -25,6 +25,7 @@ inline constexpr float kSkin = 0x1p-20f;  // of coordinates: 8 units in the last
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
+namespace {
 
 // Returns how many of `count` it has tested; the scalar version handles the remainder.
 
@@ -180,6 +181,7 @@ std::size_t find_near_vector(
 
 #endif  // HWY_TARGET
 
+}  // namespace
 }  // namespace limn::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

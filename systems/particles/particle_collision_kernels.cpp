@@ -49,6 +49,7 @@ struct Field {
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
+namespace {
 
 using namespace particle_surface;
 
@@ -290,6 +291,7 @@ std::size_t field_vector(const ParticleColumns& p, const Field& field, const Res
 
 #endif  // HWY_TARGET
 
+}  // namespace
 }  // namespace limn::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -12,6 +12,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
+namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -156,6 +157,7 @@ std::size_t foam_one_lane(
     return foam(hn::FixedTag<float, 1>(), cascade, threshold, gain, fade, coverage, begin, end);
 }
 
+}  // namespace
 }  // namespace limn::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -35,6 +35,7 @@ inline constexpr float kCos4 = -2.60518434e-7f;
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
+namespace {
 
 #if HWY_TARGET == HWY_SCALAR  // no vectors here
 
@@ -113,6 +114,7 @@ std::size_t sum_waves_vector(
 
 #endif  // HWY_TARGET
 
+}  // namespace
 }  // namespace limn::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -144,7 +144,7 @@ TEST_CASE("speech: a track covers its time without gaps, and the last syllable i
 }
 
 TEST_CASE("speech: sounds of a phrase end with its audio, and phrases stay in step with theirs") {
-    Wave wave{.rate = 8000, .samples = std::vector<std::int16_t>(4000, 0)};
+    Recording wave{.rate = 8000, .samples = std::vector<std::int16_t>(4000, 0)};
     for (std::size_t i = 1000; i < 3000; ++i) {
         wave.samples[i] = i % 2 == 0 ? 8000 : -8000;
     }
@@ -171,9 +171,9 @@ TEST_CASE("speech: text is cut into phrases at its punctuation, and empty text s
 }
 
 TEST_CASE("wave file: sound survives writing, and other files are refused in a line") {
-    const Wave wave{.rate = 22050, .samples = {0, 100, -32768, 32767}};
+    const Recording wave{.rate = 22050, .samples = {0, 100, -32768, 32767}};
     const std::vector<std::byte> bytes = write_wave(wave);
-    const Result<Wave> read = parse_wave(bytes, "x.wav");
+    const Result<Recording> read = parse_wave(bytes, "x.wav");
     REQUIRE(read.ok());
     CHECK(read->rate == wave.rate);
     CHECK(read->samples == wave.samples);
@@ -182,7 +182,7 @@ TEST_CASE("wave file: sound survives writing, and other files are refused in a l
     piped[40] = piped[41] = piped[42] = piped[43] = std::byte{0xff};
     CHECK(parse_wave(piped, "x.wav").value().samples == wave.samples);
     for (std::size_t size = 0; size < bytes.size(); ++size) {
-        const Result<Wave> part = parse_wave(std::span(bytes).first(size), "x.wav");
+        const Result<Recording> part = parse_wave(std::span(bytes).first(size), "x.wav");
         CHECK((part.ok() || part.error().message.starts_with("x.wav: found ")));
     }
     std::vector<std::byte> stereo = bytes;

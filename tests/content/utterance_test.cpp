@@ -61,7 +61,7 @@ struct FakeEspeak {
     }
     /// A tone with silence before and after it, all in seconds.
     void add_tone(const std::string& name, float before, float tone, float after) const {
-        Wave wave;
+        Recording wave;
         const auto samples = [&](float time) {
             return static_cast<std::size_t>(time * static_cast<float>(wave.rate));
         };

@@ -1,5 +1,5 @@
-// The rules of the house that no compiler knows: who may include whom, unique file names, one
-// pragma.
+// The rules of the house that no compiler knows: who may include whom, unique names of
+// files and types, one pragma.
 
 #include <doctest/doctest.h>
 
@@ -183,6 +183,39 @@ TEST_CASE("house: file names are unique in the whole tree") {
         INFO(source.path << " and " << added.first->second);
         CHECK(added.second);
     }
+}
+
+TEST_CASE("house: no two types of one namespace have the same name, which no linker sees") {
+    const std::regex opened(R"(^(?:inline )?namespace ?([\w:]*) \{$)");
+    const std::regex closed(R"(^\}  // namespace)");
+    const std::regex defined(
+        R"(^(?:struct|class|union|enum class|enum) (\w+)(?: final)?(?: :[^:;].*)? \{)");
+    std::map<std::string, std::string> first;
+    for (const SourceFile& source : own_sources()) {
+        if (starts_with(source.path, "tests/ecs/compile_errors/")
+            || source.path == "bench/micro/ecs_compile.h") {
+            continue;  // programs of their own
+        }
+        std::vector<std::string> namespaces;
+        for (const std::string& line : source.lines) {
+            std::smatch match;
+            if (std::regex_search(line, match, opened)) {
+                namespaces.push_back(match[1].length() == 0 ? source.path : match[1].str());
+            } else if (std::regex_search(line, closed) && !namespaces.empty()) {
+                namespaces.pop_back();
+            } else if (!namespaces.empty() && std::regex_search(line, match, defined)) {
+                std::string name;
+                for (const std::string& part : namespaces) {
+                    name += part + "::";
+                }
+                name += match[1];
+                const auto added = first.emplace(name, source.path);
+                INFO(name << " is defined in " << source.path << " and " << added.first->second);
+                CHECK(added.second);
+            }
+        }
+    }
+    CHECK(first.size() > 500);
 }
 
 TEST_CASE("house: every header has its pragma, every source includes its own header first") {
