@@ -1,4 +1,5 @@
 #include "render/gpu/buffer.h"
+#include "render/gpu/context.h"
 #include "render/gpu/readback.h"
 #include "tests/render/render_fixture.h"
 
