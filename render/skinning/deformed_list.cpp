@@ -65,7 +65,7 @@ std::uint64_t hash_at(const std::vector<T>& before, const std::vector<T>& now, f
     const auto hash_values = [](const std::vector<T>& values) {
         return hash_bytes(values.data(), values.size() * sizeof(T), values.size());
     };
-    const bool still = before.size() != now.size()
+    const bool still = before.size() != now.size() || now.empty()
                        || std::memcmp(before.data(), now.data(), now.size() * sizeof(T)) == 0;
     if (still || alpha == 1.0f) {
         return hash_values(now);
