@@ -79,6 +79,32 @@ void append_births_of(
     append_births(trail, *pool, back, grows && head ? &*head : nullptr, ribbons);
 }
 
+void clear_insets(LookRecord& record) {
+    std::fill_n(record.begin() + layout::kLookInsets, layout::kMaxInsetFrames / 4, Vec4(0));
+}
+
+/// Instead of in the middle. What is different at the corners is meant for those of the whole quad.
+void light_at_corners(LookRecord& record) {
+    record[layout::kLookFocus].y = 0;
+    const bool is_six_way = record[layout::kLookMotion].w >= 0;
+    if (is_lit_at_corners(record) && !is_six_way) {
+        clear_insets(record);
+    }
+}
+
+void set_insets(const std::vector<float>& insets, LookRecord& record) {
+    for (std::size_t i = 0; i < insets.size(); ++i) {
+        record[layout::kLookInsets + i / 4][static_cast<int>(i % 4)] = insets[i];
+    }
+    const bool moves_in_frame = record[layout::kLookMotion].x >= 0;
+    if (moves_in_frame) {
+        clear_insets(record);
+    }
+    if (!is_lit_in_middle(record)) {
+        light_at_corners(record);
+    }
+}
+
 std::uint32_t add_look(
     const FrameData& frame, const ParticleLook& look, ParticleDraws& draws,
     std::optional<Vec3> place = std::nullopt) {
@@ -107,6 +133,7 @@ std::uint32_t add_look(
         draws.extents.back().texels = std::max(
             static_cast<float>(its.width) / static_cast<float>(look.columns),
             static_cast<float>(its.height) / static_cast<float>(look.rows));
+        set_insets(draws.insets.find(its, look.image, look.columns, look.rows), draws.looks.back());
     }
     draws.layers.push_back(layer_of(look));
     draws.has_halves = draws.has_halves || draws.layers.back() == LookLayer::Half;
@@ -141,6 +168,7 @@ void collect_ribbons(const FrameData& frame, float back, float step, ParticleDra
         draws.looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
         draws.looks[index][layout::kLookMotion].w = -1;
         draws.extents[index] = {};
+        clear_insets(draws.looks[index]);  // its image repeats
         for (const std::uint32_t before : draws.ribbons.segments) {
             const Vec3 middle = 0.5f
                                 * (draws.ribbons.points[before + 1].position
@@ -178,7 +206,7 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
     const auto add_once = [&](const ParticleLook& look) {
         const std::uint32_t index = add_look(frame, look, draws);
         draws.looks[index][2].w = static_cast<float>(layout::kFacingBillboard);
-        draws.looks[index][layout::kLookFocus].y = 0;
+        light_at_corners(draws.looks[index]);
         draws.looks[index][layout::kLookMore + 1].w = 0;  // no life to fade at the end of
         const bool is_repeated =
             index > 0 && draws.looks[index] == draws.looks[index - 1]
@@ -317,7 +345,7 @@ void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& d
                   const GpuParticles& particles, const ParticleCollision* collision) {
             if (draws.looks.size() < kMaxLooks) {
                 const std::uint32_t index = add_look(frame, enlarged(look, stride), draws);
-                draws.looks[index][layout::kLookFocus].y = 0;
+                light_at_corners(draws.looks[index]);
                 add_pull(world, entity, index, draws);
                 gpu.add(
                     frame, entity, emitter, particles, index, sort_passes(look), collision, stride);
@@ -372,6 +400,7 @@ void collect_particle_draws(FrameData& frame, GpuParticlePools& gpu, ParticleDra
     const float step = particle_step(frame);
     const float back = particle_lag(frame);
     clear(draws);
+    draws.insets.use_assets(frame.assets_identity);
     world.query<const Water, const WorldTransform>().each(
         [&](const Water& water, const WorldTransform& its) {
             draws.waters.push_back({&water, water_frame(its.world)});

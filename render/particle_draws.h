@@ -4,6 +4,7 @@
 #include "ecs/components/water_frame.h"
 #include "ecs/entity.h"
 #include "render/billboard_list.h"
+#include "render/frame_insets.h"
 #include "render/particle_culling.h"
 #include "render/particle_list.h"
 #include "render/ribbon_list.h"
@@ -43,6 +44,7 @@ struct ParticleDraws {
     std::vector<ParticleInstance> sorted = {};     ///< likewise, from back to front
     DistanceOrder order = {};
     std::vector<DrawnWater> waters = {};
+    FrameInsetTable insets = {};  ///< from frame to frame
     SpriteFeatures features = {};
     bool lit_in_middle = false;
     bool soft = false;     ///< some fade where they meet a surface

@@ -1,4 +1,4 @@
-// A particle as a quad, lit at its corners. Definitions: those of lib/lighting.glsl, and
+// A particle as a quad of what its image shows, lit at its corners. Definitions: those of lib/lighting.glsl, and
 //   LIT      some particle scatters light that is evaluated at its corners
 //   LIT_MIDDLE  some scatters light that particle_light.comp has evaluated
 //   SIX_WAY  some have images of the light from six sides
@@ -225,6 +225,15 @@ void main() {
         quad = billboard_quad(p.record, p.position);
     }
 #endif
+
+    float shown = frame_shown(p, book, int(more.x));
+#ifdef BILLBOARDS
+    shown = is_billboard ? texelFetch(billboard_quads, p.record * int(kBillboardTexels) + 1).w : shown;
+#endif
+    Flipbook flipbook = flipbook_at(shown, book, int(more.x));
+#ifdef IMAGES
+    corner.xy = trimmed_corner(corner.xy, look, flipbook, quad, pixel_extent(p.position) / resolution);
+#endif
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
 #ifdef RIBBONS
     if (is_ribbon) {
@@ -318,11 +327,6 @@ void main() {
 #endif
     light = vec4(color.rgb * radiance * color.a, color.a);
 
-    float shown = frame_shown(p, book, int(more.x));
-#ifdef BILLBOARDS
-    shown = is_billboard ? texelFetch(billboard_quads, p.record * int(kBillboardTexels) + 1).w : shown;
-#endif
-    Flipbook flipbook = flipbook_at(shown, book, int(more.x));
     frames = flipbook.frames;
     next_frame = vec4(flipbook.next, look_texel(look, kLookMotion).xy);
     blend = vec4(glow.z, streak.z, flipbook.progress, book.w);

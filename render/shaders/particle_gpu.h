@@ -56,7 +56,12 @@ const uint kLookMotion = 49u;
 //  50  acceleration at rest [m/s^2]; drag [1/s]
 //  51  opacity above which the lens focuses on them, 1: never; 1: lit in the middle, by particle_light.comp
 const uint kLookFocus = 51u;
-const uint kLookTexels = 52u;
+//  52  insets of the frames of its image (render/frame_insets.h), four frames a texel: left, bottom, right and top as
+//      digits to the base kInsetSteps / 2, the first one counting 1
+const uint kLookInsets = 52u;
+const uint kMaxInsetFrames = 64u;
+const uint kInsetSteps = 128u;  // of a frame
+const uint kLookTexels = kLookInsets + kMaxInsetFrames / 4u;
 
 // ParticleShadowRecord: rows that map the world to the opacity maps (lib/particle_shadow.glsl).
 //   0, 1, 3  texture coordinates s and t, as rows 0 and 1 divided by row 3

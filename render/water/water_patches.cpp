@@ -31,6 +31,12 @@ bool is_visible(const Frustum& frustum, const Bounds& box) {
         });
 }
 
+/// The nearest of four squares around `middle`; the others from near to far are this index
+/// xor 1, 2 and 3.
+int nearest_square(const Vec2& middle, const Vec3& camera) {
+    return (camera.x > middle.x ? 1 : 0) + (camera.z > middle.y ? 2 : 0);
+}
+
 void walk(
     const PatchSource& source, const Vec2& corner, float size, std::vector<WaterPatch>& patches) {
     const Vec2 end = corner + size;
@@ -42,8 +48,10 @@ void walk(
     }
     const bool near = distance_to(box, source.camera) < source.detail * size;
     if (near && size > source.finest && patches.size() + 4 < kMaxPatches) {
+        const int nearest = nearest_square(corner + 0.5f * size, source.camera);
         for (int i = 0; i < 4; ++i) {
-            walk(source, corner + 0.5f * size * Vec2(i % 2, i / 2), 0.5f * size, patches);
+            const int square = nearest ^ i;
+            walk(source, corner + 0.5f * size * Vec2(square % 2, square / 2), 0.5f * size, patches);
         }
     } else if (patches.size() < kMaxPatches) {
         patches.push_back(
@@ -81,8 +89,12 @@ void append_water_patches(const PatchSource& source, std::vector<WaterPatch>& pa
     // Four squares of a fixed lattice around the camera.
     const Vec2 middle =
         glm::floor(Vec2(source.camera.x, source.camera.z) / kWaterReach + 0.5f) * kWaterReach;
+    const int nearest = nearest_square(middle, source.camera);
     for (int i = 0; i < 4; ++i) {
-        walk(source, middle - kWaterReach * Vec2(1 - i % 2, 1 - i / 2), kWaterReach, patches);
+        const int square = nearest ^ i;
+        walk(
+            source, middle - kWaterReach * Vec2(1 - square % 2, 1 - square / 2), kWaterReach,
+            patches);
     }
 }
 

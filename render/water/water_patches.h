@@ -51,8 +51,8 @@ struct PatchSource {
 /// wave_share() of lib/water_surface.glsl: those left out would be multiplied by 0.
 void resolve_lines(std::span<const WaveLine> lines, std::span<WaterPatch> patches);
 
-/// Appends the patches that may be visible, at most kMaxWaterPatches in total; beyond that the last
-/// ones are too large or missing.
+/// Appends the patches that may be visible, none before one that may hide it from the camera, at
+/// most kMaxWaterPatches in total; beyond that the last ones are too large or missing.
 void append_water_patches(const PatchSource& source, std::vector<WaterPatch>& patches);
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "tests/near.h"
+#include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/common.hpp>
@@ -15,10 +16,11 @@
 namespace limn::test {
 namespace {
 
-constexpr int kFrame = 64;          // pixels of a side, of the image drawn too
-constexpr float kRadius = 13;       // of the disc [px]
-constexpr Vec2 kStart = {20, 20};   // its middle in the first frame [px], y downward
-constexpr Vec2 kMove = {9, 6};      // from frame to frame [px]: its edge passes over itself
+constexpr int kFrame = 64;         // pixels of a side, of the image drawn too
+constexpr float kRadius = 13;      // of the disc [px]
+constexpr Vec2 kStart = {20, 20};  // its middle in the first frame [px], y downward
+constexpr Vec2 kMove = {9, 6};     // from frame to frame [px]: its edge passes over itself
+constexpr Vec3 kMiddle[] = {{0, 0, 0}};
 constexpr float kStrength = 0.25f;  // of the motion map, in frames
 
 /// Opacity of the disc about `middle`, which falls over six pixels.
@@ -67,19 +69,18 @@ struct FlipbookScene : Scene {
         look_.softness = 0;
         look_.turn_spread = 0;
     }
+    /// The image `shown` frames after the first, from `away` [m].
+    gpu::FloatImage draw(float shown, float away) {
+        look_.frame_rate = 2 * shown;
+        ParticlePool pool = pool_at(kMiddle);
+        const Entity its = world.create(ParticleEmitter{}, look_, pool);
+        gpu::FloatImage image = radiance(look({0, 0, away}, {0, 0, 0}, kFrame, kFrame));
+        world.destroy(its);
+        return image;
+    }
     /// Largest difference from a disc about where it is in frame `shown`, which need not be whole.
     float worst(float shown) {
-        ParticlePool pool;
-        for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz}) {
-            column->push_back(0);
-        }
-        pool.age = {0.5f};
-        pool.life = {1};
-        pool.look = {7};
-        look_.frame_rate = 2 * shown;
-        const Entity its = world.create(ParticleEmitter{}, look_, pool);
-        const gpu::FloatImage image = radiance(look({0, 0, 1}, {0, 0, 0}, kFrame, kFrame));
-        world.destroy(its);
+        const gpu::FloatImage image = draw(shown, 1);
         float most = 0;
         for (int y = 0; y < kFrame; ++y) {
             for (int x = 0; x < kFrame; ++x) {
@@ -106,6 +107,37 @@ TEST_CASE_FIXTURE(
     its.motion = {};
     CHECK(worst(1.5f) > 0.3f);
     CHECK(worst(1) < 0.03f);
+}
+
+TEST_CASE_FIXTURE(
+    FlipbookScene, "particle flipbook: quads without what is transparent show what whole ones do") {
+    look_.motion_strength = 0;
+    const ImageId still = look_.motion;
+    for (const float angle : {0.0f, 1.0f}) {
+        for (const float away : {0.7f, 1.0f, 3.0f, 9.0f}) {
+            for (const float shown : {0.0f, 0.5f, 1.25f, 3.0f}) {
+                look_.turn_spread = angle;
+                look_.motion = {};
+                const gpu::FloatImage trimmed = draw(shown, away);
+                look_.motion = still;  // which may show any part of the frame
+                const gpu::FloatImage whole = draw(shown, away);
+                float most = 0;
+                float sum = 0;
+                for (int y = 0; y < kFrame; ++y) {
+                    for (int x = 0; x < kFrame; ++x) {
+                        const float want = rgb_at(whole, x, y).x;
+                        most = std::max(most, std::abs(rgb_at(trimmed, x, y).x - want));
+                        sum += want;
+                    }
+                }
+                CAPTURE(angle);
+                CAPTURE(away);
+                CAPTURE(shown);
+                CHECK(sum > 1);
+                CHECK(most < 0.004f);
+            }
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(

@@ -138,6 +138,34 @@ TEST_CASE(
     CHECK(largest > 1000);
 }
 
+TEST_CASE("water patches: along each ray from the camera the nearer ones come first") {
+    const Vec2 halves[] = {{0, 0}, {90, 40}};
+    for (const Vec2& half : halves) {
+        const Vec3 camera = {13, 2, -21};
+        std::vector<WaterPatch> patches;
+        append_water_patches(source_of(half, camera), patches);
+        for (int direction = 0; direction < 32; ++direction) {
+            const float angle = static_cast<float>(direction) * 0.19635f + 0.1f;
+            const Vec2 along = {std::cos(angle), std::sin(angle)};
+            std::size_t last = 0;
+            for (float distance = 0.25f; distance < 200; distance *= 1.03f) {
+                const Vec2 point = Vec2(camera.x, camera.z) + distance * along;
+                const auto covers = [&](const WaterPatch& p) {
+                    const Vec2 end = p.corner + p.size;
+                    return glm::all(glm::greaterThanEqual(point, p.corner))
+                           && glm::all(glm::lessThan(point, end));
+                };
+                const auto found = std::find_if(patches.begin(), patches.end(), covers);
+                if (found != patches.end()) {
+                    const auto index = static_cast<std::size_t>(found - patches.begin());
+                    CHECK(index >= last);
+                    last = index;
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("water patches: they stay where they are in the water, however the camera moves") {
     std::vector<WaterPatch> patches;
     append_water_patches(source_of({0, 0}, {1234.5f, 2, -99.9f}), patches);

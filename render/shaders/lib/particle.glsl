@@ -94,6 +94,7 @@ struct Flipbook {
     vec4 frames;     // texture coordinates: scale xy, offset of the frame zw
     vec2 next;       // offset of the next frame
     float progress;  // toward it, 0 .. 1
+    vec2 numbers;    // of the frame and the next one
 };
 // Which frame it shows; `book`: texel 3 of the look; `kind`: ParticleFrames.
 float frame_shown(Particle p, vec4 book, int kind) {
@@ -108,7 +109,8 @@ Flipbook flipbook_at(float shown, vec4 book, int kind) {
     float frame = mod(floor(shown), count);
     float next = loops ? mod(frame + 1.0, count) : min(frame + 1.0, count - 1.0);
     return Flipbook(vec4(1.0 / book.xy, vec2(mod(frame, book.x), floor(frame / book.x)) / book.xy),
-                    vec2(mod(next, book.x), floor(next / book.x)) / book.xy, count > 1.0 ? fract(shown) : 0.0);
+                    vec2(mod(next, book.x), floor(next / book.x)) / book.xy, count > 1.0 ? fract(shown) : 0.0,
+                    vec2(frame, next));
 }
 Flipbook flipbook_of(Particle p, vec4 book, int kind) {
     return flipbook_at(frame_shown(p, book, kind), book, kind);

@@ -4,6 +4,7 @@ const int kFacingCamera = 0;
 const int kFacingVelocity = 1;
 const int kFacingGround = 2;
 const int kFacingPixels = 3;
+const float kFilterPixels = 1.0;  // that a mip level as coarse as a pixel spreads what a frame shows
 
 // Half the extents of the quad in world space: along x and y of `corner`.
 struct Quad {
@@ -41,4 +42,24 @@ Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, floa
         right = cos(lean) * right + sin(lean) * cross(right, up);
     }
     return Quad(half_size * right, half_size * up);
+}
+
+// Left, bottom, right and top of what a frame shows, as a quad's corners (render/frame_insets.h).
+vec4 frame_box(int look, float number) {
+    const float kBase = float(kInsetSteps / 2u);
+    const vec4 kDigits = vec4(1.0, kBase, kBase * kBase, kBase * kBase * kBase);
+    int n = int(number);
+    float code = n < int(kMaxInsetFrames) ? look_texel(look, kLookInsets + uint(n >> 2))[n & 3] : 0.0;
+    vec4 insets = mod(floor(code / kDigits), kBase) * (2.0 / float(kInsetSteps));
+    return vec4(-1.0 + insets.xy, 1.0 - insets.zw);
+}
+
+// The corner of a quad of what the book shows now; `pixel`: extent of a pixel [m], which filters may blur across.
+vec2 trimmed_corner(vec2 corner, int look, Flipbook book, Quad quad, float pixel) {
+    vec4 a = frame_box(look, book.numbers.x);
+    vec4 b = frame_box(look, book.numbers.y);
+    vec2 blur = kFilterPixels * pixel / max(vec2(length(quad.right), length(quad.up)), vec2(1e-6));
+    vec2 low = max(min(a.xy, b.xy) - blur, -1.0);
+    vec2 high = min(max(a.zw, b.zw) + blur, 1.0);
+    return mix(low, high, 0.5 + 0.5 * corner);
 }
