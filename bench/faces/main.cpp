@@ -2,6 +2,7 @@
 // can be drawn, not where a limit is missed.
 #include "bench/faces/face_crowd.h"
 #include "bench/faces/face_rows.h"
+#include "bench/parse_arguments.h"
 #include "bench/report_files.h"
 #include "ecs/base/jobs.h"
 
@@ -27,7 +28,9 @@ int main(int argc, char** argv) {
         ->check(CLI::IsMember({"measure", "deform", "growth", "pixels"}));
     app.add_option("--repeats", bench.repeats, "runs of each at most, of which the best counts")
         ->check(CLI::Range(1, 1000));
-    CLI11_PARSE(app, argc, argv);
+    if (const auto stop = bench::parse_arguments(app, "limn bench faces", argc, argv)) {
+        return *stop;
+    }
 
     bench.quiet = csv == "-" || json == "-";
     const auto wanted = [&](const char* part) { return only.empty() || only == part; };

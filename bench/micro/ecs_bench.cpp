@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -96,7 +97,8 @@ std::string machine_text() {
         "{}, {} cores, {}", processor, std::thread::hardware_concurrency(), compiler);
 }
 
-Report measure(const Options& options, bool& failed) {
+/// Empty, with an error, where no group has such a name.
+std::optional<Report> measure(const Options& options, bool& failed) {
     register_component<Position>();
     register_component<Velocity>();
     register_component<Rotation>();
@@ -134,10 +136,21 @@ Report measure(const Options& options, bool& failed) {
         {"doubling", [&] { doubling(bench); }},
         {"growth", [&] { growth(bench, largest); }},
     };
+    const auto is_wanted = [&](const auto& group) {
+        return group.first.find(options.only) != std::string_view::npos;
+    };
+    if (std::none_of(std::begin(groups), std::end(groups), is_wanted)) {
+        fmt::print(stderr, "ecs_bench: found --only {}, expected part of:", options.only);
+        for (const auto& [name, run] : groups) {
+            fmt::print(stderr, " {}", name);
+        }
+        fmt::print(stderr, "\n");
+        return std::nullopt;
+    }
     fmt::print("{}; {}\n{}", bench.report.machine, bench.report.flags, table_head());
-    for (const auto& [name, run] : groups) {
-        if (name.find(options.only) != std::string_view::npos) {
-            run();
+    for (const auto& group : groups) {
+        if (is_wanted(group)) {
+            group.second();
         }
     }
     failed = bench.failed;
@@ -162,9 +175,9 @@ int main(int argc, char** argv) {
         failed = !other.has_value();
     }
     const std::optional<Report> report =
-        options.from.empty() ? std::optional(measure(options, failed)) : read_report(options.from);
+        options.from.empty() ? measure(options, failed) : read_report(options.from);
     if (!report.has_value()) {
-        return 1;
+        return options.from.empty() ? 2 : 1;
     }
     const Report* beside = other.has_value() ? &*other : nullptr;
     const auto write = [&](const std::string& path, const auto& make) {

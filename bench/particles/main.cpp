@@ -1,5 +1,6 @@
 // The program behind `limn bench particles`. Fails with 1 where a report cannot be written, not
 // where a gate is missed.
+#include "bench/parse_arguments.h"
 #include "bench/particles/particle_race.h"
 #include "bench/particles/particle_rows.h"
 #include "bench/report_files.h"
@@ -30,7 +31,9 @@ int main(int argc, char** argv) {
     app.add_option(
            "--repeats", bench::max_repeats, "runs of each at most, of which the best counts")
         ->check(CLI::Range(1, 400));
-    CLI11_PARSE(app, argc, argv);
+    if (const auto stop = bench::parse_arguments(app, "limn bench particles", argc, argv)) {
+        return *stop;
+    }
 
     bench::ParticleBench bench;
     bench.quiet = csv == "-" || json == "-";

@@ -3,6 +3,7 @@
 #include "ecs/base/rng.h"
 #include "ecs/components/all.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/light.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
@@ -216,6 +217,16 @@ class EngineSprites {
         look_.softness = 0;
         look_.image = {0};
     }
+    /// White lamps around the middle of the particles, each of which reaches all of them.
+    void add_lamps(int count) {
+        for (int i = 0; i < count; ++i) {
+            const float turn = 2 * kPi * static_cast<float>(i) / static_cast<float>(count);
+            world_.create(
+                PointLight{.intensity = 5},
+                WorldTransform{affine_from(
+                    {3 * std::cos(turn), 3 * std::sin(turn), -kAway}, Quat(1, 0, 0, 0), Vec3(1))});
+        }
+    }
     /// Process time of a frame with them, less that of one without [s].
     double time(const ParticleLook& look) {
         const Entity all = emit(look);
@@ -329,6 +340,24 @@ void add_small_rows(ParticleBench& bench, gpu::Device& device, Renderer& rendere
     bench.add(GateRow{
         "20", "point of 2 px", points * kEach, images * kEach, "an image of 2 px, a quad", "ns",
         0.65});
+}
+
+/// Light of particles of 2 px, evaluated once or at four corners.
+void add_light_row(ParticleBench& bench, Renderer& renderer) {
+    constexpr std::size_t kCount = 20000;
+    constexpr double kEach = 1e9 / static_cast<double>(kCount);
+    EngineSprites engine(renderer, places(kCount, 2), 2);
+    engine.add_lamps(16);
+    ParticleLook look = engine.disc(ParticleFacing::Camera);
+    look.lit = 1;
+    look.emission = 0;
+    ParticleLook in_middle = look;
+    in_middle.lit_at = ParticleLitAt::Middle;
+    const auto [middle, corners] =
+        least([&] { return engine.time(in_middle); }, [&] { return engine.time(look); });
+    bench.add(GateRow{
+        "28", "disc of 2 px, 16 lamps, lit in the middle", middle * kEach, corners * kEach,
+        "lit at its corners", "ns", 0.9});
 }
 
 /// A million that fall: the engine's dispatch, and one that reads and writes the same.
@@ -445,6 +474,7 @@ void add_draw_rows(ParticleBench& bench) {
     }
     add_fill_rows(bench, **device, **renderer);
     add_small_rows(bench, **device, **renderer);
+    add_light_row(bench, **renderer);
     add_move_row(bench, **device);
 }
 

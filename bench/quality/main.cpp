@@ -1,5 +1,6 @@
 // The program that `limn quality` starts.
 
+#include "bench/parse_arguments.h"
 #include "bench/quality/quality.h"
 #include "content/app/command_values.h"
 #include "content/app/log_sink.h"
@@ -127,13 +128,8 @@ int run(int argc, char** argv) {
           "  limn quality --html quality.html\n"
           "  limn quality fakephong model.glb --html model.html\n"
           "  limn quality wrinkles face.glb --html face.html");
-    try {
-        program.parse(argc, argv);
-    } catch (const CLI::Success& wanted) {  // --help
-        return program.exit(wanted);
-    } catch (const CLI::Error& error) {
-        fmt::print(stderr, "limn quality: {} (limn quality --help)\n", one_line(error.what()));
-        return 2;
+    if (const auto stop = bench::parse_arguments(program, "limn quality", argc, argv)) {
+        return *stop;
     }
     const Status status = measure(options);
     if (!status) {

@@ -38,6 +38,11 @@ constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of h
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
 constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
 
+/// Whether another program measures it.
+bool is_program(const std::string& scene) {
+    return scene == kParticlesName || scene == kFacesName;
+}
+
 double ms_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
 }
@@ -189,20 +194,26 @@ std::vector<std::string> bench_program_arguments(const BenchOptions& options) {
     return arguments;
 }
 
-Status run_bench(const BenchOptions& options) {
+Status check_bench_options(const BenchOptions& options) {
     if (options.most > 0 && options.scene != kParticlesName) {
-        return fail("limn bench: --most is for `particles`, found `{}`", options.scene);
+        return fail("--most is for `particles`, found `{}`", options.scene);
     }
-    if (options.scene == kParticlesName || options.scene == kFacesName) {
-        return run_sibling(
-            "limn bench", "limn-bench-" + options.scene, bench_program_arguments(options));
+    if (is_program(options.scene)) {
+        return Done{};
     }
     for (const auto& [option, value] :
          {std::pair{"--svg", options.svg}, {"--only", options.only}}) {
         if (!value.empty()) {
-            return fail(
-                "limn bench: {} is for `particles` and `faces`, found `{}`", option, options.scene);
+            return fail("{} is for `particles` and `faces`, found `{}`", option, options.scene);
         }
+    }
+    return Done{};
+}
+
+Status run_bench(const BenchOptions& options) {
+    if (is_program(options.scene)) {
+        return run_sibling(
+            "limn bench", "limn-bench-" + options.scene, bench_program_arguments(options));
     }
     if (options.scene == kLensName) {
         return run_lens_bench(options);

@@ -43,6 +43,8 @@ void run_bench_frame(
 [[nodiscard]] BenchReport
 machine_report(const Stage& stage, const HeadlessRenderer& headless, const BenchOptions& options);
 
+/// Fails where an option is for other scenes than that.
+[[nodiscard]] Status check_bench_options(const BenchOptions& options);
 [[nodiscard]] Status run_bench(const BenchOptions& options);
 
 }  // namespace limn

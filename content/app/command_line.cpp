@@ -174,6 +174,11 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     add_integer(
         *app, "--most", "of `particles`: of the last point of the curves; default: 10000000",
         options.most, 1000, 100'000'000);
+    app->callback([&options] {
+        if (const Status fits = check_bench_options(options); !fits) {
+            throw CLI::ValidationError(fits.error().message);
+        }
+    });
     app->footer(
         R"(Every frame simulates one step and renders off screen. Times are in milliseconds; "all threads" is
 processor time, which depends less on other programs. Shaders are compiled before the first frame

@@ -160,6 +160,15 @@ void check_gpu_particles(const ParticleCheck& check) {
             }
         }
     });
+    world.query<const ParticleEmitter, const ParticleLook>().each(
+        [&](Entity entity, const ParticleEmitter& emitter, const ParticleLook& look) {
+            if (runs_on_gpu(emitter) && look.lit_at == ParticleLitAt::Middle) {
+                check.warn(
+                    entity,
+                    "particle_look.lit_at has no effect on particles of the GPU, whose light is "
+                    "evaluated at their corners; set particle_emitter.executor to cpu");
+            }
+        });
     bool for_cpu = false;
     world.query<const ParticleCollider>().each([&](const ParticleCollider& collider) {
         for_cpu = for_cpu || collider.shape >= ColliderShape::Mesh;

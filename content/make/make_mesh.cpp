@@ -5,6 +5,7 @@
 #include "content/make/fragments.h"
 #include "content/make/head.h"
 #include "content/make/hovercraft.h"
+#include "content/make/joined.h"
 #include "content/make/masonry.h"
 #include "content/make/plants.h"
 #include "content/make/refine_mesh.h"
@@ -65,6 +66,7 @@ std::span<const MeshKind> mesh_kinds() {
             "head", "a part of a human head that faces z, with expressions, skeleton and clips"),
         mesh_kind<HovercraftShape, make_hovercraft>(
             "hovercraft", "a racing craft that hovers, facing z"),
+        mesh_kind<JoinedShape, make_joined>("joined", "other meshes of the level as one, at rest"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<PlantShape, make_plants>(

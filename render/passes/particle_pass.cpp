@@ -374,6 +374,7 @@ void ParticleEffect::draw_sprites(
         variant.add_if(is_six_way(run), "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
         variant.add_if(veiled, "VEILED");
+        variant.add_if(part == Part::UnderWater, "IN_WATER");
         variant.add(sprite_variant(view, shape));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {

@@ -2,6 +2,7 @@
 //   SOFT  some fade where they meet a surface
 //   SIX_WAY  some have images of the light from six sides
 //   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   IN_WATER  seen from above, before the water is drawn over it
 //   VEILED  only what is behind the blended surfaces of the view, or only what is not
 #version 450
 #if defined(SIX_WAY) && !defined(IMAGES)
@@ -13,7 +14,7 @@
 #include "lib/sprite.glsl"
 #include "lib/view.glsl"
 
-#ifdef SOFT
+#if defined(SOFT) || defined(IN_WATER)
 layout(binding = 4) uniform sampler2D scene_depth;
 #endif
 
@@ -30,6 +31,19 @@ uniform float resolution;                     // of the image, as a share of the
 layout(location = 0) out vec4 radiance;
 #ifdef WEIGHTED
 layout(location = 1) out float opacity;
+#endif
+
+#ifdef IN_WATER
+const float kMaxOpticalDepth = 4.0;  // that is undone: half floats hold what is 55 times as bright
+
+// What undoes the part behind the particle of the absorption down to the ground, which the water pass applies.
+// `room`: to the ground along the view axis [m]. The way in the water is that of light refracted by a flat surface.
+vec3 undone_absorption(float room) {
+    vec3 ray = view_ray(gl_FragCoord.xy);
+    float sine = length(ray.xz) / length(ray) / medium.w;
+    float path = max(room, 0.0) * max(-ray.y, 0.0) * inversesqrt(1.0 - sine * sine);
+    return exp(min(medium.rgb * path, vec3(kMaxOpticalDepth)));
+}
 #endif
 
 void main() {
@@ -54,9 +68,14 @@ void main() {
     }
 #endif
     float fade = 1.0;
-#ifdef SOFT
+#if defined(SOFT) || defined(IN_WATER)
     float depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
     float room = view_distance(max(depth, 1e-20)) - distance_ahead;
+#endif
+#ifdef IN_WATER
+    shown *= undone_absorption(room);
+#endif
+#ifdef SOFT
     fade = clamp(room / max(blend.y, 1e-4), 0.0, 1.0);
 #endif
     float kept = s.a * fade;

@@ -7,6 +7,7 @@
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
 //   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   IN_WATER  seen from above, before the water is drawn over it
 //   FOCUS  without light, for its depth where it covers enough
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
@@ -16,8 +17,10 @@
 #include "lib/view.glsl"
 
 #include "lib/particle_quad.glsl"
-#ifdef LIT
+#if defined(LIT) || defined(IN_WATER)
 #include "lib/lighting.glsl"
+#endif
+#ifdef LIT
 #include "lib/particle_scattering.glsl"
 #endif
 #ifdef LIT_MIDDLE
@@ -326,6 +329,10 @@ void main() {
     }
 #endif
     light = vec4(color.rgb * radiance * color.a, color.a);
+#ifdef IN_WATER
+    WaterMedium water = water_medium(p.position);
+    medium = vec4(water.extinction, water.index);
+#endif
 
     frames = flipbook.frames;
     next_frame = vec4(flipbook.next, look_texel(look, kLookMotion).xy);

@@ -27,13 +27,13 @@ TEST_CASE("bench_command: parts are for programs that have them") {
     BenchOptions options;
     options.scene = "gallery";
     options.only = "draw";
-    const Status part = run_bench(options);
+    const Status part = check_bench_options(options);
     REQUIRE(!part);
     CHECK(part.error().message.find("--only is for `particles` and `faces`") != std::string::npos);
     options.only.clear();
     options.scene = "faces";
     options.most = 2000;
-    const Status most = run_bench(options);
+    const Status most = check_bench_options(options);
     REQUIRE(!most);
     CHECK(most.error().message.find("--most is for `particles`") != std::string::npos);
 }

@@ -96,6 +96,10 @@ TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
     check_fails(folder, {"render", "gallery", "-o", "a.png", "--aov", "depth"}, 2, ".exr");
     check_fails(folder, {"render", "gallery", "-o", "a.exr", "--aov", "dept"}, 2, "depth");
     check_fails(folder, {"bench", "gallery", "--frames", "0"}, 2, "--frames");
+    check_fails(folder, {"bench", "particles", "--only", "draft"}, 2, "draw");
+    check_fails(folder, {"bench", "faces", "--only", "draft"}, 2, "pixels");
+    check_fails(folder, {"bench", "gallery", "--only", "draw"}, 2, "particles");
+    check_fails(folder, {"quality", "--what"}, 2, "--what");
     check_fails(folder, {"hash", "gallery"}, 2, "--frames");
     check_fails(folder, {"hash", "gallery", "--frames", "two"}, 2, "two");
     check_fails(folder, {"hash", "gallery", "--frames", "2", "--threads", "0"}, 2, "--threads");

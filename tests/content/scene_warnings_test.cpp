@@ -119,6 +119,14 @@ TEST_CASE("scene warnings: what particles of the GPU cannot do") {
         "particle_emitter": {"executor": "gpu"}, "particle_light": {}}]})")
         == Warnings{"entity \"sparks\": particle_light has no effect on particles of the GPU; set "
                     "particle_emitter.executor to cpu"});
+    CHECK(
+        warnings_of(R"({"entities": [
+        {"name": "sparks", "particle_look": {"lit_at": "middle"}, "particle_emitter": {"executor": "gpu"}},
+        {"name": "smoke", "particle_look": {"lit_at": "middle"}, "particle_emitter": {}},
+        {"name": "mist", "particle_look": {}, "particle_emitter": {"executor": "gpu"}}]})")
+        == Warnings{
+            "entity \"sparks\": particle_look.lit_at has no effect on particles of the GPU, "
+            "whose light is evaluated at their corners; set particle_emitter.executor to cpu"});
 }
 
 TEST_CASE("scene warnings: bodies with a mass that cannot move, and what acts on none") {

@@ -194,4 +194,42 @@ TEST_CASE_FIXTURE(OrderScene, "particle order: below clear water they are seen f
     CHECK(red() == test::near(0.5f + 0.5f * bare).epsilon(0.02));
 }
 
+TEST_CASE_FIXTURE(
+    OrderScene,
+    "particle order: water absorbs a sprite's light as far as the sprite, not the floor") {
+    place(
+        add(make_square()), add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
+        affine_from({0, -2, 0}, Quat(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0), Vec3(9)));
+    constexpr Vec3 kAbsorption = {0.5f, 0.2f, 0.1f};
+    world.create(
+        Water{.size = {16, 16}, .depth = 2, .absorption = kAbsorption, .scattering = Vec3(0)},
+        WorldTransform{at({0, 0, 0})});
+    ImageData white;
+    white.width = white.height = 1;
+    white.pixels = {255, 255, 255, 255};
+    look_.image = add(white);
+    look_.facing = ParticleFacing::Ground;
+    for (const float aside : {0.1f, 3.0f}) {
+        CAPTURE(aside);
+        // The shader takes the angle of the pixel where the bent ray ends, which is some degrees
+        // off.
+        const double bound = aside < 1 ? 0.002 : 0.02;
+        const RenderView view = look({0, 3, aside}, {0, 0, 0}, 33, 33);
+        const auto seen_at = [&](float above_floor) {
+            const Entity one = emit({0, above_floor - 2, 0}, {1, 1, 1});
+            const Vec3 seen = rgb_at(radiance(view), 16, 16);
+            world.destroy(one);
+            return seen;
+        };
+        const Vec3 low = seen_at(0.2f);
+        const Vec3 high = seen_at(1);
+        const float sine = aside / std::hypot(aside, 3.0f) / Water{}.refractive_index;
+        for (int i = 0; i < 3; ++i) {
+            CAPTURE(i);
+            const float gained = std::exp(kAbsorption[i] * 0.8f / std::sqrt(1 - sine * sine));
+            CHECK(high[i] / low[i] == test::near(gained).epsilon(bound));
+        }
+    }
+}
+
 }  // namespace limn::test

@@ -1,6 +1,7 @@
 // What particle.vert hands to the shaders of its fragments. Definitions: VARYING, as `out` in the former and `in` in the
 // latter; those of particle.vert and
 //   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   IN_WATER  seen from above, before the water is drawn over it
 // What is the same at all corners is not interpolated.
 
 #if defined(LIT) || defined(RIBBONS)
@@ -27,6 +28,9 @@ layout(location = 7) SIDES_INTERPOLATION VARYING vec4
 layout(location = 10) SIDES_INTERPOLATION VARYING vec3
     negative_side[3];  // likewise from the left, from below and from the camera
 layout(location = 13) flat VARYING vec3 glow_color;  // radiance by itself, premultiplied
+#endif
+#ifdef IN_WATER
+layout(location = 6) flat VARYING vec4 medium;  // extinction of the water that its middle is in [1/m], index of refraction
 #endif
 #ifdef WEIGHTED
 layout(location = 14) VARYING float weight;  // of a layer at this distance
