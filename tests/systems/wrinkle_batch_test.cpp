@@ -3,6 +3,7 @@
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_batch.h"
 #include "systems/faces/wrinkle_measure.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -191,6 +192,6 @@ TEST_CASE("wrinkle batch: folds at rest count as shortening, each face by its ow
         // A sheet at rest, of which a fifth is too long, has the intensity of 0.8^2.
         const CrowdFace still = {sheet.positions, 1, 4, together.intensity[0], 1};
         find_intensities(rests, {&still, 1}, resting);
-        CHECK(still.intensity[0] == doctest::Approx(wrinkle_intensity(0.64f, 1, 4)).epsilon(1e-4));
+        CHECK(still.intensity[0] == test::near(wrinkle_intensity(0.64f, 1, 4)).epsilon(1e-4));
     }
 }
