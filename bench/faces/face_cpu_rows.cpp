@@ -24,18 +24,21 @@ constexpr double kMeasureLimit = 4;  ///< of 100 faces [ms]
 constexpr double kDeformLimit = 12;  ///< the same
 
 /// find_intensities_scalar on all threads.
-void measure_scalar(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces) {
+void measure_scalar(
+    std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
+    std::span<const float> resting = {}) {
     parallel_for(faces.size(), 1, [&](std::size_t begin, std::size_t end) {
-        find_intensities_scalar(rests, faces.subspan(begin, end - begin));
+        find_intensities_scalar(rests, faces.subspan(begin, end - begin), resting);
     });
 }
 
 void add_measure_row(
-    FaceBench& bench, std::string name, std::span<const WrinkleRest> rests, double limit) {
+    FaceBench& bench, std::string name, std::span<const WrinkleRest> rests, double limit,
+    std::span<const float> resting = {}) {
     const std::vector<CrowdFace> faces = crowd_faces(face_crowd(), kCrowd);
     const auto [ours, scalar] = race(
-        bench.repeats, [&] { find_intensities(rests, faces); },
-        [&] { measure_scalar(rests, faces); });
+        bench.repeats, [&] { find_intensities(rests, faces, resting); },
+        [&] { measure_scalar(rests, faces, resting); });
     bench.add(FaceRow{std::move(name), ours, scalar, "scalar", limit});
 }
 
@@ -47,7 +50,8 @@ void add_identities_row(FaceBench& bench) {
         parallel_for(meshes.size(), 1, [&](std::size_t i, std::size_t) {
             const std::size_t begin = i * kCrowd / kIdentities;
             const std::size_t end = (i + 1) * kCrowd / kIdentities;
-            measure(meshes[i], std::span(faces).subspan(begin, end - begin));
+            measure(
+                meshes[i], std::span(faces).subspan(begin, end - begin), std::span<const float>());
         });
     };
     const auto [ours, scalar] = race(
@@ -95,6 +99,8 @@ void add_patch_row(FaceBench& bench, FaceCrowd& crowd) {
 void add_measure_rows(FaceBench& bench) {
     const FaceCrowd& crowd = face_crowd();
     add_measure_row(bench, "compression and intensities", crowd.chord, kMeasureLimit);
+    add_measure_row(
+        bench, "the same, folds that stay at rest", crowd.chord, kMeasureLimit, crowd.resting);
     add_identities_row(bench);
     const std::vector<Vec3> up(crowd.mesh.positions.size(), Vec3{0, 1, 0});
     const std::vector<WrinkleRest> everywhere = {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 namespace limn::bench {
 namespace {
@@ -67,12 +68,15 @@ Deformers face_muscles(float contraction) {
     return deformers;
 }
 
-std::vector<WrinkleRest> rests_of(const MeshData& mesh, WrinkleDriver driver) {
+WrinkleState measured_by(const MeshData& mesh, WrinkleDriver driver) {
     Assets assets;
     assets.meshes.push_back(mesh);
     WrinkleSurface surface;
     surface.driver = driver;
-    return make_wrinkle_state(surface, {MeshId{0}, {}}, assets).rests;
+    for (const char* const region : {"forehead", "crows_feet", "nasolabial", "mouth_corner"}) {
+        surface.resting.push_back({.region = region, .shortening = 0.2f});
+    }
+    return make_wrinkle_state(surface, {MeshId{0}, {}}, assets);
 }
 
 FaceCrowd make_crowd() {
@@ -80,8 +84,10 @@ FaceCrowd make_crowd() {
     crowd.mesh = make_head({});
     const MeshRig rig = make_head_rig({});
     crowd.skin = rig.skin;
-    crowd.chord = rests_of(crowd.mesh, WrinkleDriver::Chord);
-    crowd.strain = rests_of(crowd.mesh, WrinkleDriver::Strain);
+    WrinkleState by_chord = measured_by(crowd.mesh, WrinkleDriver::Chord);
+    crowd.chord = std::move(by_chord.rests);
+    crowd.resting = std::move(by_chord.resting);
+    crowd.strain = measured_by(crowd.mesh, WrinkleDriver::Strain).rests;
     crowd.markers = make_head({.part = HeadPartKind::Markers});
     crowd.on_markers = oracle::bind_to_markers(crowd.mesh, crowd.markers);
     const auto clip =
@@ -114,7 +120,9 @@ FaceCrowd& face_crowd() {
 std::vector<CrowdFace> crowd_faces(FaceCrowd& crowd, std::size_t count) {
     std::vector<CrowdFace> faces;
     for (CrowdMember& member : std::span(crowd.members).first(count)) {
-        faces.push_back({.deformed = member.deformed, .intensity = member.intensity});
+        const float age = static_cast<float>(faces.size()) / kCrowd;
+        faces.push_back(
+            {.deformed = member.deformed, .intensity = member.intensity, .resting_share = age});
     }
     return faces;
 }

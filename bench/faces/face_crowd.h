@@ -42,13 +42,14 @@ struct FaceCrowd {
     SurfaceBindingState on_markers;   ///< the mesh on them
     std::vector<WrinkleRest> chord;   ///< one
     std::vector<WrinkleRest> strain;  ///< three
+    std::vector<float> resting;       ///< of the folds at rest of old faces
     std::vector<CrowdMember> members;
 };
 
 /// The same for all callers; its members are deformed. Takes seconds.
 [[nodiscard]] FaceCrowd& face_crowd();
 
-/// Of the first `count` members.
+/// Of the first `count` members, each of another age.
 [[nodiscard]] std::vector<CrowdFace> crowd_faces(FaceCrowd& crowd, std::size_t count);
 
 /// All deformers, as deform_positions.

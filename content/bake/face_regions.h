@@ -21,7 +21,8 @@ namespace limn {
 //     nose_side     sneer                 cheek         smile          chin          dimples
 //     nasolabial    smile
 //
-// A face of other proportions is first warped to the reference (point_warp.h).
+// A face of other proportions is first warped to the reference (point_warp.h); one with expressions
+// of its own has the directions of those (region_directions.h).
 
 /// Names of the regions, in the order of make_face_regions.
 [[nodiscard]] std::span<const std::string_view> face_region_names();

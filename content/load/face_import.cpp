@@ -1,6 +1,7 @@
 #include "content/load/face_import.h"
 
 #include "content/bake/face_regions.h"
+#include "content/bake/region_directions.h"
 #include "content/bake/tangents.h"
 #include "content/load/obj_scene.h"
 #include "content/make/face_chart.h"
@@ -217,6 +218,7 @@ GltfScene make_face_scene(
     }
     for (MeshData& mesh : scene.meshes) {
         if (!mesh.uvs1.empty()) {
+            fit_region_directions(mesh);
             mesh.tangents = chart_tangents(mesh);
         }
     }

@@ -2,6 +2,7 @@
 
 #include "content/load/inside_mesh.h"
 #include "content/load/particle_warnings.h"
+#include "content/load/wrinkle_warnings.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
@@ -292,36 +293,6 @@ struct SceneCheck {
         });
     }
 
-    /// Images of a face that do not lie over each other.
-    void check_wrinkle_maps() {
-        const auto* const assets = world.find_resource<Assets>();
-        world.query<const WrinkleMaps>().each([&](Entity entity, const WrinkleMaps& maps) {
-            const auto find = [&](ImageId id) {
-                return assets != nullptr && id.index < assets->images.size()
-                           ? &assets->images[id.index]
-                           : nullptr;
-            };
-            const ImageData* const base = find(maps.base);
-            const std::pair<const char*, ImageId> fields[] = {
-                {"stretched", maps.stretched},
-                {"compressed", maps.compressed},
-                {"first_masks", maps.first_masks},
-                {"second_masks", maps.second_masks},
-                {"target", maps.target}};
-            for (const auto& [field, id] : fields) {
-                const ImageData* const image = find(id);
-                if (base != nullptr && image != nullptr && !have_one_aspect(*image, *base)) {
-                    warn(
-                        entity, fmt::format(
-                                    "wrinkle_maps.{} \"{}\" is {} x {} px; expected the aspect "
-                                    "ratio of base \"{}\", {} x {} px: its wrinkles are not drawn",
-                                    field, image->name, image->width, image->height, base->name,
-                                    base->width, base->height));
-                }
-            }
-        });
-    }
-
     /// Sizes that the renderer and the simulation round to a power of two.
     void check_resolutions() {
         const auto check = [&](Entity entity, const char* field, int asked, unsigned used) {
@@ -439,7 +410,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_key_order<CameraPath>();
     check.check_key_order<RotationTrack>();
     check.check_key_order<WrinkleTrack>();
-    check.check_wrinkle_maps();
+    find_wrinkle_warnings(world, check.warnings);
     check.check_resolutions();
     check_events(check);
     return std::move(check.warnings);

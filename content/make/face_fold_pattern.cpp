@@ -25,24 +25,25 @@ struct Crease {
 
 // Places, spacings and widths after anatomy: face_regions.h.
 constexpr Crease kCreases[] = {
-    // forehead: over the brows towards the temples, with shorter ones between
-    {{0, 11.9f}, {7.5f, 11.2f}, {15.0f, 13.9f}, 0.75f, 0.20f},
-    {{0, 14.7f}, {8.0f, 13.7f}, {16.5f, 17.6f}, 0.85f, 0.27f},
-    {{0, 17.7f}, {7.5f, 16.5f}, {16.0f, 20.8f}, 0.85f, 0.26f},
-    {{2.6f, 20.3f}, {7.0f, 18.4f}, {14.0f, 22.0f}, 0.7f, 0.20f},
-    {{3.6f, 12.9f}, {7.0f, 12.5f}, {10.4f, 13.4f}, 0.45f, 0.09f},
-    {{5.2f, 16.1f}, {8.6f, 15.9f}, {12.4f, 17.6f}, 0.5f, 0.11f},
+    // forehead: over the brows towards the temples, unevenly spaced; shorter ones between, and
+    // branches that leave a long one
+    {{0, 11.5f}, {7.0f, 10.9f}, {13.0f, 13.0f}, 0.7f, 0.15f},
+    {{0, 15.0f}, {8.0f, 13.9f}, {16.5f, 17.6f}, 0.95f, 0.29f},
+    {{0, 17.4f}, {7.5f, 16.4f}, {16.5f, 20.9f}, 0.8f, 0.23f},
+    {{3.4f, 19.9f}, {7.6f, 18.6f}, {14.5f, 22.3f}, 0.75f, 0.20f},
+    {{3.4f, 12.8f}, {6.4f, 12.2f}, {9.2f, 13.0f}, 0.45f, 0.08f},
+    {{4.4f, 14.5f}, {9.0f, 12.9f}, {14.5f, 14.6f}, 0.55f, 0.13f},
+    {{6.4f, 17.0f}, {10.0f, 18.2f}, {14.0f, 18.6f}, 0.5f, 0.11f},
     // glabella and root of the nose
-    {{2.7f, 20.6f}, {1.2f, 23.2f}, {2.0f, 27.4f}, 0.95f, 0.30f},
+    {{2.7f, 20.6f}, {1.2f, 23.2f}, {2.0f, 27.4f}, 1.0f, 0.26f},
     {{4.6f, 22.2f}, {3.6f, 23.6f}, {3.7f, 25.8f}, 0.7f, 0.11f},
     {{0, 27.6f}, {1.2f, 27.8f}, {2.9f, 29.4f}, 0.8f, 0.12f},
     {{0, 29.4f}, {1.1f, 29.5f}, {2.3f, 30.8f}, 0.6f, 0.08f},
-    // crow's feet
-    {{14.0f, 27.9f}, {16.0f, 26.2f}, {18.6f, 23.8f}, 0.5f, 0.17f},
-    {{14.2f, 28.6f}, {16.6f, 27.7f}, {19.8f, 26.4f}, 0.55f, 0.23f},
-    {{14.4f, 29.4f}, {16.8f, 29.4f}, {20.2f, 30.0f}, 0.55f, 0.24f},
-    {{14.2f, 30.2f}, {16.5f, 31.0f}, {19.6f, 32.8f}, 0.5f, 0.18f},
-    {{15.8f, 28.6f}, {17.6f, 28.3f}, {19.6f, 27.9f}, 0.35f, 0.10f},
+    // crow's feet: a fan from the outer corner of the eye
+    {{14.6f, 27.8f}, {16.4f, 26.0f}, {18.8f, 23.2f}, 0.8f, 0.15f},
+    {{14.9f, 28.9f}, {17.2f, 28.3f}, {20.6f, 27.2f}, 0.9f, 0.20f},
+    {{14.7f, 30.1f}, {16.8f, 31.1f}, {19.6f, 33.0f}, 0.85f, 0.17f},
+    {{16.6f, 30.0f}, {18.4f, 30.2f}, {20.6f, 30.4f}, 0.5f, 0.07f},
     // lower lid
     {{6.4f, 31.4f}, {9.8f, 33.2f}, {13.0f, 31.6f}, 0.35f, 0.10f},
     {{6.0f, 32.2f}, {9.4f, 34.9f}, {13.4f, 32.8f}, 0.4f, 0.13f},
@@ -51,16 +52,20 @@ constexpr Crease kCreases[] = {
     {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.45f, 0.14f},
     {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.45f, 0.14f},
     // nasolabial fold, outside the corner of the mouth, marionette line
-    {{5.8f, 39.4f}, {8.8f, 43.0f}, {9.0f, 51.2f}, 1.1f, 0.50f},
+    {{5.0f, 37.0f}, {8.8f, 42.0f}, {9.0f, 51.6f}, 1.1f, 0.55f},
     {{10.6f, 45.0f}, {11.8f, 48.0f}, {11.4f, 52.0f}, 0.7f, 0.18f},
     {{7.4f, 51.0f}, {8.6f, 54.0f}, {8.0f, 59.0f}, 0.8f, 0.28f},
-    // upper lip
-    {{1.3f, 43.6f}, {1.2f, 44.6f}, {1.1f, 45.8f}, 0.3f, 0.08f},
-    {{2.7f, 43.7f}, {2.5f, 44.7f}, {2.3f, 45.8f}, 0.3f, 0.09f},
-    {{4.2f, 44.0f}, {3.9f, 44.9f}, {3.5f, 45.9f}, 0.3f, 0.09f},
-    {{5.8f, 44.5f}, {5.3f, 45.4f}, {4.8f, 46.4f}, 0.3f, 0.08f},
-    // below the lower lip
-    {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.1f, 0.30f},
+    // upper lip, of uneven lengths and distances
+    {{0.9f, 44.3f}, {0.8f, 45.0f}, {0.8f, 45.9f}, 0.4f, 0.06f},
+    {{2.1f, 43.2f}, {2.0f, 44.4f}, {1.8f, 45.8f}, 0.45f, 0.10f},
+    {{3.7f, 44.2f}, {3.4f, 45.0f}, {3.1f, 45.9f}, 0.35f, 0.07f},
+    {{5.0f, 43.6f}, {4.6f, 44.9f}, {4.0f, 46.2f}, 0.45f, 0.11f},
+    {{6.6f, 44.8f}, {6.0f, 45.6f}, {5.3f, 46.5f}, 0.4f, 0.07f},
+    // below the lower lip: short ones that radiate from the mouth, and the furrow above the chin
+    {{1.2f, 53.5f}, {1.3f, 54.6f}, {1.2f, 55.6f}, 0.55f, 0.08f},
+    {{2.9f, 53.2f}, {3.2f, 54.8f}, {3.2f, 56.4f}, 0.7f, 0.13f},
+    {{4.9f, 52.7f}, {5.3f, 53.8f}, {5.5f, 55.0f}, 0.55f, 0.10f},
+    {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.1f, 0.06f},
 };
 
 /// The distance to a crease, 0 .. 1 along it at the nearest place.
@@ -90,6 +95,11 @@ float crease_taper(const Crease& crease, float along) {
     return start * (1 - glm::smoothstep(0.45f, 1.0f, along));
 }
 
+/// A share of the depth of a crease: no face has long ones in one piece.
+float crease_pieces(const Vec2& uv, std::uint32_t seed) {
+    return glm::mix(0.3f, 1.0f, glm::smoothstep(-0.5f, 0.1f, fbm(uv, 9, seed, 2)));
+}
+
 /// A narrow valley between round crests, which thins out and fades towards its ends.
 float crease_height(const Crease& crease, const Vec2& p) {
     constexpr float kReach = 3.2f;  // widths
@@ -116,8 +126,11 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
         Vec2 p = chart + pattern.wander * kMm * (2.0f * bend + 3.0f * sway);
         p.x = std::abs(p.x);
         float height = 0;
+        std::uint32_t number = seed + 6;
         for (const Crease& crease : kCreases) {
-            height += crease_height(crease, p);
+            const float own = crease_height(crease, p);
+            height += own != 0 ? own * crease_pieces(uv, number) : 0.0f;
+            ++number;
         }
         // No fold is as deep all along, or as deep as that of the other side.
         height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;

@@ -1,6 +1,7 @@
 #include "content/make/head.h"
 
 #include "content/bake/face_regions.h"
+#include "content/bake/region_directions.h"
 #include "content/bake/tangents.h"
 #include "content/make/head_clips.h"
 #include "content/make/head_ear.h"
@@ -236,6 +237,7 @@ MeshData make_head(const HeadShape& shape) {
     }
     mesh.skin = head_weights(part.points);
     mesh.morphs = make_expressions(part.points, shape);
+    fit_region_directions(mesh);
     if (shape.grows_old) {
         mesh.morphs.push_back(make_aging(mesh.positions, shape));
     }

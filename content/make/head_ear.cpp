@@ -117,10 +117,14 @@ float ear_relief(const Vec2& at) {
     height += 0.06f * lobe;
     height -= 0.62f * bowl(at, {0.18f, -0.32f}, {0.95f, 0.95f});
     height -= 0.42f * bowl(at, {0.35f, 0.62f}, {0.85f, 0.5f});
+    // Nearly the highest ridge: where they meet, as at the top of the antihelix, a sum is a spike.
+    float raised = 0;
     for (const Ridge& ridge : kRidges) {
-        height += ridge_height(ridge, at);
+        const float own = ridge_height(ridge, at);
+        height += std::min(own, 0.0f);
+        raised += square(square(std::max(own, 0.0f)));
     }
-    return height;
+    return height + std::sqrt(std::sqrt(raised));
 }
 
 Vec3 ear_point(const HeadVertex& vertex, const Vec3& root) {

@@ -2,6 +2,7 @@
 
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
+#include "systems/faces/wrinkle_fold.h"
 #include "systems/faces/wrinkle_measure.h"
 
 #include <algorithm>
@@ -30,11 +31,13 @@ inline constexpr std::size_t kFaces = 8;
 /// Up to eight faces with one mesh; memory of the rows is reused.
 struct Batch {
     std::span<const WrinkleRest> rests;
+    std::span<const float> resting;  ///< per vertex, or empty
     std::size_t vertices = 0;
     std::array<const float*, kFaces> from = {};  ///< positions; the last face fills up
     std::array<float*, kFaces> to = {};          ///< intensities; null: not wanted
     alignas(64) std::array<float, kFaces> lambda = {};
     alignas(64) std::array<float, kFaces> beta = {};
+    alignas(64) std::array<float, kFaces> resting_share = {};
     float* positions = nullptr;              ///< row 3 v + axis
     float* triangles = nullptr;              ///< a row per triangle
     std::array<float*, 3> compression = {};  ///< a row per vertex, of each rest
@@ -177,9 +180,25 @@ HWY_INLINE V intensity_of(V ratio, V lambda, V beta) {
     return hn::Div(hn::Sub(one, power), hn::Add(one, power));
 }
 
-/// Whether no triangle counts at any of these vertices.
-HWY_INLINE bool is_not_measured(const wrinkle::Batch& batch, std::size_t v, std::size_t count) {
-    return batch.rests.empty() || batch.rests[0].first[v] == batch.rests[0].first[v + count];
+/// rested_ratio of the lanes of a row.
+HWY_INLINE V
+rested_ratio_of(const wrinkle::Batch& batch, std::size_t v, std::size_t lane, V ratio) {
+    const V share = hn::Load(d, batch.resting_share.data() + lane);
+    const V left = hn::Sub(hn::Set(d, 1.0f), hn::Mul(share, hn::Set(d, batch.resting[v])));
+    return hn::Mul(ratio, hn::Mul(left, left));
+}
+
+/// Whether no triangle counts at any of these vertices, and none has folds at rest.
+HWY_INLINE bool is_smooth(const wrinkle::Batch& batch, std::size_t v, std::size_t count) {
+    if (batch.rests.empty()) {
+        return true;
+    }
+    for (std::size_t i = v; i < v + count && !batch.resting.empty(); ++i) {
+        if (batch.resting[i] != 0) {
+            return false;
+        }
+    }
+    return batch.rests[0].first[v] == batch.rests[0].first[v + count];
 }
 
 /// Rows to eight arrays of intensities.
@@ -194,7 +213,7 @@ HWY_INLINE void write_intensities(const wrinkle::Batch& batch) {
     }
     for (std::size_t v = 0; v < batch.vertices; v += 4) {
         const std::size_t count = std::min<std::size_t>(4, batch.vertices - v);
-        if (is_not_measured(batch, v, count)) {
+        if (is_smooth(batch, v, count)) {
             for (std::size_t face = 0; face < wrinkle::kFaces; ++face) {
                 if (float* const to = batch.to[face]; to != nullptr) {
                     std::fill_n(to + v, count, at_rest[face]);
@@ -204,7 +223,10 @@ HWY_INLINE void write_intensities(const wrinkle::Batch& batch) {
         }
         for (std::size_t i = 0; i < count * wrinkle::kFaces; i += kLanes) {
             const std::size_t lane = i % wrinkle::kFaces;
-            const V ratio = compression_at(batch, wrinkle::kFaces * v + i);
+            const V measured = compression_at(batch, wrinkle::kFaces * v + i);
+            const V ratio = batch.resting.empty()
+                                ? measured
+                                : rested_ratio_of(batch, v + i / wrinkle::kFaces, lane, measured);
             hn::Store(
                 intensity_of(
                     ratio, hn::Load(d, batch.lambda.data() + lane),
@@ -276,9 +298,13 @@ float* make_rows(Rows& rows, std::size_t count) {
     return rows.data.get();
 }
 
-void check_faces(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces) {
+void check_faces(
+    std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
+    std::span<const float> resting) {
     LIMN_CHECK(rests.empty() || rests.size() == 1 || rests.size() == 3);
+    LIMN_CHECK(resting.empty() || !rests.empty());
     for (const CrowdFace& face : faces) {
+        LIMN_CHECK(resting.empty() || resting.size() == face.deformed.size());
         LIMN_CHECK(face.deformed.size() == faces[0].deformed.size());
         LIMN_CHECK(face.intensity.size() == face.deformed.size());
         for (const WrinkleRest& rest : rests) {
@@ -287,10 +313,13 @@ void check_faces(std::span<const WrinkleRest> rests, std::span<const CrowdFace> 
     }
 }
 
-void measure(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces) {
+void measure(
+    std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
+    std::span<const float> resting) {
     thread_local BatchMemory memory;  // is reused
     wrinkle::Batch batch;
     batch.rests = rests;
+    batch.resting = resting;
     batch.vertices = faces[0].deformed.size();
     for (std::size_t lane = 0; lane < wrinkle::kFaces; ++lane) {
         const CrowdFace& face = faces[std::min(lane, faces.size() - 1)];
@@ -298,6 +327,7 @@ void measure(std::span<const WrinkleRest> rests, std::span<const CrowdFace> face
         batch.to[lane] = lane < faces.size() ? face.intensity.data() : nullptr;
         batch.lambda[lane] = face.lambda;
         batch.beta[lane] = face.beta;
+        batch.resting_share[lane] = face.resting_share;
     }
     batch.positions = make_rows(memory.positions, 3 * batch.vertices);
     std::size_t triangles = 0;
@@ -307,28 +337,34 @@ void measure(std::span<const WrinkleRest> rests, std::span<const CrowdFace> face
     }
     batch.triangles = make_rows(memory.triangles, triangles);
     if (!HWY_DYNAMIC_DISPATCH(measure_batch)(batch)) {
-        find_intensities_scalar(rests, faces);
+        find_intensities_scalar(rests, faces, resting);
     }
 }
 
 }  // namespace
 
-void find_intensities(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces) {
-    check_faces(rests, faces);
+void find_intensities(
+    std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
+    std::span<const float> resting) {
+    check_faces(rests, faces, resting);
     if (faces.empty() || faces[0].deformed.empty()) {
         return;
     }
     parallel_for(faces.size(), wrinkle::kFaces, [&](std::size_t begin, std::size_t end) {
-        measure(rests, faces.subspan(begin, end - begin));
+        measure(rests, faces.subspan(begin, end - begin), resting);
     });
 }
 
-void find_intensities_scalar(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces) {
-    check_faces(rests, faces);
+void find_intensities_scalar(
+    std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
+    std::span<const float> resting) {
+    check_faces(rests, faces, resting);
     for (const CrowdFace& face : faces) {
         const std::vector<float> ratio = vertex_compression(rests, face.deformed);
         for (std::size_t v = 0; v < ratio.size(); ++v) {
-            face.intensity[v] = wrinkle_intensity(ratio[v], face.lambda, face.beta);
+            const float fold = resting.empty() ? 0 : face.resting_share * resting[v];
+            face.intensity[v] =
+                wrinkle_intensity(rested_ratio(ratio[v], fold), face.lambda, face.beta);
         }
     }
 }

@@ -17,14 +17,20 @@ struct CrowdFace {
     float lambda = 1.05f;            ///< of WrinkleSurface, > 0
     float beta = 4;                  ///< the same
     std::span<float> intensity;      ///< destination, one per vertex, -1 .. 1
+    float resting_share = 0;         ///< of the folds at rest: the weight of their shape, 0 .. 1
 };
 
-/// Writes wrinkle_intensity() of every vertex of every face, without its mask. `rests` are those of
-/// the WrinkleState of the mesh: none, one or three. Faces are divided among threads by eights;
-/// which of them are together does not change any bit.
-void find_intensities(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces);
+/// Writes wrinkle_intensity() of every vertex of every face, without its mask. `rests` and
+/// `resting`, which is not for a radial driver, are those of the WrinkleState of the mesh: none,
+/// one or three rests, and a shortening per vertex or nothing. Faces are divided among threads by
+/// eights; which of them are together does not change any bit.
+void find_intensities(
+    std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
+    std::span<const float> resting = {});
 
 /// The same face by face, on this thread.
-void find_intensities_scalar(std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces);
+void find_intensities_scalar(
+    std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
+    std::span<const float> resting = {});
 
 }  // namespace limn

@@ -1,4 +1,5 @@
 #include "content/make/head.h"
+#include "content/make/head_ear.h"
 #include "content/make/head_layout.h"
 #include "content/make/head_parts.h"
 #include "content/make/head_surface.h"
@@ -9,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -173,6 +175,18 @@ TEST_CASE("head: the neck ends in a plane ring that turns once around") {
         turned += turn;
     }
     CHECK(std::abs(turned - 2 * kPi) < 1e-3f);
+}
+
+TEST_CASE("head: no ridge of the ear stands out like a spike, nor where ridges meet") {
+    float highest = 0;
+    for (float x = -1.2f; x <= 2; x += 0.02f) {
+        for (float y = -2.9f; y <= 2.9f; y += 0.02f) {
+            const bool inside = glm::length(Vec2(x, y)) <= ear_outline(std::atan2(y, x));
+            highest = std::max(highest, inside ? ear_relief({x, y}) : 0.0f);
+        }
+    }
+    CHECK(highest > 0.25f);  // the helix, in centimeters
+    CHECK(highest < 0.5f);
 }
 
 TEST_CASE("head: the tear line lies on the lower lid and the ball, and follows the lid") {

@@ -7,6 +7,7 @@
 #include "ecs/components/all.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/wrinkle.h"
 #include "ecs/components/wrinkle_maps.h"
 #include "ecs/world.h"
 #include "tests/near.h"
@@ -367,4 +368,49 @@ TEST_CASE("scene warnings: wrinkle maps and masks of another aspect ratio than t
         found[0].text
         == "entity \"face\": wrinkle_maps.first_masks \"masks\" is 64 x 64 px; expected the "
            "aspect ratio of base \"skin\", 512 x 256 px: its wrinkles are not drawn");
+}
+
+TEST_CASE("scene warnings: regions and shapes of wrinkles that the mesh does not have") {
+    const auto found = [](const char* fields) {
+        return warnings_of(fmt::format(
+            R"({{"meshes": {{"face": {{"make": "sphere"}}}}, "entities": [{{"name": "face",
+                "mesh_instance": {{"mesh": "face"}}, "wrinkle_surface": {{{}}}}}]}})",
+            fields));
+    };
+    CHECK(found("").empty());
+    CHECK(
+        found(R"("regions": ["brow"])")
+        == Warnings{"entity \"face\": wrinkle_surface.regions[0]: found \"brow\", no region of "
+                    "mesh \"face\"; expected one of a mesh that has any"});
+    World world;
+    Assets assets;
+    MeshData& mesh = assets.meshes.emplace_back();
+    mesh.name = "head";
+    mesh.regions.resize(2);
+    mesh.regions[0].name = "forehead";
+    mesh.regions[1].name = "chin";
+    mesh.morphs.emplace_back().name = "age";
+    world.insert_resource(std::move(assets));
+    WrinkleSurface surface;
+    surface.regions = {"chin"};
+    surface.second_regions = {"chin", "forhead"};
+    surface.resting = {{"forehead", 0.1f}, {"cheek", 0.1f}};
+    surface.resting_shape = "age";
+    world.create(Name{"face"}, MeshInstance{MeshId{0}, {}}, surface);
+    surface = {};
+    surface.resting_shape = "old";
+    world.create(Name{"other"}, MeshInstance{MeshId{0}, {}}, surface);
+    Warnings lines;
+    for (const SceneWarning& warning : find_scene_warnings(world)) {
+        lines.push_back(warning.text);
+    }
+    CHECK(
+        lines
+        == Warnings{
+            "entity \"face\": wrinkle_surface.second_regions[1]: found \"forhead\", no region of "
+            "mesh \"head\"; expected one of forehead chin",
+            "entity \"face\": wrinkle_surface.resting[1].region: found \"cheek\", no region of "
+            "mesh \"head\"; expected one of forehead chin",
+            "entity \"other\": wrinkle_surface.resting_shape: found \"old\", no shape of mesh "
+            "\"head\"; expected one of age"});
 }

@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -72,6 +73,25 @@ TEST_CASE("face folding: so does that of ICT FaceKit") {
 TEST_CASE("face folding: and that of MakeHuman") {
     if (const auto scene = import_shared("makehuman")) {
         check_face(scene->meshes[0], 5);
+    }
+}
+
+TEST_CASE(
+    "face folding: a frown that pushes brows down folds the glabella, a smile beside the nose") {
+    // Of MakeHuman, whose frown moves skin beside the middle of the face and nothing in it.
+    if (const auto scene = import_shared("makehuman")) {
+        const MeshData& face = scene->meshes[0];
+        const oracle::FaceFolding folding(face);
+        const auto shortening = [&](std::string_view unit, std::string_view region) {
+            const auto expressions = oracle::find_face_expressions(face);
+            const auto found = std::ranges::find(expressions, unit, &oracle::FaceExpression::unit);
+            const auto at = std::ranges::find(face.regions, region, &VertexRegion::name);
+            REQUIRE(found != expressions.end());
+            REQUIRE(at != face.regions.end());
+            return folding.measure(found->morphs)[at - face.regions.begin()].shortening;
+        };
+        CHECK(shortening("AU4", "glabella") > 0.04);
+        CHECK(shortening("AU12", "nasolabial") > 0.08);
     }
 }
 

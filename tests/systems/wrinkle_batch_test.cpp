@@ -3,6 +3,7 @@
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_batch.h"
 #include "systems/faces/wrinkle_measure.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -72,7 +73,7 @@ struct Crowd {
         }
         for (std::size_t i = 0; i < count; ++i) {
             const auto k = static_cast<float>(i);
-            faces.push_back({deformed[i], 1 + 0.02f * k, 1 + 0.5f * k, intensity[i]});
+            faces.push_back({deformed[i], 1 + 0.02f * k, 1 + 0.5f * k, intensity[i], 0});
         }
     }
 };
@@ -154,5 +155,43 @@ TEST_CASE(
             largest = std::max(largest, std::abs(found[i][v] - crowd.intensity[i][v]));
         }
         CHECK(largest <= 1e-6f);
+    }
+}
+
+TEST_CASE("wrinkle batch: folds at rest count as shortening, each face by its own share") {
+    const Sheet sheet = make_sheet();
+    std::vector<float> resting(sheet.positions.size(), 0.0f);
+    for (std::size_t v = 0; v < resting.size(); v += 3) {  // some where nothing is measured
+        resting[v] = 0.2f;
+    }
+    for (const std::vector<WrinkleRest>& rests : all_rests(sheet)) {
+        if (rests.empty()) {
+            continue;
+        }
+        Crowd together(sheet, 11);
+        Crowd alone(sheet, 11);
+        for (std::size_t i = 0; i < 11; ++i) {
+            together.faces[i].resting_share = 0.1f * static_cast<float>(i);
+            alone.faces[i].resting_share = together.faces[i].resting_share;
+        }
+        find_intensities(rests, together.faces, resting);
+        find_intensities_scalar(rests, alone.faces, resting);
+        Crowd young(sheet, 11);
+        find_intensities(rests, young.faces);
+        CHECK(together.intensity[0] == young.intensity[0]);
+        float largest = 0;
+        for (std::size_t i = 0; i < 11; ++i) {
+            for (std::size_t v = 0; v < resting.size(); ++v) {
+                const float found = together.intensity[i][v];
+                largest = std::max(largest, std::abs(found - alone.intensity[i][v]));
+                const bool folds = i > 0 && resting[v] > 0;
+                CHECK_UNARY(folds ? found > young.intensity[i][v] : found == young.intensity[i][v]);
+            }
+        }
+        CHECK(largest <= 1e-6f);
+        // A sheet at rest, of which a fifth is too long, has the intensity of 0.8^2.
+        const CrowdFace still = {sheet.positions, 1, 4, together.intensity[0], 1};
+        find_intensities(rests, {&still, 1}, resting);
+        CHECK(still.intensity[0] == test::near(wrinkle_intensity(0.64f, 1, 4)).epsilon(1e-4));
     }
 }
