@@ -8,6 +8,7 @@
 #include "render/passes/deform_pass.h"
 #include "render/passes/depth_of_field_pass.h"
 #include "render/passes/environment_pass.h"
+#include "render/passes/fog_pass.h"
 #include "render/passes/furrow_pass.h"
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/glare_pass.h"
@@ -64,6 +65,7 @@ constexpr EffectEntry kImage[] = {
     effect<ParticlesUnderWaterEffect>(kSceneViews),  // seen through it
     effect<WaterEffect>(kSceneViews),                // over all that is opaque
     effect<WaterVeilEffect>(kSceneViews),  // what lies between a camera in the water and all else
+    effect<FogEffect>(kSceneViews),        // over all that has a depth; what follows has its own
     effect<ParticleEffect>(kSceneViews),   // what is behind blended surfaces
     effect<BlendEffect>(kSceneViews),      // after sky and water, which are seen through it
     effect<ParticleFrontEffect>(kSceneViews),  // over all surfaces

@@ -17,6 +17,7 @@
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
+#include "ecs/components/height_fog.h"
 #include "ecs/components/input.h"
 #include "ecs/components/lens_flare.h"
 #include "ecs/components/lifetime.h"
@@ -190,6 +191,7 @@ void register_all_components() {
     register_resource<Glare>();
     register_resource<Vignette>();
     register_resource<LensRain>();
+    register_resource<HeightFog>();
     register_resource<Weather>();
     register_resource<WeatherState>();
     register_resource<MotionBlur>();

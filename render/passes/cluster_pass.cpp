@@ -6,6 +6,7 @@
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/height_fog.h"
 #include "render/instance_list.h"
 #include "render/render_frame.h"
 #include "render/shading_models.h"
@@ -215,6 +216,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     block.blinn_axis = Vec4(blinn_axis(rendering, view.camera), 0);
     const auto* const wrinkles = frame.world->find_resource<WrinkleComparison>();
     block.wrinkle_columns = pack_columns(wrinkle_columns(wrinkles), column_borders(wrinkles));
+    describe_fog(frame.world->find_resource<HeightFog>(), lights, block);
     view.block = frame.ring->push_value(block);
 
     Variant& variant = view.lighting.variant;

@@ -5,6 +5,7 @@
 #define UNMASKED  // shadow masks are of the opaque surfaces behind
 #include "lib/lighting.glsl"
 #include "lib/material.glsl"
+#include "lib/height_fog.glsl"
 #ifdef TRANSMISSION
 #include "lib/transmission.glsl"
 #endif
@@ -26,8 +27,15 @@ void main() {
     ClearMedium medium = clear_medium(s.material);
     float clear = medium.transmission * (1.0 - s.metalness);
     vec3 seen = transmitted_radiance(medium, position_ws, s.normal_ws, r.to_camera, s.roughness);
-    light.diffuse = mix(light.diffuse, s.albedo * seen * (1.0 - mirror), clear);
+    light.diffuse *= 1.0 - clear;
+    vec3 through = opacity * clear * (1.0 - mirror) * s.albedo * seen;  // with the fog in front of it
+    float clear_share = opacity * clear * (1.0 - mirror);
+#else
+    const vec3 through = vec3(0.0);
+    const float clear_share = 0.0;
 #endif
-    radiance = vec4(
-        storable(opacity * (light.diffuse + s.emission) + light.specular), opacity + (1.0 - opacity) * mirror);
+    float coverage = opacity + (1.0 - opacity) * mirror;
+    vec4 fog = fog_before(position_ws);
+    vec3 own = (opacity * (light.diffuse + s.emission) + light.specular) * (1.0 - fog.a);
+    radiance = vec4(storable(own + fog.rgb * (coverage - clear_share) + through), coverage);
 }

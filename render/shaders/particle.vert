@@ -16,6 +16,7 @@
 #include "lib/particle_varyings.glsl"
 #include "lib/view.glsl"
 
+#include "lib/height_fog.glsl"
 #include "lib/particle_quad.glsl"
 #if defined(LIT) || defined(IN_WATER)
 #include "lib/lighting.glsl"
@@ -329,6 +330,18 @@ void main() {
     }
 #endif
     light = vec4(color.rgb * radiance * color.a, color.a);
+#ifndef IN_WATER  // which is drawn over it and gets the fog
+    vec4 fog = fog_before(p.position);
+    vec3 veil = fog.rgb * (color.a * glow.z);
+    light.rgb = light.rgb * (1.0 - fog.a) + veil;
+#ifdef SIX_WAY
+    glow_color = glow_color * (1.0 - fog.a) + veil;
+    for (int i = 0; i < 3; ++i) {
+        positive_side[i].rgb *= 1.0 - fog.a;
+        negative_side[i] *= 1.0 - fog.a;
+    }
+#endif
+#endif
 #ifdef IN_WATER
     WaterMedium water = water_medium(p.position);
     medium = vec4(water.extinction, water.index);

@@ -29,9 +29,9 @@ layout(location = 10) SIDES_INTERPOLATION VARYING vec3
     negative_side[3];  // likewise from the left, from below and from the camera
 layout(location = 13) flat VARYING vec3 glow_color;  // radiance by itself, premultiplied
 #endif
-#ifdef IN_WATER
-layout(location = 6) flat VARYING vec4 medium;  // extinction of the water that its middle is in [1/m], index of refraction
-#endif
 #ifdef WEIGHTED
 layout(location = 14) VARYING float weight;  // of a layer at this distance
+#endif
+#ifdef IN_WATER
+layout(location = 15) flat VARYING vec4 medium;  // extinction of the water that its middle is in [1/m], index of refraction
 #endif

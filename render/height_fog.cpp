@@ -1,0 +1,29 @@
+#include "render/height_fog.h"
+
+#include "render/light_list.h"
+#include "render/settings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr float kMaxExponent = 40;  // of the density at the camera: far below the base it is solid
+
+}  // namespace
+
+void describe_fog(const HeightFog* fog, const LightList& lights, layout::ViewBlock& block) {
+    if (fog == nullptr) {
+        return;
+    }
+    const HeightFog its = within_ranges(*fog);
+    const float above = (block.camera_ws.y - its.base) / its.scale_height;
+    const float density = its.density * std::exp(std::min(-above, kMaxExponent));
+    block.fog = {density, 1 / its.scale_height, its.forward, 0};
+    block.fog_ambient = Vec4(its.ambient, 0);
+    block.fog_sun = Vec4(its.sun * lights.sun_color, 0);
+    block.fog_to_sun = Vec4(lights.sun_direction, 0);
+}
+
+}  // namespace limn

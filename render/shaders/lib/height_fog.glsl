@@ -1,0 +1,32 @@
+// Fog that thins with height, from the camera on (render/height_fog.h). Include after lib/view.glsl.
+
+const float kMostOpticalDepth = 80.0;
+
+float fog_optical_depth(float rise, float path) {
+    float x = view.fog.y * rise * path;
+    float mean = abs(x) < 1e-2 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(min(-x, kMostOpticalDepth))) / x;
+    return min(view.fog.x * path * mean, kMostOpticalDepth);
+}
+
+// Henyey and Greenstein's.
+float fog_phase(float cosine) {
+    float g = view.fog.z;
+    float d = 1.0 + g * g - 2.0 * g * cosine;
+    return (1.0 - g * g) / (4.0 * 3.14159265 * d * sqrt(d));
+}
+
+// Radiance that `path` meters scatter toward the camera, and their opacity; `direction`: unit.
+vec4 fog_along(vec3 direction, float path) {
+    float opacity = 1.0 - exp(-fog_optical_depth(direction.y, path));
+    vec3 scattered = view.fog_ambient.rgb + view.fog_sun.rgb * fog_phase(dot(direction, view.fog_to_sun.xyz));
+    return vec4(scattered * opacity, opacity);
+}
+
+vec4 fog_before(vec3 position_ws) {
+    if (view.fog.x <= 0.0) {
+        return vec4(0.0);
+    }
+    vec3 way = position_ws - view.camera_ws.xyz;
+    float path = max(length(way), 1e-6);
+    return fog_along(way / path, path);
+}
