@@ -102,21 +102,30 @@ bool is_under_water(std::span<const DrawnWater> waters, const Vec3& place) {
     });
 }
 
-/// Whatever their layer, at full resolution; none where the camera is in the water, too.
+/// At full resolution; none where the camera is in the water, too. Layers are drawn one after the
+/// other, as above the water: sorted among each other, they would take turns in binding images and
+/// programs, a draw for every few particles.
 void append_under_water(
-    const ParticleDraws& draws, const FrameData& frame, const ViewData& view,
+    const ParticleDraws& draws, const FrameData& frame, const ViewData& view, std::size_t middle,
     ParticlesInView& seen) {
     seen.under_begin = seen.runs.size();
     if (draws.waters.empty() || is_clipped(view)
         || is_under_water(draws.waters, transform_point(view.camera.world_from_camera, Vec3(0)))) {
         return;
     }
-    for (std::size_t i = 0; i < draws.sorted.size(); ++i) {
-        if (seen.visible[i] != 0
-            && (frame.warm_up || is_under_water(draws.waters, draws.sorted[i].position))) {
-            append_instance(draws, view.camera, i, 1, seen.under_begin, seen);
+    const auto append = [&](LookLayer layer, std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const ParticleInstance& instance = draws.sorted[i];
+            if (seen.visible[i] != 0 && draws.layers[instance.look_and_share >> 16] == layer
+                && (frame.warm_up || is_under_water(draws.waters, instance.position))) {
+                append_instance(draws, view.camera, i, 1, seen.under_begin, seen);
+            }
         }
-    }
+    };
+    append(LookLayer::Full, 0, middle);
+    append(LookLayer::Half, 0, draws.sorted.size());
+    append(LookLayer::Full, middle, draws.sorted.size());
+    append(LookLayer::Weighted, 0, draws.sorted.size());
 }
 
 }  // namespace
@@ -158,7 +167,7 @@ void select_particles(
                                       ? draws.extents[pool->look].ways
                                       : Bounds{});
     }
-    append_under_water(draws, frame, view, seen);
+    append_under_water(draws, frame, view, middle, seen);
 }
 
 }  // namespace limn

@@ -196,6 +196,36 @@ TEST_CASE_FIXTURE(OrderScene, "particle order: below clear water they are seen f
 
 TEST_CASE_FIXTURE(
     OrderScene,
+    "particle order: layers that alternate below water take as many draws as one pair") {
+    world.create(
+        Water{.size = {16, 16}, .depth = 2, .absorption = Vec3(0), .scattering = Vec3(0)},
+        WorldTransform{at({0, 0, 0})});
+    const auto add_white = [&](int size) {  // two sizes: in two arrays
+        ImageData white;
+        white.width = white.height = size;
+        white.pixels.assign(static_cast<std::size_t>(4 * size * size), 255);
+        return add(white);
+    };
+    const ImageId images[] = {add_white(1), add_white(2)};
+    const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
+    const auto add_pairs = [&](int count) {
+        for (int i = 0; i < 2 * count; ++i) {
+            look_.image = images[i % 2];
+            look_.resolution = i % 2 == 0 ? ParticleResolution::Full : ParticleResolution::Half;
+            emit({0, -0.1f * static_cast<float>(i + 1), 0}, {1, 0, 0}, 0.1f);
+        }
+        (void)radiance(view);  // fills caches
+        shared_device().reset_stats();
+        (void)radiance(view);
+        return shared_device().stats().draws;
+    };
+    const int few = add_pairs(2);
+    CHECK(few > 0);
+    CHECK(add_pairs(4) == few);
+}
+
+TEST_CASE_FIXTURE(
+    OrderScene,
     "particle order: water absorbs a sprite's light as far as the sprite, not the floor") {
     place(
         add(make_square()), add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
