@@ -5,7 +5,7 @@
 
 namespace limn {
 
-// Fog between the camera and surfaces, water and sky (render/height_fog.h).
+// Fog between the camera and surfaces, water and sky (render/fog_block.h).
 //
 // Reads    depth; HeightFog
 // Writes   radiance

@@ -1,4 +1,4 @@
-// Fog that thins with height, from the camera on (render/height_fog.h). Include after lib/view.glsl.
+// Fog that thins with height, from the camera on (render/fog_block.h). Include after lib/view.glsl.
 
 const float kMostOpticalDepth = 80.0;
 

@@ -1,4 +1,4 @@
-#include "render/height_fog.h"
+#include "render/fog_block.h"
 
 #include "render/light_list.h"
 #include "render/settings.h"
