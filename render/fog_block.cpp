@@ -17,12 +17,12 @@ void describe_fog(const HeightFog* fog, const LightList& lights, layout::ViewBlo
     if (fog == nullptr) {
         return;
     }
-    const HeightFog its = within_ranges(*fog);
-    const float above = (block.camera_ws.y - its.base) / its.scale_height;
-    const float density = its.density * std::exp(std::min(-above, kMaxExponent));
-    block.fog = {density, 1 / its.scale_height, its.forward, 0};
-    block.fog_ambient = Vec4(its.ambient, 0);
-    block.fog_sun = Vec4(its.sun * lights.sun_color, 0);
+    const HeightFog settings = within_ranges(*fog);
+    const float above = (block.camera_ws.y - settings.base) / settings.scale_height;
+    const float density = settings.density * std::exp(std::min(-above, kMaxExponent));
+    block.fog = {density, 1 / settings.scale_height, settings.forward, 0};
+    block.fog_ambient = Vec4(settings.ambient, 0);
+    block.fog_sun = Vec4(settings.sun * lights.sun_color, 0);
     block.fog_to_sun = Vec4(lights.sun_direction, 0);
 }
 

@@ -13,22 +13,22 @@ namespace {
 
 constexpr std::size_t kMaxVertices = 1000000;
 
-void append_part(MeshData& mesh, const MeshData& its, const JoinedPart& part) {
+void append_part(MeshData& mesh, const MeshData& source, const JoinedPart& part) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     const Quat turn = glm::normalize(part.rotation);
     const Vec3 scale = glm::max(part.scale, Vec3(1e-3f));  // positive: no part is turned inside out
-    for (std::size_t v = 0; v < its.positions.size(); ++v) {
-        const Vec3 normal = normalize_or(its.normals[v] / scale, its.normals[v]);
-        const Vec4 old = its.tangents[v];
+    for (std::size_t v = 0; v < source.positions.size(); ++v) {
+        const Vec3 normal = normalize_or(source.normals[v] / scale, source.normals[v]);
+        const Vec4 old = source.tangents[v];
         const Vec3 tangent = normalize_or(Vec3(old) * scale, Vec3(old));
-        const Vec4 color = v < its.colors.size() ? its.colors[v] : Vec4(1);
-        mesh.positions.push_back(part.position + turn * (its.positions[v] * scale));
+        const Vec4 color = v < source.colors.size() ? source.colors[v] : Vec4(1);
+        mesh.positions.push_back(part.position + turn * (source.positions[v] * scale));
         mesh.normals.push_back(turn * normal);
         mesh.tangents.emplace_back(turn * tangent, old.w);
-        mesh.uvs.push_back(its.uvs[v]);
+        mesh.uvs.push_back(source.uvs[v]);
         mesh.colors.push_back(color * Vec4(part.color, 1.0f));
     }
-    for (const std::uint32_t index : its.indices) {
+    for (const std::uint32_t index : source.indices) {
         mesh.indices.push_back(first + index);
     }
 }
@@ -48,9 +48,9 @@ MeshData make_joined(const JoinedShape& shape, const Assets& assets) {
         if (part.mesh.index >= assets.meshes.size()) {
             continue;
         }
-        const MeshData& its = assets.meshes[part.mesh.index];
-        if (is_whole(its) && mesh.positions.size() + its.positions.size() <= kMaxVertices) {
-            append_part(mesh, its, part);
+        const MeshData& source = assets.meshes[part.mesh.index];
+        if (is_whole(source) && mesh.positions.size() + source.positions.size() <= kMaxVertices) {
+            append_part(mesh, source, part);
         }
     }
     update_bounds(mesh);

@@ -1,11 +1,11 @@
 // Fog that thins with height, from the camera on (render/fog_block.h). Include after lib/view.glsl.
 
-const float kMostOpticalDepth = 80.0;
+const float kMaxOpticalDepth = 80.0;
 
 float fog_optical_depth(float rise, float path) {
     float x = view.fog.y * rise * path;
-    float mean = abs(x) < 1e-2 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(min(-x, kMostOpticalDepth))) / x;
-    return min(view.fog.x * path * mean, kMostOpticalDepth);
+    float mean = abs(x) < 1e-2 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(min(-x, kMaxOpticalDepth))) / x;
+    return min(view.fog.x * path * mean, kMaxOpticalDepth);
 }
 
 // Henyey and Greenstein's.
