@@ -10,13 +10,14 @@ class Device;
 class Program;
 }  // namespace gpu
 
-// A layer of half the width and height over the scene, for what is soft and covers much: its depth
-// is that of the nearest and the farthest of each four pixels, in turn like the squares of a
-// chessboard. Enlarged, a pixel lies between its four nearest texels where all are about as far as
-// it is, and else takes the one whose depth is most alike, so that the layer neither spills over
-// edges nor leaves a rim (Cantlay, "High-Speed, Off-Screen Particles", GPU Gems 3, 2007;
+// A layer of half the width and height over the scene, for what is soft and covers much. Its depth
+// is that in the middle of each four pixels where they are of one surface, else the nearest and the
+// farthest of them, in turn like the squares of a chessboard. Enlarged, a pixel lies between its
+// four nearest texels, without those that are of another surface, so that the layer neither spills
+// over edges nor leaves a rim (Cantlay, "High-Speed, Off-Screen Particles", GPU Gems 3, 2007;
 // nearest-depth filter of Jansen and Bavoil, "Fast Rendering of Opacity-Mapped Particles Using
-// DirectX 11 Tessellation and Mixed Resolutions", 2011).
+// DirectX 11 Tessellation and Mixed Resolutions", 2011). One surface is what changes from pixel to
+// pixel about as it does beside them, as does ground seen at a shallow angle.
 
 struct ParticleLayer {
     LightBounds

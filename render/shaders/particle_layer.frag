@@ -1,5 +1,5 @@
-// A layer of half the resolution over the scene: between the four nearest texels where all are about as far as the
-// pixel, else the one whose distance is most alike (render/particle_layer.h).
+// A layer of half the resolution over the scene: between the four nearest texels, without those that are of another
+// surface than the pixel (render/particle_layer.h).
 #version 450
 #include "lib/view.glsl"
 
@@ -11,8 +11,17 @@ layout(location = 0) out vec4 radiance;
 
 const float kAlike = 0.1;  // difference of distances up to which texels are of one surface, as a share
 
+// Depth per pixel along x and y, each on the side where it changes less: of the pixel's own surface at an edge, too.
+float slope_at(ivec2 at, float here) {
+    vec2 before = vec2(texelFetchOffset(scene_depth, at, 0, ivec2(-1, 0)).r, texelFetchOffset(scene_depth, at, 0, ivec2(0, -1)).r);
+    vec2 after = vec2(texelFetchOffset(scene_depth, at, 0, ivec2(1, 0)).r, texelFetchOffset(scene_depth, at, 0, ivec2(0, 1)).r);
+    vec2 slope = min(abs(before - here), abs(after - here));
+    return slope.x + slope.y;
+}
+
 void main() {
-    float here = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    float here = texelFetch(scene_depth, at, 0).r;
     vec2 size = vec2(textureSize(layer, 0));
     vec2 place = 0.5 * gl_FragCoord.xy;  // [texels]
     vec2 corner = clamp(floor(place - 0.5), vec2(0.0), size - 2.0);
@@ -20,11 +29,18 @@ void main() {
 
     // Depths are near / distance, so that their differences are shares of distances, too.
     vec4 apart = abs(four - here);
+    float farthest = max(max(apart.x, apart.y), max(apart.z, apart.w));
+    if (farthest <= kAlike * here || farthest <= kAlike * here + 2.0 * slope_at(at, here)) {
+        radiance = textureLod(layer, place / size, 0.0);
+        return;
+    }
     float nearest = min(min(apart.x, apart.y), min(apart.z, apart.w));
-    vec2 chosen = apart.w == nearest   ? vec2(0.5)
-                  : apart.z == nearest ? vec2(1.5, 0.5)
-                  : apart.x == nearest ? vec2(0.5, 1.5)
-                                       : vec2(1.5);
-    bool alike = all(lessThanEqual(apart, vec4(kAlike * here)));
-    radiance = textureLod(layer, (alike ? place : corner + chosen) / size, 0.0);
+    vec2 right = clamp(place - 0.5 - corner, 0.0, 1.0);
+    vec4 weights = vec4(1.0 - right.x, right.x, right.x, 1.0 - right.x) * vec4(right.yy, 1.0 - right.yy)
+        * vec4(lessThanEqual(apart, vec4(nearest + kAlike * here)));
+    ivec2 first = ivec2(corner);
+    radiance = (weights.x * texelFetchOffset(layer, first, 0, ivec2(0, 1))
+                + weights.y * texelFetchOffset(layer, first, 0, ivec2(1, 1))
+                + weights.z * texelFetchOffset(layer, first, 0, ivec2(1, 0)) + weights.w * texelFetch(layer, first, 0))
+        / (weights.x + weights.y + weights.z + weights.w);
 }
