@@ -83,12 +83,12 @@ void ImagePool::update(std::span<const ImageData> images) {
         create_array(desc);
     }
     for (std::size_t i = first; i < images.size(); ++i) {
-        const ImageLayer its = images_[i].place;
-        if (its.array != 0) {
+        const ImageLayer place = images_[i].place;
+        if (place.array != 0) {
             // The first row of the image is row 0 of the texture, where v = 0, as in glTF.
-            arrays_[its.array].texture.upload<std::uint8_t>(
+            arrays_[place.array].texture.upload<std::uint8_t>(
                 std::span(images[i].pixels).first(image_bytes(images[i])), GL_RGBA,
-                image_format(images[i]).type, 0, static_cast<int>(its.layer));
+                image_format(images[i]).type, 0, static_cast<int>(place.layer));
         }
     }
     for (std::size_t i = first_array; i < arrays_.size(); ++i) {
@@ -104,16 +104,16 @@ void ImagePool::update(std::span<const ImageData> images) {
 }
 
 void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
-    const ImageLayer its = find(id);
-    if (its.array == 0) {
+    const ImageLayer place = find(id);
+    if (place.array == 0) {
         return;
     }
-    gpu::Texture& array = arrays_[its.array].texture;
+    gpu::Texture& array = arrays_[place.array].texture;
     gpu::TextureDesc level = array.desc();
     level.levels = 1;
     level.depth = 1;
     if (pixels.size() == gpu::texture_bytes(level)) {
-        array.upload(std::as_bytes(pixels), 0, static_cast<int>(its.layer));
+        array.upload(std::as_bytes(pixels), 0, static_cast<int>(place.layer));
         array.generate_mipmaps();  // of all layers: those of a view alone stay as they were on Mesa
     }
 }

@@ -123,11 +123,11 @@ Vec2 widest_tangent(const RenderView& view) {
 
 LensView lens_view(const World& world, Entity camera) {
     const auto* lens = world.find<Lens>(camera);
-    const auto* its = world.find<Camera>(camera);
-    if (lens == nullptr || its == nullptr) {
+    const auto* pinhole = world.find<Camera>(camera);
+    if (lens == nullptr || pinhole == nullptr) {
         return {};
     }
-    const Result<LensView> made = make_lens_view(*lens, *its);
+    const Result<LensView> made = make_lens_view(*lens, *pinhole);
     if (!made) {
         static std::atomic<bool> reported = false;
         if (!reported.exchange(true)) {
@@ -160,8 +160,8 @@ std::optional<Entity> find_camera(const World& world, std::string_view name) {
             });
     } else {
         world.query<const Name, With<Camera>, With<WorldTransform>>().each(
-            [&](Entity entity, const Name& its) {
-                if (!found && its.text == name) {
+            [&](Entity entity, const Name& entity_name) {
+                if (!found && entity_name.text == name) {
                     found = entity;
                 }
             });

@@ -93,13 +93,13 @@ SceneResult evaluate_scene(const PhongScene& scene, const std::function<void(int
         .phong_diffuse = draw(diffuse, methods[0]),
         .methods = {}};
     for (const ShadingMethod& method : methods.subspan(1)) {
-        const PhongScene& its = method.diffuse_only ? diffuse : scene;
-        MethodResult one = {.method = &method, .image = draw(its, method)};
+        const PhongScene& shaded = method.diffuse_only ? diffuse : scene;
+        MethodResult one = {.method = &method, .image = draw(shaded, method)};
         const PhongImage& phong = reference_of(result, one);
         one.correctness = color_correctness(phong.color, one.image.color, phong.mask);
         one.scanline = compare_scanlines(
             scanline(phong.color, scene.row), scanline(one.image.color, scene.row));
-        check_points(its, method, one);
+        check_points(shaded, method, one);
         result.methods.push_back(std::move(one));
         if (progress) {
             progress(1 + static_cast<int>(result.methods.size()));

@@ -30,8 +30,10 @@ std::vector<T> read(const gpu::Buffer& buffer, std::size_t first, std::size_t co
 }  // namespace
 
 struct SkinReadback::Machine {
-    Machine(gpu::Device& device, DeformPass made, WrinkleEffect its, std::size_t storage_bytes)
-        : pass(std::move(made)), wrinkles(std::move(its)), shapes(storage_bytes),
+    Machine(
+        gpu::Device& device, DeformPass made, WrinkleEffect wrinkle_effect,
+        std::size_t storage_bytes)
+        : pass(std::move(made)), wrinkles(std::move(wrinkle_effect)), shapes(storage_bytes),
           ring(device.caps(), "readback", 1 << 16), graph(device) {}
 
     DeformPass pass;

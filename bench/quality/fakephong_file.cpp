@@ -29,7 +29,7 @@ namespace {
 
 void append(PhongMesh& to, const MeshData& mesh, const Affine& world_from_mesh) {
     const auto first = static_cast<std::uint32_t>(to.positions.size());
-    PhongMesh its = phong_mesh(mesh);
+    PhongMesh faceted = phong_mesh(mesh);
     const Mat3 turn(
         transform_vector(world_from_mesh, {1, 0, 0}), transform_vector(world_from_mesh, {0, 1, 0}),
         transform_vector(world_from_mesh, {0, 0, 1}));
@@ -37,11 +37,11 @@ void append(PhongMesh& to, const MeshData& mesh, const Affine& world_from_mesh) 
     const Mat3 normals(
         glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]), glm::cross(turn[0], turn[1]));
     const bool mirrored = glm::dot(turn[0], normals[0]) < 0;
-    for (std::size_t i = 0; i < its.positions.size(); ++i) {
+    for (std::size_t i = 0; i < faceted.positions.size(); ++i) {
         to.positions.emplace_back(transform_point(world_from_mesh, mesh.positions[i]));
-        to.normals.emplace_back((mirrored ? -1.0f : 1.0f) * (normals * Vec3(its.normals[i])));
+        to.normals.emplace_back((mirrored ? -1.0f : 1.0f) * (normals * Vec3(faceted.normals[i])));
     }
-    for (auto [a, b, c] : its.triangles) {
+    for (auto [a, b, c] : faceted.triangles) {
         if (mirrored) {
             std::swap(b, c);
         }

@@ -192,13 +192,14 @@ void set_furrow_look(Material& material, const FurrowLook& look) {
         material.skin_color = {0, 0, 0};  // Bando's model has no rim
         return;
     }
-    const Measured& its = kMeasured[look.reflection == FurrowReflection::Measured1 ? 0 : 1];
+    const Measured& measured = kMeasured[look.reflection == FurrowReflection::Measured1 ? 0 : 1];
     material.shading = ShadingModel::Lafortune;
     material.pigments = Pigments::None;
-    material.base_color = Vec4(its.diffuse, material.base_color.w);
+    material.base_color = Vec4(measured.diffuse, material.base_color.w);
     material.lobes.clear();
     for (std::size_t i = 0; i < 2; ++i) {
-        material.lobes.push_back({Vec3(its.across[i]), Vec3(its.along[i]), Vec3(its.exponent[i])});
+        material.lobes.push_back(
+            {Vec3(measured.across[i]), Vec3(measured.along[i]), Vec3(measured.exponent[i])});
     }
 }
 

@@ -568,8 +568,9 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     const FieldInfo* const size = find_field(image.parameters.info().fields, "size");
     const auto side =
         size == nullptr ? 0.0 : get_number(*size, field_ptr(image.parameters.data(), *size));
-    const std::span<const PatternMap> its = pattern_maps(*image.pattern);
-    const auto pixels = static_cast<std::uint64_t>(static_cast<double>(its.size()) * side * side);
+    const std::span<const PatternMap> wanted = pattern_maps(*image.pattern);
+    const auto pixels =
+        static_cast<std::uint64_t>(static_cast<double>(wanted.size()) * side * side);
     if (pixels > pixels_left) {
         return fail(
             "{}: found {} pixels, expected at most {} more in this level",
@@ -578,7 +579,7 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     pixels_left -= pixels;
     PatternMaps maps = made.pattern(*image.pattern, image.parameters);
     std::size_t index = image.index;
-    for (const PatternMap& map : its) {
+    for (const PatternMap& map : wanted) {
         (maps.*map.image).name = level.assets.images[index].name;
         level.assets.images[index++] = std::move(maps.*map.image);
     }

@@ -235,9 +235,9 @@ bool halve_edges(MeshData& mesh, float edge, std::vector<char>& foldable) {
     std::vector<std::array<std::uint32_t, 3>> halved;
     for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
         const std::uint32_t* const v = &mesh.indices[t];
-        std::array<std::uint32_t, 3>& its = halved.emplace_back();
+        std::array<std::uint32_t, 3>& corners = halved.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
-            its[k] = middle_vertex(v[k], v[(k + 1) % 3]);
+            corners[k] = middle_vertex(v[k], v[(k + 1) % 3]);
         }
     }
     if (made.empty() || old + made.size() > kMaxVertices) {

@@ -87,12 +87,12 @@ PatternMaps render_frames(
     const PatternSize& image, int frames, int side, const std::vector<FluidFrame>& film,
     Texel&& texel) {
     const float count = static_cast<float>(frames);
-    const auto render = [&](auto&& its) {
+    const auto render = [&](auto&& evaluate) {
         return make_pattern_maps(image.size, [&](const Vec2& uv) {
             const Vec2 cell = glm::min(glm::floor(uv * count), Vec2(count - 1.0f));
             const Vec2 inside = uv * count - cell;
             const auto number = static_cast<std::size_t>(cell.y * count + cell.x);
-            return its(film[number], Vec2(inside.x, 1.0f - inside.y));
+            return evaluate(film[number], Vec2(inside.x, 1.0f - inside.y));
         });
     };
     PatternMaps maps = render([&](const FluidFrame& frame, const Vec2& at) {

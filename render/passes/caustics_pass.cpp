@@ -81,9 +81,9 @@ struct WaterLights {
     const gpu::Texture* maps;
 };
 
-void bind_water_lights(PassContext& context, const WaterLights& its) {
-    its.records->bind(context.device(), kWaterLightsUnit);
-    context.device().bind_texture(kCausticMapsUnit, *its.maps);
+void bind_water_lights(PassContext& context, const WaterLights& lights) {
+    lights.records->bind(context.device(), kWaterLightsUnit);
+    context.device().bind_texture(kCausticMapsUnit, *lights.maps);
 }
 
 /// Whether some water of the level reflects sunlight upward, even if the sun is low in this frame.

@@ -243,9 +243,9 @@ void LightListEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
     auto& published = view.data.publish<ClusterLists>();
     published = lists;
     view.lighting.reads.insert(view.lighting.reads.end(), {lists.cells, lists.indices});
-    view.lighting.add_binding<[](PassContext& context, const ClusterLists& its) {
-        its.index_texture->bind(context.device(), kLightIndicesUnit);
-        its.cell_texture->bind(context.device(), kLightCellsUnit);
+    view.lighting.add_binding<[](PassContext& context, const ClusterLists& found) {
+        found.index_texture->bind(context.device(), kLightIndicesUnit);
+        found.cell_texture->bind(context.device(), kLightCellsUnit);
     }>(published);
 }
 

@@ -87,9 +87,9 @@ void DazzleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const TextureId dazzled = create_like(graph, "dazzled radiance", view.radiance);
     add_fullscreen_pass(
         graph, "dazzle", {sampled(view.radiance, 0), sampled(visible, 1)}, {discarded(dazzled)},
-        program, [this](PassContext& context, const gpu::Program& its) {
+        program, [this](PassContext& context, const gpu::Program& shader) {
             point_records.bind(context.device(), 2);
-            its.set("count", static_cast<int>(points.size()));
+            shader.set("count", static_cast<int>(points.size()));
         });
     view.radiance = dazzled;
 }

@@ -84,18 +84,19 @@ std::vector<Vec4> vertex_records(const MeshData& mesh) {
     return records;
 }
 
-void upload_heights(ShownFurrows& its, Entity entity, const FurrowSkin& skin) {
-    if (its.entity == entity && its.version == skin.version && its.heights.id() != 0) {
+void upload_heights(ShownFurrows& furrows, Entity entity, const FurrowSkin& skin) {
+    if (furrows.entity == entity && furrows.version == skin.version && furrows.heights.id() != 0) {
         return;
     }
-    its.entity = entity;
-    its.version = skin.version;
+    furrows.entity = entity;
+    furrows.version = skin.version;
     const IVec2 size = skin.growth.size;
-    if (its.heights.id() == 0 || IVec2(its.heights.width(), its.heights.height()) != size) {
-        its.heights =
+    if (furrows.heights.id() == 0
+        || IVec2(furrows.heights.width(), furrows.heights.height()) != size) {
+        furrows.heights =
             gpu::Texture("furrow heights", {.format = GL_R32F, .width = size.x, .height = size.y});
     }
-    its.heights.upload(std::as_bytes(std::span(skin.height)));
+    furrows.heights.upload(std::as_bytes(std::span(skin.height)));
 }
 
 void place_images(FurrowEffect& effect, const FrameData& frame) {
@@ -107,11 +108,11 @@ void place_images(FurrowEffect& effect, const FrameData& frame) {
         if (count == effect.placed.size()) {
             effect.placed.emplace_back();
         }
-        PlacedFurrows& its = effect.placed[count++];
-        if (!skin.fault.empty() || (its.entity == entity && its.version == skin.version)) {
+        PlacedFurrows& placed = effect.placed[count++];
+        if (!skin.fault.empty() || (placed.entity == entity && placed.version == skin.version)) {
             return;
         }
-        its = {entity, skin.version};
+        placed = {entity, skin.version};
         ImagePool& images = frame.materials->images();
         images.replace(skin.source.normals, skin.normals);
         images.replace(skin.source.heights, skin.heights);
@@ -140,21 +141,21 @@ void show_meshes(FurrowEffect& effect, FrameData& frame) {
             if (count == effect.shown.size()) {
                 effect.shown.emplace_back();
             }
-            ShownFurrows& its = effect.shown[count++];
-            its.mode = view.mode;
-            its.world_from_mesh = before != nullptr
-                                      ? mix_affine(before->world, now.world, frame.camera.alpha)
-                                      : now.world;
-            its.corners = static_cast<int>(mesh.indices.size());
-            its.vertices.upload(*frame.ring, vertex_records(mesh));
-            its.indices.upload(*frame.ring, mesh.indices);
-            its.marks = 0;
+            ShownFurrows& furrows = effect.shown[count++];
+            furrows.mode = view.mode;
+            furrows.world_from_mesh = before != nullptr
+                                          ? mix_affine(before->world, now.world, frame.camera.alpha)
+                                          : now.world;
+            furrows.corners = static_cast<int>(mesh.indices.size());
+            furrows.vertices.upload(*frame.ring, vertex_records(mesh));
+            furrows.indices.upload(*frame.ring, mesh.indices);
+            furrows.marks = 0;
             if (view.mode == FurrowMode::Vectors) {
                 const std::vector<FurrowMark> found = furrow_marks(mesh, skin, view);
-                its.marks = static_cast<int>(found.size());
-                its.mark_records.upload(*frame.ring, found);
+                furrows.marks = static_cast<int>(found.size());
+                furrows.mark_records.upload(*frame.ring, found);
             }
-            upload_heights(its, entity, skin);
+            upload_heights(furrows, entity, skin);
         });
     effect.shown.erase(
         effect.shown.begin() + static_cast<std::ptrdiff_t>(count), effect.shown.end());
@@ -229,9 +230,9 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const TextureId scene = view.gbuffer.depth;
     const auto add = [&](auto draw_shown, Use to_depth) {
         const auto run = [this, &view, scene, draw_shown](PassContext& context) {
-            for (const ShownFurrows& its : shown) {
+            for (const ShownFurrows& furrows : shown) {
                 const Mat4 clip_from_mesh =
-                    view.camera.unjittered_from_world * to_mat4(its.world_from_mesh);
+                    view.camera.unjittered_from_world * to_mat4(furrows.world_from_mesh);
                 const auto set = [&](const gpu::Program& to) {
                     to.set("clip_from_mesh", clip_from_mesh);
                     to.set("has_scene", scene.valid() ? 1 : 0);
@@ -239,7 +240,7 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
                 if (scene.valid()) {
                     context.bind_texture(kSceneUnit, scene);
                 }
-                draw_shown(context, its, set);
+                draw_shown(context, furrows, set);
             }
         };
         if (scene.valid()) {
@@ -249,22 +250,22 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
         }
     };
     add(
-        [this, &view](PassContext& context, const ShownFurrows& its, const auto& set) {
+        [this, &view](PassContext& context, const ShownFurrows& furrows, const auto& set) {
             context.device().use(gpu::Pipeline{faces, {.cull = GL_NONE}});
             set(*faces);
             const Vec3 eye = transform_point(view.camera.world_from_camera, {0, 0, 0});
-            const Mat4 mesh_from_world = glm::inverse(to_mat4(its.world_from_mesh));
+            const Mat4 mesh_from_world = glm::inverse(to_mat4(furrows.world_from_mesh));
             faces->set("eye", Vec3(mesh_from_world * Vec4(eye, 1)));
-            faces->set("shows_height", its.mode == FurrowMode::Height ? 1 : 0);
-            its.vertices.bind(context.device(), kVerticesUnit);
-            its.indices.bind(context.device(), kIndicesUnit);
-            context.device().bind_texture(kHeightsUnit, its.heights, &texels);
-            context.device().draw_ids(its.corners);
+            faces->set("shows_height", furrows.mode == FurrowMode::Height ? 1 : 0);
+            furrows.vertices.bind(context.device(), kVerticesUnit);
+            furrows.indices.bind(context.device(), kIndicesUnit);
+            context.device().bind_texture(kHeightsUnit, furrows.heights, &texels);
+            context.device().draw_ids(furrows.corners);
         },
         cleared(depth));
     add(
-        [this](PassContext& context, const ShownFurrows& its, const auto& set) {
-            if (its.marks == 0) {
+        [this](PassContext& context, const ShownFurrows& furrows, const auto& set) {
+            if (furrows.marks == 0) {
                 return;
             }
             context.device().use(gpu::Pipeline{
@@ -274,8 +275,8 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
             const IVec2 size = context.size();
             marks->set("size", Vec2(size));
             marks->set("pixels", furrow_mark_pixels(size.y, 1));
-            its.mark_records.bind(context.device(), kMarksUnit);
-            context.device().draw_ids(6 * its.marks);
+            furrows.mark_records.bind(context.device(), kMarksUnit);
+            context.device().draw_ids(6 * furrows.marks);
         },
         depth);
 }

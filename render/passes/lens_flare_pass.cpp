@@ -260,7 +260,7 @@ void LensFlareEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
     const TextureId sum = create_like(graph, "radiance with lens flare", view.radiance);
     add_fullscreen_pass(
         graph, "lens flare add", {sampled(view.radiance, 0), sampled(light, 1)}, {discarded(sum)},
-        add, [](PassContext&, const gpu::Program& its) { its.set("strength", 1.0f); });
+        add, [](PassContext&, const gpu::Program& shader) { shader.set("strength", 1.0f); });
     view.radiance = sum;
 }
 

@@ -97,9 +97,9 @@ TextureId blur_along(
     const TextureId target = create_target(graph, name, GL_RGBA32F, size_of(graph, source));
     add_fullscreen_pass(
         graph, name, {sampled(source, 0)}, {discarded(target)}, program,
-        [&weights, direction](PassContext& context, const gpu::Program& its) {
+        [&weights, direction](PassContext& context, const gpu::Program& shader) {
             context.device().bind_uniforms(kWeightsBinding, weights);
-            its.set("direction", direction);
+            shader.set("direction", direction);
         });
     return target;
 }
@@ -118,7 +118,9 @@ TextureId shrink(
     const TextureId target = create_target(graph, name, GL_R32F, size);
     add_fullscreen_pass(
         graph, name, {sampled(source, 0)}, {discarded(target)}, program,
-        [size](PassContext&, const gpu::Program& its) { its.set("texel", 1.0f / Vec2(size)); });
+        [size](PassContext&, const gpu::Program& shader) {
+            shader.set("texel", 1.0f / Vec2(size));
+        });
     return target;
 }
 

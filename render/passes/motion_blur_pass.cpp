@@ -42,10 +42,11 @@ TextureId find_longest(
         first ? IVec2(tiles(size.x), size.y) : IVec2(size.x, tiles(size.y)));
     add_fullscreen_pass(
         graph, first ? "motion blur, rows" : "motion blur, tiles", {sampled(source, 0)},
-        {discarded(longest)}, program, [side, along, first](PassContext&, const gpu::Program& its) {
-            its.set("along", along);
-            its.set("side", side);
-            its.set("first", first ? 1 : 0);
+        {discarded(longest)}, program,
+        [side, along, first](PassContext&, const gpu::Program& shader) {
+            shader.set("along", along);
+            shader.set("side", side);
+            shader.set("first", first ? 1 : 0);
         });
     return longest;
 }
@@ -143,9 +144,9 @@ void MotionBlurEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData&
     const bool follows = last_frame + 1 == frame.number && frame.since_last.has_value();
     last_frame = frame.number;
     std::visit(
-        [&](auto& its) {
-            if constexpr (!std::is_same_v<decltype(its), std::monostate&>) {
-                view.radiance = its.blur(graph, settings, view, follows);
+        [&](auto& chosen) {
+            if constexpr (!std::is_same_v<decltype(chosen), std::monostate&>) {
+                view.radiance = chosen.blur(graph, settings, view, follows);
             }
         },
         method);

@@ -74,11 +74,12 @@ MotionCamera::blur(FrameGraph& graph, const MotionBlur& settings, const ViewData
     add_fullscreen_pass(
         graph, "motion blur", {sampled(view.radiance, 0), sampled(view.gbuffer.depth, 1)},
         {discarded(blurred)}, program,
-        [&view, settings](PassContext& context, const gpu::Program& its) {
+        [&view, settings](PassContext& context, const gpu::Program& shader) {
             bind_view(context, view);
-            its.set("half_exposure", half_exposure(settings));
-            its.set("longest", 0.5f * settings.max_length * static_cast<float>(context.size().y));
-            its.set("samples", std::clamp(settings.samples, 4, 64));
+            shader.set("half_exposure", half_exposure(settings));
+            shader.set(
+                "longest", 0.5f * settings.max_length * static_cast<float>(context.size().y));
+            shader.set("samples", std::clamp(settings.samples, 4, 64));
         });
     return blurred;
 }

@@ -20,8 +20,8 @@ struct ProbeBlockSlice {
     gpu::RingSlice block;
 };
 
-void bind_probes(PassContext& context, const ProbeBlockSlice& its) {
-    const gpu::RingSlice& block = its.block;
+void bind_probes(PassContext& context, const ProbeBlockSlice& probes) {
+    const gpu::RingSlice& block = probes.block;
     context.device().bind_uniforms(kProbesBinding, block.buffer, block.offset, block.size);
 }
 

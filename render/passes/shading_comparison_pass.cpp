@@ -26,11 +26,11 @@ void ShadingComparisonEffect::draw(FrameGraph& graph, const FrameData& frame, Vi
     add_fullscreen_pass(
         graph, "shading comparison", {sampled(both->left, 0), sampled(both->right, 1)},
         {discarded(composed)}, program,
-        [its = within_ranges(*found)](PassContext&, const gpu::Program& to) {
-            to.set("shows_difference", its.image == ComparisonImage::Difference ? 1 : 0);
-            to.set("divider", its.divider);
-            to.set("gain", its.gain);
-            to.set("exponent", its.exponent);
+        [comparison = within_ranges(*found)](PassContext&, const gpu::Program& to) {
+            to.set("shows_difference", comparison.image == ComparisonImage::Difference ? 1 : 0);
+            to.set("divider", comparison.divider);
+            to.set("gain", comparison.gain);
+            to.set("exponent", comparison.exponent);
         });
     view.radiance = composed;
 }

@@ -110,7 +110,7 @@ void ShadingMarksEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDat
     add_fullscreen_pass(
         graph, "shading marks", {sampled(view.radiance, 0), sampled(left, 1), sampled(right, 2)},
         {discarded(marked)}, program,
-        [its = within_ranges(plot != nullptr ? *plot : ScanlinePlot{.height = 0}),
+        [plotted = within_ranges(plot != nullptr ? *plot : ScanlinePlot{.height = 0}),
          divider = comparison != nullptr && comparison->image == ComparisonImage::Split
                        ? within_ranges(*comparison).divider
                        : -1,
@@ -128,8 +128,8 @@ void ShadingMarksEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDat
             to.set("column_labels_high", columns.high);
             to.set("column_lengths_low", columns.low_lengths);
             to.set("column_lengths_high", columns.high_lengths);
-            to.set("row", its.row);
-            to.set("plot_height", its.height);
+            to.set("row", plotted.row);
+            to.set("plot_height", plotted.height);
             to.set("divider", divider);
             to.set("curves", curves);
         });

@@ -58,9 +58,9 @@ void TemporalEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
         {sampled(view.radiance, 0), sampled(before, 1), sampled(view.gbuffer.velocity, 2),
          sampled(view.gbuffer.depth, 3), sampled(moments_before, 4)},
         {discarded(resolved), discarded(moments_now)}, program,
-        [&view, has_history](PassContext& context, const gpu::Program& its) {
+        [&view, has_history](PassContext& context, const gpu::Program& shader) {
             bind_view(context, view);
-            its.set("has_history", has_history ? 1 : 0);
+            shader.set("has_history", has_history ? 1 : 0);
         });
     view.radiance = resolved;
 }

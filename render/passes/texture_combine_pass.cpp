@@ -62,11 +62,11 @@ void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame
              sampled(graph.import("combined image", *water), 0, &repeat),
              sampled(graph.import("combined image", *grating), 1, &repeat)},
             {target_level(discarded(combined), 0)}, program,
-            [&array, offset, gain = combine.gain](PassContext&, const gpu::Program& its) {
-                its.set("size", Vec2(array.width(), array.height()));
-                its.set("offset", offset);
-                its.set("gain", gain);
-                its.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
+            [&array, offset, gain = combine.gain](PassContext&, const gpu::Program& shader) {
+                shader.set("size", Vec2(array.width(), array.height()));
+                shader.set("offset", offset);
+                shader.set("gain", gain);
+                shader.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
             });
         place_drawn_image(graph, images, combined, target);
     });

@@ -61,14 +61,14 @@ void TextureShadeEffect::draw_shared(FrameGraph& graph, const FrameData& frame) 
              sampled(graph.import("normals of shaded image", *normals), 0, &texels),
              sampled(graph.import("color of shaded image", *color), 1, &texels)},
             {target_level(discarded(shaded), 0)}, program,
-            [&array, rotation, shade](PassContext&, const gpu::Program& its) {
-                its.set("size", Vec2(array.width(), array.height()));
-                its.set("camera_from_mesh", rotation);
-                its.set("to_light", normalize_or(shade.to_light, {0, 0, 1}));
-                its.set("strengths", Vec3(shade.ambient, shade.light, shade.specular));
-                its.set("shininess", shade.shininess);
-                its.set("unrolled", shade.unrolled ? 1 : 0);
-                its.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
+            [&array, rotation, shade](PassContext&, const gpu::Program& shader) {
+                shader.set("size", Vec2(array.width(), array.height()));
+                shader.set("camera_from_mesh", rotation);
+                shader.set("to_light", normalize_or(shade.to_light, {0, 0, 1}));
+                shader.set("strengths", Vec3(shade.ambient, shade.light, shade.specular));
+                shader.set("shininess", shade.shininess);
+                shader.set("unrolled", shade.unrolled ? 1 : 0);
+                shader.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
             });
         place_drawn_image(graph, images, shaded, target);
     };

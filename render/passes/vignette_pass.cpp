@@ -41,10 +41,10 @@ void VignetteEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
     add_fullscreen_pass(
         graph, "vignette", {sampled(view.radiance, 0)}, {discarded(darkened)}, program,
         [settings = vignette_of(frame),
-         tangent = view.camera.tangent](PassContext&, const gpu::Program& its) {
-            its.set("tangent", tangent);
-            its.set("natural", settings.natural);
-            its.set("mechanical", settings.mechanical);
+         tangent = view.camera.tangent](PassContext&, const gpu::Program& shader) {
+            shader.set("tangent", tangent);
+            shader.set("natural", settings.natural);
+            shader.set("mechanical", settings.mechanical);
         });
     view.radiance = darkened;
 }

@@ -112,12 +112,13 @@ TEST_CASE("bench_lens: limn bench lens runs each effect's own passes") {
                             "focus.compose", "glow",     "glare",  "ripple"};
     REQUIRE(json["points"].size() == std::size(passes));
     for (std::size_t i = 0; i < std::size(passes); ++i) {
-        const auto& its = json["points"][i]["passes"];
-        CAPTURE(its.dump());
-        CHECK(its.empty() == (passes[i] == nullptr));
+        const auto& measured = json["points"][i]["passes"];
+        CAPTURE(measured.dump());
+        CHECK(measured.empty() == (passes[i] == nullptr));
         CHECK(
             std::any_of(
-                its.begin(), its.end(), [&](const auto& pass) { return pass["name"] == passes[i]; })
+                measured.begin(), measured.end(),
+                [&](const auto& pass) { return pass["name"] == passes[i]; })
             == (passes[i] != nullptr));
     }
 }

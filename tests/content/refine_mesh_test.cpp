@@ -37,10 +37,10 @@ MeshData make_ball() {
         }
         mesh.skin.first.push_back(static_cast<std::uint32_t>(mesh.skin.joints.size()));
         const float weight = std::clamp(0.5f + 5 * p.y, 0.0f, 1.0f);
-        for (const auto& [joint, its] : {std::pair(0, 1 - weight), std::pair(1, weight)}) {
-            if (its > 0) {
+        for (const auto& [joint, share] : {std::pair(0, 1 - weight), std::pair(1, weight)}) {
+            if (share > 0) {
                 mesh.skin.joints.push_back(static_cast<std::uint16_t>(joint));
-                mesh.skin.weights.push_back(its);
+                mesh.skin.weights.push_back(share);
             }
         }
     }

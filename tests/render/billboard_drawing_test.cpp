@@ -183,9 +183,10 @@ TEST_CASE_FIXTURE(
         CHECK(std::abs(lit_pixels(eye) - front) <= 64);
     }
     // And off the middle, where one that faces the eye would be seen larger: the same square.
-    world.query<WorldTransform>().each([](WorldTransform& its) { its.world.row[0].w = 0.8f; });
+    world.query<WorldTransform>().each(
+        [](WorldTransform& transform) { transform.world.row[0].w = 0.8f; });
     world.query<PreviousWorldTransform>().each(
-        [](PreviousWorldTransform& its) { its.world.row[0].w = 0.8f; });
+        [](PreviousWorldTransform& transform) { transform.world.row[0].w = 0.8f; });
     CHECK(std::abs(lit_pixels({0, 0, 2}) - front) <= 64);
 }
 

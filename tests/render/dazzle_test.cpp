@@ -25,7 +25,8 @@ struct DazzleScene : Scene {
     Entity shine_at(const Vec3& place) { return world.create(kLamp, WorldTransform{at(place)}); }
     void clear_points() {
         std::vector<Entity> all;
-        world.query<const Dazzle>().each([&](Entity its, const Dazzle&) { all.push_back(its); });
+        world.query<const Dazzle>().each(
+            [&](Entity entity, const Dazzle&) { all.push_back(entity); });
         for (const Entity entity : all) {
             world.destroy(entity);
         }

@@ -91,12 +91,12 @@ struct Executors : Scene {
         pools.update(graph, {});
         graph.execute();
         ring.end_frame();
-        const GpuParticlePool& its = *pools.pools().begin()->second;
-        std::vector<GpuParticle> slots(its.capacity);
-        its.state.read(0, std::as_writable_bytes(std::span(slots)));
+        const GpuParticlePool& pool = *pools.pools().begin()->second;
+        std::vector<GpuParticle> slots(pool.capacity);
+        pool.state.read(0, std::as_writable_bytes(std::span(slots)));
         std::vector<GpuParticle> alive;
-        for (std::uint32_t i = 0; i < its.count; ++i) {
-            const GpuParticle& one = slots[(its.first + i) % its.capacity];
+        for (std::uint32_t i = 0; i < pool.count; ++i) {
+            const GpuParticle& one = slots[(pool.first + i) % pool.capacity];
             if (one.place_age.w < std::abs(one.velocity_life.w)) {
                 alive.push_back(one);
             }
@@ -105,9 +105,9 @@ struct Executors : Scene {
     }
     /// What the last read() has written for drawing.
     std::vector<ParticleInstance> drawn() {
-        const GpuParticlePool& its = *pools.pools().begin()->second;
-        std::vector<ParticleInstance> instances(its.count);
-        its.instances.read(0, std::as_writable_bytes(std::span(instances)));
+        const GpuParticlePool& pool = *pools.pools().begin()->second;
+        std::vector<ParticleInstance> instances(pool.count);
+        pool.instances.read(0, std::as_writable_bytes(std::span(instances)));
         return instances;
     }
     gpu::RingBuffer ring{device().caps(), "steps", 1 << 20};
@@ -626,11 +626,11 @@ TEST_CASE("gpu particles: initial values are within their spread, their mean is 
     double speed = 0;
     double product = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const float its = glm::length(Vec3(all[i].velocity_life));
-        REQUIRE(std::abs(its - 3) <= 1.001f);
+        const float length = glm::length(Vec3(all[i].velocity_life));
+        REQUIRE(std::abs(length - 3) <= 1.001f);
         REQUIRE(std::abs(all[i].velocity_life.w - 10) <= 2.001f);
         life += static_cast<double>(all[i].velocity_life.w);
-        speed += static_cast<double>(its);
+        speed += static_cast<double>(length);
         product += static_cast<double>(all[i].velocity_life.w - 10)
                    * static_cast<double>(all[(i + 1) % all.size()].velocity_life.w - 10);
     }

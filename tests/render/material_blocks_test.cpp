@@ -68,9 +68,9 @@ TEST_CASE("material blocks: a material has those that it needs, one after the ot
     CHECK(blocks.size() == 7);
 
     const Material phong = {.shading = ShadingModel::Phong, .specular = {1, 2, 3}, .shininess = 40};
-    const Vec4 its = append_blocks(phong, blocks);
+    const Vec4 place = append_blocks(phong, blocks);
     REQUIRE(blocks.size() == 8);
-    CHECK(blocks[place_of(its, layout::kClassicBlock)] == Vec4(1, 2, 3, 40));
+    CHECK(blocks[place_of(place, layout::kClassicBlock)] == Vec4(1, 2, 3, 40));
 
     Material skin = {.shading = ShadingModel::Skin, .skin_color = {4, 5, 6}, .wide_rim = true};
     skin.normal_texture = {.image = {0}, .offset = {0.25f, 0.5f}};

@@ -99,10 +99,10 @@ struct SeenScene : Scene {
         pools.update(graph, {.seen = seen});
         graph.execute();
         ring.end_frame();
-        const GpuParticlePool& its = *pools.pools().begin()->second;
-        std::vector<Vec4> slots(2 * static_cast<std::size_t>(its.capacity));
-        its.state.read(0, std::as_writable_bytes(std::span(slots)));
-        slots.resize(2 * static_cast<std::size_t>(its.count));
+        const GpuParticlePool& pool = *pools.pools().begin()->second;
+        std::vector<Vec4> slots(2 * static_cast<std::size_t>(pool.capacity));
+        pool.state.read(0, std::as_writable_bytes(std::span(slots)));
+        slots.resize(2 * static_cast<std::size_t>(pool.count));
         return slots;
     }
 };
@@ -113,21 +113,22 @@ struct Ball {
 };
 
 /// Ten plain lines: a step under gravity, with as many rebounds from a plane as fit in it.
-void step_ball(Ball& ball, const SeenWall& wall, const ParticleCollision& its) {
+void step_ball(Ball& ball, const SeenWall& wall, const ParticleCollision& collision) {
     const glm::dvec3 normal(wall.normal);
     const glm::dvec3 old = ball.velocity;
     ball.velocity += glm::dvec3(0, -9.81, 0) * static_cast<double>(kDt);
     glm::dvec3 to = ball.place + 0.5 * (old + ball.velocity) * static_cast<double>(kDt);
     const auto above = [&](const glm::dvec3& p) {
-        return glm::dot(normal, p) - static_cast<double>(wall.offset + its.radius);
+        return glm::dot(normal, p) - static_cast<double>(wall.offset + collision.radius);
     };
     for (double left = static_cast<double>(kDt); above(to) < 0;) {
         const double share = above(ball.place) / (above(ball.place) - above(to));
         ball.place += share * (to - ball.place) + static_cast<double>(kSkin) * normal;
         const double toward = -glm::dot(normal, ball.velocity);
         const glm::dvec3 along = ball.velocity + toward * normal;
-        ball.velocity = static_cast<double>(its.friction) * along
-                        + (toward < 0.2 ? 0.0 : static_cast<double>(its.bounce) * toward) * normal;
+        ball.velocity =
+            static_cast<double>(collision.friction) * along
+            + (toward < 0.2 ? 0.0 : static_cast<double>(collision.bounce) * toward) * normal;
         left *= 1 - share;
         to = ball.place + left * ball.velocity;
     }

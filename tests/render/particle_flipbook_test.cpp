@@ -73,9 +73,9 @@ struct FlipbookScene : Scene {
     gpu::FloatImage draw(float shown, float away) {
         look_.frame_rate = 2 * shown;
         ParticlePool pool = pool_at(kMiddle);
-        const Entity its = world.create(ParticleEmitter{}, look_, pool);
+        const Entity emitter = world.create(ParticleEmitter{}, look_, pool);
         gpu::FloatImage image = radiance(look({0, 0, away}, {0, 0, 0}, kFrame, kFrame));
-        world.destroy(its);
+        world.destroy(emitter);
         return image;
     }
     /// Largest difference from a disc about where it is in frame `shown`, which need not be whole.
@@ -101,10 +101,10 @@ TEST_CASE_FIXTURE(
         CHECK(worst(shown) < 0.03f);
     }
     // Without its motion two discs fade into each other, with another strength they do not meet.
-    ParticleLook& its = look_;
-    its.motion_strength = 0.5f * kStrength;
+    ParticleLook& look = look_;
+    look.motion_strength = 0.5f * kStrength;
     CHECK(worst(1.5f) > 0.2f);
-    its.motion = {};
+    look.motion = {};
     CHECK(worst(1.5f) > 0.3f);
     CHECK(worst(1) < 0.03f);
 }

@@ -98,7 +98,7 @@ struct FocusScene : Scene {
         return mean;
     }
     void set_cover(float value) {
-        world.query<ParticleLook>().each([&](ParticleLook& its) { its.velocity_cover = value; });
+        world.query<ParticleLook>().each([&](ParticleLook& look) { look.velocity_cover = value; });
     }
 
   private:
@@ -126,11 +126,11 @@ TEST_CASE_FIXTURE(
     struct Case {
         float wall, particle;  // z [m]
     };
-    for (const Case& its : {Case{-20, 0}, Case{-20, -1.5f}, Case{-0.1f, 0.7f}, Case{-0.1f, 1}}) {
-        CAPTURE(its.wall);
-        CAPTURE(its.particle);
-        add_wall(its.wall);
-        const Entity one = emit({0.05f, 0.02f, its.particle});
+    for (const Case& depths : {Case{-20, 0}, Case{-20, -1.5f}, Case{-0.1f, 0.7f}, Case{-0.1f, 1}}) {
+        CAPTURE(depths.wall);
+        CAPTURE(depths.particle);
+        add_wall(depths.wall);
+        const Entity one = emit({0.05f, 0.02f, depths.particle});
         const gpu::FloatImage expected = truth();
         const double found = decibels(photograph(), expected);
         set_cover(1);

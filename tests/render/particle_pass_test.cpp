@@ -354,7 +354,7 @@ TEST_CASE_FIXTURE(ParticleScene, "particle pass: the last seconds of a life fade
     ParticleLook look = disc({1, 1, 1}, 1, 1);
     const float whole = (emit({{0, 0, 0}}, look), middle().x);
     const auto faded = [&](float fade) {
-        world.query<ParticleLook>().each([&](ParticleLook& its) { its.fade = fade; });
+        world.query<ParticleLook>().each([&](ParticleLook& drawn) { drawn.fade = fade; });
         return middle().x / whole;
     };
     CHECK(faded(0.25f) == near(1).epsilon(1e-3));
@@ -385,7 +385,7 @@ TEST_CASE_FIXTURE(
             const PeriodicFunction function = {
                 .wave = wave, .base = 0.4f, .amplitude = 0.5f, .phase = phase, .frequency = 1.3f};
             world.query<ParticleLook>().each(
-                [&](ParticleLook& its) { its.color_function = function; });
+                [&](ParticleLook& drawn) { drawn.color_function = function; });
             const double share = evaluate_share(function, 0.5 - static_cast<double>(lag));
             const Vec3 color = middle();
             CHECK(color.z == near(share).scale(1).epsilon(5e-3));

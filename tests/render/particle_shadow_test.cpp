@@ -82,10 +82,10 @@ TEST_CASE_FIXTURE(RenderTest, "particle shadow: behind all slabs the series is e
         "OpacitySeries s = slab_series(x.x, x.y, x.z);\n"
         "y = vec4(optical_depth(s, 1.0), optical_depth(s, 7.0), optical_depth(s, 0.0), 0.0);",
         inputs);
-    for (const Vec4& its : found) {
-        CHECK(its.x == near(-std::log(0.3)).epsilon(1e-4));
-        CHECK(its.y == near(-std::log(0.3)).epsilon(1e-4));
-        CHECK(its.z == near(0).epsilon(1e-4));
+    for (const Vec4& moments : found) {
+        CHECK(moments.x == near(-std::log(0.3)).epsilon(1e-4));
+        CHECK(moments.y == near(-std::log(0.3)).epsilon(1e-4));
+        CHECK(moments.z == near(0).epsilon(1e-4));
     }
 }
 
@@ -112,8 +112,8 @@ TEST_CASE_FIXTURE(
                              term(2, true),  term(3, false), term(3, true)};
     for (int i = 0; i < 7; ++i) {
         CAPTURE(i);
-        const float its = i < 4 ? found[0][i] : found[1][i - 4];
-        CHECK(its == near(wanted[i]).epsilon(1e-4));
+        const float moment = i < 4 ? found[0][i] : found[1][i - 4];
+        CHECK(moment == near(wanted[i]).epsilon(1e-4));
     }
 }
 
@@ -185,13 +185,14 @@ TEST_CASE_FIXTURE(
         const double limit = placed.second;
         CAPTURE(z);
         put_wall(z);
-        world.query<const ParticlePool>().each(
-            [&](Entity its, const ParticlePool&) { world.find<ParticleLook>(its)->shadow = 0; });
+        world.query<const ParticlePool>().each([&](Entity emitter, const ParticlePool&) {
+            world.find<ParticleLook>(emitter)->shadow = 0;
+        });
         const gpu::FloatImage open = wall_image(z);
         if (world.query<const ParticlePool>().empty()) {
             emit(places, caster(0.8f, 0.3f));
         }
-        world.query<ParticleLook>().each([](ParticleLook& look) { look.shadow = 1; });
+        world.query<ParticleLook>().each([](ParticleLook& caster) { caster.shadow = 1; });
         const gpu::FloatImage found = wall_image(z);
         double sum = 0;
         double darkest = 1;
@@ -200,8 +201,9 @@ TEST_CASE_FIXTURE(
                 const glm::dvec3 place = {
                     (x + 0.5) / 16 - 2, 2 - (y + 0.5) / 16, static_cast<double>(z)};
                 const double exact = oracle::disc_transmittance(discs, place, {0, 0, -1});
-                const double its = static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
-                sum += (its - exact) * (its - exact);
+                const double transmitted =
+                    static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
+                sum += (transmitted - exact) * (transmitted - exact);
                 darkest = std::min(darkest, exact);
             }
         }
@@ -253,7 +255,7 @@ TEST_CASE_FIXTURE(ShadowScene, "particle shadow: where none casts there is no pa
     emit({{0, 0, 0.8f}}, look);
     CHECK(largest_difference(wall_image(), open) <= 1e-4f);
     CHECK_FALSE(frame_graph(shared_renderer()).was_run("particle shadows"));
-    world.query<ParticleLook>().each([](ParticleLook& its) { its.shadow = 1; });
+    world.query<ParticleLook>().each([](ParticleLook& caster) { caster.shadow = 1; });
     CHECK(largest_difference(wall_image(), open) > 0.05f);
     CHECK(frame_graph(shared_renderer()).was_run("particle shadows"));
 }

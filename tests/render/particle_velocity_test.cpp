@@ -66,19 +66,19 @@ struct MovingParticle : Scene {
         return {kSize * (0.5 + 0.5 * clip.x / clip.w), kSize * (0.5 - 0.5 * clip.y / clip.w)};
     }
     /// Velocity of the pixel in the middle of the particle, less that of where it was and is.
-    double error(const RenderView& its, const glm::dvec3& now, const glm::dvec3& before) {
+    double error(const RenderView& view, const glm::dvec3& now, const glm::dvec3& before) {
         emit();
-        const gpu::FloatImage found = aov(its, "velocity");
-        const glm::dvec2 at = project(its.clip_from_world, now);
-        const glm::dvec2 want = at - project(its.previous_clip_from_world, before);
+        const gpu::FloatImage found = aov(view, "velocity");
+        const glm::dvec2 at = project(view.clip_from_world, now);
+        const glm::dvec2 want = at - project(view.previous_clip_from_world, before);
         const glm::dvec2 got = {
             found.at(static_cast<int>(at.x), static_cast<int>(at.y), 0),
             found.at(static_cast<int>(at.x), static_cast<int>(at.y), 1)};
         return glm::distance(got, want);
     }
-    double fastest(const RenderView& its) {
+    double fastest(const RenderView& view) {
         emit();
-        const gpu::FloatImage found = aov(its, "velocity");
+        const gpu::FloatImage found = aov(view, "velocity");
         double most = 0;
         for (int y = 0; y < kSize; ++y) {
             for (int x = 0; x < kSize; ++x) {
@@ -100,8 +100,8 @@ TEST_CASE_FIXTURE(
         CAPTURE(alpha);
         const double back = (1.0 - static_cast<double>(alpha)) * static_cast<double>(kDt);
         const double earlier = (1.0 - static_cast<double>(before)) * static_cast<double>(kDt);
-        const RenderView its = view(alpha, before);
-        CHECK(error(its, where - velocity * back, where - velocity * earlier) <= 0.05);
+        const RenderView render_view = view(alpha, before);
+        CHECK(error(render_view, where - velocity * back, where - velocity * earlier) <= 0.05);
     }
 }
 

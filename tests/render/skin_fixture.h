@@ -44,10 +44,10 @@ class SkinScene : public Scene {
         const Deformed& deformed = world.get<Deformed>(entity);
         std::vector<glm::dmat4> matrices;
         if (deformed.skin.index != kNoAsset) {
-            const Pose& its = world.get<Pose>(entity);
+            const Pose& pose = world.get<Pose>(entity);
             matrices = oracle::skin_matrices(
                 world.resource<Assets>().skins[deformed.skin.index],
-                before ? its.previous : its.joints);
+                before ? pose.previous : pose.joints);
         }
         std::vector<float> weights;
         if (const auto* morphs = world.find<MorphWeights>(entity)) {

@@ -420,9 +420,9 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a thousand instances are one dispatch, an
     const SkinId skin = add_skin(make_chain(5, 0.25f));
     std::vector<Entity> herd;
     for (int i = 0; i < 1000; ++i) {
-        Pose its;
-        its.joints = random_joints(5, 0.25f, 0.6f, false, random);
-        herd.push_back(pose(mesh, gray, skin, std::move(its)));
+        Pose posed;
+        posed.joints = random_joints(5, 0.25f, 0.6f, false, random);
+        herd.push_back(pose(mesh, gray, skin, std::move(posed)));
     }
     device().reset_stats();
     const std::vector<oracle::SkinReadbackVertices> got = gpu.run(world, herd);

@@ -128,11 +128,11 @@ TEST_CASE_FIXTURE(
     Grating, "texture combine: without an image, or into what it reads, nothing is drawn") {
     const Entity bad = world.create(combine);
     for (const int missing : {0, 1, 2, 3}) {
-        TextureCombine& its = world.get<TextureCombine>(bad);
-        its = combine;
-        (missing == 0 ? its.water : missing == 1 ? its.grating : its.target) = {77};
+        TextureCombine& broken = world.get<TextureCombine>(bad);
+        broken = combine;
+        (missing == 0 ? broken.water : missing == 1 ? broken.grating : broken.target) = {77};
         if (missing == 3) {
-            its.target = its.water;
+            broken.target = broken.water;
         }
         const gpu::FloatImage seen = at_time(0);
         CHECK(texel_at(seen, 3, 3) == Vec3(0));

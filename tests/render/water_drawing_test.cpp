@@ -445,8 +445,11 @@ TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface that any of their
         for (int x = 0; x < view.width; ++x) {
             const float d = seen.at(x, y, 0);
             const int row = 2 - (view.height - 1 - y) / layout::kHighestTile;  // from the top
-            float& its = highest[static_cast<std::size_t>(5 * row + x / layout::kHighestTile)];
-            its = d > 0 ? std::max(its, eye_of(view).y + ray_through(view, x, y).y * d) : its;
+            float& highest_here =
+                highest[static_cast<std::size_t>(5 * row + x / layout::kHighestTile)];
+            highest_here =
+                d > 0 ? std::max(highest_here, eye_of(view).y + ray_through(view, x, y).y * d)
+                      : highest_here;
         }
     }
     CHECK(std::ranges::count(highest, -layout::kNoHeight) >= 5);
