@@ -109,8 +109,10 @@ void append_under_water(
     const ParticleDraws& draws, const FrameData& frame, const ViewData& view, std::size_t middle,
     ParticlesInView& seen) {
     seen.under_begin = seen.runs.size();
-    if (draws.waters.empty() || is_clipped(view)
-        || is_under_water(draws.waters, transform_point(view.camera.world_from_camera, Vec3(0)))) {
+    const Vec3 eye = transform_point(view.camera.world_from_camera, Vec3(0));
+    seen.above_water =
+        !draws.waters.empty() && !is_clipped(view) && !is_under_water(draws.waters, eye);
+    if (!seen.above_water) {
         return;
     }
     const auto append = [&](LookLayer layer, std::size_t first, std::size_t last) {

@@ -24,6 +24,7 @@ struct ParticlesInView {
     std::size_t weighted_begin = 0;       ///< of the runs that are weighted
     Bounds weighted_bounds{};             ///< of those
     std::size_t under_begin = 0;          ///< of the runs under water, to the end
+    bool above_water = false;             ///< there is water, and the camera is not in it
     std::vector<std::uint8_t> visible{};  ///< of ParticleDraws::sorted
 };
 

@@ -119,9 +119,14 @@ void ParticleEffect::draw_under_water(FrameGraph& graph, ViewData& view) {
 }
 
 void ParticlesUnderWaterEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
-    const auto* const its = view.data.find<ParticleEffect::ViewParticles>();
-    if (its != nullptr && its->seen.under_begin < its->seen.runs.size()) {
-        its->effect->draw_under_water(graph, view);
+    const auto* const particles = view.data.find<ParticleEffect::ViewParticles>();
+    if (particles == nullptr) {
+        return;
+    }
+    const ParticlesInView& seen = particles->seen;
+    if (seen.under_begin < seen.runs.size()
+        || (seen.above_water && !particles->effect->gpu.pools().empty())) {
+        particles->effect->draw_under_water(graph, view);
     }
 }
 
@@ -463,10 +468,11 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
     for (const auto& [entity, pool] : gpu.pools()) {
         const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
         const LookLayer layer = draws.layers[pool->look];
-        const Part its = layer == LookLayer::Half       ? Part::Half
-                         : layer == LookLayer::Weighted ? Part::Weighted
-                                                        : Part::Front;
-        if (count > 0 && (its == part || part == Part::All)
+        const Part pool_part = part == Part::UnderWater       ? part
+                               : layer == LookLayer::Half     ? Part::Half
+                               : layer == LookLayer::Weighted ? Part::Weighted
+                                                              : Part::Front;
+        if (count > 0 && (pool_part == part || part == Part::All)
             && is_group_in_view(draws.extents[pool->look], frustum)) {
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
             draw_run(

@@ -107,8 +107,8 @@ struct ParticlesInFront {
     std::optional<TextureId> veil{};  ///< depth of the nearest blended surface, if one may be seen
 };
 
-/// From above the water, brighter by what the water pass absorbs between it and the ground. Not
-/// what the GPU moves, nor in water without ground.
+/// From above the water, brighter by what the water pass absorbs between it and the ground. Not in
+/// water without ground.
 struct ParticlesUnderWaterEffect {
     [[nodiscard]] static Result<ParticlesUnderWaterEffect>
     create(gpu::Device&, const RenderSettings&) {

@@ -352,6 +352,9 @@ void main() {
     blend = vec4(glow.z, streak.z, flipbook.progress, book.w);
     // Too small to draw, transparent or dead.
     bool is_gone = size <= 0.0 || color.a <= 0.0 || p.is_dead;
+#ifdef IN_WATER
+    is_gone = is_gone || water.depth < 0.0;
+#endif
 #ifdef VELOCITY
     is_gone = is_gone || color.a * glow.z <= look_texel(look, kLookMotion).z;
     blend.x = glow.z / max(look_texel(look, kLookMotion).z, 1e-6);

@@ -7,6 +7,7 @@
 #include "ecs/components/shadow.h"
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
+#include "ecs/components/water.h"
 #include "ecs/components/weather.h"
 #include "render/gpu_particle_pools.h"
 #include "render/particle_list.h"
@@ -499,6 +500,42 @@ TEST_CASE("gpu particles: those that cover are drawn from back to front, as the 
     CHECK(
         largest_difference(drawn_by(both.cpu, ParticleSort::Births), unsorted) < 0.01f * brightest);
     CHECK(largest_difference(drawn_by(both.cpu, ParticleSort::Distance), cpu) == 0);  // alone again
+}
+
+TEST_CASE("gpu particles: in water and above it they are drawn as the CPU's are") {
+    ParticleEmitter emitter;
+    emitter.rate = 0;
+    emitter.bursts = {{.time = 0, .count = 60}};
+    emitter.capacity = 300;
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = {1, 1, 1};
+    emitter.speed = emitter.speed_spread = 0;
+    emitter.life = 100;
+    Executors both(emitter, {.gravity = 0});
+    both.step(2);
+    both.place(
+        both.add(make_square()), both.add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
+        affine_from({1, 0, 3}, Quat(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0), Vec3(9)));
+    const Entity water = both.world.create(
+        Water{
+            .size = {16, 16}, .depth = 2, .absorption = {0.5f, 0.2f, 0.1f}, .scattering = Vec3(0)},
+        WorldTransform{at({1, 2, 3})});
+    ParticleLook speck;
+    speck.size = 1;
+    speck.colors = {{.at = 0, .color = {1, 1, 1}, .opacity = 0.9f}};
+    speck.emission = 1;
+    speck.lit = 0;
+    const RenderView view = both.look({1, 6, 4}, {1, 2, 3}, 64, 48);
+    const auto drawn_by = [&](Entity entity) {
+        both.world.add(entity, ParticleLook(speck));
+        gpu::FloatImage image = both.radiance(view);
+        both.world.remove<ParticleLook>(entity);
+        return image;
+    };
+    const gpu::FloatImage cpu = drawn_by(both.cpu);
+    CHECK(largest_difference(drawn_by(both.gpu), cpu) < 1e-5f);
+    both.world.get<Water>(water).absorption = Vec3(1000);  // those in it are not seen
+    CHECK(largest_difference(drawn_by(both.gpu), cpu) > 0.3f);
 }
 
 TEST_CASE("gpu particles: in the light of a sun or a spot their shadows are those of the CPU's") {
