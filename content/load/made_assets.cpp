@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <chrono>
 #include <type_traits>
 
 namespace limn {
@@ -75,12 +76,16 @@ bool names_more_than_meshes(AnyComponent parameters, const Assets& assets) {
     return found;
 }
 
-MadeMesh make(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets) {
-    MadeMesh mesh{kind.make(parameters.data(), assets), std::nullopt};
-    if (kind.make_rig != nullptr) {
-        mesh.rig = kind.make_rig(parameters.data());
+/// Calls `make` and, where it took long, `keep` with the result.
+template <typename Make, typename Keep>
+auto make_and_keep(Make&& make, Keep&& keep) {
+    constexpr std::chrono::milliseconds kLong{20};
+    const auto start = std::chrono::steady_clock::now();
+    auto asset = make();
+    if (std::chrono::steady_clock::now() - start >= kLong) {
+        keep(asset);
     }
-    return mesh;
+    return asset;
 }
 
 }  // namespace
@@ -94,21 +99,40 @@ void MadeAssets::begin_level() {
 
 MadeMesh
 MadeAssets::mesh(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets) {
+    MadeMesh mesh;
+    if (kind.make_rig != nullptr) {
+        mesh.rig = kind.make_rig(parameters.data());
+    }
+    const auto generate = [&] { return kind.make(parameters.data(), assets); };
     if (names_more_than_meshes(parameters, assets)) {
-        return make(kind, parameters, assets);
+        mesh.data = generate();
+        return mesh;
     }
     const auto [found, is_new] = meshes_.try_emplace(key_of(kind.name, parameters, &assets));
     if (is_new) {
-        found->second.value = make(kind, parameters, assets);
+        const std::string& key = found->first;
+        std::optional<MeshData> data = files_.find_mesh(key);
+        found->second.value =
+            data ? *std::move(data) : make_and_keep(generate, [&](const MeshData& made) {
+                if (made.pieces.empty()) {  // which name other meshes
+                    files_.keep(key, made);
+                }
+            });
     }
     found->second.used = load_;
-    return found->second.value;
+    mesh.data = found->second.value;
+    return mesh;
 }
 
 PatternMaps MadeAssets::pattern(const PatternKind& kind, const AnyComponent& parameters) {
     const auto [found, is_new] = patterns_.try_emplace(key_of(kind.name, parameters, nullptr));
     if (is_new) {
-        found->second.value = kind.make(parameters.data());
+        const std::string& key = found->first;
+        std::optional<PatternMaps> maps = files_.find_pattern(key);
+        found->second.value = maps ? *std::move(maps)
+                                   : make_and_keep(
+                                       [&] { return kind.make(parameters.data()); },
+                                       [&](const PatternMaps& made) { files_.keep(key, made); });
     }
     found->second.used = load_;
     return found->second.value;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/load/asset_cache.h"
 #include "content/make/make_mesh.h"
 #include "content/make/patterns.h"
 #include "ecs/any_component.h"
@@ -11,7 +12,8 @@
 namespace limn {
 
 // Meshes and patterns that levels have generated, so that a level that is loaded again, or with a
-// show on and off, need not generate them again. Keeps what the last loads used.
+// show on and off, need not generate them again. Keeps what the last loads used, and in files what
+// takes long to generate.
 
 struct MadeMesh {
     MeshData data;
@@ -20,6 +22,8 @@ struct MadeMesh {
 
 class MadeAssets {
   public:
+    explicit MadeAssets(AssetCache files = AssetCache::of_user()) : files_(std::move(files)) {}
+
     /// Forgets what the last kKeptLoads levels did not use.
     void begin_level();
 
@@ -39,7 +43,8 @@ class MadeAssets {
         T value;
         int used = 0;  ///< the load that used it last
     };
-    std::map<std::string, Entry<MadeMesh>> meshes_;
+    AssetCache files_;
+    std::map<std::string, Entry<MeshData>> meshes_;
     std::map<std::string, Entry<PatternMaps>> patterns_;
     int load_ = 0;
 };
