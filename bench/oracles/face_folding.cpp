@@ -88,10 +88,17 @@ FaceFolding::FaceFolding(const MeshData& mesh) : mesh_(mesh) {
     const SkinTriangles skin = make_skin_triangles(mesh.positions, mesh.indices, 0);
     for (const VertexRegion& source : mesh.regions) {
         Region& region = regions_.emplace_back();
-        if (source.across.size() != mesh.positions.size()) {
+        const std::size_t vertices = mesh.positions.size();
+        const bool any_direction = source.across.empty();
+        if (!any_direction && source.across.size() != vertices) {
             continue;
         }
-        region.rest = make_wrinkle_rest(mesh.positions, mesh.indices, source.across);
+        const std::vector<Vec3> across =
+            any_direction ? std::vector<Vec3>(vertices, Vec3(0)) : source.across;
+        const std::vector<float> aside(vertices, any_direction ? 0.5f : 0.0f);
+        region.rest = make_wrinkle_rest(
+            mesh.positions, mesh.indices, across, WrinkleWeight::Angle,
+            {.aside = aside, .narrowing = 0});
         region.share.assign(mesh.positions.size(), 0.0);
         for (std::size_t t = 0; t + 3 <= region.rest.corners.size(); t += 3) {
             const std::uint32_t* const v = &region.rest.corners[t];
@@ -105,7 +112,7 @@ FaceFolding::FaceFolding(const MeshData& mesh) : mesh_(mesh) {
         for (std::size_t t = 0; t < skin.area.size(); ++t) {
             const std::uint32_t* const v = &skin.corners[3 * t];
             region.skin_share.push_back(double{skin.area[t]} * mean_of(source.weights, v));
-            region.skin_across.push_back(source.across[v[0]]);
+            region.skin_across.push_back(across[v[0]]);
         }
     }
 }

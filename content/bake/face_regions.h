@@ -13,13 +13,14 @@ namespace limn {
 // direction across the folds. Rules and directions were measured on the neutral face and the
 // expressions of ICT FaceKit (Li et al. 2020): the direction is that of most shortening in the
 // expressions that fold the region; around the outer corners of the eyes and the mouth, folds
-// radiate; the nasolabial fold is placed by anatomy.
+// radiate; the nasolabial fold is placed by anatomy, and so is what pouches below the corner of the
+// mouth (marionette). The chin has no direction: it dimples where it is compressed on balance.
 //
-//     forehead      raised brows          upper_lid     sneer          upper_lip     pucker
-//     glabella      frown                 lower_lid     smile, squint  mouth_corner  smile
-//     nose_root     sneer                 crows_feet    smile          mentolabial   pucker
-//     nose_side     sneer                 cheek         smile          chin          dimples
-//     nasolabial    smile
+//     forehead      raised brows          lower_lid      smile          mouth_corner  smile
+//     glabella      frown                 inner_canthus  squint         marionette    mouth frown
+//     nose_root     sneer                 crows_feet     smile, squint  mentolabial   pucker
+//     nose_side     sneer                 cheek          smile          chin          chin raise
+//     nasolabial    smile                 upper_lip      pucker         upper_lid     sneer
 //
 // A face of other proportions is first warped to the reference (point_warp.h); one with expressions
 // of its own has the directions of those (region_directions.h).

@@ -29,7 +29,8 @@ struct FoldedBy {
 constexpr FoldedBy kFoldedBy[] = {
     {"forehead", {"AU1", "AU2"}}, {"glabella", {"AU4"}},    {"nose_root", {"AU9"}},
     {"nose_side", {"AU9"}},       {"upper_lid", {"AU9"}},   {"lower_lid", {"AU6", "AU12"}},
-    {"cheek", {"AU12"}},          {"nasolabial", {"AU12"}},
+    {"cheek", {"AU12"}},          {"nasolabial", {"AU12"}}, {"inner_canthus", {"AU7"}},
+    {"marionette", {"AU15"}},
 };
 
 bool shows_unit(const MorphTarget& morph, std::string_view unit) {

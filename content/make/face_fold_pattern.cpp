@@ -48,30 +48,44 @@ constexpr Crease kCreases[] = {
     {{6.4f, 31.4f}, {9.8f, 33.2f}, {13.0f, 31.6f}, 0.35f, 0.10f},
     {{6.0f, 32.2f}, {9.4f, 34.9f}, {13.4f, 32.8f}, 0.4f, 0.13f},
     {{6.0f, 33.4f}, {8.6f, 36.4f}, {12.4f, 35.4f}, 0.5f, 0.12f},
+    // inner corner of the eye
+    {{5.8f, 31.0f}, {4.9f, 31.9f}, {3.8f, 33.6f}, 0.5f, 0.12f},
+    {{6.3f, 32.0f}, {5.7f, 33.2f}, {4.9f, 35.0f}, 0.55f, 0.08f},
+    {{5.3f, 30.1f}, {4.5f, 30.6f}, {3.5f, 31.7f}, 0.4f, 0.06f},
     // side of the nose
     {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.45f, 0.14f},
     {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.45f, 0.14f},
-    // nasolabial fold, outside the corner of the mouth, marionette line
-    {{5.0f, 37.0f}, {8.8f, 42.0f}, {9.0f, 51.6f}, 1.1f, 0.55f},
-    {{10.6f, 45.0f}, {11.8f, 48.0f}, {11.4f, 52.0f}, 0.7f, 0.18f},
-    {{7.4f, 51.0f}, {8.6f, 54.0f}, {8.0f, 59.0f}, 0.8f, 0.28f},
+    // outside the corner of the mouth
+    {{11.2f, 45.2f}, {12.6f, 48.4f}, {12.0f, 52.6f}, 0.9f, 0.12f},
     // upper lip, of uneven lengths and distances
-    {{0.9f, 44.3f}, {0.8f, 45.0f}, {0.8f, 45.9f}, 0.4f, 0.06f},
-    {{2.1f, 43.2f}, {2.0f, 44.4f}, {1.8f, 45.8f}, 0.45f, 0.10f},
-    {{3.7f, 44.2f}, {3.4f, 45.0f}, {3.1f, 45.9f}, 0.35f, 0.07f},
-    {{5.0f, 43.6f}, {4.6f, 44.9f}, {4.0f, 46.2f}, 0.45f, 0.11f},
-    {{6.6f, 44.8f}, {6.0f, 45.6f}, {5.3f, 46.5f}, 0.4f, 0.07f},
+    {{0.9f, 44.1f}, {0.8f, 45.0f}, {0.8f, 46.0f}, 0.5f, 0.05f},
+    {{2.1f, 42.8f}, {2.0f, 44.4f}, {1.8f, 46.2f}, 0.55f, 0.09f},
+    {{3.7f, 44.0f}, {3.4f, 45.0f}, {3.1f, 46.2f}, 0.45f, 0.06f},
+    {{5.0f, 43.2f}, {4.6f, 44.9f}, {4.0f, 46.6f}, 0.55f, 0.09f},
+    {{6.6f, 44.6f}, {6.0f, 45.6f}, {5.3f, 46.8f}, 0.5f, 0.06f},
     // below the lower lip: short ones that radiate from the mouth, and the furrow above the chin
-    {{1.2f, 53.5f}, {1.3f, 54.6f}, {1.2f, 55.6f}, 0.55f, 0.08f},
-    {{2.9f, 53.2f}, {3.2f, 54.8f}, {3.2f, 56.4f}, 0.7f, 0.13f},
-    {{4.9f, 52.7f}, {5.3f, 53.8f}, {5.5f, 55.0f}, 0.55f, 0.10f},
+    {{0.9f, 53.8f}, {1.0f, 54.8f}, {0.9f, 55.6f}, 0.7f, 0.05f},
+    {{2.7f, 52.8f}, {3.1f, 54.6f}, {3.1f, 56.6f}, 0.9f, 0.09f},
+    {{4.6f, 52.9f}, {5.1f, 54.0f}, {5.4f, 55.0f}, 0.7f, 0.06f},
     {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.1f, 0.06f},
 };
 
-/// The distance to a crease, 0 .. 1 along it at the nearest place.
-Vec2 nearest_on(const Crease& crease, const Vec2& p) {
+/// Nasolabial fold and marionette line: the cheek hangs over them.
+constexpr Crease kOverhangs[] = {
+    {{4.8f, 36.4f}, {8.8f, 41.6f}, {9.2f, 51.6f}, 1.4f, 0.32f},
+    {{5.4f, 52.0f}, {7.6f, 53.4f}, {9.8f, 54.6f}, 1.2f, 0.22f},
+};
+
+/// The nearest place on a crease.
+struct CreasePlace {
+    float distance = 1e6f;
+    float along = 0;     ///< 0 .. 1
+    bool right = false;  ///< of the way from `a` to `c`, with rows downwards
+};
+
+CreasePlace nearest_on(const Crease& crease, const Vec2& p) {
     constexpr int kChords = 8;
-    Vec2 nearest = {1e6f, 0};
+    CreasePlace nearest;
     Vec2 from = crease.a;
     for (int i = 1; i <= kChords; ++i) {
         const float t = static_cast<float>(i) / kChords;
@@ -79,9 +93,11 @@ Vec2 nearest_on(const Crease& crease, const Vec2& p) {
             glm::mix(glm::mix(crease.a, crease.b, t), glm::mix(crease.b, crease.c, t), t);
         const Vec2 chord = to - from;
         const float s = glm::clamp(glm::dot(p - from, chord) / glm::dot(chord, chord), 0.0f, 1.0f);
-        const float distance = glm::length(p - from - s * chord);
-        if (distance < nearest.x) {
-            nearest = {distance, (static_cast<float>(i - 1) + s) / kChords};
+        const Vec2 offset = p - from - s * chord;
+        const float distance = glm::length(offset);
+        if (distance < nearest.distance) {
+            const bool right = chord.x * offset.y > chord.y * offset.x;
+            nearest = {distance, (static_cast<float>(i - 1) + s) / kChords, right};
         }
         from = to;
     }
@@ -100,19 +116,47 @@ float crease_pieces(const Vec2& uv, std::uint32_t seed) {
     return glm::mix(0.3f, 1.0f, glm::smoothstep(-0.5f, 0.1f, fbm(uv, 9, seed, 2)));
 }
 
-/// A narrow valley between round crests, which thins out and fades towards its ends.
-float crease_height(const Crease& crease, const Vec2& p) {
-    constexpr float kReach = 3.2f;  // widths
+constexpr float kReach = 3.2f;  ///< of a crease in widths
+
+bool is_near(const Crease& crease, const Vec2& p) {
     const Vec2 low = glm::min(crease.a, glm::min(crease.b, crease.c)) - kReach * crease.width;
     const Vec2 high = glm::max(crease.a, glm::max(crease.b, crease.c)) + kReach * crease.width;
-    if (p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y) {
+    return p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y;
+}
+
+/// A narrow valley between round crests, which thins out and fades towards its ends.
+float crease_height(const Crease& crease, const Vec2& p) {
+    if (!is_near(crease, p)) {
         return 0;
     }
-    const Vec2 at = nearest_on(crease, p);
-    const float taper = crease_taper(crease, at.y);
-    const float d = at.x / (crease.width * (0.55f + 0.45f * taper));
+    const CreasePlace at = nearest_on(crease, p);
+    const float taper = crease_taper(crease, at.along);
+    const float d = at.distance / (crease.width * (0.55f + 0.45f * taper));
     return crease.depth * taper
            * (0.45f * std::exp(-square(d - 1.0f)) - std::exp(-square(1.6f * d)));
+}
+
+/// A step from a broad bulge down to flat skin on its right side, by a valley.
+float overhang_height(const Crease& crease, const Vec2& p) {
+    if (!is_near(crease, p)) {
+        return 0;
+    }
+    const CreasePlace at = nearest_on(crease, p);
+    const float taper = crease_taper(crease, at.along);
+    const float d = at.distance / (crease.width * (0.55f + 0.45f * taper));
+    const float side = at.right ? 0.08f * std::exp(-square(d - 1.2f))
+                                : 0.6f * std::exp(-square((d - 1.3f) / 0.9f));
+    return crease.depth * taper * (side - std::exp(-square(1.2f * d)));
+}
+
+/// Pits 2 to 4 mm wide, as of a golf ball, where skin is drawn inwards in points.
+float dimple_height(const Vec2& p, std::uint32_t seed) {
+    constexpr float kSpacing = 1.15f;  // columns
+    const Vec2 at =
+        p / kSpacing + 0.5f * Vec2(fbm(p / 40.0f, 40, seed), fbm(p / 40.0f, 40, seed + 1));
+    const CellSample cell = cell_noise(at, seed, 1);
+    const float depth = 0.25f + 0.75f * static_cast<float>(cell.cell & 255u) / 255;
+    return -depth * std::exp(-square(cell.nearest / (0.3f + 0.2f * depth)));
 }
 
 }  // namespace
@@ -132,12 +176,15 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
             height += own != 0 ? own * crease_pieces(uv, number) : 0.0f;
             ++number;
         }
+        for (const Crease& crease : kOverhangs) {
+            const float step = overhang_height(crease, p);
+            height += step != 0 ? step * crease_pieces(uv, number) : 0.0f;
+        }
         // No fold is as deep all along, or as deep as that of the other side.
         height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;
-        // Dimples of the chin, 2 to 4 mm wide.
         const float chin =
-            1 - glm::smoothstep(0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6, 3.4f)));
-        height += chin * 0.12f * fbm(uv, 96, seed + 2, 2);
+            1 - glm::smoothstep(0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6.5f, 3.8f)));
+        height += chin > 0 ? chin * 0.09f * dimple_height(chart, seed + 2) : 0.0f;
         PatternTexel t;
         t.height = pattern.depth * height / kHeadColumns;
         return t;

@@ -54,7 +54,7 @@ constexpr ActionUnit kUnits[] = {
     {.name = "AU7",
      .sided = true,
      .pulls = {{
-         {{3.2f, 2.3f, 9.4f}, {-0.8f, 1.4f, 0.3f}, {1.9f, 1.2f, 2}},
+         {{3.2f, 2.3f, 9.4f}, {-2.2f, 1.4f, 0.3f}, {1.9f, 1.4f, 2}},
          {{5.4f, 2.2f, 7.9f}, {-1.6f, 2.4f, 0}, {1.7f, 1.6f, 2.5f}, Lips::Both, kSlides},
          {{5.4f, 4.5f, 7.8f}, {-0.4f, -1.4f, 0}, {1.4f, 1.3f, 2.5f}, Lips::Both, kSlides},
      }},
@@ -107,8 +107,9 @@ constexpr ActionUnit kUnits[] = {
      .pulls = {{{{1.1f, -3.9f, 11.3f}, {0.6f, -5.0f, -0.4f}, {1.9f, 2.1f, 2.4f}, kLower}}}},
     {.name = "AU17",
      .pulls = {{
-         {{0, -6.1f, 11}, {0, 6.0f, 1.4f}, {2.6f, 2.3f, 2.6f}},
+         {{0, -6.6f, 10.8f}, {0, 6.6f, 1.4f}, {2.6f, 2.3f, 2.6f}},
          {{0, -3.5f, 11.4f}, {0, 3.4f, 1.4f}, {2.6f, 1.9f, 2.6f}},
+         {{1.6f, -6.0f, 10.7f}, {-2.8f, 0, 0.4f}, {2.2f, 1.9f, 2.6f}},  // the boss bunches up
      }}},
     {.name = "AU18",
      .pulls = {{

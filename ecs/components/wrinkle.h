@@ -82,6 +82,7 @@ struct WrinkleSurface {
     float beta = 4;
     float slack = 0.03f;
     float share = 0.3f;
+    float narrowing = 0;
     std::vector<RestingFolds> resting{};
     std::string resting_shape{};
     Vec3 center = {0, 0, 0};
@@ -156,6 +157,12 @@ LIMN_FIELDS(WrinkleSurface) {
     LIMN_FIELD(
         share, "isometric: of the shortening beyond that becomes folds; 1: all of it", "", 0, 1);
     LIMN_FIELD(
+        narrowing,
+        "by what share of its stretch along the folds skin becomes narrower by itself, without "
+        "folding (Poisson's ratio, of skin 0.3 to 0.5); 0: whatever its length along them; for "
+        "chord, unless mean_length",
+        "", 0, 0.5);
+    LIMN_FIELD(
         resting, "regions whose skin folds at rest, and more easily when it is compressed; not for "
                  "radial, strain_view and model");
     LIMN_FIELD(
@@ -192,7 +199,7 @@ struct WrinkleCorner {
 
 /// A mesh at rest with one direction across its wrinkles, prepared for measuring how much shorter
 /// its skin has become in that direction. An edge counts as a triangle whose second and third
-/// vertex are the same.
+/// vertex are the same. A triangle that is measured in two directions is there twice.
 struct WrinkleRest {
     std::vector<std::uint32_t> corners;  ///< three vertices per triangle
     std::vector<Vec2> across;  ///< per triangle the unit direction in its plane as x e1 + y e2, e1
@@ -200,6 +207,9 @@ struct WrinkleRest {
     std::vector<WrinkleCorner> around;  ///< triangles that have a direction, vertex after vertex
     std::vector<std::uint32_t> first;   ///< per vertex and one more: index of its first in `around`
     bool mean_length = false;           ///< of means at vertices, see WrinkleSurface
+    /// Triangles from this one on count by how much longer they are, max(ratio - 1, 0), in
+    /// addition.
+    std::uint32_t stretch_from = ~0u;
 };
 
 inline constexpr int kFoldSteps = 16;

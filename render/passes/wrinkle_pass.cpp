@@ -48,6 +48,10 @@ std::uint32_t bits(float x) {
     return std::bit_cast<std::uint32_t>(x);
 }
 
+bool counts_by_stretch(const WrinkleRest& rest, const WrinkleCorner& at) {
+    return at.corner / 3 >= rest.stretch_from;
+}
+
 /// The two other corners of a triangle, and the direction across wrinkles in the edges to them.
 void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector<Texel>& texels) {
     const std::uint32_t triangle = at.corner / 3;
@@ -57,8 +61,12 @@ void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector
     const std::uint32_t next = (corner + 1) % 3;
     const std::uint32_t last = (corner + 2) % 3;
     const float factor = rest.mean_length ? at.weight : std::sqrt(at.weight);
-    texels.push_back({rest.corners[3 * triangle + next], rest.corners[3 * triangle + last]});
+    const std::uint32_t mark = counts_by_stretch(rest, at) ? layout::kWrinkleStretch : 0u;
+    texels.push_back({rest.corners[3 * triangle + next] | mark, rest.corners[3 * triangle + last]});
     texels.push_back({bits(factor * share[next]), bits(factor * share[last])});
+    if (mark != 0) {
+        texels.push_back({bits(at.weight), 0});
+    }
 }
 
 /// `number(v)` goes with each vertex.
@@ -66,12 +74,14 @@ template <typename Number>
 void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number number) {
     const std::size_t begin = texels.size();
     for (std::size_t v = 0; v < rest.first.size(); ++v) {
-        const auto first =
-            static_cast<std::uint32_t>(begin + rest.first.size() + 2 * rest.first[v]);
-        texels.push_back({first, number(v)});
+        texels.push_back({0, number(v)});
     }
-    for (const WrinkleCorner& corner : rest.around) {
-        append_corner(rest, corner, texels);
+    for (std::size_t v = 0; v < rest.first.size(); ++v) {
+        texels[begin + v].x = static_cast<std::uint32_t>(texels.size());
+        const std::uint32_t end = v + 1 < rest.first.size() ? rest.first[v + 1] : rest.first[v];
+        for (std::uint32_t i = rest.first[v]; i < end; ++i) {
+            append_corner(rest, rest.around[i], texels);
+        }
     }
 }
 
@@ -112,7 +122,10 @@ std::vector<Texel> rest_texels(const WrinkleState& state) {
 
 /// Texels of a block.
 std::uint32_t block_texels(const WrinkleRest& rest) {
-    return static_cast<std::uint32_t>(rest.first.size() + 2 * rest.around.size());
+    const auto stretched = std::ranges::count_if(
+        rest.around, [&](const WrinkleCorner& at) { return counts_by_stretch(rest, at); });
+    return static_cast<std::uint32_t>(rest.first.size() + 2 * rest.around.size())
+           + static_cast<std::uint32_t>(stretched);
 }
 
 /// The texels of a state, uploaded on first use.

@@ -28,12 +28,18 @@ vec3 position_of(uint vertex) {
 float compression(int triangle, int end, uint vertex, uint first, bool mean_length) {
     vec3 at = position_of(vertex);
     float ratio = triangle == end ? 1.0 : 0.0;
-    for (; triangle < end; triangle += 2) {
+    while (triangle < end) {
         uvec2 corners = texelFetch(rest, triangle).xy;
+        bool by_stretch = (corners.x & kWrinkleStretch) != 0u;
+        corners.x &= ~kWrinkleStretch;
         vec2 across = uintBitsToFloat(texelFetch(rest, triangle + 1).xy);
         vec3 chord = across.x * (position_of(first + corners.x) - at) + across.y * (position_of(first + corners.y) - at);
         float along = dot(chord, chord);
+        if (by_stretch) {
+            along = max(along - uintBitsToFloat(texelFetch(rest, triangle + 2).x), 0.0);
+        }
         ratio += mean_length ? sqrt(along) : along;
+        triangle += by_stretch ? 3 : 2;
     }
     ratio = mean_length ? ratio * ratio : ratio;
     return ratio >= 0.0 && ratio < 1e30 ? ratio : 1.0;

@@ -5,7 +5,8 @@
 // its folds stay, 16 bits each; in the second and third block the
 // angle and the side of its tangent instead (WrinkleState::frames; 0: none). A second layer is another block, with its own mask. Then two per triangle at a vertex, whose third corner
 // is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
-// root of the triangle's weight at the vertex (the weight itself where means are of lengths). Last, of displaced skin,
+// root of the triangle's weight at the vertex (the weight itself where means are of lengths). One that counts by its
+// stretch has the highest bit of the first of them set, and its weight in one more texel. Last, of displaced skin,
 // the heights of the folds of both layers per vertex.
 
 #ifdef __cplusplus
@@ -60,6 +61,7 @@ const uint kWrinkleByStrain = 2u;
 const uint kWrinkleByRadius = 3u;
 
 const uint kFoldSteps = 16u;
+const uint kWrinkleStretch = 0x80000000u;
 
 #ifdef __cplusplus
 static_assert(sizeof(WrinkleJob) == 16 * kWrinkleJobTexels);

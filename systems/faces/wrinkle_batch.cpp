@@ -124,7 +124,10 @@ HWY_INLINE void measure_triangles(const WrinkleRest& rest, const wrinkle::Batch&
                 return hn::Mul(chord, chord);
             };
             const V found = hn::Add(hn::Add(square_along(0), square_along(1)), square_along(2));
-            const V finite = hn::IfThenElse(hn::Lt(found, infinity), found, one);
+            V finite = hn::IfThenElse(hn::Lt(found, infinity), found, one);
+            if (t >= rest.stretch_from) {
+                finite = hn::Max(hn::Sub(finite, one), hn::Zero(d));
+            }
             hn::Store(
                 rest.mean_length ? hn::Sqrt(finite) : finite, d,
                 batch.triangles + wrinkle::kFaces * t + lane);

@@ -94,7 +94,7 @@ void collect_corners(
         rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
         float sum = 0;
         for (std::size_t i = begin[vertex]; i < begin[vertex + 1]; ++i) {
-            sum += corners[i].at.weight;
+            sum += corners[i].at.corner / 3 < rest.stretch_from ? corners[i].at.weight : 0.0f;
         }
         for (std::size_t i = begin[vertex]; i < begin[vertex + 1]; ++i) {
             rest.around.push_back({corners[i].at.corner, corners[i].at.weight / sum});
@@ -126,23 +126,78 @@ Vec3 turn_with(const Vec3& direction, const Vec3& from, const Vec3& to) {
            + axis * (glm::dot(axis, direction) / (1 + cosine));
 }
 
-/// Of all triangles. `visit(v, triangle, has_area, rest, add)` appends its corners to `rest`, and
-/// calls add(k, corner) with those that count at its vertex v[k].
+/// Of all triangles. `visit(v, triangle, has_area, pass, rest, add)` appends its corners to `rest`,
+/// and calls add(k, corner) with those that count at its vertex v[k]; those of a second pass count
+/// by their stretch.
 template <typename Visit>
 WrinkleRest rest_of_triangles(
-    std::span<const Vec3> positions, std::span<const std::uint32_t> indices, const Visit& visit) {
+    std::span<const Vec3> positions, std::span<const std::uint32_t> indices, int passes,
+    const Visit& visit) {
     WrinkleRest rest;
     std::vector<VertexCorner> corners;
     const std::vector<std::uint32_t> welded = weld_positions(positions);
-    each_triangle(
-        positions, indices,
-        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area) {
-            visit(v, triangle, has_area, rest, [&](std::uint32_t k, const WrinkleCorner& corner) {
-                corners.push_back({welded[v[k]], corner});
+    for (int pass = 0; pass < passes; ++pass) {
+        if (pass == 1) {
+            rest.stretch_from = static_cast<std::uint32_t>(rest.across.size());
+        }
+        each_triangle(
+            positions, indices,
+            [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle,
+                bool has_area) {
+                const auto add = [&](std::uint32_t k, const WrinkleCorner& corner) {
+                    corners.push_back({welded[v[k]], corner});
+                };
+                visit(v, triangle, has_area, pass, rest, add);
             });
-        });
+    }
     collect_corners(rest, corners, welded);
     return rest;
+}
+
+float region_weight(const VertexRegion& region, std::size_t v) {
+    return std::clamp(finite_or(region.weights[v], 0), 0.0f, 1.0f);
+}
+
+/// Of the vertices of a triangle that fold.
+float mean_aside(
+    const std::array<std::uint32_t, 3>& v, std::span<const Vec3> across,
+    std::span<const float> aside) {
+    float sum = 0;
+    float count = 0;
+    for (std::size_t k = 0; k < 3 && !aside.empty(); ++k) {
+        sum += aside[v[k]];
+        count += aside[v[k]] > 0 || across[v[k]] != Vec3(0) ? 1.0f : 0.0f;
+    }
+    return count > 0 ? sum / count : 0.0f;
+}
+
+/// Where several regions have some weight: the axis of the mean of their tensors, and its other
+/// eigenvalue as a share of both.
+void blend_directions(
+    std::span<const VertexRegion* const> regions, const Vec3& normal, std::size_t v,
+    FoldField& field) {
+    constexpr float kNone = 1e-4f;
+    const Vec3 flat = field.across[v] - glm::dot(field.across[v], normal) * normal;
+    const Vec3 first = normalize_or(flat, Vec3(0));
+    const Vec3 second = glm::cross(normal, first);
+    float sum = 0;
+    Vec2 axis = {0, 0};  // of doubled angles
+    for (const VertexRegion* const region : regions) {
+        const float weight = region_weight(*region, v);
+        sum += weight;
+        if (region->across.empty() || weight == 0) {
+            continue;
+        }
+        const float x = glm::dot(region->across[v], first);
+        const float y = glm::dot(region->across[v], second);
+        axis += weight / std::max(x * x + y * y, kNone) * Vec2(x * x - y * y, 2 * x * y);
+    }
+    const float aside = 0.5f - 0.5f * glm::length(axis) / sum;
+    if (aside > kNone && first != Vec3(0)) {
+        const float angle = 0.5f * std::atan2(axis.y, axis.x);
+        field.across[v] = std::cos(angle) * first + std::sin(angle) * second;
+        field.aside[v] = aside;
+    }
 }
 
 }  // namespace
@@ -151,52 +206,76 @@ bool is_named(const VertexRegion& region, const std::vector<std::string>& names)
     return names.empty() || std::ranges::find(names, region.name) != names.end();
 }
 
-void merge_regions(
-    const MeshData& mesh, const std::vector<std::string>& names, bool directed,
-    std::span<float> mask, std::span<Vec3> across) {
+FoldField
+merge_regions(const MeshData& mesh, const std::vector<std::string>& names, bool directed) {
     const std::size_t vertices = mesh.positions.size();
+    FoldField field = {
+        .mask = std::vector<float>(vertices, 0.0f),
+        .across = std::vector<Vec3>(vertices, Vec3(0)),
+        .aside = std::vector<float>(vertices, 0.0f)};
     std::vector<float> strongest(vertices, 0.0f);
+    std::vector<const VertexRegion*> used;
     for (const VertexRegion& region : mesh.regions) {
         const bool has_across = region.across.size() == vertices;
         if (!is_named(region, names) || region.weights.size() != vertices
-            || (directed && !has_across)) {
+            || (!has_across && (directed || !region.across.empty()))) {
             continue;
         }
+        used.push_back(&region);
         for (std::size_t v = 0; v < vertices; ++v) {
-            const float weight = region.weights[v];
-            mask[v] = std::min(mask[v] + std::max(finite_or(weight, 0), 0.0f), 1.0f);
+            const float weight = region_weight(region, v);
+            field.mask[v] = std::min(field.mask[v] + weight, 1.0f);
             if (weight > strongest[v] && has_across) {
                 strongest[v] = weight;
-                across[v] = region.across[v];
+                field.across[v] = region.across[v];
             }
+            field.aside[v] = strongest[v] > 0 || weight == 0 ? field.aside[v] : 0.5f;
         }
     }
+    for (std::size_t v = 0; v < vertices; ++v) {
+        field.aside[v] = strongest[v] > 0 ? 0.0f : field.aside[v];
+        if (strongest[v] > 0 && mesh.normals.size() == vertices) {
+            blend_directions(used, mesh.normals[v], v, field);
+        }
+    }
+    return field;
 }
 
 WrinkleRest make_wrinkle_rest(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
-    std::span<const Vec3> across, WrinkleWeight weight) {
+    std::span<const Vec3> across, WrinkleWeight weight, const AlongFolds& along) {
     LIMN_CHECK(across.size() == positions.size());
+    LIMN_CHECK(along.aside.empty() || along.aside.size() == positions.size());
     return rest_of_triangles(
-        positions, indices,
+        positions, indices, along.narrowing > 0 ? 2 : 1,
         [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area,
-            WrinkleRest& rest, const auto& add) {
-            const auto first = static_cast<std::uint32_t>(rest.corners.size());
-            rest.corners.insert(rest.corners.end(), v.begin(), v.end());
-            rest.across.push_back({0, 0});
-            if (!has_area) {
-                return;
-            }
-            const Vec3 direction =
+            int pass, WrinkleRest& rest, const auto& add) {
+            const auto append = [&](const Vec2& coefficients, float share) {
+                const auto first = static_cast<std::uint32_t>(rest.corners.size());
+                rest.corners.insert(rest.corners.end(), v.begin(), v.end());
+                rest.across.push_back(coefficients);
+                const std::array<float, 3> weights = corner_weights(triangle, weight);
+                for (std::uint32_t k = 0; k < 3 && share > 0; ++k) {
+                    add(k, {first + k, share * weights[k]});
+                }
+            };
+            Vec3 direction =
                 mean_direction({across[v[0]], across[v[1]], across[v[2]]}, triangle.normal);
-            const Vec2 coefficients = in_edges(triangle, direction);
-            if (coefficients == Vec2{0, 0} || !is_finite(coefficients)) {
-                return;
+            const float aside = mean_aside(v, across, along.aside);
+            if (has_area && direction == Vec3(0) && aside > 0) {
+                direction = glm::normalize(triangle.e1);  // any
             }
-            rest.across.back() = coefficients;
-            const std::array<float, 3> weights = corner_weights(triangle, weight);
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                add(k, {first + k, weights[k]});
+            const Vec2 coefficients = in_edges(triangle, direction);
+            const Vec2 others = in_edges(triangle, glm::cross(triangle.normal, direction));
+            if (!has_area || coefficients == Vec2{0, 0} || !is_finite(coefficients)) {
+                append({0, 0}, 0);
+            } else if (pass == 1) {
+                append(others, along.narrowing * (1 - 2 * aside));
+            } else {
+                append(coefficients, 1 - aside);
+                if (aside > 0) {
+                    append(others, aside);
+                }
             }
         });
 }
@@ -204,8 +283,8 @@ WrinkleRest make_wrinkle_rest(
 WrinkleRest make_edge_rest(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices, WrinkleWeight weight) {
     return rest_of_triangles(
-        positions, indices,
-        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area,
+        positions, indices, 1,
+        [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area, int,
             WrinkleRest& rest, const auto& add) {
             if (!has_area) {
                 return;
@@ -290,6 +369,7 @@ void find_compression(
         const Vec3 chord = across.x * (b - a) + across.y * (c - a);
         const float found = glm::dot(chord, chord);
         ratio[t] = across == Vec2{0, 0} ? 1.0f : finite_or(found, 1.0f);
+        ratio[t] = t < rest.stretch_from ? ratio[t] : std::max(ratio[t] - 1, 0.0f);
     }
 }
 

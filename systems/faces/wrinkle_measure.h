@@ -26,12 +26,31 @@ namespace limn {
 /// Whether a region is one of these, or there are no names.
 [[nodiscard]] bool is_named(const VertexRegion& region, const std::vector<std::string>& names);
 
-/// Adds to `mask` the weights of the regions with these names (all if there are none), at most 1 in
-/// all, and sets `across` to the direction of the strongest there. `directed`: only those that have
-/// directions. Both have one element per vertex.
-void merge_regions(
-    const MeshData& mesh, const std::vector<std::string>& names, bool directed,
-    std::span<float> mask, std::span<Vec3> across);
+/// Where the skin of a mesh may fold, per vertex.
+struct FoldField {
+    std::vector<float> mask;   ///< 0 .. 1
+    std::vector<Vec3> across;  ///< direction across the folds, of either sign; (0, 0, 0): none
+    std::vector<float> aside;  ///< how much the length along them counts, 0 .. 1/2: as much
+};
+
+/// Of the regions with these names, or all if there are none: the sum of their weights, at most 1.
+/// Where they overlap, each direction counts by the weight of its region, and a region without
+/// directions alike in all of them: `across` is the axis of the mean of their tensors a a^T.
+/// Without normals it is that of the strongest. `directed`: only regions that have directions.
+[[nodiscard]] FoldField
+merge_regions(const MeshData& mesh, const std::vector<std::string>& names, bool directed);
+
+/// What counts besides the square of the length across the folds, a:
+///
+///     (1 - aside) a + aside b + narrowing (1 - 2 aside) max(b - 1, 0)
+///
+/// with that along them, b. Skin without a direction has aside = 1/2, the mean of all directions,
+/// and folds only where it is compressed on balance. Skin that is stretched along its folds gets
+/// narrower by itself, its natural width in tension (Wagner 1929), as far as Poisson's ratio says.
+struct AlongFolds {
+    std::span<const float> aside = {};  ///< per vertex 0 .. 1/2, see FoldField; empty: 0
+    float narrowing = 0;                ///< 0 .. 1/2
+};
 
 /// `across` has a direction per vertex, of either sign: the mean of three is used, without its part
 /// along the normal. A triangle has none where they cancel or are parallel to the normal, where it
@@ -39,7 +58,8 @@ void merge_regions(
 /// one position have the same triangles, so that UV seams do not show.
 [[nodiscard]] WrinkleRest make_wrinkle_rest(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
-    std::span<const Vec3> across, WrinkleWeight weight = WrinkleWeight::Angle);
+    std::span<const Vec3> across, WrinkleWeight weight = WrinkleWeight::Angle,
+    const AlongFolds& along = {});
 
 /// Edges from each vertex, instead of triangles: of each triangle's share half goes to each of its
 /// two edges there (wrinkle.compression.prior-models).
@@ -66,7 +86,8 @@ void merge_regions(
 [[nodiscard]] float shortest_ratio(float along_u, float along_v, float between);
 
 /// Square of the length of each triangle across its wrinkles, 1 at rest: `ratio` has one element
-/// per triangle. 1 where it has no direction or a position is not finite.
+/// per triangle. 1 where it has no direction or a position is not finite. From `stretch_from` on,
+/// what it is above 1.
 void find_compression(
     const WrinkleRest& rest, std::span<const Vec3> deformed, std::span<float> ratio);
 

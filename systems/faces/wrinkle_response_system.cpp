@@ -97,14 +97,15 @@ make_response_rest(const WrinkleMaps& maps, const MeshInstance& instance, const 
     }
     const MeshData& mesh = *measurable_mesh(instance, assets);
     const std::size_t vertices = mesh.positions.size();
-    std::vector<float> anywhere(vertices, 0.0f);
-    std::vector<Vec3> across(vertices, Vec3(0));
-    merge_regions(mesh, {}, true, anywhere, across);
-    rest.fields[0] = make_wrinkle_rest(mesh.positions, mesh.indices, across);
+    FoldField folds = merge_regions(mesh, {}, true);
+    const AlongFolds along = {.aside = folds.aside, .narrowing = 0};
+    rest.fields[0] =
+        make_wrinkle_rest(mesh.positions, mesh.indices, folds.across, WrinkleWeight::Angle, along);
     for (std::size_t v = 0; v < vertices; ++v) {
-        across[v] = glm::cross(mesh.normals[v], across[v]);
+        folds.across[v] = glm::cross(mesh.normals[v], folds.across[v]);
     }
-    rest.fields[1] = make_wrinkle_rest(mesh.positions, mesh.indices, across);
+    rest.fields[1] =
+        make_wrinkle_rest(mesh.positions, mesh.indices, folds.across, WrinkleWeight::Angle, along);
 
     const std::vector<float> areas = vertex_areas(mesh);
     const ImageData* const first = image_of(maps.first_masks, assets);
@@ -117,7 +118,7 @@ make_response_rest(const WrinkleMaps& maps, const MeshInstance& instance, const 
         for (std::size_t m = 0; m < kRegions; ++m) {
             const float mask = m < 4 ? low[m] : high[m - 4];
             // Where no region says across what, nothing is measured.
-            rest.areas[v][m] = anywhere[v] > 0 ? mask * areas[v] : 0.0f;
+            rest.areas[v][m] = folds.mask[v] > 0 ? mask * areas[v] : 0.0f;
             rest.total[m] += rest.areas[v][m];
         }
         whole += areas[v];

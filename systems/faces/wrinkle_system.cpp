@@ -37,10 +37,17 @@ const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
     return image < assets.images.size() ? &assets.images[image] : nullptr;
 }
 
-/// Whether it says where and, if that is measured, across which direction a vertex wrinkles.
+/// Whether it says where a vertex wrinkles and, if that is measured, across which direction, or
+/// any.
 bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::size_t vertices) {
     return is_named(region, surface.regions) && region.weights.size() == vertices
-           && (region.across.size() == vertices || used_driver(surface) != WrinkleDriver::Chord);
+           && (region.across.size() == vertices || region.across.empty()
+               || used_driver(surface) != WrinkleDriver::Chord);
+}
+
+/// Means of lengths have no part along the folds.
+float narrowing_of(const WrinkleSurface& surface) {
+    return surface.mean_length ? 0.0f : surface.narrowing;
 }
 
 /// Those of a second layer.
@@ -78,28 +85,29 @@ make_strain_rests(const MeshData& mesh, WrinkleWeight weight, std::vector<Vec2>&
 /// Where the second layer may wrinkle, and the chords that are measured for it.
 std::vector<float> add_second_layer(
     const WrinkleSurface& surface, const MeshData& mesh, std::vector<WrinkleRest>& rests) {
-    const std::size_t vertices = mesh.positions.size();
-    std::vector<float> mask(vertices, 0.0f);
-    std::vector<Vec3> across(vertices, Vec3{0, 0, 0});
-    merge_regions(mesh, second_regions(surface), true, mask, across);
+    FoldField field = merge_regions(mesh, second_regions(surface), true);
     if (surface.second_turned) {
-        for (std::size_t v = 0; v < vertices && v < mesh.normals.size(); ++v) {
-            across[v] = glm::cross(mesh.normals[v], across[v]);
+        for (std::size_t v = 0; v < field.across.size() && v < mesh.normals.size(); ++v) {
+            field.across[v] = glm::cross(mesh.normals[v], field.across[v]);
         }
     }
-    rests.push_back(make_wrinkle_rest(mesh.positions, mesh.indices, across, surface.weight));
+    rests.push_back(make_wrinkle_rest(
+        mesh.positions, mesh.indices, field.across, surface.weight,
+        {.aside = field.aside, .narrowing = narrowing_of(surface)}));
     rests.back().mean_length = surface.mean_length;
-    return mask;
+    return std::move(field.mask);
 }
 
-/// What is measured; `across` is per vertex.
+/// What is measured.
 std::vector<WrinkleRest> make_rests(
-    const WrinkleSurface& surface, const MeshData& mesh, std::span<const Vec3> across,
+    const WrinkleSurface& surface, const MeshData& mesh, const FoldField& field,
     std::vector<Vec2>& frames) {
     std::vector<WrinkleRest> rests;
     switch (used_driver(surface)) {
     case WrinkleDriver::Chord:
-        rests.push_back(make_wrinkle_rest(mesh.positions, mesh.indices, across, surface.weight));
+        rests.push_back(make_wrinkle_rest(
+            mesh.positions, mesh.indices, field.across, surface.weight,
+            {.aside = field.aside, .narrowing = narrowing_of(surface)}));
         break;
     case WrinkleDriver::Edge:
         rests.push_back(make_edge_rest(mesh.positions, mesh.indices, surface.weight));
@@ -192,6 +200,7 @@ wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, cons
             any = true;
         }
     }
+    hash = hash_combine(hash, std::bit_cast<std::uint32_t>(narrowing_of(surface)));
     hash = surface.resting.empty() ? hash : hash_combine(hash, hash_resting(surface));
     if (is_displaced(surface) && map != nullptr) {
         const TextureSlot& slot = *slot_of(instance, assets);
@@ -212,11 +221,12 @@ WrinkleState make_wrinkle_state(
     }
     const MeshData& mesh = *mesh_of(instance, assets);
     const std::size_t vertices = mesh.positions.size();
-    std::vector<Vec3> across(vertices, Vec3{0, 0, 0});
-    state.mask.assign(vertices, wrinkles_everywhere(surface, mesh) ? 1.0f : 0.0f);
-    merge_regions(
-        mesh, surface.regions, used_driver(surface) == WrinkleDriver::Chord, state.mask, across);
-    state.rests = make_rests(surface, mesh, across, state.frames);
+    FoldField field = merge_regions(mesh, surface.regions, false);
+    state.rests = make_rests(surface, mesh, field, state.frames);
+    state.mask = std::move(field.mask);
+    if (wrinkles_everywhere(surface, mesh)) {
+        state.mask.assign(vertices, 1.0f);
+    }
     state.resting = resting_folds(surface, mesh);
     state.resting_shape = shape_index(mesh, surface.resting_shape);
     if (has_layers(surface)) {

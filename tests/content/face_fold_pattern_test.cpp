@@ -68,5 +68,5 @@ TEST_CASE("face folds: lines of a region lie across the direction whose shorteni
         CHECK(steepness.across >= 0.5 * steepness.all);
         ++regions;
     }
-    CHECK(regions == 10);
+    CHECK(regions == 12);
 }

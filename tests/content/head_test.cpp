@@ -288,7 +288,7 @@ TEST_CASE("head: no number of a made mesh is NaN at the ends of all parameters")
             make_head({.age = end, .sex = 2 * end - 1, .build = 1 - 2 * end, .asymmetry = end});
         CHECK(std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite<3>));
         CHECK(std::all_of(mesh.normals.begin(), mesh.normals.end(), is_finite<3>));
-        CHECK(mesh.regions.size() == 13);
+        CHECK(mesh.regions.size() == 15);
     }
 }
 

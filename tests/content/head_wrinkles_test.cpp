@@ -37,21 +37,26 @@ std::vector<Vec3> posed(const std::vector<std::string_view>& names, float weight
 float shortening(std::string_view name, const std::vector<Vec3>& positions) {
     const auto region = std::ranges::find(head().regions, name, &VertexRegion::name);
     REQUIRE(region != head().regions.end());
-    const WrinkleRest rest = make_wrinkle_rest(head().positions, head().indices, region->across);
-    std::vector<float> ratios(rest.corners.size() / 3);
-    find_compression(rest, positions, ratios);
+    const std::size_t vertices = head().positions.size();
+    const bool directed = !region->across.empty();  // the chin dimples in any
+    const std::vector<Vec3> across = directed ? region->across : std::vector<Vec3>(vertices);
+    const std::vector<float> aside(vertices, directed ? 0.0f : 0.5f);
+    const WrinkleRest rest = make_wrinkle_rest(
+        head().positions, head().indices, across, WrinkleWeight::Angle,
+        {.aside = aside, .narrowing = 0});
+    const std::vector<float> ratios = vertex_compression({&rest, 1}, positions);
     float sum = 0;
     float weights = 0;
-    for (std::size_t t = 0; t < ratios.size(); ++t) {
-        const std::uint32_t* const v = &rest.corners[3 * t];
+    for (std::size_t i = 0; i + 3 <= head().indices.size(); i += 3) {
+        const std::uint32_t* const v = &head().indices[i];
         const Vec3 cross = glm::cross(
             head().positions[v[1]] - head().positions[v[0]],
             head().positions[v[2]] - head().positions[v[0]]);
-        const float weight =
-            glm::length(cross)
-            * (region->weights[v[0]] + region->weights[v[1]] + region->weights[v[2]]);
-        sum += weight * std::max(1 - std::sqrt(ratios[t]), 0.0f);
-        weights += weight;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float weight = glm::length(cross) * region->weights[v[k]];
+            sum += weight * std::max(1 - std::sqrt(ratios[v[k]]), 0.0f);
+            weights += weight;
+        }
     }
     return sum / weights;
 }
@@ -74,6 +79,9 @@ const std::vector<Folding>& foldings() {
         {{"AU12_L", "AU12_R"}, "nasolabial", {"forehead", "glabella", "nose_root", "upper_lid"}},
         {{"AU9_L", "AU9_R"}, "nose_side", {"forehead", "mentolabial", "mouth_corner"}},
         {{"AU18"}, "upper_lip", {"forehead", "glabella", "nose_root", "crows_feet"}},
+        {{"AU7_L", "AU7_R"}, "inner_canthus", {"forehead", "glabella", "mentolabial", "chin"}},
+        {{"AU15_L", "AU15_R"}, "marionette", {"forehead", "glabella", "nose_side", "cheek"}},
+        {{"AU17"}, "chin", {"forehead", "glabella", "nose_side", "cheek"}},
     };
     return list;
 }
@@ -94,9 +102,7 @@ TEST_CASE(
 
 TEST_CASE("head wrinkles: at rest nothing is shorter") {
     for (const VertexRegion& region : head().regions) {
-        if (!region.across.empty()) {  // dimples of the chin have no direction
-            CHECK(shortening(region.name, posed({}, 0)) < 1e-6f);
-        }
+        CHECK(shortening(region.name, posed({}, 0)) < 1e-6f);
     }
 }
 

@@ -33,6 +33,9 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
         surfaces.push_back(base);
         surfaces.back().method = method;
     }
+    surfaces.push_back(base);
+    surfaces.back().method = WrinkleMethod::Bump;
+    surfaces.back().narrowing = 0.4f;
     for (const WrinkleDriver driver :
          {WrinkleDriver::Chord, WrinkleDriver::Edge, WrinkleDriver::Strain,
           WrinkleDriver::Radial}) {

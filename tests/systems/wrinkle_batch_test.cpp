@@ -81,9 +81,13 @@ struct Crowd {
 std::vector<std::vector<WrinkleRest>> all_rests(const Sheet& sheet) {
     WrinkleRest of_lengths = make_wrinkle_rest(sheet.positions, sheet.indices, sheet.across);
     of_lengths.mean_length = true;
+    const std::vector<float> aside(sheet.positions.size(), 0.2f);
     return {
         {},
         {make_wrinkle_rest(sheet.positions, sheet.indices, sheet.across)},
+        {make_wrinkle_rest(
+            sheet.positions, sheet.indices, sheet.across, WrinkleWeight::Angle,
+            {.aside = aside, .narrowing = 0.4f})},
         {of_lengths},
         {make_edge_rest(sheet.positions, sheet.indices)},
         strain_rests(sheet)};

@@ -294,6 +294,96 @@ TEST_CASE("wrinkle measure: vertices that a seam repeats get the mean of both it
     CHECK(vertices[4] == 0.5f);
 }
 
+TEST_CASE("wrinkle measure: skin without a direction folds by the mean of all of them") {
+    const std::vector<Vec3> none(3, Vec3(0));
+    const std::vector<float> aside(3, 0.5f);
+    const WrinkleRest rest = make_wrinkle_rest(
+        kSkew, kOne, none, WrinkleWeight::Angle, {.aside = aside, .narrowing = 0});
+    Random random;
+    for (int i = 0; i < 30; ++i) {
+        const Vec3 row = random.vector();
+        const Vec3 other = random.vector();
+        const Positions deformed = mapped(kSkew, [&](Vec3 p) { return p.x * row + p.y * other; });
+        float mean = 0;
+        constexpr int kDirections = 64;
+        for (int k = 0; k < kDirections; ++k) {
+            const float angle = kPi * static_cast<float>(k) / kDirections;
+            const Vec3 chord = std::cos(angle) * row + std::sin(angle) * other;
+            mean += glm::dot(chord, chord) / kDirections;
+        }
+        for (const float ratio : vertex_compression({&rest, 1}, deformed)) {
+            CHECK(ratio == near(mean).epsilon(1e-4));
+        }
+    }
+    // As much longer in one direction as it is shorter in the other, it does not.
+    const Positions sheared =
+        mapped(kSkew, [](Vec3 p) { return Vec3(0.8f * p.x, 1.25f * p.y, 0); });
+    CHECK(vertex_compression({&rest, 1}, sheared)[0] > 1);
+}
+
+TEST_CASE("wrinkle measure: skin that is stretched along its folds gets narrower without folding") {
+    constexpr float kPoisson = 0.5f;
+    const std::vector<Vec3> across(3, Vec3{1, 0, 0});
+    const WrinkleRest rest = make_wrinkle_rest(
+        kSkew, kOne, across, WrinkleWeight::Angle, {.aside = {}, .narrowing = kPoisson});
+    const auto ratio = [&](float wide, float high) {
+        return vertex_compression(
+            {&rest, 1}, mapped(kSkew, [&](Vec3 p) { return Vec3(wide * p.x, high * p.y, 0); }))[0];
+    };
+    CHECK(ratio(1, 1) == near(1));
+    for (const float wide : {0.7f, 0.9f, 1.2f}) {
+        CHECK(ratio(wide, 1) == near(wide * wide));
+    }
+    for (const float high : {1.01f, 1.03f}) {
+        CHECK(ratio(std::pow(high, -kPoisson), high) == near(1).epsilon(2e-3));
+        CHECK(ratio(std::pow(high, -kPoisson) - 0.05f, high) < 0.92f);
+    }
+    CHECK(ratio(1, 1.2f) == near(1 + kPoisson * (1.44f - 1)));
+    CHECK(ratio(0.9f, 0.8f) == near(0.81));  // where it is compressed along them, too, it is not
+}
+
+TEST_CASE("wrinkle measure: where regions overlap the direction turns from one to the other") {
+    constexpr std::size_t kSteps = 41;
+    const auto merged = [&](bool second_has_direction) {
+        MeshData mesh;
+        VertexRegion first = {.name = "first", .weights = {}, .across = {}};
+        VertexRegion second = {.name = "second", .weights = {}, .across = {}};
+        const float angle = radians(60.0f);
+        for (std::size_t i = 0; i < kSteps; ++i) {
+            const float share = static_cast<float>(i) / (kSteps - 1);
+            mesh.positions.emplace_back(share, 0, 0);
+            mesh.normals.emplace_back(0, 0, 1);
+            first.weights.push_back(1 - share);
+            second.weights.push_back(share);
+            first.across.emplace_back(1, 0, 0);
+            if (second_has_direction) {
+                second.across.emplace_back(-std::cos(angle), -std::sin(angle), 0);
+            }
+        }
+        mesh.regions = {first, second};
+        return merge_regions(mesh, {}, false);
+    };
+    const auto angle_at = [](const FoldField& field, std::size_t i) {
+        const float angle = degrees(std::atan2(field.across[i].y, field.across[i].x));
+        return std::fmod(angle + 270.0f, 180.0f) - 90.0f;
+    };
+    const FoldField turned = merged(true);
+    CHECK(angle_at(turned, 0) == 0);
+    CHECK(angle_at(turned, kSteps / 2) == near(30).epsilon(1e-4));
+    CHECK(angle_at(turned, kSteps - 1) == near(60).epsilon(1e-4));
+    CHECK(turned.aside[kSteps / 2] == near(0.25).epsilon(1e-4));
+    for (std::size_t i = 1; i < kSteps; ++i) {
+        CHECK(angle_at(turned, i) > angle_at(turned, i - 1));
+        CHECK(angle_at(turned, i) - angle_at(turned, i - 1) < 3);
+    }
+    // The other one has no direction.
+    const FoldField any = merged(false);
+    CHECK(any.aside[0] == 0);
+    CHECK(any.aside[kSteps / 2] == near(0.25).epsilon(1e-4));
+    CHECK(any.aside[kSteps - 1] == 0.5f);
+    CHECK(any.across[kSteps - 1] == Vec3(0));
+}
+
 TEST_CASE("wrinkle intensity: the values of the table") {
     struct Row {
         float lambda, beta, ratio, expected;

@@ -94,7 +94,7 @@ TEST_CASE(
     CHECK(wrinkle_source({}, {.mesh = {7}, .material = {0}}, assets) == 0);
     CHECK(wrinkle_source({}, {.mesh = {0}, .material = {9}}, assets) != 0);
     assets.meshes[0].regions[0].weights.pop_back();
-    assets.meshes[0].regions[1].across.clear();
+    assets.meshes[0].regions[1].across.pop_back();
     CHECK(wrinkle_source({}, kInstance, assets) == 0);
     CHECK(make_wrinkle_state({}, kInstance, assets).rests.empty());
 }
@@ -138,11 +138,12 @@ TEST_CASE("wrinkle system: each driver measures what it is named after") {
     CHECK(state(WrinkleDriver::Strain).rests.size() == 3);
     CHECK(state(WrinkleDriver::Radial).rests.empty());
     CHECK(state(WrinkleDriver::Chord).source != state(WrinkleDriver::Edge).source);
-    // Only a chord has a direction.
+    // Without directions a chord is the mean of two, and others never have one.
     for (VertexRegion& region : assets.meshes[0].regions) {
         region.across.clear();
     }
-    CHECK(state(WrinkleDriver::Chord).source == 0);
+    CHECK(state(WrinkleDriver::Chord).rests[0].across.size() == 4);
+    CHECK(state(WrinkleDriver::Chord).mask == std::vector<float>{1, 1, 1, 0.6f});
     CHECK(state(WrinkleDriver::Edge).mask == std::vector<float>{1, 1, 1, 0.6f});
     assets.meshes[0].regions.clear();
     CHECK(state(WrinkleDriver::Chord).source == 0);
