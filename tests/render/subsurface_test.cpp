@@ -217,6 +217,24 @@ TEST_CASE("subsurface: no light comes from what does not scatter, nor leaves for
     }
 }
 
+TEST_CASE("subsurface: light spreads wherever a surface is seen, also at the image's edges") {
+    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
+        gpu::FloatImage images[2];
+        for (const bool another_behind : {false, true}) {
+            Scene scene;
+            const MeshId ball = scene.add(make_ball());
+            const MaterialId skin = scene.add(wax());
+            scene.place(ball, skin, at(place));
+            if (another_behind) {
+                scene.place(ball, skin, at({0, 0, 2}));  // around the camera: its box is all pixels
+            }
+            scene.shine(PointLight{.intensity = 20, .radius = 0}, at({1, 1, 3}));
+            images[another_behind ? 1 : 0] = scene.radiance(turned({0, 0, 2}, 0));
+        }
+        CHECK(largest_difference(images[0], images[1]) == 0);
+    }
+}
+
 TEST_CASE("subsurface: highlights are not spread") {
     gpu::FloatImage images[2];
     for (const bool spread : {false, true}) {
