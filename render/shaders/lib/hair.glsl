@@ -3,8 +3,8 @@
 // that of d'Eon et al., "An Energy-Conserving Hair Reflectance Model", 2011, one of the azimuth, and an attenuation.
 // Azimuths of TT and TRT are von Mises distributions as in Karis, "Physically Based Hair Shading in Unreal", 2016;
 // absorption follows from the color as in Chiang et al., "A Practical and Controllable Hair and Fur Model", 2016.
-// Part of TT is scattered by other hairs: diffuse light that wraps around the body of hair. In a dense body, the farther
-// light grazes it, the fewer of the strands that are seen it reaches.
+// Part of TT is scattered by other hairs: diffuse light that wraps around the body of hair. The more light grazes a dense
+// body, the fewer of its visible strands it reaches.
 //
 // Vectors of three hold R, TT and TRT. Inclinations are from the plane across the strand toward its tip. Attenuations
 // are those at the viewer's inclination, so that under light from all sides the lobes reflect together what is not
@@ -105,7 +105,7 @@ struct HairLight {
     vec3 scattered;    // by other hairs
 };
 
-// Share of the strands seen in a body of hair that light reaches past others, by cosines at its surface: single
+// Share of the visible strands of a body of hair that light reaches past others, by cosines at its surface: single
 // scattering in a half-space (Lommel and Seeliger; Chandrasekhar, "Radiative Transfer", 1950), 1 where light is no
 // lower than the viewer.
 float lit_strands(float density, float n_l, float n_v) {
