@@ -11,23 +11,20 @@ namespace limn {
 namespace {
 
 // Samples are as dense as the weighted mean of the profiles, the widest one drawn out: its outer
-// rings are so large that they would be met by too few. By a search over edges of light at all
-// angles, these numbers have the smallest error for skin.
-constexpr double kDensity[3] = {0.6, 0.2, 0.2};  ///< of the widest, the middle and the narrowest
+// rings are so large that they would be met by too few.
 constexpr double kDrawnOut = 2;
 constexpr double kSampledShare =
     0.995;  ///< of that mean; what is farther out counts to the last ring
 
 /// Radius within which a share of that mean lies, by bisection.
-double radius_of(double share, const double (&d)[3]) {
+double radius_of(double share, const DiffusionDensity& density, const double (&d)[3]) {
     double low = 0;
     double high = 100 * kDrawnOut * d[0];
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        double within = 0;
-        for (int c = 0; c < 3; ++c) {
-            within += kDensity[c] * diffused_within(middle, c == 0 ? kDrawnOut * d[0] : d[c]);
-        }
+        const double within = density.widest * diffused_within(middle, kDrawnOut * d[0])
+                              + density.middle * diffused_within(middle, d[1])
+                              + density.narrowest * diffused_within(middle, d[2]);
         (within < share ? low : high) = middle;
     }
     return 0.5 * (low + high);
@@ -47,7 +44,7 @@ double diffused_within(double radius, double d) {
     return d > 0 ? 1 - 0.25 * std::exp(-radius / d) - 0.75 * std::exp(-radius / (3 * d)) : 1.0;
 }
 
-void sample_diffusion(const Vec3& d, std::span<Vec4> samples) {
+void sample_diffusion(const Vec3& d, const DiffusionDensity& density, std::span<Vec4> samples) {
     LIMN_CHECK(!samples.empty());
     double sorted[3] = {d.x, d.y, d.z};
     std::sort(std::begin(sorted), std::end(sorted), std::greater<>());
@@ -56,8 +53,9 @@ void sample_diffusion(const Vec3& d, std::span<Vec4> samples) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto n = static_cast<double>(i);
         const bool last = i + 1 == samples.size();
-        const double outer = radius_of(kSampledShare * (n + 1) / count, sorted);
-        samples[i].x = static_cast<float>(radius_of(kSampledShare * (n + 0.5) / count, sorted));
+        const double outer = radius_of(kSampledShare * (n + 1) / count, density, sorted);
+        samples[i].x =
+            static_cast<float>(radius_of(kSampledShare * (n + 0.5) / count, density, sorted));
         for (int c = 0; c < 3; ++c) {
             const auto channel = static_cast<double>(d[c]);
             const double within = last ? 1.0 : diffused_within(outer, channel);

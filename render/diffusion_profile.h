@@ -14,12 +14,22 @@ namespace limn {
 /// light in the material [m]. The mean radius at which light leaves is 2.5 d.
 [[nodiscard]] Vec3 diffusion_distance(const Vec3& albedo, const Vec3& mean_free_path);
 
+/// How densely samples lie where light of the widest, the middle and the narrowest channel leaves;
+/// sums to 1.
+struct DiffusionDensity {
+    double widest, middle, narrowest;
+};
+// By a search over edges of light at all angles, these have the smallest error for skin. From afar
+// the narrowest channels spread light over no more than a pixel, which needs few samples.
+inline constexpr DiffusionDensity kDensityNear = {0.6, 0.2, 0.2};
+inline constexpr DiffusionDensity kDensityFar = {0.75, 0.15, 0.1};
+
 /// Share of the light that leaves within `radius`, 0 .. 1; all of it for d = 0.
 [[nodiscard]] double diffused_within(double radius, double d);
 
 /// Fills `samples` with rings around a point, from the inside out: x = radius of the sample [m],
 /// yzw = share of the profile in its ring for red, green and blue; each channel sums to 1. Rings
 /// hold fewer of the light the farther out they are, and each channel is met by many.
-void sample_diffusion(const Vec3& d, std::span<Vec4> samples);
+void sample_diffusion(const Vec3& d, const DiffusionDensity& density, std::span<Vec4> samples);
 
 }  // namespace limn

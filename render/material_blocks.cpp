@@ -77,8 +77,10 @@ std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) 
     layout::SubsurfaceBlock block{
         .specular = Vec4(m.specular, m.gloss),
         .diffusion = Vec4(d, m.gloss_roughness),
-        .samples = {}};
-    sample_diffusion(d, block.samples);
+        .samples = {},
+        .few_samples = {}};
+    sample_diffusion(d, kDensityNear, block.samples);
+    sample_diffusion(d, kDensityFar, block.few_samples);
     return block;
 }
 

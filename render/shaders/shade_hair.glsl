@@ -20,7 +20,8 @@ void prepare_hair(inout Reflector r, SurfaceSample s) {
 Response lobe_hair(Reflector r, Cosines c) {
 #ifdef SHADE_HAIR
     HairLight light = hair_light(r.hair, r.normal, c.to_light, c.l_v);
-    return Response(light.transmitted * (kPi / r.diffuse), light.reflected, 0.0);
+    float lit = lit_strands(r.hair.density, dot(r.normal, c.to_light), r.n_v);
+    return Response((lit * light.transmitted + light.scattered) * (kPi / r.diffuse), lit * light.reflected, 0.0);
 #else
     return Response(vec3(0.0), 0.0, 0.0);
 #endif

@@ -43,8 +43,10 @@ std::string vec4_text(const Vec4& v) {
 }
 
 /// Light of a strand along +x: reflected in w, what has been inside in xyz. Inputs hold the
-/// inclination and the azimuth of light, then those of the viewer. The normal is +z.
-std::vector<Vec4> strand_light(const Material& material, const std::vector<Vec4>& inputs) {
+/// inclination and the azimuth of light, then those of the viewer. The normal is +z. `lit`: how
+/// much of it others leave but for what they scatter.
+std::vector<Vec4>
+strand_light(const Material& material, const std::vector<Vec4>& inputs, double lit = 1) {
     const layout::HairBlock block = make_hair_block(material);
     const std::string before = "#include \"lib/hair.glsl\"\n"
                                "vec3 toward(vec2 a) { return vec3(sin(a.x), cos(a.x) * sin(a.y), "
@@ -53,10 +55,23 @@ std::vector<Vec4> strand_light(const Material& material, const std::vector<Vec4>
         "vec3 l = toward(x.xy); vec3 v = toward(x.zw);"
         "HairLobes hair = hair_lobes({}, {}, {}.rgb, {:.9e}, vec3(1.0, 0.0, 0.0), v);"
         "HairLight light = hair_light(hair, vec3(0.0, 0.0, 1.0), l, dot(l, v));"
-        "y = vec4(light.transmitted, light.reflected);",
+        "y = vec4({:.9e} * light.transmitted + light.scattered, {:.9e} * light.reflected);",
         vec4_text(block.azimuth), vec4_text(block.fiber), vec4_text(material.base_color),
-        material.roughness);
+        material.roughness, lit, lit);
     return evaluate_shader(before, body, inputs);
+}
+
+/// Of strands seen in a half-space full of them, along its normal: the share that light reaches at
+/// this cosine, over the share if it came along the normal, too. By steps down into it.
+double reached(double cosine) {
+    constexpr double kStep = 1e-3;
+    double share = 0;
+    double all = 0;
+    for (double depth = 0.5 * kStep; depth < 20; depth += kStep) {
+        share += cosine > 0 ? std::exp(-depth - depth / cosine) : 0.0;
+        all += std::exp(-2 * depth);
+    }
+    return share / all;
 }
 
 /// What a strand seen at an inclination reflects under light of radiance 1 from all sides.
@@ -98,6 +113,19 @@ float brightest(const Material& material, int lobe, float to_viewer) {
     const auto most = std::max_element(
         found.begin(), found.end(), [](const Vec4& a, const Vec4& b) { return a.x < b.x; });
     return inputs[static_cast<std::size_t>(most - found.begin())].x;
+}
+
+/// What TT holds of the light on a strand seen at an inclination.
+Vec3 transmitted_share(const Material& material, float to_viewer) {
+    const layout::HairBlock block = make_hair_block(material);
+    return Vec3(evaluate_shader(
+        "#include \"lib/hair.glsl\"\n",
+        fmt::format(
+            "y = vec4(hair_lobes({}, {}, {}.rgb, {:.9e}, vec3(1.0, 0.0, 0.0),"
+            " vec3(sin(x.x), 0.0, cos(x.x))).tt, 0.0);",
+            vec4_text(block.azimuth), vec4_text(block.fiber), vec4_text(material.base_color),
+            material.roughness),
+        {{to_viewer, 0, 0, 0}})[0]);
 }
 
 /// The middle of a square whose strands run down, along v, seen head on and lit from `to_light`.
@@ -221,6 +249,22 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    RenderTest, "hair lobes: light through a strand of a dense body has come through two more") {
+    constexpr Vec3 kBrown = {0.12f, 0.06f, 0.03f};
+    for (const float to_viewer : {0.0f, 0.7f}) {
+        const Vec3 white = transmitted_share(hair_of(Vec3(1), 0.3f, 0.3f, 0), to_viewer);
+        const Vec3 one = transmitted_share(hair_of(kBrown, 0.3f, 0.3f, 0), to_viewer);
+        const Vec3 passed = one / white;
+        for (const float density : {0.25f, 0.75f}) {
+            const Vec3 dense = transmitted_share(hair_of(kBrown, 0.3f, 0.3f, density), to_viewer);
+            const Vec3 through = (1 - density) * one * ((1 - density) + density * passed * passed);
+            CHECK(glm::distance(dense, through) < 1e-4f);
+            CHECK(dense.z < 0.7f * dense.x);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
     RenderTest, "gbuffer: hair keeps the direction of its strands, and emits nothing") {
     std::vector<Vec4> inputs = {{0, 0, 0, 0}};
     for (int i = 0; i < 50; ++i) {
@@ -261,11 +305,14 @@ TEST_CASE("hair: strands run along v, and white highlights lie toward their root
     CHECK(std::isfinite(lit(0.3f, 0, turned)));
 }
 
-TEST_CASE("hair: a lit square has the light of its strands, by any direction") {
-    const Material hair = hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, 0.6f, radians(3.0f));
-    for (const Vec2& a : {Vec2(0, 0), Vec2(0.4f, 0.7f), Vec2(-0.3f, 2.6f)}) {
-        const Vec4 light = strand_light(hair, {{a.x, a.y, 0, 0}})[0];
+TEST_CASE("hair: a lit square has the light of those strands that light reaches past others") {
+    constexpr float kDensity = 0.6f;
+    const Material hair = hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, kDensity, radians(3.0f));
+    for (const Vec2& a : {Vec2(0, 0), Vec2(0.4f, 0.7f), Vec2(0.1f, 1.4f), Vec2(-0.3f, 2.6f)}) {
         const Vec3 d = direction(a.x, a.y);
+        const double lit =
+            1 - static_cast<double>(kDensity) * (1 - reached(static_cast<double>(d.z)));
+        const Vec4 light = strand_light(hair, {{a.x, a.y, 0, 0}}, lit)[0];
         const Vec3 found = lit_square(hair, {d.y, -d.x, d.z}, make_square());
         CHECK(glm::distance(found, Vec3(light) + light.w) < 0.01f * glm::length(found));
     }

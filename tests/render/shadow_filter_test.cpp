@@ -4,6 +4,8 @@
 #include "tests/render/shadow_fixture.h"
 
 #include <array>
+#include <utility>
+#include <vector>
 
 namespace limn::test {
 namespace {
@@ -13,15 +15,23 @@ class FilterTest : public RenderTest {
   public:
     FilterTest() : library_(device().caps(), files()) {}
 
-    /// `soft`: the sixteen-fold filter, else 2x2 or, `hard`, the nearest texel.
+    /// `soft`: the sixteen-fold filter, else 2x2 or, `hard`, the nearest texel. The program of
+    /// levels with contact hardening must say the same.
     float lit(const std::array<float, 64>& map, Vec2 st, bool soft, bool hard = false) {
         std::vector<float> depths;
         for (const float texel : map) {
             depths.push_back(texel > 0 ? 0.25f : 0.75f);  // reversed: nearer is greater
         }
         atlas_.upload<float>(depths, GL_DEPTH_COMPONENT, GL_FLOAT);
+        const float result = run({{"SHADOW_SOFT"}}, st, soft, hard);
+        CHECK(run({{"SHADOW_SOFT"}, {"SHADOW_CONTACT"}}, st, soft, hard) == result);
+        return result;
+    }
+
+  private:
+    float run(std::vector<gpu::ShaderDefine> defines, Vec2 st, bool soft, bool hard) {
         const auto program = library_.load(
-            {.vertex = "fullscreen.vert", .fragment = "probe.frag", .defines = {{"SHADOW_SOFT"}}});
+            {.vertex = "fullscreen.vert", .fragment = "probe.frag", .defines = std::move(defines)});
         REQUIRE_MESSAGE(program.ok(), program.error().message);
         const gpu::Attachment attachment = {&result_};
         const gpu::Framebuffer framebuffer("probe", std::span(&attachment, 1));
@@ -34,7 +44,6 @@ class FilterTest : public RenderTest {
         return gpu::read_floats(result_).at(0, 0, 0);
     }
 
-  private:
     static gpu::ShaderFiles files() {
         gpu::ShaderFiles files = gpu::ShaderFiles::standard();
         files.put(

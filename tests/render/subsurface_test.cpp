@@ -133,7 +133,7 @@ RenderView turned(const Vec3& eye, float roll) {
 TEST_CASE("diffusion profile: every channel's rings hold all of its light, from the inside out") {
     for (const Vec3& d : {Vec3(0.98f, 0.39f, 0.19f), Vec3(1, 1, 1), Vec3(1, 0, 0.5f)}) {
         std::array<Vec4, 48> rings;
-        sample_diffusion(d, rings);
+        sample_diffusion(d, kDensityNear, rings);
         DVec3 sum(0);
         for (std::size_t i = 0; i < rings.size(); ++i) {
             sum += DVec3(rings[i].y, rings[i].z, rings[i].w);
@@ -164,7 +164,8 @@ TEST_CASE("subsurface: light spreads over an edge as the profile says, at any di
     scene.shine_past();
     for (const RenderView& view :
          {turned({0, 0, 1}, 0), turned({0, 0, 1}, 0.5f), turned({0, 0, 2.2f}, 1.2f),
-          turned({0, 0, 8}, 0.7f), turned({0.6f, 0, 1.0f}, 0), turned({0, -0.6f, 1.0f}, 0)}) {
+          turned({0, 0, 5.2f}, 0.9f), turned({0, 0, 8}, 0.7f), turned({0.6f, 0, 1.0f}, 0),
+          turned({0, -0.6f, 1.0f}, 0)}) {
         const DVec3 errors = largest_errors(scene, view);
         CAPTURE(errors.x);
         CAPTURE(errors.y);
@@ -213,6 +214,24 @@ TEST_CASE("subsurface: no light comes from what does not scatter, nor leaves for
         const float red = image.at(x, 128, 0);
         const bool floor = x >= kSide / 2;
         CHECK((floor ? std::abs(red - image.at(200, 128, 0)) : red) < 1e-4f);
+    }
+}
+
+TEST_CASE("subsurface: light spreads wherever a surface is seen, also at the image's edges") {
+    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
+        gpu::FloatImage images[2];
+        for (const bool another_behind : {false, true}) {
+            Scene scene;
+            const MeshId ball = scene.add(make_ball());
+            const MaterialId skin = scene.add(wax());
+            scene.place(ball, skin, at(place));
+            if (another_behind) {
+                scene.place(ball, skin, at({0, 0, 2}));  // around the camera: its box is all pixels
+            }
+            scene.shine(PointLight{.intensity = 20, .radius = 0}, at({1, 1, 3}));
+            images[another_behind ? 1 : 0] = scene.radiance(turned({0, 0, 2}, 0));
+        }
+        CHECK(largest_difference(images[0], images[1]) == 0);
     }
 }
 

@@ -3,7 +3,8 @@
 // that of d'Eon et al., "An Energy-Conserving Hair Reflectance Model", 2011, one of the azimuth, and an attenuation.
 // Azimuths of TT and TRT are von Mises distributions as in Karis, "Physically Based Hair Shading in Unreal", 2016;
 // absorption follows from the color as in Chiang et al., "A Practical and Controllable Hair and Fur Model", 2016.
-// Part of TT is scattered by other hairs: diffuse light that wraps around the body of hair.
+// Part of TT is scattered by other hairs: diffuse light that wraps around the body of hair. The more light grazes a dense
+// body, the fewer of its visible strands it reaches.
 //
 // Vectors of three hold R, TT and TRT. Inclinations are from the plane across the strand toward its tip. Attenuations
 // are those at the viewer's inclination, so that under light from all sides the lobes reflect together what is not
@@ -28,6 +29,7 @@ struct HairLobes {
     vec3 tt;         // that TT holds
     vec3 trt;        // that TRT and all longer paths hold
     vec3 scattered;  // that other hairs scatter
+    float density;   // of the body of hair: 0 a single strand .. 1
 };
 
 // Schlick's Fresnel term, averaged over the width of a strand inclined by acos(c): for a ray at the share h of the half
@@ -88,17 +90,28 @@ HairLobes hair_lobes(vec4 azimuth, vec4 fiber, vec3 color, float roughness, vec3
     vec3 depth = log(max(color, vec3(1e-6)));
     vec3 passed = exp(-fiber.x / inside_cosine * depth * depth);
     float entered = (1.0 - hair.reflected) * (1.0 - hair.reflected);
-    hair.tt = (1.0 - fiber.y) * entered * passed;
+    // In a dense body it has come through two others.
+    hair.tt = (1.0 - fiber.y) * entered * passed * mix(vec3(1.0), passed * passed, fiber.y);
     hair.trt = entered * hair.reflected * passed * passed / (1.0 - hair.reflected * passed);
     hair.scattered = fiber.y * entered * color;
+    hair.density = fiber.y;
     return hair;
 }
 
 // Light toward the viewer for an irradiance of 1 on a plane that faces the light.
 struct HairLight {
     float reflected;
-    vec3 transmitted;  // TT, TRT and what is scattered
+    vec3 transmitted;  // TT and TRT
+    vec3 scattered;    // by other hairs
 };
+
+// Share of the visible strands of a body of hair that light reaches past others, by cosines at its surface: single
+// scattering in a half-space (Lommel and Seeliger; Chandrasekhar, "Radiative Transfer", 1950), 1 where light is no
+// lower than the viewer.
+float lit_strands(float density, float n_l, float n_v) {
+    float reached = max(n_l, 0.0);
+    return mix(1.0, min(2.0 * reached / max(reached + n_v, 1e-4), 1.0), density);
+}
 
 // `normal`: of the body of hair.
 HairLight hair_light(HairLobes hair, vec3 normal, vec3 to_light, float l_v) {
@@ -108,5 +121,5 @@ HairLight hair_light(HairLobes hair, vec3 normal, vec3 to_light, float l_v) {
     vec3 lobes = longitudinal(hair.variance, sine, cosine, hair.view_sine, hair.view_cosine)
                  * azimuthal(hair.azimuth, hair.across, turn);
     float wrapped = max(dot(normal, to_light) + kHairWrap, 0.0) / (kPi * (1.0 + kHairWrap) * (1.0 + kHairWrap));
-    return HairLight(lobes.x, hair.tt * lobes.y + hair.trt * lobes.z + hair.scattered * wrapped);
+    return HairLight(lobes.x, hair.tt * lobes.y + hair.trt * lobes.z, hair.scattered * wrapped);
 }
