@@ -96,7 +96,9 @@ ShadowKinds find_shadow_kinds(const World& world, const LightList& lights) {
         kinds.maps = true;
         kinds.cubes |= !sun && !narrow;
         kinds.cascades |= sun || method == ShadowMethod::Perspective;
-        kinds.soft |= method != ShadowMethod::Hybrid && light.settings.filter >= ShadowFilter::Soft;
+        const ShadowFilter filter = light.settings.filter;
+        kinds.soft |= method != ShadowMethod::Hybrid && filter >= ShadowFilter::Soft;
+        kinds.contact |= method != ShadowMethod::Hybrid && filter == ShadowFilter::ContactHardening;
     }
     // Caustics are of directional light, and shadows fall on and into the water.
     kinds.maps |= lights.directional > 0 && !world.query<const Water, const Caustics>().empty();
@@ -105,9 +107,8 @@ ShadowKinds find_shadow_kinds(const World& world, const LightList& lights) {
 
 /// What either needs: a light may have another kind of shadow than it asks for.
 ShadowKinds both(const ShadowKinds& a, const ShadowKinds& b) {
-    return {
-        a.maps || b.maps, a.masks || b.masks, a.cubes || b.cubes, a.cascades || b.cascades,
-        a.soft || b.soft};
+    return {a.maps || b.maps,         a.masks || b.masks, a.cubes || b.cubes,
+            a.cascades || b.cascades, a.soft || b.soft,   a.contact || b.contact};
 }
 
 }  // namespace
@@ -156,6 +157,7 @@ bool ShadowEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(kinds.cubes, "SHADOW_CUBES");
     variant.add_if(kinds.cascades, "SHADOW_CASCADES");
     variant.add_if(kinds.soft, "SHADOW_SOFT");
+    variant.add_if(kinds.contact, "SHADOW_CONTACT");
     variant.add_if(kinds.maps, "SHADOW_MAPS");
     variant.add_if(kinds.masks, "SHADOW_MASKS");
     return true;

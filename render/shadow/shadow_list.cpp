@@ -291,7 +291,9 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
         list.kinds.cascades = list.kinds.cascades || request.kind == layout::kShadowCascades;
         const bool soft = request.settings.filter >= ShadowFilter::Soft;
         const bool used_for_lighting = request.water != nullptr || !request.light->for_volumes;
+        const bool contact = request.settings.filter == ShadowFilter::ContactHardening;
         list.kinds.soft = list.kinds.soft || (soft && used_for_lighting);
+        list.kinds.contact = list.kinds.contact || (contact && used_for_lighting);
         if (request.water != nullptr) {
             request.water->record = static_cast<int>(list.records.size());
         } else {

@@ -10,6 +10,7 @@
 //   SHADOW_CUBES     some light has six faces
 //   SHADOW_CASCADES  some light has cascades
 //   SHADOW_SOFT      some filter is wider than 2x2
+//   SHADOW_CONTACT   some filter is contact-hardening; with SHADOW_SOFT
 //   SHADOW_MAPS      some light has a map
 //   SHADOW_MASKS     some light has a layer of the shadow mask: shadow volumes
 
@@ -73,7 +74,7 @@ float lit_share(ShadowPoint p, bool hard) {
     return lit_area(p, st, corner, 0.5);
 }
 
-#ifdef SHADOW_SOFT
+#ifdef SHADOW_CONTACT
 // Mean depth of blockers within `radius` [texels], or 0.
 float blocker_depth(ShadowPoint p, float radius, vec2 turn) {
     float sum = 0.0;
@@ -122,6 +123,24 @@ float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
     } while (++n < taps);
     float lit = sum / (contact ? float(kPenumbraTaps) : soft ? 16.0 : 1.0);
     return contact && blocker == 0.0 ? 1.0 : lit;
+}
+#elif defined(SHADOW_SOFT)
+// The same without the last one. Rows of three steps, so that narrow filters end after the first.
+float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
+    bool soft = settings.x == kFilterSoft;
+    vec2 corner = soft ? floor(p.st - kSoftHalf) : corner_at(p, p.st);
+    vec2 middle = settings.x == kFilterHard ? corner + 0.5 + step(0.5, p.st - 0.5 - corner) : p.st;
+    float half_side = soft ? kSoftHalf : 0.5;
+    int rows = soft ? 3 : 1;
+    float sum = 0.0;
+    int row = 0;
+    do {
+        sum += lit_area(p, middle, corner, half_side);
+        sum += lit_area(p, middle, corner + vec2(2.0, 0.0), half_side);
+        sum += lit_area(p, middle, corner + vec2(4.0, 0.0), half_side);
+        corner.y += 2.0;
+    } while (++row < rows);
+    return soft ? sum / 16.0 : sum;
 }
 #endif
 
