@@ -79,6 +79,7 @@ float blocking_distance(vec2 pixel, Side side) {
 // anything above the level of a side that is above water.
 float clear_way(vec2 from, vec2 along, float end, Side side) {
     vec2 slope = mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
+    vec2 inverse = 1.0 / slope;
     vec2 beyond = step(0.0, slope) + 1e-3 * sign(slope);  // the next tile [tiles]
     ivec2 last = textureSize(highest_surfaces, 0) - 1;
     float way = 0.0;
@@ -87,7 +88,7 @@ float clear_way(vec2 from, vec2 along, float end, Side side) {
     do {
         ivec2 tile = clamp(ivec2(from + way * along) / kHighestTile, ivec2(0), last);
         clear = side.up > 0.0 && texelFetch(highest_surfaces, tile, 0).r <= side.level;
-        vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) / slope;
+        vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) * inverse;
         way = clear ? max(way, min(leaving.x, leaving.y)) : way;
     } while (clear && way < end && ++tiles < kMaxClearTiles);
     return min(way, end);
