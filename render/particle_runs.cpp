@@ -3,7 +3,10 @@
 #include "render/frame_data.h"
 #include "render/gpu_particle_pools.h"
 #include "render/particle_draws.h"
+#include "render/render_items.h"
 #include "render/view_block.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +15,8 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxPoint = 4;  // [px] across, above which a disc is drawn as a quad
+constexpr float kMaxPoint = 4;     // [px] across, above which a disc is drawn as a quad
+constexpr float kHighestWave = 5;  // above the rest level of water [m]
 constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 
 /// Of those that are visible and drawn at half the resolution, the index of the middle one in the
@@ -102,24 +106,86 @@ bool is_under_water(std::span<const DrawnWater> waters, const Vec3& place) {
     });
 }
 
-/// At full resolution; none where the camera is in the water, too. Layers are drawn one after the
+/// A box about all that is opaque and may be in some water.
+Bounds find_ground(const RenderItems& items, std::span<const DrawnWater> waters) {
+    float highest = -INFINITY;
+    for (const DrawnWater& body : waters) {
+        highest = std::max(highest, body.frame.origin.y + kHighestWave);
+    }
+    Bounds ground;
+    for (std::size_t b = 0; b < items.block_count(); ++b) {
+        const RenderItemBlock& block = items.block(b);
+        for (std::uint32_t i = 0; i < block.size(); ++i) {
+            const Bounds box = block.box(i);
+            if (block.is_drawable(i) && !is_blended(block.keys[i]) && box.min.y < highest) {
+                grow(ground, box);
+            }
+        }
+    }
+    ground.max.y = std::min(ground.max.y, highest);
+    return ground;
+}
+
+/// Whether the ray eye + t to, t >= `near`, meets the box.
+bool meets(const Bounds& box, const Vec3& eye, const Vec3& to, float near) {
+    float far = INFINITY;
+    for (int i = 0; i < 3; ++i) {
+        if (to[i] == 0) {
+            far = eye[i] >= box.min[i] && eye[i] <= box.max[i] ? far : -INFINITY;
+            continue;
+        }
+        const float a = (box.min[i] - eye[i]) / to[i];
+        const float b = (box.max[i] - eye[i]) / to[i];
+        near = std::max(near, std::min(a, b));
+        far = std::min(far, std::max(a, b));
+    }
+    return near <= far;
+}
+
+/// Whether some of the ground may be behind a particle.
+bool is_before(
+    const Bounds& ground, const Vec3& eye, const ParticleInstance& instance,
+    const LookExtent& extent) {
+    const Vec3 to = instance.position - eye;
+    const float away = glm::length(to);
+    const float radius = extent.radius + extent.stretch * glm::length(Vec3(instance.motion()));
+    if (extent.culling != ParticleCulling::Particles || !(away > radius)) {
+        return true;
+    }
+    // As wide as what it hides at the far end of the ground.
+    const Vec3 farthest = glm::max(glm::abs(ground.min - eye), glm::abs(ground.max - eye));
+    const float width = radius * glm::length(farthest) / std::sqrt(square(away) - square(radius));
+    return meets({ground.min - width, ground.max + width}, eye, to, 1 - radius / away);
+}
+
+/// At full resolution; none where the camera is in the water, too, and only before the ground,
+/// since water hides all that is behind it where there is none. Layers are drawn one after the
 /// other, as above the water: sorted among each other, they would take turns in binding images and
 /// programs, a draw for every few particles.
 void append_under_water(
     const ParticleDraws& draws, const FrameData& frame, const ViewData& view, std::size_t middle,
     ParticlesInView& seen) {
     seen.under_begin = seen.runs.size();
+    seen.above_water = false;
     const Vec3 eye = transform_point(view.camera.world_from_camera, Vec3(0));
-    seen.above_water =
-        !draws.waters.empty() && !is_clipped(view) && !is_under_water(draws.waters, eye);
-    if (!seen.above_water) {
+    if (draws.waters.empty() || is_clipped(view) || is_under_water(draws.waters, eye)) {
         return;
     }
+    const Bounds ground = find_ground(*frame.items, draws.waters);
+    if (is_empty(ground) && !frame.warm_up) {
+        return;
+    }
+    seen.above_water = true;
+    const auto is_seen = [&](const ParticleInstance& instance, std::uint32_t look) {
+        return is_under_water(draws.waters, instance.position)
+               && is_before(ground, eye, instance, draws.extents[look]);
+    };
     const auto append = [&](LookLayer layer, std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const ParticleInstance& instance = draws.sorted[i];
-            if (seen.visible[i] != 0 && draws.layers[instance.look_and_share >> 16] == layer
-                && (frame.warm_up || is_under_water(draws.waters, instance.position))) {
+            const std::uint32_t look = instance.look_and_share >> 16;
+            if (seen.visible[i] != 0 && draws.layers[look] == layer
+                && (frame.warm_up || is_seen(instance, look))) {
                 append_instance(draws, view.camera, i, 1, seen.under_begin, seen);
             }
         }

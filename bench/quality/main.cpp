@@ -48,14 +48,20 @@ Result<std::vector<const QualityEffect*>> choose_effects(const std::string& name
     return chosen;
 }
 
-/// Prints the table and writes the files; then fails if a bound is violated.
-Status measure(const QualityOptions& options) {
+/// Fails for an unknown effect, and for a file where the effect has its own scenes.
+Status check_options(const QualityOptions& options) {
     const auto effects = LIMN_TRY(choose_effects(options.effect));
     if (!options.file.empty() && effects[0]->measure_file == nullptr) {
         return fail(
-            "limn quality: found the file {} for {}, expected none: it has its own scenes",
-            options.file, effects[0]->name);
+            "found the file {} for {}, expected none: it has its own scenes", options.file,
+            effects[0]->name);
     }
+    return Done{};
+}
+
+/// Prints the table and writes the files; then fails if a bound is violated.
+Status measure(const QualityOptions& options) {
+    const auto effects = LIMN_TRY(choose_effects(options.effect));
     HeadlessRenderer headless = LIMN_TRY(create_headless_renderer(options.profile));
     std::vector<MeasuredQuality> measured;
     std::size_t missed = 0;
@@ -116,6 +122,11 @@ int run(int argc, char** argv) {
         ->type_name("gpu|software");
     program.add_option("--json", options.json, "write the results")->type_name("FILE");
     program.add_option("--html", options.html, "write a page with images")->type_name("FILE");
+    program.callback([&options] {
+        if (const Status fits = check_options(options); !fits) {
+            throw CLI::ValidationError(fits.error().message);
+        }
+    });
     std::string names;
     for (const QualityEffect& effect : quality_effects()) {
         names += fmt::format("  {:<12}vs {}\n", effect.name, effect.oracle);

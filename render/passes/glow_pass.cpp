@@ -31,17 +31,32 @@ TextureId draw_first(
     return first;
 }
 
-/// One axis of a step from `source`.
+constexpr int kTwiceReach = 5;  // texels beyond the border that glow_step.frag reads at most
+
+int length_along(const IVec2& axis, const IVec2& size) {
+    return size.x * axis.x + size.y * axis.y;
+}
+
+const gpu::Program* down_program(const GlowPass& pass, int from, int to) {
+    return from == 2 * to && from >= kTwiceReach ? pass.down_twice : pass.down;
+}
+
+const gpu::Program* up_program(const GlowPass& pass, int from, int to) {
+    return to == 2 * from ? pass.up_twice : pass.up;
+}
+
+/// One axis of a step from `source`, by the program for these lengths.
 void draw_axis(
-    FrameGraph& graph, std::string_view name, const gpu::Program* program, TextureId source,
-    Use target, const IVec2& axis, float gain, const gpu::PipelineState& state) {
-    const IVec2 size = size_of(graph, TextureId{target.resource});
+    FrameGraph& graph, const GlowPass& pass, bool up, TextureId source, Use target,
+    const IVec2& axis, float gain, const gpu::PipelineState& state) {
+    const int from = length_along(axis, size_of(graph, source));
+    const int to = length_along(axis, size_of(graph, TextureId{target.resource}));
     add_fullscreen_pass(
-        graph, name, {sampled(source, 0)}, {target}, program, state,
-        [axis, gain,
-         along = size.x * axis.x + size.y * axis.y](PassContext&, const gpu::Program& its) {
+        graph, up ? "glow.up" : "glow.down", {sampled(source, 0)}, {target},
+        up ? up_program(pass, from, to) : down_program(pass, from, to), state,
+        [axis, gain, to](PassContext&, const gpu::Program& its) {
             its.set("axis", axis);
-            its.set("sizes", along);
+            its.set("sizes", to);
             its.set("gain", gain);
         });
 }
@@ -58,8 +73,8 @@ TextureId step_down(FrameGraph& graph, const GlowPass& pass, TextureId larger) {
         graph, "glow.level", graph.spec(larger).format, half_resolution(size_of(graph, larger)));
     const TextureId between = create_between(graph, smaller, larger);
     const gpu::PipelineState& state = gpu::kFullscreenState;
-    draw_axis(graph, "glow.down", pass.down, larger, discarded(between), {1, 0}, 1, state);
-    draw_axis(graph, "glow.down", pass.down, between, discarded(smaller), {0, 1}, 1, state);
+    draw_axis(graph, pass, false, larger, discarded(between), {1, 0}, 1, state);
+    draw_axis(graph, pass, false, between, discarded(smaller), {0, 1}, 1, state);
     return smaller;
 }
 
@@ -69,10 +84,10 @@ void step_up(
     const gpu::BlendState& blend) {
     const TextureId between = create_between(graph, smaller, larger);
     gpu::PipelineState state = gpu::kFullscreenState;
-    draw_axis(graph, "glow.up", pass.up, smaller, discarded(between), {0, 1}, gain, state);
+    draw_axis(graph, pass, true, smaller, discarded(between), {0, 1}, gain, state);
     state.blend = blend;
     state.color_mask = 0b0111;
-    draw_axis(graph, "glow.up", pass.up, between, Use(larger), {1, 0}, 1, state);
+    draw_axis(graph, pass, true, between, Use(larger), {1, 0}, 1, state);
 }
 
 /// The image and its glow, put together by `program`.
@@ -120,6 +135,8 @@ Result<GlowPass> create_glow_pass(gpu::Device& device) {
         .first_odd = LIMN_TRY(load_fullscreen(device, "glow_first.frag", {{"ANY_SIZE"}})),
         .down = LIMN_TRY(load_fullscreen(device, "glow_step.frag")),
         .up = LIMN_TRY(load_fullscreen(device, "glow_step.frag", {{"UP"}})),
+        .down_twice = LIMN_TRY(load_fullscreen(device, "glow_step.frag", {{"TWICE"}})),
+        .up_twice = LIMN_TRY(load_fullscreen(device, "glow_step.frag", {{"UP"}, {"TWICE"}})),
         .mix = LIMN_TRY(load_fullscreen(device, "glow_mix.frag")),
         .mix_odd = LIMN_TRY(load_fullscreen(device, "glow_mix.frag", {{"ANY_SIZE"}}))};
 }

@@ -34,6 +34,8 @@ struct GlowPass {
     const gpu::Program* first_odd = nullptr;  ///< for images of odd size
     const gpu::Program* down = nullptr;
     const gpu::Program* up = nullptr;
+    const gpu::Program* down_twice = nullptr;  ///< between sizes of exactly 2 : 1
+    const gpu::Program* up_twice = nullptr;
     const gpu::Program* mix = nullptr;
     const gpu::Program* mix_odd = nullptr;
 };

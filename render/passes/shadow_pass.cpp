@@ -96,10 +96,9 @@ ShadowKinds find_shadow_kinds(const World& world, const LightList& lights) {
         kinds.maps = true;
         kinds.cubes |= !sun && !narrow;
         kinds.cascades |= sun || method == ShadowMethod::Perspective;
-        const bool used_for_lighting = method != ShadowMethod::Hybrid;
-        kinds.soft |= used_for_lighting && light.settings.filter >= ShadowFilter::Soft;
-        kinds.contact |=
-            used_for_lighting && light.settings.filter == ShadowFilter::ContactHardening;
+        const ShadowFilter filter = light.settings.filter;
+        kinds.soft |= method != ShadowMethod::Hybrid && filter >= ShadowFilter::Soft;
+        kinds.contact |= method != ShadowMethod::Hybrid && filter == ShadowFilter::ContactHardening;
     }
     // Caustics are of directional light, and shadows fall on and into the water.
     kinds.maps |= lights.directional > 0 && !world.query<const Water, const Caustics>().empty();

@@ -75,8 +75,7 @@ void main() {
 #if TONE_CURVE == 5
     color = clamp(kKneeScale * power_encode(color, gamma), 0.0, 1.0);
 #else
-    color = clamp(color, 0.0, 1.0);
-    color = gamma > 0.0 ? power_encode(color, gamma) : srgb_encode(color);
+    color = display_encode(clamp(color, 0.0, 1.0), gamma);
 #endif
     display = vec4(color + dither_codes * triangular_dither(gl_FragCoord.xy) / 255.0, 1.0);
 }

@@ -49,7 +49,7 @@ struct ShadowKinds {
     bool cubes = false;     ///< some light has six faces
     bool cascades = false;  ///< some light has cascades
     bool soft = false;      ///< some map used for lighting has a filter wider than 2x2
-    bool contact = false;   ///< and some one hardens contacts
+    bool contact = false;   ///< and some of these have the contact-hardening one
 };
 
 struct ShadowList {

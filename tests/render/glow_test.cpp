@@ -24,9 +24,14 @@ LightImage picture_of(const gpu::FloatImage& image) {
     return picture;
 }
 
-/// Without a scene: what the pass makes of these pixels.
-LightImage glowing(const LightImage& picture, const Glow& glow) {
+const GlowPass& shared_pass() {
     static const GlowPass pass = *create_glow_pass(shared_device());
+    return pass;
+}
+
+/// Without a scene: what the pass makes of these pixels.
+LightImage
+glowing(const LightImage& picture, const Glow& glow, const GlowPass& pass = shared_pass()) {
     static FrameGraph graph(shared_device());
     std::vector<Vec4> texels;
     for (int y = picture.height - 1; y >= 0; --y) {  // bottom row first
@@ -155,6 +160,22 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a uniform image stays as it is") {
         for (const glm::dvec3& pixel : made.pixels) {
             CHECK(pixel.y == test::near(1).epsilon(1e-5));
             CHECK(pixel.z == test::near(300).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(RenderTest, "glow: steps between sizes of 2 : 1 are those between any sizes") {
+    GlowPass general = shared_pass();
+    general.down_twice = general.down;
+    general.up_twice = general.up;
+    const Glow glow = {.strength = 1, .radius = 0.4f, .firefly = 0};
+    for (const glm::dvec2& place :
+         {glm::dvec2(0.5, 0.5), glm::dvec2(17.5, 30), glm::dvec2(63, 20.5)}) {
+        const LightImage dot = dot_at(64, 48, place, 1000);
+        const LightImage made = glowing(dot, glow);
+        const LightImage expected = glowing(dot, glow, general);
+        for (std::size_t i = 0; i < made.pixels.size(); ++i) {
+            CHECK(made.pixels[i].y == test::near(expected.pixels[i].y).epsilon(1e-4).scale(1e-3));
         }
     }
 }

@@ -6,6 +6,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
+#include <algorithm>
 #include <cmath>
 
 // Particles among surfaces that are seen through: panes, media and water.
@@ -47,6 +48,12 @@ struct OrderScene : Scene {
                 .double_sided = true,
                 .base_color = Vec4(color, opacity)}),
             world_from_square);
+    }
+    /// A black square of 2 m times `scale`, 2 m below the origin or higher.
+    Entity add_floor(float x = 0, float scale = 9, float y = -2) {
+        return place(
+            add(make_square()), add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
+            affine_from({x, y, 0}, Quat(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0), Vec3(scale)));
     }
     Vec3 middle() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33)), 16, 16); }
 
@@ -175,9 +182,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(OrderScene, "particle order: below clear water they are seen from above") {
     // A floor in the way of the light that comes back, so that only what is before it is seen.
-    place(
-        add(make_square()), add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
-        affine_from({0, -2, 0}, Quat(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0), Vec3(9)));
+    add_floor();
     world.create(
         Water{.size = {16, 16}, .depth = 2, .absorption = Vec3(0), .scattering = Vec3(0)},
         WorldTransform{at({0, 0, 0})});
@@ -195,8 +200,38 @@ TEST_CASE_FIXTURE(OrderScene, "particle order: below clear water they are seen f
 }
 
 TEST_CASE_FIXTURE(
+    OrderScene, "particle order: below water they are drawn before something opaque, or not") {
+    world.create(Water{.absorption = Vec3(0.1f)}, WorldTransform{at({0, 0, 0})});
+    const Entity one = emit({0, -1, 0}, {1, 0, 0});
+    world.get<ParticleLook>(one).size = 0.5f;
+    const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
+    const auto is_drawn = [&] {
+        (void)radiance(view);
+        const auto& passes = frame_graph(shared_renderer()).timings();
+        return std::any_of(passes.begin(), passes.end(), [](const PassTiming& pass) {
+            return pass.name == "particles.under water";
+        });
+    };
+    CHECK_FALSE(is_drawn());
+    // As seen from the camera, the disc of 0.25 m ends at 0.31 m on the floor.
+    for (const float x : {0.0f, 0.35f, -0.35f}) {
+        const Entity floor = add_floor(x, 0.1f);
+        CHECK(is_drawn());
+        world.destroy(floor);
+    }
+    for (const float x : {1.5f, 200.0f}) {
+        const Entity floor = add_floor(x, 0.1f);
+        CHECK_FALSE(is_drawn());
+        world.destroy(floor);
+    }
+    add_floor(0, 0.1f, 1);  // before it
+    CHECK_FALSE(is_drawn());
+}
+
+TEST_CASE_FIXTURE(
     OrderScene,
     "particle order: layers that alternate below water take as many draws as one pair") {
+    add_floor();
     world.create(
         Water{.size = {16, 16}, .depth = 2, .absorption = Vec3(0), .scattering = Vec3(0)},
         WorldTransform{at({0, 0, 0})});
@@ -227,9 +262,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     OrderScene,
     "particle order: water absorbs a sprite's light as far as the sprite, not the floor") {
-    place(
-        add(make_square()), add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
-        affine_from({0, -2, 0}, Quat(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0), Vec3(9)));
+    add_floor();
     constexpr Vec3 kAbsorption = {0.5f, 0.2f, 0.1f};
     world.create(
         Water{.size = {16, 16}, .depth = 2, .absorption = kAbsorption, .scattering = Vec3(0)},

@@ -22,6 +22,7 @@ float smooth_share(float at, float middle, float ratio) {
 
 int mirrored(int at, int size) {
     at = at < 0 ? -1 - at : at;
-    at = at % (2 * size);
+    // Without a remainder of integers, which a software OpenGL divides one by one.
+    at -= 2 * size * int(floor((float(at) + 0.5) / float(2 * size)));
     return at < size ? at : 2 * size - 1 - at;
 }

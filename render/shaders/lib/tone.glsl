@@ -72,7 +72,17 @@ vec3 srgb_encode(vec3 linear) {
     return mix(power, 12.92 * linear, lessThan(linear, vec3(0.0031308)));
 }
 
-// The inverse.
+// Linear [0, 1] for a display of this gamma, or, 0, of sRGB. One power for both: a software OpenGL executes both sides of
+// a condition.
+vec3 display_encode(vec3 linear, float gamma) {
+    bool is_srgb = gamma <= 0.0;
+    float least = is_srgb ? 0.0031308 : 0.0;
+    vec3 power = pow(max(linear, vec3(least)), vec3(1.0 / (is_srgb ? 2.4 : gamma)));
+    vec3 encoded = mix(1.055 * power - 0.055, 12.92 * linear, lessThan(linear, vec3(least)));
+    return is_srgb ? encoded : power;
+}
+
+// The inverse of srgb_encode().
 vec3 srgb_to_linear(vec3 encoded) {
     return mix(
         pow((encoded + 0.055) / 1.055, vec3(2.4)), encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));

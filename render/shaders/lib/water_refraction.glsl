@@ -46,7 +46,7 @@ RayHit refracted_light(WaterRecord water, vec3 position, vec3 normal, vec3 bent,
     int how = above ? int(water.scattering.w) >> 4 & 3 : kTracedRefraction;
     RayHit through = shifted_refraction(water, normal);
 #if defined(FROM_BELOW) || !defined(NO_TRACED_REFRACTION)
-    RayHit traced = trace_refraction(position, bent, max_distance);
+    RayHit traced = trace_refraction(position, bent, max_distance, above);
     if (how == kTracedRefraction) {
         through = traced;
     }
@@ -58,6 +58,6 @@ RayHit refracted_light(WaterRecord water, vec3 position, vec3 normal, vec3 bent,
 #endif
     return through;
 #else
-    return trace_refraction(position, bent, max_distance);
+    return trace_refraction(position, bent, max_distance, above);
 #endif
 }

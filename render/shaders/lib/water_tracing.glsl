@@ -13,6 +13,7 @@ const float kMirrorReach = 2000.0;    // [m]
 const int kMaxClearTiles = 64;
 const float kMirrorThickness = 0.2;   // of what they meet, relative to the path, by eye
 const int kBendSteps = 8;
+const float kOpenReach = 150.0;       // of refracted rays over no ground: what is met farther down is lost in the water [m]
 // Once they have met something, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel goes on as long as the
 // loop of a neighbor runs.
 #ifdef FROM_BELOW
@@ -78,6 +79,7 @@ float blocking_distance(vec2 pixel, Side side) {
 // anything above the level of a side that is above water.
 float clear_way(vec2 from, vec2 along, float end, Side side) {
     vec2 slope = mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
+    vec2 inverse = 1.0 / slope;
     vec2 beyond = step(0.0, slope) + 1e-3 * sign(slope);  // the next tile [tiles]
     ivec2 last = textureSize(highest_surfaces, 0) - 1;
     float way = 0.0;
@@ -86,7 +88,7 @@ float clear_way(vec2 from, vec2 along, float end, Side side) {
     do {
         ivec2 tile = clamp(ivec2(from + way * along) / kHighestTile, ivec2(0), last);
         clear = side.up > 0.0 && texelFetch(highest_surfaces, tile, 0).r <= side.level;
-        vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) / slope;
+        vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) * inverse;
         way = clear ? max(way, min(leaving.x, leaving.y)) : way;
     } while (clear && way < end && ++tiles < kMaxClearTiles);
     return min(way, end);
@@ -167,9 +169,10 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     return RayHit(mix(around, color, trust), trust > 0.5 ? path : kInfiniteDistance);
 }
 
-// Hit of a refracted ray on screen: steps until it is behind something, then bisection. Surfaces in front of the water
-// are ignored. `max_distance`: distance after which a hit is certain [m].
-RayHit trace_refraction(vec3 position, vec3 direction, float max_distance) {
+// Hit of a refracted ray on screen: steps until it is behind something, then bisection; a single step `downward` from
+// pixels without ground, where it may only meet what stands in the water. Surfaces in front of the water are ignored.
+// `max_distance`: distance after which a hit is certain [m].
+RayHit trace_refraction(vec3 position, vec3 direction, float max_distance, bool downward) {
     vec2 pixel = gl_FragCoord.xy;
     ScreenRay ray = screen_ray(position, direction);
     float here = ray.from.z;
@@ -181,14 +184,16 @@ RayHit trace_refraction(vec3 position, vec3 direction, float max_distance) {
     vec2 shares = room / max(2.0 * abs(shift), vec2(1e-6));
     direction = normalize(mix(normalize(position - view.camera_ws.xyz), direction, min(min(shares.x, shares.y), 1.0)));
     ray = screen_ray(position, direction);
-    float reach = min(max_distance, min(3.0 * path + 0.5, kInfiniteDistance));
+    bool open = downward && straight <= 0.0;
+    float reach = min(max_distance, open ? kOpenReach : min(3.0 * path + 0.5, kInfiniteDistance));
+    int count = open ? 1 : kBendSteps;
     float low = 0.0;
     float high = reach;
     vec2 shown = pixel;  // the last pixel on the ray that nothing in front of the water covers
     bool met = false;
     int steps = 0;
     do {
-        float share = float(steps + 1) / float(kBendSteps);
+        float share = float(steps + 1) / float(count);
         high = met ? high : reach * share * share;
         vec3 at = ray_point(ray, high);
         pixel = clamp_to_screen(at.xy);
@@ -196,7 +201,7 @@ RayHit trace_refraction(vec3 position, vec3 direction, float max_distance) {
         shown = seen > here ? pixel : shown;
         met = seen > here && seen < at.z;
         low = met ? low : high;
-    } while (!met && ++steps < kBendSteps);
+    } while (!met && ++steps < count);
     steps = 0;
     do {
         float middle = 0.5 * (low + high);
