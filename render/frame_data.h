@@ -110,8 +110,8 @@ struct LightingInputs {
     template <auto bind, typename T>
     void add_binding(const T& data) {
         bindings.push_back(
-            {[](PassContext& context, const void* its) {
-                 bind(context, *static_cast<const T*>(its));
+            {[](PassContext& context, const void* published) {
+                 bind(context, *static_cast<const T*>(published));
              },
              &data});
     }

@@ -147,9 +147,9 @@ void run_particle_sort(
         device.use(*programs.keys);
         programs.keys->set("count", now.count);
         programs.keys->set("size", plan.size);
-        const ParticleSortView its = predict_sort_view(previous, view, plan.ahead);
-        programs.keys->set("eye", its.eye);
-        programs.keys->set("forward", its.forward);
+        const ParticleSortView predicted = predict_sort_view(previous, view, plan.ahead);
+        programs.keys->set("eye", predicted.eye);
+        programs.keys->set("forward", predicted.forward);
         device.dispatch(plan.size / kGroup);
         device.storage_barrier();
     }

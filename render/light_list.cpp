@@ -198,15 +198,16 @@ void collect_lights(const World& world, float alpha, LightList& list, bool all) 
     list.time = time;
 
     each_light<DirectionalLight>(
-        world, time, alpha, all, [&](const DirectionalLight& light, const LightEntity& its) {
-            const layout::LightRecord record = make_record(light, axis_of(its.pose), its.factor);
+        world, time, alpha, all, [&](const DirectionalLight& light, const LightEntity& entity) {
+            const layout::LightRecord record =
+                make_record(light, axis_of(entity.pose), entity.factor);
             if (is_valid(record)) {
                 if (list.records.empty()) {
                     list.sun_direction = Vec3(record.position);
                     list.sun_color = Vec3(record.color);
                 }
                 list.records.push_back(record);
-                add_extras(list, its, LightKind::Directional);
+                add_extras(list, entity, LightKind::Directional);
             }
         });
     list.directional = static_cast<int>(list.records.size());
@@ -217,31 +218,32 @@ void collect_lights(const World& world, float alpha, LightList& list, bool all) 
     for (const bool last : {false, true}) {
         list.first_shadowed = static_cast<int>(list.records.size());
         each_light<PointLight>(
-            world, time, alpha, all, [&](const PointLight& light, const LightEntity& its) {
+            world, time, alpha, all, [&](const PointLight& light, const LightEntity& entity) {
                 const layout::LightRecord record =
-                    make_record(light, position_of(its.pose), its.factor);
-                if (is_valid(record) && last == (its.shadow != nullptr)) {
+                    make_record(light, position_of(entity.pose), entity.factor);
+                if (is_valid(record) && last == (entity.shadow != nullptr)) {
                     list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                     list.records.push_back(record);
-                    list.reach.push_back({position_of(its.pose), reach_radius(record)});
-                    add_extras(list, its, LightKind::Point, reach_radius(record));
+                    list.reach.push_back({position_of(entity.pose), reach_radius(record)});
+                    add_extras(list, entity, LightKind::Point, reach_radius(record));
                     ++list.points;
                 }
             });
         each_light<SpotLight>(
-            world, time, alpha, all, [&](const SpotLight& light, const LightEntity& its) {
-                const layout::LightRecord record =
-                    make_record(light, position_of(its.pose), axis_of(its.pose), its.factor);
+            world, time, alpha, all, [&](const SpotLight& light, const LightEntity& entity) {
+                const layout::LightRecord record = make_record(
+                    light, position_of(entity.pose), axis_of(entity.pose), entity.factor);
                 if (is_valid(record)
-                    && last == (its.shadow != nullptr || its.projector != nullptr)) {
+                    && last == (entity.shadow != nullptr || entity.projector != nullptr)) {
                     list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                     list.spot_angles =
                         list.spot_angles || light.profile == SpotProfile::LinearAngle;
                     list.records.push_back(record);
                     list.reach.push_back(
-                        {position_of(its.pose), reach_radius(record), axis_of(its.pose),
+                        {position_of(entity.pose), reach_radius(record), axis_of(entity.pose),
                          std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
-                    add_extras(list, its, LightKind::Spot, reach_radius(record), light.outer_angle);
+                    add_extras(
+                        list, entity, LightKind::Spot, reach_radius(record), light.outer_angle);
                     ++list.spots;
                 }
             });

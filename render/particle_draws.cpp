@@ -114,8 +114,8 @@ std::uint32_t add_look(
     const ImageLayer negative = frame.materials->images().find(look.negative_light);
     const bool has_motion = has_image && motion.array != 0;
     const bool is_six_way = has_image && negative.array != 0;
-    const auto layer_if = [](bool has, const ImageLayer& its) {
-        return has ? static_cast<int>(its.layer) : -1;
+    const auto layer_if = [](bool has, const ImageLayer& layer) {
+        return has ? static_cast<int>(layer.layer) : -1;
     };
     draws.looks.push_back(make_look_record(
         look, {.image = layer_if(has_image, image),
@@ -129,11 +129,12 @@ std::uint32_t add_look(
     draws.extents.push_back(make_look_extent(look));
     draws.extents.back().texels = 0;
     if (has_image) {
-        const ImageData& its = frame.assets->images[look.image.index];
+        const ImageData& pixels = frame.assets->images[look.image.index];
         draws.extents.back().texels = std::max(
-            static_cast<float>(its.width) / static_cast<float>(look.columns),
-            static_cast<float>(its.height) / static_cast<float>(look.rows));
-        set_insets(draws.insets.find(its, look.image, look.columns, look.rows), draws.looks.back());
+            static_cast<float>(pixels.width) / static_cast<float>(look.columns),
+            static_cast<float>(pixels.height) / static_cast<float>(look.rows));
+        set_insets(
+            draws.insets.find(pixels, look.image, look.columns, look.rows), draws.looks.back());
     }
     draws.layers.push_back(layer_of(look));
     draws.has_halves = draws.has_halves || draws.layers.back() == LookLayer::Half;
@@ -240,13 +241,13 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
             const BillboardPlace& place = draws.billboards.places[i];
             BillboardQuad& quad = draws.billboards.quads[i];
             quad.velocity = velocity;
-            ParticleLook its = look;
+            ParticleLook section_look = look;
             if (place.is_section) {
-                its.image = billboard.section;
-                its.columns = its.rows = 1;
+                section_look.image = billboard.section;
+                section_look.columns = section_look.rows = 1;
             }
-            its.culling = ParticleCulling::Particles;
-            const std::uint32_t index = add_once(its);
+            section_look.culling = ParticleCulling::Particles;
+            const std::uint32_t index = add_once(section_look);
             draws.extents[index].radius = std::max(
                 draws.extents[index].radius,
                 glm::length(quad.right) + glm::length(quad.up) + look.cull_margin);
@@ -271,8 +272,9 @@ void append_one_of_each(ParticleDraws& draws) {
             made.emplace(draws.layers[i], is_point(look), is_six_way, is_lit_at_corners(look))
                 .second;
         if (is_new) {
-            auto& its = draws.layers[i] == LookLayer::Weighted ? draws.weighted : draws.instances;
-            its.emplace_back().look_and_share = i << 16;
+            auto& target =
+                draws.layers[i] == LookLayer::Weighted ? draws.weighted : draws.instances;
+            target.emplace_back().look_and_share = i << 16;
         }
     }
 }
@@ -315,13 +317,13 @@ void collect_pools(const FrameData& frame, float back, float step, ParticleDraws
                     place = place_of(world, entity, alpha);
                 }
                 const std::uint32_t index = add_look(frame, look, draws, place);
-                auto& its =
+                auto& target =
                     draws.layers[index] == LookLayer::Weighted ? draws.weighted : draws.instances;
-                const std::size_t first = its.size();
+                const std::size_t first = target.size();
                 add_pull(world, entity, index, draws);
-                append_particles(particles, index, back, its, look.camera_streak * eye_velocity);
+                append_particles(particles, index, back, target, look.camera_streak * eye_velocity);
                 if (look.culling == ParticleCulling::Bounds) {
-                    draws.extents[index].group = bounds_of(std::span(its).subspan(first));
+                    draws.extents[index].group = bounds_of(std::span(target).subspan(first));
                 } else if (look.culling == ParticleCulling::Emitter) {
                     draws.extents[index].group = shape_in_world(world, entity, alpha);
                 }
@@ -362,10 +364,10 @@ void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& d
 }
 
 void order(const RenderView& camera, ParticleDraws& draws) {
-    const Affine& its = camera.world_from_camera;
+    const Affine& pose = camera.world_from_camera;
     order_by_distance(
-        draws.instances, draws.places, transform_point(its, Vec3(0)),
-        transform_vector(its, Vec3(0, 0, -1)), draws.order);
+        draws.instances, draws.places, transform_point(pose, Vec3(0)),
+        transform_vector(pose, Vec3(0, 0, -1)), draws.order);
     draws.sorted.clear();
     for (const std::uint32_t i : draws.order.indices) {
         draws.sorted.push_back(draws.instances[i]);
@@ -402,8 +404,8 @@ void collect_particle_draws(FrameData& frame, GpuParticlePools& gpu, ParticleDra
     clear(draws);
     draws.insets.use_assets(frame.assets_identity);
     world.query<const Water, const WorldTransform>().each(
-        [&](const Water& water, const WorldTransform& its) {
-            draws.waters.push_back({&water, water_frame(its.world)});
+        [&](const Water& water, const WorldTransform& transform) {
+            draws.waters.push_back({&water, water_frame(transform.world)});
         });
     collect_pools(frame, back, step, draws);
     collect_gpu_pools(frame, gpu, draws);

@@ -42,9 +42,9 @@ std::size_t middle_half(const ParticleDraws& draws, const std::vector<std::uint8
 /// Discs fit any arrays.
 bool fits(const ParticleDraws& draws, const ParticleRun& run, std::uint32_t look) {
     const bool is_disc = draws.looks[look][3].w < 0;
-    const Vec4& its = draws.looks[look][layout::kLookMotion];
-    const bool is_still = its.x < 0;
-    const bool is_flat = its.w < 0;
+    const Vec4& motion = draws.looks[look][layout::kLookMotion];
+    const bool is_still = motion.x < 0;
+    const bool is_flat = motion.w < 0;
     return (run.shape == SpriteShape::Point) == is_point(draws.looks[look])
            && (is_disc || run.arrays.images == draws.arrays[look].images)
            && (is_still || run.arrays.motions == draws.arrays[look].motions)

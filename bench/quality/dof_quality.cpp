@@ -136,8 +136,8 @@ DiscErrors measure_discs(HeadlessRenderer& headless, bool wall, QualityReport& r
         }
         if (wall && (distance == 0.7 || distance == 30.0)) {
             const gpu::FloatImage truth = sampled(headless, scene, view);
-            const double its = disc_diameter(point, moments_of(truth));
-            errors.samples = std::max(errors.samples, std::abs(its - wanted));
+            const double diameter = disc_diameter(point, moments_of(truth));
+            errors.samples = std::max(errors.samples, std::abs(diameter - wanted));
             report.images.push_back(
                 {fmt::format("a lamp at {} m", distance), displayed(effect), displayed(truth)});
         }

@@ -267,8 +267,8 @@ constexpr ColorKey kColors[] = {
 /// Color and opacity at a share of the life, straight between the keys.
 glm::dvec4 color_at(double share) {
     const int i = share < 0.5 ? 0 : 1;
-    const auto key = [](const ColorKey& its) {
-        return glm::dvec4(its.color, static_cast<double>(its.opacity));
+    const auto key = [](const ColorKey& color_key) {
+        return glm::dvec4(color_key.color, static_cast<double>(color_key.opacity));
     };
     return glm::mix(key(kColors[i]), key(kColors[i + 1]), 2 * share - i);
 }
@@ -406,8 +406,8 @@ void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
             for (int x = 0; x < kHeight; ++x) {
                 const dvec3 place = eye_of(view) + 2.0 * pixel_ray(view, x, y);
                 const double exact = oracle::disc_transmittance(discs, place, {0, 0, -1});
-                const auto its = static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
-                sum += (its - exact) * (its - exact);
+                const auto transmitted = static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
+                sum += (transmitted - exact) * (transmitted - exact);
             }
         }
         report.at_most(

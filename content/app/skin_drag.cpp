@@ -15,11 +15,11 @@ bool is_pullable(const World& world, const Ray& ray) {
     if (!hit || world.find<PullableSkin>(hit->entity) != nullptr) {
         return hit.has_value();
     }
-    const auto* const its = world.find<Deformed>(hit->entity);
+    const auto* const deformed = world.find<Deformed>(hit->entity);
     bool follows = false;
     world.query<const PullableSkin, const Deformed>().each(
         [&](const PullableSkin&, const Deformed& skin) {
-            follows = follows || (its != nullptr && its->character == skin.character);
+            follows = follows || (deformed != nullptr && deformed->character == skin.character);
         });
     return follows && world.find<Deformers>(hit->entity) != nullptr;
 }

@@ -130,9 +130,9 @@ void fill_kernels(const LensView& lens, layout::FocusBlock& block) {
         while (kernel < beyond(kFromLattice) && coverage_of(places, kernel).variance < target) {
             kernel += 1.0f / 64;
         }
-        const float its = radius < kFromLattice ? kernel : beyond(radius);
-        block.kernel[i / 2][2 * (i % 2)] = its;
-        block.kernel[i / 2][2 * (i % 2) + 1] = 1 / coverage_of(places, its).area;
+        const float sigma = radius < kFromLattice ? kernel : beyond(radius);
+        block.kernel[i / 2][2 * (i % 2)] = sigma;
+        block.kernel[i / 2][2 * (i % 2) + 1] = 1 / coverage_of(places, sigma).area;
     }
 }
 

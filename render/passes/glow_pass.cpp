@@ -54,10 +54,10 @@ void draw_axis(
     add_fullscreen_pass(
         graph, up ? "glow.up" : "glow.down", {sampled(source, 0)}, {target},
         up ? up_program(pass, from, to) : down_program(pass, from, to), state,
-        [axis, gain, to](PassContext&, const gpu::Program& its) {
-            its.set("axis", axis);
-            its.set("sizes", to);
-            its.set("gain", gain);
+        [axis, gain, to](PassContext&, const gpu::Program& shader) {
+            shader.set("axis", axis);
+            shader.set("sizes", to);
+            shader.set("gain", gain);
         });
 }
 
@@ -97,7 +97,7 @@ TextureId compose(
     const TextureId glowing = create_like(graph, "radiance with glow", radiance);
     add_fullscreen_pass(
         graph, "glow", {sampled(radiance, 0), sampled(glow, 1)}, {discarded(glowing)}, program,
-        [strength](PassContext&, const gpu::Program& its) { its.set("strength", strength); });
+        [strength](PassContext&, const gpu::Program& shader) { shader.set("strength", strength); });
     return glowing;
 }
 

@@ -18,11 +18,11 @@ constexpr unsigned kLightsUnit = 9;
 constexpr unsigned kProjectorImagesUnit = 18;
 constexpr unsigned kProjectorsUnit = 19;
 
-void bind_records(PassContext& context, const LightRecords& its) {
-    its.records.bind(context.device(), kLightsUnit);
-    if (!its.projector_pool->records().empty()) {
-        context.device().bind_texture(kProjectorImagesUnit, its.projector_pool->images());
-        its.projectors.bind(context.device(), kProjectorsUnit);
+void bind_records(PassContext& context, const LightRecords& lights) {
+    lights.records.bind(context.device(), kLightsUnit);
+    if (!lights.projector_pool->records().empty()) {
+        context.device().bind_texture(kProjectorImagesUnit, lights.projector_pool->images());
+        lights.projectors.bind(context.device(), kProjectorsUnit);
     }
 }
 

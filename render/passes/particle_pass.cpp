@@ -100,12 +100,12 @@ void ParticleEffect::collect(FrameData& frame) {
 }
 
 bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
-    auto& its = view.data.publish<ViewParticles>();
-    its.effect = this;
-    select_particles(draws, gpu, frame, view, its.seen);
-    its.texels.upload(*frame.ring, its.seen.instances);
-    its.is_lit = false;
-    return !its.seen.runs.empty() || !gpu.pools().empty();
+    auto& particles = view.data.publish<ViewParticles>();
+    particles.effect = this;
+    select_particles(draws, gpu, frame, view, particles.seen);
+    particles.texels.upload(*frame.ring, particles.seen.instances);
+    particles.is_lit = false;
+    return !particles.seen.runs.empty() || !gpu.pools().empty();
 }
 
 void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData&) {
@@ -408,17 +408,17 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
     look_texels.bind(device, kLooksUnit);
     ribbon_texels.bind(device, kRibbonsUnit);
     billboard_texels.bind(device, kBillboardsUnit);
-    const auto bind_images = [&](const ParticleArrays& its, bool magnified) {
+    const auto bind_images = [&](const ParticleArrays& arrays, bool magnified) {
         const ImagePool& pool = view.frame->materials->images();
         const gpu::Sampler& sampler = magnified ? finest_sampler : image_sampler;
         if (draws.features.images) {
-            device.bind_texture(kImagesUnit, pool.array(its.images), &sampler);
+            device.bind_texture(kImagesUnit, pool.array(arrays.images), &sampler);
         }
         if (draws.features.motions) {
-            device.bind_texture(kMotionsUnit, pool.array(its.motions), &finest_sampler);
+            device.bind_texture(kMotionsUnit, pool.array(arrays.motions), &finest_sampler);
         }
-        if (its.negative_lights != 0) {
-            device.bind_texture(kNegativeLightsUnit, pool.array(its.negative_lights), &sampler);
+        if (arrays.negative_lights != 0) {
+            device.bind_texture(kNegativeLightsUnit, pool.array(arrays.negative_lights), &sampler);
         }
     };
     const std::span<const ParticleRun> all(seen.runs);

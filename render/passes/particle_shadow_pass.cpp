@@ -67,9 +67,10 @@ bool can_cast(const LookRecord& look) {
            && look[2].w != static_cast<float>(ParticleFacing::Pixels);
 }
 
-void bind_particle_shadow(PassContext& context, const ParticleShadowEffect& its) {
-    context.device().bind_texture(kMapsUnit, its.maps);
-    (its.gpu_casters.empty() ? its.record : its.fitted).bind(context.device(), kRecordUnit);
+void bind_particle_shadow(PassContext& context, const ParticleShadowEffect& effect) {
+    context.device().bind_texture(kMapsUnit, effect.maps);
+    (effect.gpu_casters.empty() ? effect.record : effect.fitted)
+        .bind(context.device(), kRecordUnit);
 }
 
 }  // namespace
@@ -164,8 +165,8 @@ void ParticleShadowEffect::request_views(FrameData& frame) {
     gpu_casters.clear();
     light = 0;
     const auto& lights = frame.data.get<LightList>();
-    const auto spot = std::ranges::find_if(lights.shadowed, [](const ShadowedLight& its) {
-        return its.kind == LightKind::Spot && its.outer_angle <= kMaxSpotViewAngle;
+    const auto spot = std::ranges::find_if(lights.shadowed, [](const ShadowedLight& shadowed) {
+        return shadowed.kind == LightKind::Spot && shadowed.outer_angle <= kMaxSpotViewAngle;
     });
     const auto* sprites = frame.data.find<ParticleSprites>();
     const bool in_spot = lights.directional == 0 && spot != lights.shadowed.end();
@@ -199,10 +200,10 @@ void ParticleShadowEffect::request_views(FrameData& frame) {
     texels.upload(*frame.ring, casters);
 }
 
-bool ParticleShadowEffect::prepare(const FrameData&, ViewData& its) {
+bool ParticleShadowEffect::prepare(const FrameData&, ViewData& drawn_view) {
     if (light != 0) {
-        its.lighting.variant.add("PARTICLE_SHADOWS", light);
-        its.lighting.add_binding<bind_particle_shadow>(*this);
+        drawn_view.lighting.variant.add("PARTICLE_SHADOWS", light);
+        drawn_view.lighting.add_binding<bind_particle_shadow>(*this);
     }
     return light != 0;
 }
@@ -316,10 +317,11 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
     }
 }
 
-void ParticleShadowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& its) {
-    its.lighting.reads.emplace_back(graph.import("particle.opacity", maps));
+void ParticleShadowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& drawn_view) {
+    drawn_view.lighting.reads.emplace_back(graph.import("particle.opacity", maps));
     if (!gpu_casters.empty()) {
-        its.lighting.reads.emplace_back(graph.import("fitted particle shadow", fitted_record));
+        drawn_view.lighting.reads.emplace_back(
+            graph.import("fitted particle shadow", fitted_record));
     }
 }
 

@@ -37,9 +37,9 @@ void grow_atlas(gpu::Texture& atlas, int size) {
     atlas = std::move(larger);
 }
 
-void bind_shadows(PassContext& context, const ShadowBindings& its) {
-    context.device().bind_texture(kShadowAtlasUnit, *its.atlas);
-    its.records.bind(context.device(), kShadowViewsUnit);
+void bind_shadows(PassContext& context, const ShadowBindings& shadows) {
+    context.device().bind_texture(kShadowAtlasUnit, *shadows.atlas);
+    shadows.records.bind(context.device(), kShadowViewsUnit);
 }
 
 void draw_map(

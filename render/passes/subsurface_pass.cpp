@@ -54,8 +54,8 @@ ScatteringBounds find_bounds(const RenderItems& items, const RenderView& view) {
             const std::uint32_t model =
                 materials.model_of(materials.record_of(block.surfaces[i].material));
             if (model == stored_number(ShadingModel::Subsurface) && block.is_drawable(i)) {
-                const ScatteringBounds its = pixels_of(view, block.box(i));
-                all = {glm::min(all.low, its.low), glm::max(all.high, its.high)};
+                const ScatteringBounds pixels = pixels_of(view, block.box(i));
+                all = {glm::min(all.low, pixels.low), glm::max(all.high, pixels.high)};
             }
         }
     }

@@ -176,10 +176,10 @@ void WaterEffect::add_warm_up_views(const FrameData& frame, std::vector<RenderVi
         [&](const Water& water, const WorldTransform& place, const WaterLook* look) {
             const bool planar = look != nullptr && look->reflection == WaterReflection::Planar;
             if (!std::exchange(added[planar ? 1 : 0], true)) {
-                const WaterFrame its = water_frame(place.world);
+                const WaterFrame surface_frame = water_frame(place.world);
                 const float below = water.depth > 0 ? -0.5f * water.depth : kBelow;
-                views.push_back(view_of_water(frame, its, kAbove, false));
-                views.push_back(view_of_water(frame, its, below, true));
+                views.push_back(view_of_water(frame, surface_frame, kAbove, false));
+                views.push_back(view_of_water(frame, surface_frame, below, true));
             }
         });
 }

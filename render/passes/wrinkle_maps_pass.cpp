@@ -93,13 +93,13 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
              read(2), read(3), read(4)},
             {target_level(discarded(composed), 0)}, program,
             [&array, first, second, decoding, by_slopes,
-             influence](PassContext&, const gpu::Program& its) {
-                its.set("size", Vec2(array.width(), array.height()));
-                its.set("first_weights", first);
-                its.set("second_weights", second);
-                its.set("decoding", decoding);
-                its.set("share", influence);
-                its.set("by_slopes", by_slopes ? 1 : 0);
+             influence](PassContext&, const gpu::Program& shader) {
+                shader.set("size", Vec2(array.width(), array.height()));
+                shader.set("first_weights", first);
+                shader.set("second_weights", second);
+                shader.set("decoding", decoding);
+                shader.set("share", influence);
+                shader.set("by_slopes", by_slopes ? 1 : 0);
             });
         place_drawn_image(graph, images, composed, target);
     };

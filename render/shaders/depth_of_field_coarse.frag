@@ -57,13 +57,13 @@ vec4 gather_near(vec2 uv, float reach, float level, int taps, out float radius) 
         float through = sqrt((float(i) + 0.5) / float(taps));  // radius of the aperture
         vec2 there = uv + stride * through * focus.tap[i].xy;
         vec4 light = textureLod(near_rest, there, level - 1.0);
-        float its = textureLod(rest_radii, there, level - 1.0).y / max(radius_weight(light), 1e-20);
-        float spread = clamp(fitted_radius(its, side_of(level)) / reach, kNarrowest, 1.0);
-        float rim = rim_of(is_as_wide(its, reach), reach) / reach;
+        float texel_radius = textureLod(rest_radii, there, level - 1.0).y / max(radius_weight(light), 1e-20);
+        float spread = clamp(fitted_radius(texel_radius, side_of(level)) / reach, kNarrowest, 1.0);
+        float rim = rim_of(is_as_wide(texel_radius, reach), reach) / reach;
         float reached = clamp((spread - through) / rim + 0.5, 0.0, 1.0);
         light *= reached / (spread * spread + rim * rim / 12.0) / float(taps);
         sum += light;
-        radius += light.a * its;
+        radius += light.a * texel_radius;
     }
     return sum;
 }
@@ -90,9 +90,9 @@ vec4 gather_far(vec2 uv, float radius, float level, int taps) {
         float through = sqrt((float(i) + 0.5) / float(taps));
         vec2 there = uv - stride * through * focus.tap[i].xy;
         vec4 light = textureLod(far_rest, there, level - 1.0);
-        float its = textureLod(rest_radii, there, level - 1.0).x / max(radius_weight(light), 1e-20);
-        float over = front_weight(its, radius);
-        light *= spread_behind(fitted_radius(min(its, radius), side), widest, through);
+        float texel_radius = textureLod(rest_radii, there, level - 1.0).x / max(radius_weight(light), 1e-20);
+        float over = front_weight(texel_radius, radius);
+        light *= spread_behind(fitted_radius(min(texel_radius, radius), side), widest, through);
         front += over * light;
         beside += (1.0 - over) * light;
     }

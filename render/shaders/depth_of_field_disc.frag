@@ -16,8 +16,8 @@ layout(location = 0) out vec4 color;
 float unoccluded_share(float own) {
     float nearer = clamp(own / radius, 0.0, 1.0);
     vec2 there = mix(gl_FragCoord.xy, middle, nearer);
-    float its = 0.5 * circle(texelFetch(scene_depth, ivec2(there), 0).r);
-    return clamp(8.0 * its / radius - 6.0, 0.0, 1.0);  // by eye: surfaces at about the same distance hide nothing
+    float surface_radius = 0.5 * circle(texelFetch(scene_depth, ivec2(there), 0).r);
+    return clamp(8.0 * surface_radius / radius - 6.0, 0.0, 1.0);  // by eye: surfaces at about the same distance hide nothing
 }
 
 void main() {

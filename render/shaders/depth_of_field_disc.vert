@@ -28,9 +28,9 @@ vec3 middle_of(ivec2 texel, float side, int pixels) {
         ivec2 place = ivec2(i % 6, i / 6);
         ivec2 pixel = clamp(4 * texel - 1 + place, ivec2(0), last);
         vec4 seen = texelFetch(packed_pixels, pixel, 0);
-        float its = seen.a == kUnknown ? 0.0 : side * seen.a;
-        float shines = tent(place.x) * tent(place.y) * coarse_share(its) * luminance_of(seen.rgb);
-        sum += shines * vec4(vec2(pixel) + 0.5, its, 1.0);
+        float texel_radius = seen.a == kUnknown ? 0.0 : side * seen.a;
+        float shines = tent(place.x) * tent(place.y) * coarse_share(texel_radius) * luminance_of(seen.rgb);
+        sum += shines * vec4(vec2(pixel) + 0.5, texel_radius, 1.0);
     }
     return sum.xyz / max(sum.w, 1e-20);
 }
@@ -55,10 +55,10 @@ void main() {
     }
     bool shines = max(excess.r, max(excess.g, excess.b)) > 1e-5 * max(all.r, max(all.g, all.b));
     float side = is_near ? -1.0 : 1.0;
-    vec3 its = middle_of(texel, side, shines ? 36 : 0);
+    vec3 disc = middle_of(texel, side, shines ? 36 : 0);
     light = excess * 16.0;
-    middle = its.xy;
-    radius = side * its.z;
+    middle = disc.xy;
+    radius = side * disc.z;
     gl_Position = shines ? vec4(middle / focus.size.xy * 2.0 - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 0.0, 1.0);
-    gl_PointSize = 2.0 * its.z + 3.0;
+    gl_PointSize = 2.0 * disc.z + 3.0;
 }

@@ -20,8 +20,8 @@ void main() {
         ivec2 place = ivec2(i % (kSide + 2), i / (kSide + 2)) - 1;
         ivec2 there = clamp(first + place, ivec2(0), last);
         bool inside = all(greaterThanEqual(place, ivec2(0))) && all(lessThan(place, ivec2(kSide)));
-        vec2 its = texelFetch(small_of_blocks, there, 0).xy;
-        small = max(small, inside ? its : vec2(its.x, 0.0));
+        vec2 radii = texelFetch(small_of_blocks, there, 0).xy;
+        small = max(small, inside ? radii : vec2(radii.x, 0.0));
         vec4 block = texelFetch(blocks, there, 0);
         tile = max(tile, inside ? block : vec4(0.0, 0.0, min(block.z, 0.25), 0.0));
     }

@@ -68,9 +68,9 @@ struct SixWayLight {
 void add_light(inout SixWayLight sum, Incoming light, mat3 axes) {
     vec3 cosines = light.to_light * axes;
     for (int i = 0; i < 3; ++i) {
-        vec3 its = light.irradiance * (cosines[i] * cosines[i] / kPi);
-        sum.positive[i] += cosines[i] > 0.0 ? its : vec3(0.0);
-        sum.negative[i] += cosines[i] > 0.0 ? vec3(0.0) : its;
+        vec3 arriving = light.irradiance * (cosines[i] * cosines[i] / kPi);
+        sum.positive[i] += cosines[i] > 0.0 ? arriving : vec3(0.0);
+        sum.negative[i] += cosines[i] > 0.0 ? vec3(0.0) : arriving;
     }
 }
 

@@ -189,11 +189,11 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     vec4 run = vec4(0.0);
     for (uint i = 0u; i < births.w; ++i) {
         run = texelFetch(steps, runs + int(births.z + i));
-        uint its = floatBitsToUint(run.z);
-        if (index < its) {
+        uint count = floatBitsToUint(run.z);
+        if (index < count) {
             break;
         }
-        index -= its;
+        index -= count;
     }
     float at = clamp(run.x + float(index) * run.y, 0.0, 1.0);
 

@@ -31,17 +31,18 @@ void update_deformers(
     Query<const Deformers, DeformerState> deformers, Query<const Deformed> deformed,
     Query<const SkinPulls, const Deformed> pulled) {
     std::vector<CharacterTug> all;
-    pulled.each([&](const SkinPulls& skin, const Deformed& its) {
+    pulled.each([&](const SkinPulls& skin, const Deformed& deformed_skin) {
         for (const SkinPull& pull : skin.pulls) {
-            all.push_back({its.character, pull.tug});
+            all.push_back({deformed_skin.character, pull.tug});
         }
     });
     std::vector<Tug> tugs;
     deformers.each([&](Entity entity, const Deformers& controls, DeformerState& state) {
         tugs.clear();
-        const Deformed* const its = all.empty() ? nullptr : deformed.find<const Deformed>(entity);
+        const Deformed* const deformed_skin =
+            all.empty() ? nullptr : deformed.find<const Deformed>(entity);
         for (const CharacterTug& one : all) {
-            if (its != nullptr && its->character == one.character) {
+            if (deformed_skin != nullptr && deformed_skin->character == one.character) {
                 tugs.push_back(one.tug);
             }
         }

@@ -227,9 +227,9 @@ std::vector<double> solve(std::span<const FoldEdge> edges, int layer, std::size_
 std::vector<float> find_carried(std::span<const FoldEdge> edges, int layer, std::size_t vertices) {
     std::vector<glm::dvec2> energy(vertices, glm::dvec2(0));  // what is left, and all
     for (const FoldEdge& edge : edges) {
-        const glm::dvec2 its = {edge.rise[layer] * edge.rise[layer], edge.energy[layer]};
-        energy[edge.a] += its;
-        energy[edge.b] += its;
+        const glm::dvec2 terms = {edge.rise[layer] * edge.rise[layer], edge.energy[layer]};
+        energy[edge.a] += terms;
+        energy[edge.b] += terms;
     }
     for (int ring = 0; ring < kCarryRings; ++ring) {
         const std::vector<glm::dvec2> before = energy;
@@ -240,8 +240,8 @@ std::vector<float> find_carried(std::span<const FoldEdge> edges, int layer, std:
     }
     std::vector<float> carried;
     carried.reserve(vertices);
-    for (const glm::dvec2& its : energy) {
-        const float kept = its.y > 0 ? static_cast<float>(its.x / its.y) : 0.0f;
+    for (const glm::dvec2& terms : energy) {
+        const float kept = terms.y > 0 ? static_cast<float>(terms.x / terms.y) : 0.0f;
         carried.push_back(glm::smoothstep(kNoneCarried, kAllCarried, kept));
     }
     return carried;

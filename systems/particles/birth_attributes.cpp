@@ -139,23 +139,23 @@ float spread(float mean, float width, Random& random) {
 
 BirthAttributes
 draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& random) {
-    BirthAttributes its{};
-    its.local = sample_shape(emitter.shape, emitter.size, random);
-    const bool is_radial = emitter.direction == EmitterDirection::Radial && its.local != Vec3(0);
+    BirthAttributes born{};
+    born.local = sample_shape(emitter.shape, emitter.size, random);
+    const bool is_radial = emitter.direction == EmitterDirection::Radial && born.local != Vec3(0);
     const Vec3 direction =
-        is_radial ? glm::normalize(its.local) : sample_cone(cone_of(emitter), random);
+        is_radial ? glm::normalize(born.local) : sample_cone(cone_of(emitter), random);
     const Vec3 aim = normalize_or(transform_vector(world, direction), Vec3(0, 1, 0));
-    its.velocity = aim * spread(emitter.speed, emitter.speed_spread, random);
-    its.life = spread(emitter.life, emitter.life_spread, random);
-    its.look = random.word();
+    born.velocity = aim * spread(emitter.speed, emitter.speed_spread, random);
+    born.life = spread(emitter.life, emitter.life_spread, random);
+    born.look = random.word();
     // Last, so that whoever has none gets the same numbers as ever.
     if (emitter.size_spread != Vec3(0)) {
-        its.local += emitter.size_spread * random_vector(random);
+        born.local += emitter.size_spread * random_vector(random);
     }
     if (emitter.velocity_spread != Vec3(0)) {
-        its.velocity += transform_vector(world, emitter.velocity_spread * random_vector(random));
+        born.velocity += transform_vector(world, emitter.velocity_spread * random_vector(random));
     }
-    return its;
+    return born;
 }
 
 Rewind::Rewind(const ParticleStep& its_step)
@@ -175,10 +175,10 @@ bool Newborn::is_finite() const {
 Newborn draw_birth(const BirthDraw& draw, float at, std::uint64_t number) {
     Random random = attributes_random(draw.seed, draw.subject, number);
     const Affine world = draw.moves ? mix_places(draw.place, at) : draw.place.now;
-    const BirthAttributes its = draw_attributes(*draw.emitter, world, random);
+    const BirthAttributes attributes = draw_attributes(*draw.emitter, world, random);
     Newborn born = {
-        transform_point(world, its.local), its.velocity + draw.added, -(at * draw.rewind.step.dt),
-        its.life, its.look};
+        transform_point(world, attributes.local), attributes.velocity + draw.added,
+        -(at * draw.rewind.step.dt), attributes.life, attributes.look};
     draw.rewind.apply(at, born.position, born.velocity);
     return born;
 }

@@ -319,7 +319,7 @@ struct Lanes {
 
 /// False where not all lanes can be drawn alike.
 HWY_INLINE bool
-draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes& its) {
+draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes& born) {
     const ParticleEmitter& emitter = *draw.emitter;
     const ParticleStep& step = draw.rewind.step;
     const EmitterPlace& ends = draw.place;
@@ -344,8 +344,8 @@ draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes&
     const V3 up = {zero, constant(1.0f), zero};
     const V3 aim = normalize_or(transform_vector(world, direction), up);
     V3 now = scale(aim, spread(emitter.speed, emitter.speed_spread, random));
-    its.life = spread(emitter.life, emitter.life_spread, random);
-    its.look = random.word();
+    born.life = spread(emitter.life, emitter.life_spread, random);
+    born.look = random.word();
     if (emitter.size_spread != Vec3(0)) {
         local = add(local, multiply(splat(emitter.size_spread), random_vector(random)));
     }
@@ -360,15 +360,15 @@ draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes&
     const V3 air = splat(step.air);
     const float drag = draw.rewind.drag;
     const V undo = drag > 0 ? exp_of_share(hn::Mul(at, constant(drag))) : constant(1.0f);
-    its.velocity =
+    born.velocity =
         subtract(add(air, scale(subtract(now, air), undo)), scale(splat(step.gravity), time));
     const V3 mean = add(
-        scale(its.velocity, constant(step.old_share)), scale(now, constant(1 - step.old_share)));
-    its.position = subtract(transform_point(world, local), scale(mean, time));
-    its.age = hn::Neg(time);
+        scale(born.velocity, constant(step.old_share)), scale(now, constant(1 - step.old_share)));
+    born.position = subtract(transform_point(world, local), scale(mean, time));
+    born.age = hn::Neg(time);
 
     const V sum =
-        hn::Add(hn::Add(hn::Add(its.position.x, its.position.y), its.position.z), its.life);
+        hn::Add(hn::Add(hn::Add(born.position.x, born.position.y), born.position.z), born.life);
     return hn::AllTrue(d, hn::Lt(hn::Abs(sum), constant(std::numeric_limits<float>::infinity())));
 }
 
@@ -392,8 +392,8 @@ std::size_t draw_births_vector(
         const V at =
             hn::Min(hn::Max(hn::Add(constant(run.first), since), hn::Zero(d)), constant(1.0f));
         LaneRandom lanes(random, hn::Add(index, hn::Set(du, random.counter()[1])));
-        Lanes its;
-        if (!draw_lanes(draw, lowest, at, lanes, its)) {
+        Lanes born;
+        if (!draw_lanes(draw, lowest, at, lanes, born)) {
             break;
         }
         const auto used = hn::FirstN(d, part);
@@ -404,18 +404,18 @@ std::size_t draw_births_vector(
                 hn::StoreU(values, d, column + i);
             }
         };
-        store(its.position.x, out.x);
-        store(its.position.y, out.y);
-        store(its.position.z, out.z);
-        store(its.velocity.x, out.vx);
-        store(its.velocity.y, out.vy);
-        store(its.velocity.z, out.vz);
-        store(its.age, out.age);
-        store(its.life, out.life);
+        store(born.position.x, out.x);
+        store(born.position.y, out.y);
+        store(born.position.z, out.z);
+        store(born.velocity.x, out.vx);
+        store(born.velocity.y, out.vy);
+        store(born.velocity.z, out.vz);
+        store(born.age, out.age);
+        store(born.life, out.life);
         if (part < n) {
-            hn::BlendedStore(its.look, hn::FirstN(du, part), du, out.look + i);
+            hn::BlendedStore(born.look, hn::FirstN(du, part), du, out.look + i);
         } else {
-            hn::StoreU(its.look, du, out.look + i);
+            hn::StoreU(born.look, du, out.look + i);
         }
         i += part;
     }

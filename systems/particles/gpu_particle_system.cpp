@@ -96,7 +96,8 @@ std::optional<GpuCollider> to_gpu(const MeshCollider&) {
 std::vector<GpuCollider> find_gpu_colliders(std::span<const Collider> colliders) {
     std::vector<GpuCollider> found;
     for (const Collider& collider : colliders) {
-        if (const auto one = std::visit([](const auto& its) { return to_gpu(its); }, collider)) {
+        if (const auto one =
+                std::visit([](const auto& shape) { return to_gpu(shape); }, collider)) {
             found.push_back(*one);
         }
     }

@@ -52,16 +52,16 @@ class NewParticles {
         if (!born.is_finite()) {
             return;
         }
-        const BirthColumns its = next();
-        *its.x = born.position.x;
-        *its.y = born.position.y;
-        *its.z = born.position.z;
-        *its.vx = born.velocity.x;
-        *its.vy = born.velocity.y;
-        *its.vz = born.velocity.z;
-        *its.age = born.age;
-        *its.life = born.life;
-        *its.look = born.look;
+        const BirthColumns columns = next();
+        *columns.x = born.position.x;
+        *columns.y = born.position.y;
+        *columns.z = born.position.z;
+        *columns.vx = born.velocity.x;
+        *columns.vy = born.velocity.y;
+        *columns.vz = born.velocity.z;
+        *columns.age = born.age;
+        *columns.life = born.life;
+        *columns.look = born.look;
         ++size_;
     }
 
@@ -124,10 +124,11 @@ std::optional<Newborn> draw_birth_on(
         return std::nullopt;
     }
     const Affine world = turned_to(mix_places(draw.place, at), point->position, point->turn);
-    const BirthAttributes its = draw_attributes(*draw.emitter, world, random);
+    const BirthAttributes attributes = draw_attributes(*draw.emitter, world, random);
     const Vec3 added = point->velocity * finite_or(surface.surface->inherit, 0);
     Newborn born = {
-        transform_point(world, its.local), its.velocity + added, -(at * dt), its.life, its.look};
+        transform_point(world, attributes.local), attributes.velocity + added, -(at * dt),
+        attributes.life, attributes.look};
     if (surface.surface->on == BirthSurface::Pieces) {
         born.look = (born.look & ~kPieceMask) | point->piece;
     }
@@ -321,11 +322,11 @@ void add_spawns(
         const Affine place = spawn.axis == Vec3(0)
                                  ? world
                                  : turned_to(world, Vec3(0), Quat(Vec3(0, 1, 0), spawn.axis));
-        const BirthAttributes its = draw_attributes(emitter, place, random);
-        const Vec3 velocity = its.velocity + spawn.velocity;
+        const BirthAttributes attributes = draw_attributes(emitter, place, random);
+        const Vec3 velocity = attributes.velocity + spawn.velocity;
         const Vec3 position =
-            spawn.position + transform_vector(place, its.local) + velocity * spawn.age;
-        particles.add({position, velocity, spawn.age, its.life, its.look});
+            spawn.position + transform_vector(place, attributes.local) + velocity * spawn.age;
+        particles.add({position, velocity, spawn.age, attributes.life, attributes.look});
     }
 }
 

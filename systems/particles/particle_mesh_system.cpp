@@ -87,12 +87,12 @@ MeshParticle step_instance(
     const bool stuck = i < pool.stuck.size() && pool.stuck[i] != 0;
     const float free = stuck ? 0.0f : step.collides ? std::min(speed / kRestSpeed, 1.0f) : 1.0f;
     const float spin = give_or_take(mesh.spin, mesh.spin_spread, key, kSpin);
-    MeshParticle its;
-    its.key = key;
-    its.mesh = mesh_of(mesh, step.whole, key);
+    MeshParticle moved;
+    moved.key = key;
+    moved.mesh = mesh_of(mesh, step.whole, key);
     const bool as_emitter = mesh.facing == ParticleMeshFacing::Emitter;
     const float begin = as_emitter ? 0.0f : 2 * kPi * random_share(key, kAngle);
-    its.angle = old != nullptr ? old->angle + free * spin * dt : begin + spin * pool.age[i];
+    moved.angle = old != nullptr ? old->angle + free * spin * dt : begin + spin * pool.age[i];
     const float share = std::clamp(pool.age[i] / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
     const float left = pool.life[i] - pool.age[i];
     const float shrunk = mesh.fade > 0 ? std::clamp(left / mesh.fade, 0.0f, 1.0f) : 1.0f;
@@ -102,17 +102,17 @@ MeshParticle step_instance(
         kMinScale);
     const bool flies = mesh.facing == ParticleMeshFacing::Velocity;
     if (old != nullptr && (stuck || (flies && !(speed > kMinSpeed)))) {
-        its.now = moved_to(old->now, position);
+        moved.now = moved_to(old->now, position);
     } else {
-        const Quat turned = flies && speed > kMinSpeed ? toward(velocity, its.angle)
-                                                       : glm::angleAxis(its.angle, axis_of(key));
-        its.now = as_emitter ? about(step.world, position, turned, scale)
-                             : affine_from(position, turned, Vec3(scale));
+        const Quat turned = flies && speed > kMinSpeed ? toward(velocity, moved.angle)
+                                                       : glm::angleAxis(moved.angle, axis_of(key));
+        moved.now = as_emitter ? about(step.world, position, turned, scale)
+                               : affine_from(position, turned, Vec3(scale));
     }
-    its.before = old != nullptr
-                     ? old->now
-                     : moved_to(its.now, position - velocity * std::min(pool.age[i], dt));
-    return its;
+    moved.before = old != nullptr
+                       ? old->now
+                       : moved_to(moved.now, position - velocity * std::min(pool.age[i], dt));
+    return moved;
 }
 
 }  // namespace
