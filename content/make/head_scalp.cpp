@@ -14,6 +14,7 @@ namespace limn {
 namespace {
 
 constexpr Vec3 kMiddle = {0, 5.5f, -0.5f};  ///< of the skull [cm]
+constexpr float kImageWidth = 1.0f;         ///< of the image of strands [cm]
 constexpr Vec3 kWhorl = {-0.9f, 13.0f, -4.5f};
 
 /// Height of the hairline by the angle around the head from its front, left and right alike.
@@ -60,12 +61,13 @@ struct Card {
     Vec3 root, out, flow;  ///< out and flow: unit
     float length, width;   ///< [cm]
     float lift;            ///< of its tip from the scalp [cm]
+    float strand;          ///< u of the image in the middle
     float shade;
     float root_shade;  ///< factor of the shade at the root: less light comes there
 };
 
 void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
-    constexpr std::uint32_t kRows = 4;
+    constexpr std::uint32_t kRows = 3;
     Vec3 at = card.root - 0.1f * card.out;
     Vec3 out = card.out;
     for (std::uint32_t row = 0; row < kRows; ++row) {
@@ -85,7 +87,7 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
             part.points.push_back(bone_point(p, 0));
             part.mesh.positions.push_back(p);
             part.mesh.normals.push_back(glm::normalize(out + 0.2f * edge * across));
-            part.mesh.uvs.emplace_back(0.5f + 0.5f * edge, t);
+            part.mesh.uvs.emplace_back(card.strand + 0.5f * edge * card.width / kImageWidth, t);
             part.mesh.colors.emplace_back(
                 Vec3(card.shade * glm::mix(card.root_shade, 1.0f, t)), 1.0f);
         }
@@ -100,7 +102,7 @@ float scalp_hair_cover(const Vec3& p) {
 }
 
 HeadPart make_scalp_hair(const HeadShape& shape) {
-    constexpr int kCards = 2600;  // on the whole ball around the skull; some 1700 grow
+    constexpr int kCards = 4600;  // on the whole ball around the skull; some 2970 grow
     HeadPart part;
     part.mesh.name = "scalp";
     Random random(0, 0, name_hash("scalp_hair"), 0);
@@ -129,9 +131,10 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         card.flow = glm::normalize(flow + 0.4f * (chance[0] - 0.5f) * aside);
         const float top = glm::smoothstep(3.0f, 11.0f, root.y);
         card.length = glm::mix(2.1f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
-        card.width = glm::mix(0.95f, 1.25f, top) * (0.8f + 0.4f * chance[0]);
+        card.width = glm::mix(0.5f, 0.65f, top) * (0.7f + 0.6f * chance[1]);
         card.lift = glm::mix(0.1f, 0.75f, top) * (0.35f + 0.75f * chance[2]);
-        card.shade = 0.8f + 0.4f * chance[3];
+        card.strand = 7.31f * chance[3] + 3.17f * chance[0];
+        card.shade = 0.9f + 0.2f * chance[3];
         card.root_shade = glm::mix(0.85f, 0.6f, top);
         append_card(part, card, shape);
     }
