@@ -8,4 +8,4 @@ string(SHA256 hash "${hashes}")
 file(
     WRITE ${OUTPUT}
     "#include \"content/load/asset_cache.h\"\n\n"
-    "std::string_view limn::generators_hash() {\n    return \"${COMPILER} ${hash}\";\n}\n")
+    "std::string_view limn::generators_hash() {\n    return \"${hash}\";\n}\n")
