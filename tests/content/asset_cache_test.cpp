@@ -3,7 +3,6 @@
 #include "content/load/made_assets.h"
 #include "content/make/find_kind.h"
 #include "content/make/head.h"
-#include "content/make/shapes.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -163,7 +162,4 @@ TEST_CASE("asset cache: what takes long to generate is generated once by two pro
         CHECK(is_equal(made.pattern(slow, parameters).orm, numbered_maps(7, 4).orm));
         CHECK(calls == 1);
     }
-    MadeAssets made{AssetCache(folder.path())};
-    (void)made.mesh(*find_kind(mesh_kinds(), "sphere"), AnyComponent::of(SphereShape{}), Assets{});
-    CHECK(files_in(folder).size() == 1);  // a sphere takes no time
 }
