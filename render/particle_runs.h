@@ -20,11 +20,11 @@ struct ParticlesInView {
     std::vector<ParticleRun> runs{};
     std::size_t half_begin = 0;  ///< of the runs at half the resolution; those before are behind
     std::size_t half_end = 0;
-    Bounds half_bounds{};            ///< of those
-    std::size_t weighted_begin = 0;  ///< of the runs that are weighted
-    Bounds weighted_bounds{};        ///< of those
-    std::size_t under_begin = 0;     ///< of the runs under water, to the end
-    bool above_water = false;        ///< over water with ground, which what is in it is seen before
+    Bounds half_bounds{};                 ///< of those
+    std::size_t weighted_begin = 0;       ///< of the runs that are weighted
+    Bounds weighted_bounds{};             ///< of those
+    std::size_t under_begin = 0;          ///< of the runs under water, to the end
+    bool above_water = false;             ///< the camera looks down into water that has ground
     std::vector<std::uint8_t> visible{};  ///< of ParticleDraws::sorted
 };
 

@@ -124,29 +124,33 @@ bool is_near(const Crease& crease, const Vec2& p) {
     return p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y;
 }
 
-/// A narrow valley between round crests, which thins out and fades towards its ends.
-float crease_height(const Crease& crease, const Vec2& p) {
+/// The height at `p` of a crease with the profile `height(d, right)`, d: distance in widths. It
+/// gets thinner and fades towards its ends.
+template <typename Profile>
+float height_of(const Crease& crease, const Vec2& p, Profile&& height) {
     if (!is_near(crease, p)) {
         return 0;
     }
     const CreasePlace at = nearest_on(crease, p);
     const float taper = crease_taper(crease, at.along);
     const float d = at.distance / (crease.width * (0.55f + 0.45f * taper));
-    return crease.depth * taper
-           * (0.45f * std::exp(-square(d - 1.0f)) - std::exp(-square(1.6f * d)));
+    return crease.depth * taper * height(d, at.right);
+}
+
+/// A narrow valley between round crests.
+float crease_height(const Crease& crease, const Vec2& p) {
+    return height_of(crease, p, [](float d, bool) {
+        return 0.45f * std::exp(-square(d - 1.0f)) - std::exp(-square(1.6f * d));
+    });
 }
 
 /// A step from a broad bulge down to flat skin on its right side, by a valley.
 float overhang_height(const Crease& crease, const Vec2& p) {
-    if (!is_near(crease, p)) {
-        return 0;
-    }
-    const CreasePlace at = nearest_on(crease, p);
-    const float taper = crease_taper(crease, at.along);
-    const float d = at.distance / (crease.width * (0.55f + 0.45f * taper));
-    const float side = at.right ? 0.08f * std::exp(-square(d - 1.2f))
-                                : 0.6f * std::exp(-square((d - 1.3f) / 0.9f));
-    return crease.depth * taper * (side - std::exp(-square(1.2f * d)));
+    return height_of(crease, p, [](float d, bool right) {
+        const float side = right ? 0.08f * std::exp(-square(d - 1.2f))
+                                 : 0.6f * std::exp(-square((d - 1.3f) / 0.9f));
+        return side - std::exp(-square(1.2f * d));
+    });
 }
 
 /// Pits 2 to 4 mm wide, as of a golf ball, where skin is drawn inwards in points.

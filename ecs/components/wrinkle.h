@@ -158,9 +158,9 @@ LIMN_FIELDS(WrinkleSurface) {
         share, "isometric: of the shortening beyond that becomes folds; 1: all of it", "", 0, 1);
     LIMN_FIELD(
         narrowing,
-        "by what share of its stretch along the folds skin becomes narrower by itself, without "
-        "folding (Poisson's ratio, of skin 0.3 to 0.5); 0: whatever its length along them; for "
-        "chord, unless mean_length",
+        "Poisson's ratio: skin stretched along its folds narrows by this share of the stretch "
+        "without folding (skin: 0.3 to 0.5; 0: stretch along the folds is ignored); for chord, "
+        "unless mean_length",
         "", 0, 0.5);
     LIMN_FIELD(
         resting, "regions whose skin folds at rest, and more easily when it is compressed; not for "

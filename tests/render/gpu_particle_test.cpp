@@ -468,16 +468,21 @@ TEST_CASE("gpu particles: a closed form is its parabola, however long the steps 
     }
 }
 
-TEST_CASE("gpu particles: those that cover are drawn from back to front, as the CPU's are") {
+/// `count` particles at rest in a ball of 1 m.
+ParticleEmitter still_ball(int count) {
     ParticleEmitter emitter;
     emitter.rate = 0;
-    emitter.bursts = {{.time = 0, .count = 3000}};
-    emitter.capacity = 3000;
+    emitter.bursts = {{.time = 0, .count = static_cast<float>(count)}};
+    emitter.capacity = count;
     emitter.shape = EmitterShape::Ball;
     emitter.size = {1, 1, 1};
     emitter.speed = emitter.speed_spread = 0;
     emitter.life = 100;
-    Executors both(emitter, {.gravity = 0});
+    return emitter;
+}
+
+TEST_CASE("gpu particles: those that cover are drawn from back to front, as the CPU's are") {
+    Executors both(still_ball(3000), {.gravity = 0});
     both.step(2);
     both.shine(PointLight{.intensity = 20, .radius = 9}, at({3, 4, 3.5f}));
     ParticleLook puff;
@@ -503,15 +508,7 @@ TEST_CASE("gpu particles: those that cover are drawn from back to front, as the 
 }
 
 TEST_CASE("gpu particles: in water and above it they are drawn as the CPU's are") {
-    ParticleEmitter emitter;
-    emitter.rate = 0;
-    emitter.bursts = {{.time = 0, .count = 60}};
-    emitter.capacity = 300;
-    emitter.shape = EmitterShape::Ball;
-    emitter.size = {1, 1, 1};
-    emitter.speed = emitter.speed_spread = 0;
-    emitter.life = 100;
-    Executors both(emitter, {.gravity = 0});
+    Executors both(still_ball(60), {.gravity = 0});
     both.step(2);
     both.place(
         both.add(make_square()), both.add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
