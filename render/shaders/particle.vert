@@ -74,8 +74,8 @@ void add_light(inout SixWayLight sum, Incoming light, mat3 axes) {
     }
 }
 
-// `axes`: to the right, up and away from the camera.
-SixWayLight six_way_light(vec3 position_ws, vec3 normal, mat3 axes, vec2 pixel, float distance) {
+// `axes`: to the right, up and away from the camera; `radius`: of the particle [m].
+SixWayLight six_way_light(vec3 position_ws, vec3 normal, mat3 axes, float radius, vec2 pixel, float distance) {
     SixWayLight sum;
     const float kSquared = 2.0 / 3.0;  // of the cosine in an even environment, against the cosine itself
     for (int i = 0; i < 3; ++i) {
@@ -91,7 +91,8 @@ SixWayLight six_way_light(vec3 position_ws, vec3 normal, mat3 axes, vec2 pixel, 
     WaterMedium medium = water_medium(position_ws);
     uvec2 list = cell_list(clamp(pixel, vec2(0.0), view.size.xy - 1.0), distance);
     for (uint i = list.x; i < list.x + list.y; ++i) {
-        add_light(sum, incoming_shadowed(int(texelFetch(light_indices, int(i)).x), position_ws, normal, pixel, medium), axes);
+        int index = int(texelFetch(light_indices, int(i)).x);
+        add_light(sum, incoming_shadowed(index, position_ws, normal, radius, pixel, medium), axes);
     }
 #endif
     return sum;
@@ -303,8 +304,8 @@ void main() {
         mat3 axes = mat3(normalize(quad.right), normalize(quad.up), away_axis);
         vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
         vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
-        SixWayLight sides =
-            six_way_light(lit_place(p, offset), -away_axis, axes, pixel, max(middle.w, view.camera_ws.w));
+        float ahead = max(middle.w, view.camera_ws.w);
+        SixWayLight sides = six_way_light(lit_place(p, offset), -away_axis, axes, 0.5 * size, pixel, ahead);
         vec3 white = color.rgb * glow.y * color.a;
         for (int i = 0; i < 3; ++i) {
             positive_side[i].rgb = white * sides.positive[i];
@@ -326,7 +327,8 @@ void main() {
 #endif
         vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
         vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
-        radiance += glow.y * scattered_light(lit_place(p, offset), normal, streak.w, pixel, max(middle.w, view.camera_ws.w));
+        float ahead = max(middle.w, view.camera_ws.w);
+        radiance += glow.y * scattered_light(lit_place(p, offset), normal, streak.w, 0.5 * size, pixel, ahead);
     }
 #endif
     light = vec4(color.rgb * radiance * color.a, color.a);

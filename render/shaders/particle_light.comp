@@ -38,10 +38,12 @@ void main() {
     if (look_texel(p.look, kLookFocus).y == 0.0) {
         return;
     }
-    Quad quad = quad_of(p, shape, streak, tumble, int(glow.w), size_of(p, shape));
+    float size = size_of(p, shape);
+    Quad quad = quad_of(p, shape, streak, tumble, int(glow.w), size);
     vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
     vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
-    vec3 light = scattered_light(
-        p.position, corner_normals(p.position, quad), streak.w, pixel, max(middle.w, view.camera_ws.w));
+    float ahead = max(middle.w, view.camera_ws.w);
+    vec3 light =
+        scattered_light(p.position, corner_normals(p.position, quad), streak.w, 0.5 * size, pixel, ahead);
     middle_light[index] = vec4(glow.y * light, 0.0);
 }

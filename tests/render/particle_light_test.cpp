@@ -73,6 +73,22 @@ double mean_of_corners(double cosine, double forward) {
     return (sum + std::abs(forward) * (lobe - sum)) / static_cast<double>(kPi);
 }
 
+/// Mean of 1 / d^2 over a ball around the origin, to a place at `away`.
+double mean_over_ball(double radius, double away) {
+    constexpr int kSteps = 400;
+    double sum = 0;
+    double volume = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double r = radius * (i + 0.5) / kSteps;
+        for (int j = 0; j < kSteps; ++j) {
+            const double cosine = -1 + 2 * (j + 0.5) / kSteps;
+            sum += r * r / (r * r + away * away - 2 * r * away * cosine);
+            volume += r * r;
+        }
+    }
+    return sum / volume;
+}
+
 }  // namespace
 
 TEST_CASE_FIXTURE(LitScene, "particle light: in the middle it is the mean of the corners") {
@@ -118,6 +134,25 @@ TEST_CASE_FIXTURE(
     CHECK(at_corners.x > 1);
     for (int i = 0; i < 3; ++i) {
         CHECK(in_middle[i] == near(at_corners[i]).epsilon(0.01));
+    }
+}
+
+TEST_CASE_FIXTURE(
+    LitScene, "particle light: a lamp within a puff lights it as the mean of its ball") {
+    const float radius = 0.5f;
+    emit({{0, 0, 0}}, lit_disc(2 * radius, 0));
+    const Entity lamp = shine(PointLight{.intensity = 1.5f, .radius = 0}, at({0, 0, 1}));
+    for (const ParticleLitAt where : {ParticleLitAt::Middle, ParticleLitAt::Corners}) {
+        light_at(where);
+        for (const float share : {0.02f, 0.3f, 0.7f, 0.95f, 1.1f, 1.5f, 3.0f}) {
+            CAPTURE(share);
+            world.get<WorldTransform>(lamp).world = at({0, 0, share * radius});
+            const auto away = static_cast<double>(share * radius);
+            const double irradiance = 1.5 * mean_over_ball(static_cast<double>(radius), away);
+            CHECK(
+                static_cast<double>(middle().x)
+                == near(irradiance * mean_of_corners(1, 0)).epsilon(0.05));
+        }
     }
 }
 
