@@ -66,6 +66,19 @@ struct Card {
     float root_shade;  ///< factor of the shade at the root: less light comes there
 };
 
+/// Roots evenly over the skull (R. Swinbank and R. Purser, "Fibonacci Grids", 2006), from below, so
+/// that upper layers come last.
+Vec3 scalp_root(int i, int count, const Vec3& jitter, const HeadShape& shape) {
+    const float up = -1 + 2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
+    const float turn = kPi * (3 - std::sqrt(5.0f)) * static_cast<float>(i);
+    const float ring = std::sqrt(1 - up * up);
+    Vec3 root = kMiddle + 9.0f * Vec3(ring * std::sin(turn), up, ring * std::cos(turn)) + jitter;
+    for (int step = 0; step < 3; ++step) {
+        root = project_to_head(root, shape, 0);
+    }
+    return root;
+}
+
 void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
     constexpr std::uint32_t kRows = 3;
     Vec3 at = card.root - 0.1f * card.out;
@@ -95,6 +108,27 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
     append_grid(part.mesh, kRows, 2, false);
 }
 
+/// Wide cards that lie on the scalp, so that hair is seen between locks, not skin.
+void append_undercoat(HeadPart& part, const HeadShape& shape) {
+    constexpr int kCards = 1500;
+    for (int i = 0; i < kCards; ++i) {
+        Card card;
+        card.root = scalp_root(i, kCards, Vec3(0), shape);
+        if (scalp_hair_cover(card.root) < 0.95f) {
+            continue;
+        }
+        card.out = glm::normalize(head_gradient(card.root, shape, 0));
+        card.flow = hair_flow(card.root, card.out);
+        card.length = 2.6f;
+        card.width = 1.5f;
+        card.lift = 0.06f;
+        card.strand = 0.37f * static_cast<float>(i);
+        card.shade = 0.75f;
+        card.root_shade = 1;
+        append_card(part, card, shape);
+    }
+}
+
 }  // namespace
 
 float scalp_hair_cover(const Vec3& p) {
@@ -105,18 +139,12 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
     constexpr int kCards = 4600;  // on the whole ball around the skull; some 2970 grow
     HeadPart part;
     part.mesh.name = "scalp";
+    append_undercoat(part, shape);
     Random random(0, 0, name_hash("scalp_hair"), 0);
     for (int i = 0; i < kCards; ++i) {
-        // Evenly over a ball (R. Swinbank and R. Purser, "Fibonacci Grids", 2006), from below, so
-        // that upper layers come last.
-        const float up = -1 + 2 * (static_cast<float>(i) + 0.5f) / kCards;
-        const float turn = kPi * (3 - std::sqrt(5.0f)) * static_cast<float>(i);
-        const float ring = std::sqrt(1 - up * up);
-        Vec3 root = kMiddle + 9.0f * Vec3(ring * std::sin(turn), up, ring * std::cos(turn));
-        root += 0.35f * Vec3(random.uniform() - 0.5f, 0, random.uniform() - 0.5f);
-        for (int step = 0; step < 3; ++step) {
-            root = project_to_head(root, shape, 0);
-        }
+        const float aside_x = random.uniform() - 0.5f;
+        const float aside_z = random.uniform() - 0.5f;
+        const Vec3 root = scalp_root(i, kCards, 0.35f * Vec3(aside_x, 0, aside_z), shape);
         const float grown = random.uniform();
         const std::array<float, 4> chance = {
             random.uniform(), random.uniform(), random.uniform(), random.uniform()};

@@ -1,4 +1,5 @@
 #include "bench/oracles/hair_oracle.h"
+#include "ecs/components/shadow.h"
 #include "render/hair_lobes.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
@@ -315,6 +316,39 @@ TEST_CASE("hair: a lit square has the light of those strands that light reaches 
         const Vec4 light = strand_light(hair, {{a.x, a.y, 0, 0}}, lit)[0];
         const Vec3 found = lit_square(hair, {d.y, -d.x, d.z}, make_square());
         CHECK(glm::distance(found, Vec3(light) + light.w) < 0.01f * glm::length(found));
+    }
+}
+
+TEST_CASE(
+    "hair: strands of a dense body throw no shadow on each other, what is farther away does") {
+    const auto lit = [](float density, float distance, bool shadowed) {
+        Scene scene;
+        scene.place(
+            scene.add(make_square()), scene.add(hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, density)),
+            at({0, 0, 0}));
+        scene.place(
+            scene.add(make_square()), scene.add(Material{}), at({1.2f + distance, 0, distance}));
+        const Vec3 behind_edge = {0.2f + 0.6f * distance, 0, 0};  // seen past the caster's edge
+        const Entity light =
+            scene.shine(DirectionalLight{.illuminance = 3}, look_at({0, 0, 0}, {-1, 0, -1}));
+        if (shadowed) {
+            scene.world.add(
+                light, Shadow{
+                           .filter = ShadowFilter::Hard,
+                           .resolution = 2048,
+                           .cascades = 1,
+                           .distance = 3});
+        }
+        return scene.radiance(scene.look({-0.3f, 0, 1}, behind_edge, 65, 65)).at(32, 32, 1);
+    };
+    for (const float distance : {0.015f, 0.03f, 0.3f}) {
+        CAPTURE(distance);
+        const double way = std::sqrt(2.0) * static_cast<double>(distance) / 0.03;
+        const double share = std::exp(-way * way);
+        const auto open = static_cast<double>(lit(0.6f, distance, false));
+        const auto shaded = static_cast<double>(lit(0.6f, distance, true));
+        CHECK(std::abs(shaded - share * open) < 0.01 * open);
+        CHECK(lit(0, distance, true) == 0);
     }
 }
 

@@ -15,6 +15,7 @@
 const float kHairIndex = 1.55;        // of refraction
 const float kHairHeadOn = 0.0465;     // ((index - 1) / (index + 1))^2
 const float kMinHairRoughness = 0.05;
+const float kHairBody = 0.03;         // depth [m] of a dense body of hair; by eye
 const float kHairWrap = 0.5;          // cosine beyond the horizon from which scattered light still arrives; by eye
 
 struct HairLobes {
@@ -111,6 +112,13 @@ struct HairLight {
 float lit_strands(float density, float n_l, float n_v) {
     float reached = max(n_l, 0.0);
     return mix(1.0, min(2.0 * reached / max(reached + n_v, 1e-4), 1.0), density);
+}
+
+// Share of the light that met the nearest caster at this distance [m] which arrives all the same. What strands of the same
+// dense body take, lit_strands() tells; their shadows, besides, would be those of single cards.
+float past_strands(HairLobes hair, float distance) {
+    float depth = distance / kHairBody;
+    return min(2.0 * hair.density, 1.0) * exp(-depth * depth);
 }
 
 // `normal`: of the body of hair.

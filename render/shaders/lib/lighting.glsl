@@ -140,17 +140,27 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium me
     return Incoming(to_light, irradiance, irradiance);
 }
 
-#if defined(SHADE_SUBSURFACE) && defined(SHADOWS) && defined(SHADOW_MAPS)
-// Adds the diffuse light that has entered behind a body of Subsurface and passed it: by the profile, over the distance
-// from where the light's shadow map is hit, with the normal there taken to be the opposite one (Jimenez et al.,
-// "Real-Time Realistic Skin Translucency", 2010).
-void add_light_through(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
+#if (defined(SHADE_SUBSURFACE) || defined(SHADE_HAIR)) && defined(SHADOWS) && defined(SHADOW_MAPS)
+// Adds the light of a lamp with a shadow, and what has passed through a body:
+//   skin  the diffuse light that has entered behind it: by the profile, over the distance from where the light's shadow
+//         map is hit, with the normal there taken to be the opposite one (Jimenez et al., "Real-Time Realistic Skin
+//         Translucency", 2010)
+//   hair  what strands of the same body have in their shadow
+void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
     vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
-    vec3 share = transmitted_share(shadow_thickness(shadow, position_ws, light.to_light), r.diffusion);
+    float thickness = shadow_thickness(shadow, position_ws, light.to_light);
+#ifdef SHADE_HAIR
+    light.irradiance = max(light.irradiance, light.unshadowed * past_strands(r.hair, thickness));
+#endif
+    add_light(sum, r, light);
+#ifdef SHADE_SUBSURFACE
+    vec3 share = transmitted_share(thickness, r.diffusion);
     sum.diffuse += light.unshadowed * share * max(-dot(r.normal, light.to_light), 0.0);
+#endif
 }
 #else
-void add_light_through(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
+void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
+    add_light(sum, r, light);
 }
 #endif
 
@@ -181,8 +191,7 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
     int n = 0;
     do {
         Incoming light = incoming_directional(n, position_ws, r.normal, pixel);
-        add_light(sum, r, light);
-        add_light_through(sum, r, n, light, position_ws);
+        add_shadowed(sum, r, n, light, position_ws);
     } while (++n < directional);
 #endif
 }
@@ -215,8 +224,7 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
         vec3 transmittance = light_transmittance(existing, position_ws, r.normal, light.to_light, pixel);
         light.irradiance *= i < end ? transmittance : vec3(0.0);
         light.unshadowed *= i < end ? 1.0 : 0.0;
-        add_light(sum, r, light);
-        add_light_through(sum, r, existing, light, position_ws);
+        add_shadowed(sum, r, existing, light, position_ws);
         ++i;
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
     } while (i < end);

@@ -13,8 +13,7 @@ Reflected reflect_one_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel) {
     light.irradiance *= light_transmittance(light_index, position_ws, r.normal, light.to_light, pixel);
 #endif
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
-    add_light(sum, r, light);
-    add_light_through(sum, r, light_index, light, position_ws);
+    add_shadowed(sum, r, light_index, light, position_ws);
     return reflect_lights(r, sum);
 }
 

@@ -71,6 +71,9 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
 #ifdef SHADE_SUBSURFACE
     r.diffusion = vec3(0.0);
 #endif
+#ifdef SHADE_HAIR
+    r.hair.density = 0.0;
+#endif
 #ifdef SMOOTH_NORMALS
     r.fading = vec4(s.smooth_normal_ws, s.fades ? 1.0 : 0.0);
 #endif
