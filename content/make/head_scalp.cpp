@@ -110,7 +110,7 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
 
 /// Wide cards that lie on the scalp, so that hair is seen between locks, not skin.
 void append_undercoat(HeadPart& part, const HeadShape& shape) {
-    constexpr int kCards = 1500;
+    constexpr int kCards = 700;
     for (int i = 0; i < kCards; ++i) {
         Card card;
         card.root = scalp_root(i, kCards, Vec3(0), shape);
@@ -119,8 +119,8 @@ void append_undercoat(HeadPart& part, const HeadShape& shape) {
         }
         card.out = glm::normalize(head_gradient(card.root, shape, 0));
         card.flow = hair_flow(card.root, card.out);
-        card.length = 2.6f;
-        card.width = 1.5f;
+        card.length = 2.4f;
+        card.width = 2.0f;
         card.lift = 0.06f;
         card.strand = 0.37f * static_cast<float>(i);
         card.shade = 0.75f;
@@ -136,7 +136,7 @@ float scalp_hair_cover(const Vec3& p) {
 }
 
 HeadPart make_scalp_hair(const HeadShape& shape) {
-    constexpr int kCards = 4600;  // on the whole ball around the skull; some 2970 grow
+    constexpr int kCards = 3900;  // on the whole ball around the skull; some 2520 grow
     HeadPart part;
     part.mesh.name = "scalp";
     append_undercoat(part, shape);
