@@ -29,15 +29,14 @@ void main() {
 
     // Depths are near / distance, so that their differences are shares of distances, too.
     vec4 apart = abs(four - here);
-    float farthest = max(max(apart.x, apart.y), max(apart.z, apart.w));
-    if (farthest <= kAlike * here || farthest <= kAlike * here + 2.0 * slope_at(at, here)) {
-        radiance = textureLod(layer, place / size, 0.0);
-        return;
-    }
     float nearest = min(min(apart.x, apart.y), min(apart.z, apart.w));
-    vec2 right = clamp(place - 0.5 - corner, 0.0, 1.0);
+    float farthest = max(max(apart.x, apart.y), max(apart.z, apart.w));
+    bool is_even = farthest <= kAlike * here || farthest <= kAlike * here + 2.0 * slope_at(at, here);
+    float limit = is_even ? farthest : nearest + kAlike * here;
+
+    vec2 right = clamp(place - 0.5 - corner, 1e-3, 1.0 - 1e-3);  // all texels count, should one of them alone be left
     vec4 weights = vec4(1.0 - right.x, right.x, right.x, 1.0 - right.x) * vec4(right.yy, 1.0 - right.yy)
-        * vec4(lessThanEqual(apart, vec4(nearest + kAlike * here)));
+        * vec4(lessThanEqual(apart, vec4(limit)));
     ivec2 first = ivec2(corner);
     radiance = (weights.x * texelFetchOffset(layer, first, 0, ivec2(0, 1))
                 + weights.y * texelFetchOffset(layer, first, 0, ivec2(1, 1))
