@@ -13,9 +13,10 @@ const float kAlike = 0.1;  // difference of distances up to which texels are of 
 
 // Depth per pixel along x and y, each on the side where it changes less: of the pixel's own surface at an edge, too.
 float slope_at(ivec2 at, float here) {
-    vec2 before = vec2(texelFetchOffset(scene_depth, at, 0, ivec2(-1, 0)).r, texelFetchOffset(scene_depth, at, 0, ivec2(0, -1)).r);
-    vec2 after = vec2(texelFetchOffset(scene_depth, at, 0, ivec2(1, 0)).r, texelFetchOffset(scene_depth, at, 0, ivec2(0, 1)).r);
-    vec2 slope = min(abs(before - here), abs(after - here));
+    vec2 size = vec2(textureSize(scene_depth, 0));
+    vec4 before = textureGather(scene_depth, vec2(at) / size);
+    vec4 after = textureGather(scene_depth, vec2(at + 1) / size);
+    vec2 slope = min(abs(before.xz - here), abs(after.zx - here));
     return slope.x + slope.y;
 }
 
