@@ -30,7 +30,7 @@ constexpr unsigned kReflectionMapUnit = 22;
 constexpr unsigned kDetailMapUnit = 23;
 constexpr unsigned kDetailWavesUnit = 24;
 constexpr unsigned kDetailsUnit = 25;
-constexpr unsigned kDistanceUnit = 26;
+constexpr unsigned kBehindDepthUnit = 26;
 constexpr unsigned kFoamUnit = 29;
 constexpr unsigned kFloorMapUnit = 27;
 constexpr int kCells = layout::kWaterGrid;
@@ -110,24 +110,41 @@ void bind_foam(gpu::Device& device, WaterEffect& pass) {
     device.bind_texture(kFoamUnit, pass.foam);
 }
 
-/// Copies radiance and distance [m along the view axis, 0: nothing] of what lies behind the water.
-void copy_behind(
-    FrameGraph& graph, std::string_view name, const gpu::Program* program, const ViewData& view,
-    std::initializer_list<Use> targets) {
-    add_fullscreen_pass(
-        graph, name, {sampled(view.radiance, 0), sampled(view.gbuffer.depth, 1)}, targets, program,
-        [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
+/// Copies of radiance and depth, which the water is drawn over.
+struct BehindWater {
+    TextureId radiance;
+    TextureId depth;
+};
+
+BehindWater copy_behind(FrameGraph& graph, const ViewData& view) {
+    const TextureId radiance = view.radiance;
+    const TextureId depth = view.gbuffer.depth;
+    const BehindWater copies = {
+        create_like(graph, "behind water", radiance),
+        create_like(graph, "depth behind water", depth)};
+    graph.add_pass(
+        "behind water", {radiance, depth}, {image(copies.radiance), image(copies.depth)},
+        [radiance, depth, copies](PassContext& context) {
+            context.texture(radiance).copy_to(context.texture(copies.radiance));
+            context.texture(depth).copy_to(context.texture(copies.depth));
+        });
+    return copies;
 }
 
-/// Heights of the highest surfaces, tile by tile.
-TextureId find_highest(
-    FrameGraph& graph, const gpu::Program* program, const ViewData& view, TextureId distance) {
+/// Heights of the highest surfaces, of each tile and of it and all above it.
+TextureId
+find_highest(FrameGraph& graph, const WaterEffect& effect, const ViewData& view, TextureId depth) {
     const IVec2 tiles = (view.size() + layout::kHighestTile - 1) / layout::kHighestTile;
     const TextureId highest = create_target(graph, "highest surfaces", GL_R32F, tiles);
     add_fullscreen_pass(
-        graph, "highest surfaces", {sampled(distance, kDistanceUnit)}, {discarded(highest)},
-        program, [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
-    return highest;
+        graph, "highest surfaces", {sampled(depth, kBehindDepthUnit)}, {discarded(highest)},
+        effect.highest,
+        [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
+    const TextureId columns = create_target(graph, "highest in columns", GL_RG32F, tiles);
+    add_fullscreen_pass(
+        graph, "highest in columns", {sampled(highest, 0)}, {discarded(columns)}, effect.columns,
+        [](PassContext&, const gpu::Program&) {});
+    return columns;
 }
 
 bool any_water(const FrameData& frame) {
@@ -153,10 +170,10 @@ Result<WaterEffect> WaterEffect::create(gpu::Device& device, const RenderSetting
     gpu::ShaderLibrary& shaders = device.shaders();
     WaterEffect effect{
         .surface = ProgramVariants(device, {.vertex = "water.vert", .fragment = "water.frag"}),
-        .behind =
-            LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_behind.frag"})),
         .highest =
             LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_highest.frag"})),
+        .columns =
+            LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_columns.frag"})),
         .waves = LIMN_TRY(
             shaders.load({.vertex = "fullscreen.vert", .fragment = "texture_waves.frag"}))};
     const std::array<std::uint16_t, kIndices> indices = grid_indices();
@@ -196,18 +213,11 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
     if (waters->list.empty()) {
         return;
     }
-    const TextureId scene = create_radiance(graph, view, "behind water");
-    const TextureId distance = graph.create(
-        {.name = "distance behind water",
-         .format = GL_R32F,
-         .width = view.camera.width,
-         .height = view.camera.height});
-    copy_behind(graph, "behind water", behind, view, {discarded(scene), discarded(distance)});
-
-    std::vector<Use> reads =
-        lighting_reads(view, {sampled(scene, kBehindUnit), sampled(distance, kDistanceUnit)});
+    const BehindWater behind = copy_behind(graph, view);
+    std::vector<Use> reads = lighting_reads(
+        view, {sampled(behind.radiance, kBehindUnit), sampled(behind.depth, kBehindDepthUnit)});
     if (waters->list.traced || waters->list.seen_from_below) {
-        const TextureId surfaces = find_highest(graph, highest, view, distance);
+        const TextureId surfaces = find_highest(graph, *this, view, behind.depth);
         reads.push_back(sampled(surfaces, kHighestUnit));
     }
     const auto* reflection = frame.data.find<PlanarReflection>();
@@ -290,7 +300,10 @@ void WaterMirrorEffect::request_views(FrameData& frame) {
 
 void WaterMirrorEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const TextureId target = graph.import("water reflection", map);
-    copy_behind(graph, "water reflection", copy, view, {target_level(discarded(target), 0)});
+    add_fullscreen_pass(
+        graph, "water reflection", {sampled(view.radiance, 0), sampled(view.gbuffer.depth, 1)},
+        {target_level(discarded(target), 0)}, copy,
+        [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
     graph.add_pass("water reflection, blurred", {}, {image(target)}, [this](PassContext&) {
         map.generate_mipmaps();
     });

@@ -12,7 +12,8 @@ namespace limn {
 // Reads    WaterList, radiance, depth, light clusters, environment
 // Writes   radiance, depth, velocity and, if requested, surface attributes where there is water
 // Order    after lights and sky, before blended surfaces
-// Shaders  water_behind.frag, water_highest.frag, water.vert, water.frag, lib/water_surface.glsl,
+// Shaders  water_behind.frag, water_highest.frag, water_columns.frag, water.vert, water.frag,
+// lib/water_surface.glsl,
 //          lib/water_reflection.glsl, lib/water_refraction.glsl,
 //          lib/water_tracing.glsl, lib/water_foam.glsl
 //
@@ -24,8 +25,8 @@ namespace limn {
 
 struct WaterEffect {
     ProgramVariants surface;
-    const gpu::Program* behind = nullptr;
     const gpu::Program* highest = nullptr;
+    const gpu::Program* columns = nullptr;
     const gpu::Program* waves = nullptr;  ///< texture_waves.frag
     gpu::VertexArray grid{};
     gpu::Buffer indices{};

@@ -107,6 +107,16 @@ float pixel_extent(vec3 position_ws) {
     return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
 }
 
+const float kSmallDisc = 3.0;  // half its width, up to which it is drawn as one triangle [px]
+
+// Of a triangle around the unit disc; the other one of the quad has no area. Along the diagonal of a quad, a software
+// OpenGL shades the blocks of both triangles.
+vec2 triangle_corner(int vertex) {
+    const float kApex = 1.5;
+    const float kBase = 2.2360680;  // (apex + 1) / sqrt(apex^2 - 1)
+    return vertex < 2 ? vec2(float(2 * vertex - 1) * kBase, -1.0) : vec2(0.0, kApex);
+}
+
 #ifdef BILLBOARDS
 const int kAlignedView = 1;
 const int kAlignedAxis = 2;
@@ -239,6 +249,14 @@ void main() {
 #ifdef IMAGES
     corner.xy = trimmed_corner(corner.xy, look, flipbook, quad, pixel_extent(p.position) / resolution);
 #endif
+    bool is_small_disc = book.w < 0.0 && min(length(quad.right), length(quad.up)) * resolution < kSmallDisc * pixel_extent(p.position);
+#ifdef LIT
+    is_small_disc = is_small_disc && (glow.y <= 0.0 || look_texel(look, kLookFocus).y > 0.0);  // not lit at its corners
+#endif
+#ifdef RIBBONS
+    is_small_disc = is_small_disc && !is_ribbon;
+#endif
+    corner.xy = is_small_disc ? triangle_corner(vertex) : corner.xy;
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
 #ifdef RIBBONS
     if (is_ribbon) {

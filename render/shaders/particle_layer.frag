@@ -13,9 +13,10 @@ const float kAlike = 0.1;  // difference of distances up to which texels are of 
 
 // Depth per pixel along x and y, each on the side where it changes less: of the pixel's own surface at an edge, too.
 float slope_at(ivec2 at, float here) {
-    vec2 before = vec2(texelFetchOffset(scene_depth, at, 0, ivec2(-1, 0)).r, texelFetchOffset(scene_depth, at, 0, ivec2(0, -1)).r);
-    vec2 after = vec2(texelFetchOffset(scene_depth, at, 0, ivec2(1, 0)).r, texelFetchOffset(scene_depth, at, 0, ivec2(0, 1)).r);
-    vec2 slope = min(abs(before - here), abs(after - here));
+    vec2 size = vec2(textureSize(scene_depth, 0));
+    vec4 before = textureGather(scene_depth, vec2(at) / size);
+    vec4 after = textureGather(scene_depth, vec2(at + 1) / size);
+    vec2 slope = min(abs(before.xz - here), abs(after.zx - here));
     return slope.x + slope.y;
 }
 
@@ -29,15 +30,14 @@ void main() {
 
     // Depths are near / distance, so that their differences are shares of distances, too.
     vec4 apart = abs(four - here);
-    float farthest = max(max(apart.x, apart.y), max(apart.z, apart.w));
-    if (farthest <= kAlike * here || farthest <= kAlike * here + 2.0 * slope_at(at, here)) {
-        radiance = textureLod(layer, place / size, 0.0);
-        return;
-    }
     float nearest = min(min(apart.x, apart.y), min(apart.z, apart.w));
-    vec2 right = clamp(place - 0.5 - corner, 0.0, 1.0);
+    float farthest = max(max(apart.x, apart.y), max(apart.z, apart.w));
+    bool is_even = farthest <= kAlike * here || farthest <= kAlike * here + 2.0 * slope_at(at, here);
+    float limit = is_even ? farthest : nearest + kAlike * here;
+
+    vec2 right = clamp(place - 0.5 - corner, 1e-3, 1.0 - 1e-3);  // all texels count, should one of them alone be left
     vec4 weights = vec4(1.0 - right.x, right.x, right.x, 1.0 - right.x) * vec4(right.yy, 1.0 - right.yy)
-        * vec4(lessThanEqual(apart, vec4(nearest + kAlike * here)));
+        * vec4(lessThanEqual(apart, vec4(limit)));
     ivec2 first = ivec2(corner);
     radiance = (weights.x * texelFetchOffset(layer, first, 0, ivec2(0, 1))
                 + weights.y * texelFetchOffset(layer, first, 0, ivec2(1, 1))

@@ -4,8 +4,9 @@
 
 layout(binding = 4) uniform sampler2D scene_depth;
 
-float depth_at(ivec2 at) {
-    return texelFetch(scene_depth, clamp(at, ivec2(0), textureSize(scene_depth, 0) - 1), 0).r;
+// Depths about a corner of four pixels: upper left, upper right, lower right, lower left.
+vec4 depths_about(ivec2 corner) {
+    return textureGather(scene_depth, vec2(corner) / vec2(textureSize(scene_depth, 0)));
 }
 
 // Whether it changes from b to c about as much as before and after: depths are near / distance, linear in the image on
@@ -17,17 +18,16 @@ bool is_smooth(float a, float b, float c, float d) {
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     ivec2 first = 2 * at;
-    float four[4];
-    for (int i = 0; i < 4; ++i) {
-        four[i] = depth_at(first + ivec2(i & 1, i >> 1));
-    }
-    bool smooth_rows = is_smooth(depth_at(first - ivec2(1, 0)), four[0], four[1], depth_at(first + ivec2(2, 0)))
-        && is_smooth(depth_at(first + ivec2(-1, 1)), four[2], four[3], depth_at(first + ivec2(2, 1)));
-    bool smooth_columns = is_smooth(depth_at(first - ivec2(0, 1)), four[0], four[2], depth_at(first + ivec2(0, 2)))
-        && is_smooth(depth_at(first + ivec2(1, -1)), four[1], four[3], depth_at(first + ivec2(1, 2)));
-    float nearest = max(max(four[0], four[1]), max(four[2], four[3]));
-    float farthest = min(min(four[0], four[1]), min(four[2], four[3]));
-    gl_FragDepth = smooth_rows && smooth_columns ? 0.25 * (four[0] + four[1] + four[2] + four[3])
+    vec4 left = depths_about(first + ivec2(0, 1));
+    vec4 right = depths_about(first + ivec2(2, 1));
+    vec4 below = depths_about(first + ivec2(1, 0));
+    vec4 above = depths_about(first + ivec2(1, 2));
+    vec4 four = vec4(left.zy, right.wx);  // lower left, upper left, lower right, upper right
+    bool smooth_rows = is_smooth(left.w, four.x, four.z, right.z) && is_smooth(left.x, four.y, four.w, right.y);
+    bool smooth_columns = is_smooth(below.w, four.x, four.y, above.x) && is_smooth(below.z, four.z, four.w, above.y);
+    float nearest = max(max(four.x, four.y), max(four.z, four.w));
+    float farthest = min(min(four.x, four.y), min(four.z, four.w));
+    gl_FragDepth = smooth_rows && smooth_columns ? dot(four, vec4(0.25))
                    : ((at.x + at.y) & 1) == 0    ? nearest
                                                  : farthest;
 }

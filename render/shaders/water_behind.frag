@@ -1,5 +1,4 @@
-// The scene without water: its radiance and, in w and in a second target, its distance along the view axis [m], 0
-// where there is no surface.
+// The scene without water: its radiance and, in w, its distance along the view axis [m], 0 where there is no surface.
 #version 450
 #include "lib/view.glsl"
 
@@ -7,11 +6,9 @@ layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 1) uniform sampler2D depth;
 
 layout(location = 0) out vec4 scene;
-layout(location = 1) out float distance;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float d = texelFetch(depth, pixel, 0).r;
-    distance = d > 0.0 ? view_distance(d) : 0.0;
-    scene = vec4(texelFetch(radiance, pixel, 0).rgb, distance);
+    scene = vec4(texelFetch(radiance, pixel, 0).rgb, d > 0.0 ? view_distance(d) : 0.0);
 }

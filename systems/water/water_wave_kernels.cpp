@@ -1,6 +1,8 @@
 #include "systems/water/water_wave_kernels.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/water/water_wave_kernels.cpp"
@@ -30,6 +32,8 @@ inline constexpr float kCos2 = -1.38883683e-3f;
 inline constexpr float kCos3 = 2.47604892e-5f;
 inline constexpr float kCos4 = -2.60518434e-7f;
 
+inline constexpr std::size_t kLinesAtOnce = 4;
+
 }  // namespace limn::waves
 #endif
 
@@ -44,19 +48,28 @@ std::size_t sum_waves_vector(
     return 0;
 }
 
+bool sum_lines_vector(std::span<const WaveLine>, const Vec2&, WavePoint&) {
+    return false;
+}
+
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using V = hn::Vec<Floats>;
 constexpr Floats d;
+using Four = hn::FixedTag<float, waves::kLinesAtOnce>;
+using V4 = hn::Vec<Four>;
 
+template <typename V>
 struct SinCos {
     V sin;
     V cos;
 };
 
-HWY_INLINE SinCos sin_cos(V angle) {
+template <typename V>
+HWY_INLINE SinCos<V> sin_cos(V angle) {
+    constexpr hn::DFromV<V> d;
     const V turns = hn::Round(hn::Mul(angle, hn::Set(d, waves::kOverPi)));
     V x = hn::Sub(angle, hn::Mul(turns, hn::Set(d, waves::kPi0)));
     x = hn::Sub(x, hn::Mul(turns, hn::Set(d, waves::kPi1)));
@@ -95,7 +108,7 @@ std::size_t sum_waves_vector(
             const V phase = hn::Add(
                 hn::Add(hn::Mul(hn::Set(d, line.k.x), px), hn::Mul(hn::Set(d, line.k.y), pz)),
                 hn::Set(d, line.phase));
-            const SinCos at = sin_cos(phase);
+            const SinCos<V> at = sin_cos(phase);
             V height = at.sin;
             if (line.lean > 0) {
                 const V ahead = hn::Mul(hn::Set(d, line.lean), hn::Max(at.sin, zero));
@@ -112,6 +125,82 @@ std::size_t sum_waves_vector(
     return i;
 }
 
+/// Numbers of up to four lines from `first` on; those that are not there move nothing.
+struct FourLines {
+    V4 kx, ky, side_x, side_y, phase, amplitude, lean, frequency;
+};
+HWY_INLINE FourLines load_lines(std::span<const WaveLine> lines, std::size_t first) {
+    constexpr Four d;
+    constexpr hn::RebindToSigned<Four> di;
+    constexpr int kWords = sizeof(WaveLine) / sizeof(float);
+    static_assert(sizeof(WaveLine) == 8 * sizeof(float));
+    const auto lane = hn::Iota(di, 0);
+    const auto left = hn::Set(di, static_cast<std::int32_t>(lines.size() - first));
+    const auto is_there = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, hn::Lt(lane, left))));
+    const auto index = hn::Mul(hn::Min(lane, hn::Sub(left, hn::Set(di, 1))), hn::Set(di, kWords));
+    const float* const words = &lines[first].k.x;
+    const auto word = [&](int i) { return hn::GatherIndex(d, words + i, index); };
+    return {
+        word(0),
+        word(1),
+        hn::IfThenElseZero(is_there, word(2)),
+        hn::IfThenElseZero(is_there, word(3)),
+        word(4),
+        hn::IfThenElseZero(is_there, word(5)),
+        word(6),
+        word(7)};
+}
+
+/// False where there are no vectors.
+bool sum_lines_vector(std::span<const WaveLine> lines, const Vec2& at, WavePoint& point) {
+    constexpr Four d;
+    const V4 zero = hn::Zero(d);
+    const V4 one = hn::Set(d, 1.0f);
+    V4 ox = zero, oy = zero, oz = zero, xx = zero, xy = zero, xz = zero;
+    V4 zx = zero, zy = zero, zz = zero, vx = zero, vy = zero, vz = zero;
+    for (std::size_t first = 0; first < lines.size(); first += waves::kLinesAtOnce) {
+        const FourLines line = load_lines(lines, first);
+        const V4 phase = hn::Add(
+            hn::Add(hn::Mul(line.kx, hn::Set(d, at.x)), hn::Mul(line.ky, hn::Set(d, at.y))),
+            line.phase);
+        const SinCos<V4> turn = sin_cos(phase);
+        const V4 leaning = hn::IfThenElseZero(hn::Gt(turn.sin, zero), line.lean);
+        SinCos<V4> moved = turn;
+        if (!hn::AllTrue(d, hn::Eq(line.lean, zero))) {
+            moved = sin_cos(hn::Sub(phase, hn::Mul(leaning, turn.sin)));
+        }
+        // By phase.
+        const V4 bx = hn::Mul(hn::Neg(line.side_x), turn.sin);
+        const V4 by =
+            hn::Mul(hn::Mul(line.amplitude, moved.cos), hn::Sub(one, hn::Mul(leaning, turn.cos)));
+        const V4 bz = hn::Mul(hn::Neg(line.side_y), turn.sin);
+        const V4 back = hn::Neg(line.frequency);
+        ox = hn::Add(ox, hn::Mul(line.side_x, turn.cos));
+        oy = hn::Add(oy, hn::Mul(line.amplitude, moved.sin));
+        oz = hn::Add(oz, hn::Mul(line.side_y, turn.cos));
+        xx = hn::Add(xx, hn::Mul(line.kx, bx));
+        xy = hn::Add(xy, hn::Mul(line.kx, by));
+        xz = hn::Add(xz, hn::Mul(line.kx, bz));
+        zx = hn::Add(zx, hn::Mul(line.ky, bx));
+        zy = hn::Add(zy, hn::Mul(line.ky, by));
+        zz = hn::Add(zz, hn::Mul(line.ky, bz));
+        vx = hn::Add(vx, hn::Mul(back, bx));
+        vy = hn::Add(vy, hn::Mul(back, by));
+        vz = hn::Add(vz, hn::Mul(back, bz));
+    }
+    const auto total = [&](V4 sum) {
+        float lanes[waves::kLinesAtOnce];
+        hn::StoreU(sum, d, lanes);
+        return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+    };
+    point = {
+        {total(ox), total(oy), total(oz)},
+        {total(xx), total(xy), total(xz)},
+        {total(zx), total(zy), total(zz)},
+        {total(vx), total(vy), total(vz)}};
+    return true;
+}
+
 #endif  // HWY_TARGET
 
 }  // namespace
@@ -122,6 +211,7 @@ HWY_AFTER_NAMESPACE();
 namespace limn {
 
 HWY_EXPORT(sum_waves_vector);
+HWY_EXPORT(sum_lines_vector);
 
 namespace {
 
@@ -149,6 +239,21 @@ ScalarSinCos sin_cos(float angle) {
     return {sign * (x + x * (x2 * s)), sign * (1.0f + x2 * c)};
 }
 
+WavePoint move_by_line(const WaveLine& line, const Vec2& at) {
+    const float phase = (line.k.x * at.x + line.k.y * at.y) + line.phase;
+    const ScalarSinCos turn = sin_cos(phase);
+    const float leaning = turn.sin > 0 ? line.lean : 0.0f;
+    const ScalarSinCos moved = sin_cos(phase - leaning * turn.sin);
+    const Vec3 by_phase = {
+        -line.side.x * turn.sin, (line.amplitude * moved.cos) * (1.0f - leaning * turn.cos),
+        -line.side.y * turn.sin};
+    return {
+        {line.side.x * turn.cos, line.amplitude * moved.sin, line.side.y * turn.cos},
+        line.k.x * by_phase,
+        line.k.y * by_phase,
+        -line.frequency * by_phase};
+}
+
 void sum_from(
     std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets, std::size_t first) {
@@ -172,6 +277,30 @@ void sum_from(
 }
 
 }  // namespace
+
+WavePoint& WavePoint::operator+=(const WavePoint& other) {
+    offset += other.offset;
+    by_x += other.by_x;
+    by_z += other.by_z;
+    velocity += other.velocity;
+    return *this;
+}
+
+WavePoint sum_lines(std::span<const WaveLine> lines, const Vec2& at) {
+    WavePoint sum;
+    return HWY_DYNAMIC_DISPATCH(sum_lines_vector)(lines, at, sum) ? sum
+                                                                  : sum_lines_scalar(lines, at);
+}
+
+WavePoint sum_lines_scalar(std::span<const WaveLine> lines, const Vec2& at) {
+    WavePoint sums[waves::kLinesAtOnce];
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        sums[i % waves::kLinesAtOnce] += move_by_line(lines[i], at);
+    }
+    sums[0] += sums[1];
+    sums[2] += sums[3];
+    return sums[0] += sums[2];
+}
 
 void sum_waves(
     std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,

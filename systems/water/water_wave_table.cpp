@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace limn {
 
@@ -101,24 +102,6 @@ Window window_at(const WaveRing& ring, float r) {
     return {square(std::sin(u)), rate * std::sin(2 * u)};
 }
 
-WavePoint evaluate_line(const WaveLine& line, const Vec2& at) {
-    const float phase = line.k.x * at.x + line.k.y * at.y + line.phase;
-    const float sine = std::sin(phase);
-    const float cosine = std::cos(phase);
-    const float leaning = sine > 0 ? line.lean : 0.0f;
-    const float moved = phase - leaning * sine;
-    const float height = line.amplitude * std::sin(moved);
-    const float rise =
-        line.amplitude * std::cos(moved) * (1 - leaning * cosine);  // derivative by phase
-    const Vec3 by_phase = {-line.side.x * sine, rise, -line.side.y * sine};
-    WavePoint point;
-    point.offset = {line.side.x * cosine, height, line.side.y * cosine};
-    point.by_x = line.k.x * by_phase;
-    point.by_z = line.k.y * by_phase;
-    point.velocity = -line.frequency * by_phase;
-    return point;
-}
-
 WavePoint evaluate_ring(const WaveRing& ring, const Vec2& at) {
     const Vec2 out = at - ring.center;
     const float r = std::sqrt(out.x * out.x + out.y * out.y);
@@ -149,14 +132,6 @@ WavePoint evaluate_ring(const WaveRing& ring, const Vec2& at) {
 }
 
 }  // namespace
-
-WavePoint& WavePoint::operator+=(const WavePoint& other) {
-    offset += other.offset;
-    by_x += other.by_x;
-    by_z += other.by_z;
-    velocity += other.velocity;
-    return *this;
-}
 
 std::vector<WaterWave> generate_waves(const WaveGroup& group) {
     std::vector<WaterWave> waves;
@@ -225,13 +200,11 @@ void snap_waves(const WaterDetail& detail, WaveTable& table) {
 
 WavePoint evaluate_waves(const WaveTable& table, const Vec2& at, float shortest) {
     const auto too_short = [&](float k) { return k * shortest > 2 * kPi; };
-    WavePoint sum;
-    for (const WaveLine& line : table.lines) {
-        if (too_short(glm::length(line.k))) {
-            break;  // all others are shorter still
-        }
-        sum += evaluate_line(line, at);
+    std::size_t count = table.lines.size();  // they are sorted by length
+    while (shortest > 0 && count > 0 && too_short(glm::length(table.lines[count - 1].k))) {
+        --count;
     }
+    WavePoint sum = sum_lines(std::span(table.lines).first(count), at);
     for (const WaveRing& ring : table.rings) {
         if (!too_short(ring.k)) {
             sum += evaluate_ring(ring, at);

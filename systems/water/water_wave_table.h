@@ -3,22 +3,13 @@
 #include "ecs/components/water.h"
 #include "ecs/components/water_detail.h"
 #include "ecs/components/water_waves.h"
+#include "systems/water/water_wave_kernels.h"
 
 #include <vector>
 
 namespace limn {
 
 // Creation and evaluation of a WaveTable.
-
-/// Displacement of a rest point by waves, with derivatives.
-struct WavePoint {
-    Vec3 offset = {0, 0, 0};    ///< [m]
-    Vec3 by_x = {0, 0, 0};      ///< derivative of the offset, d / dx
-    Vec3 by_z = {0, 0, 0};      ///< d / dz
-    Vec3 velocity = {0, 0, 0};  ///< d / dt [m/s]
-
-    WavePoint& operator+=(const WavePoint& other);
-};
 
 /// Random waves of a group; deterministic.
 [[nodiscard]] std::vector<WaterWave> generate_waves(const WaveGroup& group);

@@ -93,6 +93,34 @@ TEST_CASE_FIXTURE(
     CHECK(cut.at(45, 12, 0) > 0.95f);
 }
 
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a streak of few pixels is all of an ellipse, from rim to rim") {
+    const Vec3 along = {0.6f, 0.8f, 0};
+    ParticleLook streak = disc({1, 1, 1}, 1, 1);
+    streak.facing = ParticleFacing::Velocity;
+    for (const float width : {1.0f, 4.0f, 5.5f, 7.0f}) {  // [px]; the last is no small disc
+        CAPTURE(width);
+        constexpr float kPixel = 2.0f / 96;  // [m]
+        streak.size = width * kPixel;
+        streak.stretch = 20 * kPixel;  // at 1 m/s
+        const Entity entity =
+            world.create(ParticleEmitter{}, streak, pool_at({{Vec3(0, 0, 0)}}, along));
+        const gpu::FloatImage seen = radiance(look({0, 0, 1}, {0, 0, 0}, 96, 96));
+        float worst = 0;
+        for (int y = 0; y < 96; ++y) {
+            for (int x = 0; x < 96; ++x) {
+                const Vec2 place = {static_cast<float>(x) - 47.5f, 47.5f - static_cast<float>(y)};
+                const float up = glm::dot(place, Vec2(along)) / (0.5f * width + 10);
+                const float right = (place.x * along.y - place.y * along.x) / (0.5f * width);
+                const float expected = square(std::max(1 - square(up) - square(right), 0.0f));
+                worst = std::max(worst, std::abs(seen.at(x, y, 0) - expected));
+            }
+        }
+        CHECK(worst < 0.004f);
+        world.destroy(entity);
+    }
+}
+
 TEST_CASE(
     "particle pass: they are ordered from back to front, equal ones as they were, NaN first") {
     std::vector<ParticleInstance> instances(100);

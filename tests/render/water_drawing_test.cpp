@@ -421,14 +421,14 @@ TEST_CASE_FIXTURE(Lake, "water: a camera exactly on the surface sees numbers, wh
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface that any of their pixels shows") {
+TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface in them and above them") {
     pour({.size = {40, 40}});
     const MaterialId white = add(Material{});
     place(add(make_square()), white, affine_from({-3, 1, -4}, {1, 0, 0, 0}, {1, 2.5f, 1}));
     place(add(make_square()), white, affine_from({2, -1, -1}, {1, 0, 0, 0}, Vec3(1)));
     const RenderView view = look({0, 2, 4}, {0, 1, 0}, 150, 70);
     FrameGraph& graph = frame_graph(shared_renderer());
-    const std::string names[] = {"highest surfaces", "distance behind water"};
+    const std::string names[] = {"highest in columns", "depth behind water"};
     for (const std::string& name : names) {
         graph.keep_named(name);
     }
@@ -443,7 +443,8 @@ TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface that any of their
     std::vector<float> highest(15, -layout::kNoHeight);
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
-            const float d = seen.at(x, y, 0);
+            const float depth = seen.at(x, y, 0);
+            const float d = depth > 0 ? view.near / depth : 0;
             const int row = 2 - (view.height - 1 - y) / layout::kHighestTile;  // from the top
             float& highest_here =
                 highest[static_cast<std::size_t>(5 * row + x / layout::kHighestTile)];
@@ -456,9 +457,12 @@ TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface that any of their
     CHECK(std::ranges::count_if(highest, [](float h) { return h > 3; }) >= 1);
     for (int i = 0; i < 15; ++i) {
         CAPTURE(i);
-        const float found = tiles.at(i % 5, i / 5, 0);
-        CHECK(found == test::near(highest[static_cast<std::size_t>(i)]).epsilon(1e-3));
+        const float here = highest[static_cast<std::size_t>(i)];
+        const float over = i < 5 ? -layout::kNoHeight : tiles.at(i % 5, i / 5 - 1, 1);
+        CHECK(tiles.at(i % 5, i / 5, 0) == test::near(here).epsilon(1e-3));
+        CHECK(tiles.at(i % 5, i / 5, 1) == test::near(std::max(here, over)).epsilon(1e-3));
     }
+    CHECK(tiles.at(1, 2, 1) > tiles.at(1, 2, 0) + 0.5f);  // the column of the wall
 }
 
 TEST_CASE_FIXTURE(Lake, "water: a pool looks the same with a sea in the world as without") {

@@ -10,7 +10,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace limn {
@@ -443,6 +445,56 @@ TEST_CASE("water waves: at many points at once they are the same, and vectors ar
         for (int axis = 0; axis < 3; ++axis) {
             CHECK(found[axis][i] == plain[axis][i]);
             CHECK(std::abs(found[axis][i] - expected[axis]) < 2e-5f);
+        }
+    }
+}
+
+TEST_CASE("water waves: all of a point's motion, by vectors of lines and by plain code") {
+    using Numbers = std::array<double, 12>;
+    const auto numbers = [](const WavePoint& p) {
+        Numbers all{};
+        int i = 0;
+        for (const Vec3& v : {p.offset, p.by_x, p.by_z, p.velocity}) {
+            for (int axis = 0; axis < 3; ++axis) {
+                all[static_cast<std::size_t>(i++)] = static_cast<double>(v[axis]);
+            }
+        }
+        return all;
+    };
+    for (std::uint32_t count = 0; count < 10; ++count) {
+        CAPTURE(count);
+        const WaveTable table = table_of(
+            {.waves = {{.amplitude = 0.3f, .length = 7, .sharpness = 1, .lean = 0.4f}},
+             .groups = {{.count = count, .length = {2, 20}, .sharpness = 0.7f}}},
+            12.3);
+        const Vec2 at = {3.1f + static_cast<float>(count), -7.7f};
+        Numbers expected{};
+        for (const WaveLine& line : table.lines) {
+            const glm::dvec2 k = line.k;
+            const glm::dvec2 side = line.side;
+            const double lean = static_cast<double>(line.lean);
+            const double amplitude = static_cast<double>(line.amplitude);
+            const double phase = glm::dot(k, glm::dvec2(at)) + static_cast<double>(line.phase);
+            const double moved = phase - lean * std::max(std::sin(phase), 0.0);
+            const double rate = std::sin(phase) > 0 ? 1 - lean * std::cos(phase) : 1.0;
+            const double offset[3] = {
+                side.x * std::cos(phase), amplitude * std::sin(moved), side.y * std::cos(phase)};
+            const double by_phase[3] = {
+                -side.x * std::sin(phase), amplitude * std::cos(moved) * rate,
+                -side.y * std::sin(phase)};
+            for (std::size_t i = 0; i < 3; ++i) {
+                expected[i] += offset[i];
+                expected[3 + i] += k.x * by_phase[i];
+                expected[6 + i] += k.y * by_phase[i];
+                expected[9 + i] -= static_cast<double>(line.frequency) * by_phase[i];
+            }
+        }
+        const Numbers found = numbers(sum_lines(table.lines, at));
+        const Numbers plain = numbers(sum_lines_scalar(table.lines, at));
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            CAPTURE(i);
+            CHECK(found[i] == plain[i]);
+            CHECK(std::abs(found[i] - expected[i]) < 1e-5);
         }
     }
 }

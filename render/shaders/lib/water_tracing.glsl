@@ -1,16 +1,16 @@
 // Screen-space tracing of rays from a water surface, in the image of the scene without water. Include after
 // lib/view.glsl.
 
-layout(binding = 5) uniform sampler2D behind_radiance;   // water_behind.frag
-layout(binding = 26) uniform sampler2D behind_distance;
-layout(binding = 13) uniform sampler2D highest_surfaces;  // water_highest.frag
+layout(binding = 5) uniform sampler2D behind_radiance;  // without the water
+layout(binding = 26) uniform sampler2D behind_depth;
+layout(binding = 13) uniform sampler2D highest_surfaces;  // water_columns.frag
 
 // Of reflected rays.
 const float kMirrorStep = 10.0;       // [px] on average; what is narrower may be missed
 const float kMinMirrorSteps = 10.0;
 const float kMaxMirrorSteps = 48.0;
 const float kMirrorReach = 2000.0;    // [m]
-const int kMaxClearTiles = 64;
+const int kMaxTiles = 64;
 const float kMirrorThickness = 0.2;   // of what they meet, relative to the path, by eye
 const int kBendSteps = 8;
 const float kOpenReach = 150.0;       // of refracted rays over no ground: what is met farther down is lost in the water [m]
@@ -44,7 +44,8 @@ vec3 ray_point(ScreenRay ray, float path) {
 // Distance along the view axis of the surface in a pixel [m]; 0: none, or off screen.
 float distance_at(vec2 pixel) {
     bool shown = all(lessThan(abs(pixel - 0.5 * view.size.xy), 0.5 * view.size.xy));
-    return shown ? texelFetch(behind_distance, ivec2(pixel), 0).r : 0.0;
+    float depth = texelFetch(behind_depth, ivec2(pixel), 0).r;
+    return shown && depth > 0.0 ? view_distance(depth) : 0.0;
 }
 vec2 clamp_to_screen(vec2 pixel) {
     return clamp(pixel, vec2(0.5), view.size.xy - 0.5);
@@ -68,35 +69,46 @@ struct Side {
     float up;     // 1: above, -1: below
 };
 
-// Distance of the surface in a pixel, if it is on the same side of the water at rest as the ray; else kInfiniteDistance.
-float blocking_distance(vec2 pixel, Side side) {
-    float seen = texelFetch(behind_distance, ivec2(pixel), 0).r;
-    bool blocks = seen > 0.0 && side.up * (height_of(pixel, seen) - side.level) > 0.0;
-    return blocks ? seen : kInfiniteDistance;
+// Reciprocal distance of the surface in a pixel [1/m], if it is on the same side of the water at rest as the ray; else
+// that of kInfiniteDistance.
+float blocking_nearness(vec2 pixel, Side side) {
+    float near = texelFetch(behind_depth, ivec2(pixel), 0).r / view.camera_ws.w;
+    float up = view_ray(pixel).y + (view.camera_ws.y - side.level) * near;  // of the surface, divided by its distance
+    return near > 0.0 && side.up * up > 0.0 ? near : 1.0 / kInfiniteDistance;
 }
 
-// How far a ray from `from` [px] along the image goes, in units of `along` and up to `end`, through tiles without
-// anything above the level of a side that is above water.
-float clear_way(vec2 from, vec2 along, float end, Side side) {
+// Where a ray along `along` in the image has to be followed, in units of that and up to `end`: from the first to the last
+// tile in which anything above the water may hide the ray, which leaves `height` [m] and climbs by `climb` per meter.
+// Rays below water are followed everywhere.
+vec2 blocked_way(ScreenRay ray, vec2 along, float height, float climb, float end, Side side) {
+    vec2 from = gl_FragCoord.xy;
     vec2 slope = mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
     vec2 inverse = 1.0 / slope;
     vec2 beyond = step(0.0, slope) + 1e-3 * sign(slope);  // the next tile [tiles]
     ivec2 last = textureSize(highest_surfaces, 0) - 1;
+    vec2 blocked = vec2(end, 0.0);
     float way = 0.0;
-    bool clear;
     int tiles = 0;
     do {
         ivec2 tile = clamp(ivec2(from + way * along) / kHighestTile, ivec2(0), last);
-        clear = side.up > 0.0 && texelFetch(highest_surfaces, tile, 0).r <= side.level;
+        vec2 highest = texelFetch(highest_surfaces, tile, 0).rg;  // in the tile, and in it and those above it
+        // What hides a point of the ray is nearer, in the same pixel: above the point or above the camera. The ray has
+        // climbed by path * climb, with path = way * from.z / (1 - way * along.z).
+        float ray_height = height + climb * way * ray.from.z / (1.0 - way * ray.along.z);
+        vec2 limit = vec2(max(side.level, min(ray_height, view.camera_ws.y)));
+        bvec2 is_clear = bvec2(side.up > 0.0 && highest.x <= limit.x, side.up > 0.0 && along.y > 0.0 && highest.y <= limit.y);
         vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) * inverse;
-        way = clear ? max(way, min(leaving.x, leaving.y)) : way;
-    } while (clear && way < end && ++tiles < kMaxClearTiles);
-    return min(way, end);
+        float next = max(way, is_clear.y ? leaving.x : min(leaving.x, leaving.y));
+        blocked = is_clear.x ? blocked : vec2(min(blocked.x, way), next);
+        way = next;
+    } while (way < end && ++tiles < kMaxTiles);
+    float first = min(blocked.x, way);
+    return vec2(first, clamp(way < end ? end : blocked.y, first, end));
 }
 
 // Radiance along a reflected ray: from the image where the ray hits something on screen, else `around`, at infinite
 // distance. The ray is followed in the image, where pixels and the reciprocal of the distance are linear, up to where it
-// leaves the screen; steps grow from the first tile on in which anything is above the water.
+// leaves the screen; steps grow from the first tile on in which anything may hide it.
 RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     ScreenRay ray = screen_ray(position, direction);
     vec2 from = gl_FragCoord.xy;
@@ -106,11 +118,13 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     float reach = ray.along.z < 0.0 ? min(kMirrorReach, -0.95 * ray.from.z / ray.along.z) : kMirrorReach;
     float u_reach = reach / (ray.from.z + reach * ray.along.z);
     float u_end = max(min(u_reach, min(leaving.x, leaving.y)), 0.0);
-    float u_begin = clear_way(from, along, u_end, side);
-    float rest = u_end - u_begin;
+    vec2 blocked = blocked_way(ray, along, direction.y < 0.0 ? -kNoHeight : position.y, max(direction.y, 0.0), u_end, side);
+    float u_begin = blocked.x;
+    float rest = blocked.y - u_begin;
     float count = rest > 0.0 ? ceil(clamp(rest * length(along) / kMirrorStep, kMinMirrorSteps, kMaxMirrorSteps)) : 1.0;
     float low = u_begin;
     float high = u_begin;
+    float inverse_from = 1.0 / ray.from.z;
     float z = ray.from.z / (1.0 - u_begin * ray.along.z);
     float ahead = 1.0;  // reciprocal distances of the ray and of what is seen, apart: at low
     float behind;       // and at high
@@ -119,11 +133,12 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     do {
         float share = min(++step / count, 1.0);
         high = met ? high : u_begin + rest * share * (0.3 + 0.7 * share);
-        float seen = blocking_distance(from + high * along, side);
+        float seen = blocking_nearness(from + high * along, side);
         // What it passes far behind does not stop it. Under water, where no sky can take its place, anything does.
-        bool near = side.up < 0.0 || z < seen + kMirrorThickness * low * z + 0.05;
-        z = ray.from.z / (1.0 - high * ray.along.z);
-        behind = 1.0 / seen - 1.0 / z;
+        bool near = side.up < 0.0 || (z - kMirrorThickness * low * z - 0.05) * seen < 1.0;
+        float nearness = (1.0 - high * ray.along.z) * inverse_from;
+        z = 1.0 / nearness;
+        behind = seen - nearness;
         met = met || (near && behind > 0.0);
         ahead = met ? ahead : -behind;
         low = met ? low : high;
@@ -133,8 +148,7 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     int steps = 0;
     do {
         float middle = 0.5 * (low + high);
-        float apart = 1.0 / blocking_distance(from + middle * along, side)
-                      - (1.0 - middle * ray.along.z) / ray.from.z;
+        float apart = blocking_nearness(from + middle * along, side) - (1.0 - middle * ray.along.z) * inverse_from;
         bool hidden = apart > 0.0;
         ahead = hidden ? ahead : -apart;
         behind = hidden ? apart : behind;
@@ -147,7 +161,7 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     vec2 hit = from + u * along;
     vec3 color = radiance_at(hit);
     // If it is far behind the occluder, its hit is not visible on screen.
-    float gap = abs(z - blocking_distance(hit, side));
+    float gap = abs(z - 1.0 / blocking_nearness(hit, side));
     vec2 edge = min(hit, view.size.xy - hit) * view.size.zw;
     float trust = clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0)
                   * clamp(2.0 - gap / (kMirrorThickness * path + 0.05), 0.0, 1.0);
