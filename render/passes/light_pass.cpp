@@ -146,9 +146,10 @@ void draw_clustered(FrameGraph& graph, ProgramVariants& programs, const ViewData
 }  // namespace
 
 Result<LightEffect> LightEffect::create(gpu::Device& device, const RenderSettings&) {
-    LightEffect effect{.clustered = ProgramVariants::fullscreen(device, "light_pass.frag")};
+    LightEffect effect{
+        .clustered = ProgramVariants::fullscreen(device, "light_pass.frag"),
+        .lobes = ProgramVariants::fullscreen(device, "shading_lobes.frag")};
     LIMN_TRY(effect.clustered.load());
-    effect.lobes = LIMN_TRY(load_fullscreen(device, "shading_lobes.frag"));
     return effect;
 }
 
@@ -180,7 +181,7 @@ void LightEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
             view.scattered = create_scattered(graph, view);
         }
         if (by_lobes(*frame.materials)) {
-            view.data.publish<ShadingLobes>().depth = draw_lobes(graph, lobes, view);
+            view.data.publish<ShadingLobes>().depth = draw_lobes(graph, lobes.get({}), view);
         }
         draw_clustered(graph, clustered, view);
     } else if (method.is_forward()) {

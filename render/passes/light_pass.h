@@ -28,7 +28,7 @@ namespace limn {
 
 struct LightEffect {
     ProgramVariants clustered;
-    const gpu::Program* lobes = nullptr;
+    ProgramVariants lobes;                 ///< where a level has several, or light spreads
     std::optional<LightEachPass> each{};   ///< created when a level first asks for it
     std::optional<ForwardPass> forward{};  ///< the same
     ProjectorPool projectors{};
