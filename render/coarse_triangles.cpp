@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace limn {
@@ -19,6 +20,8 @@ constexpr std::size_t kMinTriangles = 48;  // a mesh of fewer costs less than it
 constexpr std::size_t kCoarsestTriangles = 8;
 constexpr float kMaxError = 0.5f;  // quadric error, relative to the size of the mesh
 constexpr float kRatio = 0.4f;     // triangles wanted of a level, of those of the one before
+// The finest levels are drawn of what is seen large: steps between them are smaller.
+constexpr float kFineRatios[] = {0.65f, 0.62f};
 constexpr float kWorthwhile = 0.75f;
 
 /// The triangles of the mesh that are no lines, with one of the vertices at the same place.
@@ -106,9 +109,11 @@ std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
         const auto share = [&](float of) {
             return static_cast<std::size_t>(of * static_cast<float>(finer.size() / 3)) * 3;
         };
-        Indices coarser = collapse(mesh, finer, share(kRatio));
+        const float ratio =
+            levels.size() < std::size(kFineRatios) ? kFineRatios[levels.size()] : kRatio;
+        Indices coarser = collapse(mesh, finer, share(ratio));
         float distance = distance_from(mesh, vertices, coarser);
-        Indices merged = mesh.morphs.empty() ? cluster(mesh, all, share(kRatio)) : Indices();
+        Indices merged = mesh.morphs.empty() ? cluster(mesh, all, share(ratio)) : Indices();
         const float merged_distance = distance_from(mesh, vertices, merged);
         if (coarser.size() > share(kWorthwhile) || merged_distance < distance) {
             coarser = std::move(merged);

@@ -21,7 +21,7 @@ namespace limn {
 // whose lips and lids part, have collapsed edges only.
 
 /// Most coarser levels of a mesh.
-inline constexpr std::size_t kMaxCoarseLevels = 6;
+inline constexpr std::size_t kMaxCoarseLevels = 7;
 
 struct CoarseTriangles {
     std::vector<std::uint32_t> indices;  ///< three per triangle

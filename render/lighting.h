@@ -49,6 +49,14 @@ inline constexpr gpu::PipelineState kWhereSurfaces = {
 inline constexpr gpu::PipelineState kWhereBackground = {
     .depth = {.test = true, .write = false, .func = GL_EQUAL}, .cull = GL_NONE};
 
+/// The lobe of each pixel of a view, as the depth that fullscreen.vert has with the definition
+/// SHADING_LOBE: passes for one lobe alone test for it. Published in draw() where surfaces have
+/// several lobes, or scatter light.
+struct ShadingLobes {
+    TextureId depth;
+};
+inline constexpr gpu::PipelineState kWhereLobe = kWhereBackground;
+
 /// Binds the view's uniform block and all that its LightingInputs say.
 void bind_lighting(PassContext& context, const ViewData& view);
 

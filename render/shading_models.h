@@ -2,9 +2,11 @@
 
 #include "ecs/components/surface.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <string_view>
 
 namespace limn {
 
@@ -36,15 +38,29 @@ inline constexpr ShadingModelRow kShadingModels[] = {
      true},
     {ShadingModel::Hair, "hair", "kModelHair", "SHADE_HAIR", "hair", true},
 };
-static_assert(std::size(kShadingModels) < 16, "four bits in the G-buffer, and 0 is no surface");
+inline constexpr std::size_t kMaxShadingModels = 16;  ///< four bits in the G-buffer
+static_assert(std::size(kShadingModels) < kMaxShadingModels, "0 is no surface");
 
 /// The number in the G-buffer; 0 is no surface.
 [[nodiscard]] constexpr std::uint32_t stored_number(ShadingModel model) {
     return static_cast<std::uint32_t>(model) + 1;
 }
 
+/// The same for all models with the lobe of this one: the number of the first of them.
+[[nodiscard]] constexpr std::uint32_t lobe_number(ShadingModel model) {
+    const std::string_view lobe = kShadingModels[static_cast<std::size_t>(model)].lobe;
+    std::size_t first = 0;
+    while (std::string_view(kShadingModels[first].lobe) != lobe) {
+        ++first;
+    }
+    return stored_number(kShadingModels[first].model);
+}
+
 /// A set of models: bit n is the one stored as n.
 using ShadingModelSet = std::uint32_t;
+
+/// The lobes of models: bit n is the one with lobe_number() n.
+[[nodiscard]] ShadingModelSet lobes_of(ShadingModelSet models);
 
 /// Whether lighting passes need the material of each pixel.
 [[nodiscard]] bool reads_material_records(ShadingModelSet models);
@@ -52,9 +68,10 @@ using ShadingModelSet = std::uint32_t;
 /// Adds the definitions of lit programs: those of the models, and MATERIAL_RECORDS.
 void add_shading_models(Variant& variant, ShadingModelSet models);
 
-/// GLSL: the constants of the stored numbers.
+/// GLSL: the constants of the stored numbers; lobe_number().
 [[nodiscard]] std::string model_numbers_glsl();
-/// GLSL: the files of all models; prepare_model() and model_response(), which choose among them.
+/// GLSL: the files of all models; prepare_model() and model_response(), which choose among them, or
+/// with SHADING_LOBE, a lobe_number(), among those with this lobe.
 [[nodiscard]] std::string model_functions_glsl();
 
 }  // namespace limn

@@ -6,10 +6,14 @@
 #include "render/instance_list.h"
 #include "render/light_clusters.h"
 #include "render/lighting.h"
+#include "render/lobe_bounds.h"
 #include "render/material_pool.h"
 #include "render/render_frame.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
+#include <bit>
 
 namespace limn {
 namespace {
@@ -60,6 +64,11 @@ Pass* get_or_create(
     return &*pass;
 }
 
+/// Whether pixels are lit lobe by lobe.
+bool by_lobes(const MaterialPool& materials) {
+    return std::popcount(lobes_of(materials.shading_models())) > 1 || materials.diffuses();
+}
+
 constexpr int kScatteredLevels = 6;
 
 TextureId create_scattered(FrameGraph& graph, const ViewData& view) {
@@ -69,29 +78,77 @@ TextureId create_scattered(FrameGraph& graph, const ViewData& view) {
         std::min(kScatteredLevels, gpu::full_level_count(size.x, size.y)));
 }
 
+/// Writes ShadingLobes.
+TextureId draw_lobes(FrameGraph& graph, const gpu::Program* program, const ViewData& view) {
+    const TextureId lobes =
+        create_target(graph, "shading lobes", GL_DEPTH_COMPONENT32F, view.size());
+    gpu::PipelineState state = gpu::kFullscreenState;
+    state.depth = {.test = true, .write = true, .func = GL_ALWAYS};
+    add_fullscreen_pass(
+        graph, "shading lobes",
+        {sampled(view.gbuffer.surface, kGbufferUnit), sampled(view.gbuffer.depth, kDepthUnit)},
+        {discarded(lobes)}, program, state, [](PassContext&, const gpu::Program&) {});
+    return lobes;
+}
+
+void draw_lit(
+    PassContext& context, ProgramVariants& programs, const Variant& variant,
+    const gpu::PipelineState& state) {
+    if (const gpu::Program* program = programs.get(variant)) {
+        context.device().use(gpu::Pipeline{program, state});
+        context.device().draw_fullscreen();
+    }
+}
+
+/// One draw per lobe, so that no pixel computes those of others: a software OpenGL would.
+void draw_each_lobe(PassContext& context, ProgramVariants& programs, const ViewData& view) {
+    const ShadingModelSet lobes = lobes_of(view.frame->materials->shading_models());
+    const auto& bounds = view.data.get<LobeBounds>();
+    for (std::uint32_t lobe = 0; lobe < kMaxShadingModels; ++lobe) {
+        const PixelBounds& box = bounds[lobe];
+        if ((lobes >> lobe & 1u) == 0 || (is_empty(box) && !view.frame->warm_up)) {
+            continue;
+        }
+        Variant variant = view.lighting.variant;
+        variant.add("SHADING_LOBE", static_cast<int>(lobe));
+        const IVec2 size = glm::max(box.high - box.low, IVec2(0));
+        context.device().set_scissor(box.low.x, box.low.y, size.x, size.y);
+        draw_lit(context, programs, variant, kWhereLobe);
+    }
+    context.device().disable_scissor();
+}
+
 void draw_clustered(FrameGraph& graph, ProgramVariants& programs, const ViewData& view) {
-    const std::vector<Use> reads =
-        surface_reads(view, sampled(depth_tested(view.gbuffer.depth), kDepthUnit));
+    const auto* lobes = view.data.find<ShadingLobes>();
+    std::vector<Use> reads = surface_reads(
+        view, sampled(
+                  lobes != nullptr ? Use(view.gbuffer.depth) : depth_tested(view.gbuffer.depth),
+                  kDepthUnit));
+    if (lobes != nullptr) {
+        reads.push_back(depth_tested(lobes->depth));
+    }
     std::vector<Use> writes = {cleared(view.radiance)};
     if (view.scattered.valid()) {
         writes.push_back(cleared(view.scattered));
     }
-    graph.add_pass("lights", std::span(reads), writes, [&programs, &view](PassContext& context) {
-        const gpu::Program* program = programs.get(view.lighting.variant);
-        if (program == nullptr) {
-            return;
-        }
-        context.device().use(gpu::Pipeline{program, kWhereSurfaces});
-        bind_lighting(context, view);
-        bind_shadow_masks(context, view);
-        context.device().draw_fullscreen();
-    });
+    graph.add_pass(
+        "lights", std::span(reads), writes, [&programs, &view, lobes](PassContext& context) {
+            bind_lighting(context, view);
+            bind_shadow_masks(context, view);
+            if (lobes != nullptr) {
+                draw_each_lobe(context, programs, view);
+            } else {
+                draw_lit(context, programs, view.lighting.variant, kWhereSurfaces);
+            }
+        });
 }
 
 }  // namespace
 
 Result<LightEffect> LightEffect::create(gpu::Device& device, const RenderSettings&) {
-    LightEffect effect{.clustered = ProgramVariants::fullscreen(device, "light_pass.frag")};
+    LightEffect effect{
+        .clustered = ProgramVariants::fullscreen(device, "light_pass.frag"),
+        .lobes = ProgramVariants::fullscreen(device, "shading_lobes.frag")};
     LIMN_TRY(effect.clustered.load());
     return effect;
 }
@@ -107,6 +164,9 @@ bool LightEffect::prepare(const FrameData& frame, ViewData& view) {
     view.lighting.variant.add_if(!projectors.records().empty(), "PROJECTORS");
     view.lighting.add_binding<bind_records>(published);
     view.lighting.add_binding<bind_materials>(*frame.materials);
+    if (by_lobes(*frame.materials)) {
+        view.data.publish<LobeBounds>() = find_lobe_bounds(*frame.items, view.camera);
+    }
     if (view.data.get<LightingMethod>().is_forward()) {
         upload_objects(frame, view, lights, published);
     }
@@ -119,6 +179,9 @@ void LightEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
     if (method.method == LightMethod::Clustered) {
         if (view.spreads) {
             view.scattered = create_scattered(graph, view);
+        }
+        if (by_lobes(*frame.materials)) {
+            view.data.publish<ShadingLobes>().depth = draw_lobes(graph, lobes.get({}), view);
         }
         draw_clustered(graph, clustered, view);
     } else if (method.is_forward()) {

@@ -18,15 +18,17 @@ namespace limn {
 // spreads
 //          light within surfaces (subsurface_pass.h), that light apart
 // Order    after the G-buffer, shadows and caustics
-// Shaders  light_pass.frag, lib/lighting.glsl
+// Shaders  shading_lobes.frag, light_pass.frag, lib/lighting.glsl
 //
 // Clustered: one pass for any number of lights, a pixel sums the lights of its cluster
-// (deferred.light-pass); the depth test restricts it to surfaces. The older methods, kept for
+// (deferred.light-pass); the depth test restricts it to surfaces, or to those of one lobe after the
+// other where the level has several. The older methods, kept for
 // comparison, are light_each_pass.h (one light at a time over the G-buffer) and forward_pass.h
 // (surfaces lit while they are drawn).
 
 struct LightEffect {
     ProgramVariants clustered;
+    ProgramVariants lobes;                 ///< where a level has several, or light spreads
     std::optional<LightEachPass> each{};   ///< created when a level first asks for it
     std::optional<ForwardPass> forward{};  ///< the same
     ProjectorPool projectors{};

@@ -18,7 +18,7 @@ class Program;
 // Order    after lights, before all that lies in front of surfaces
 // Shaders  subsurface.frag, distance_moments.frag; diffusion_profile.h
 //
-// Each pixel sums 80 rings, or 44 where they cover few pixels, in the tangent plane of its surface,
+// Each pixel sums 80 rings, or 36 where they cover few pixels, in the tangent plane of its surface,
 // in meters, so that neither distance nor tilt changes what is seen; each ring is one sample of a
 // mip level about as wide as the ring's share of the plane. What lies off the plane counts less by
 // how much farther it is, what does not scatter not at all, and the rest is scaled to a share of

@@ -15,7 +15,7 @@ namespace limn::layout {
 #endif
 
 const uint kDiffusionSamples = 80u;
-const uint kFewDiffusionSamples = 44u;
+const uint kFewDiffusionSamples = 36u;
 
 struct SubsurfaceBlock {
     vec4 specular;  // reflectance head on; w: share of the second lobe

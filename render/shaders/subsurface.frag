@@ -71,6 +71,7 @@ void main() {
         vec2 within = clamp((at - corner - 1.0) / clamp(side, 1e-3, 1.0) + 0.5, 0.0, 1.0);
         vec2 where = (corner + 0.5 + within) * view.size.zw;
         float level = log2(max(side, 1.0));
+        level = few ? floor(level + 0.5) : level;  // between two levels a software OpenGL samples both
         vec4 light = textureLod(scattered, where, level);
 
         // What is farther from the plane counts as farther away: by the root mean square over the sample.

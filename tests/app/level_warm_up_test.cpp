@@ -32,9 +32,9 @@ const std::map<std::string, int> kMaxPrograms = {
     {"cistern", 77},   {"cloister", 64}, {"crowd-of-faces", 48},
     {"forge", 57},     {"furrows", 48},  {"gallery", 43},
     {"herd", 43},      {"lagoon", 79},   {"lights", 43},
-    {"markers", 48},   {"million", 54},  {"museum", 99},
+    {"markers", 48},   {"million", 54},  {"museum", 103},
     {"ocean", 57},     {"phonglab", 60}, {"pond", 60},
-    {"portrait", 48},  {"raceway", 78},  {"relax", 48},
+    {"portrait", 53},  {"raceway", 78},  {"relax", 48},
     {"stilllife", 73}, {"storm", 72},    {"stress-instances", 41},
     {"vale", 97}};
 

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -112,6 +113,23 @@ TEST_CASE("shading models: a program has those of the level's materials, and no 
     CHECK(
         definitions_of({ShadingModel::Pbr, ShadingModel::Skin})
         == std::set<std::string>{"MATERIAL_RECORDS", "SHADE_SKIN"});
+}
+
+TEST_CASE("shading models: those with the same lobe are lit together, all others apart") {
+    ShadingModelSet all = 0;
+    ShadingModelSet lobes = 0;
+    for (const ShadingModelRow& a : kShadingModels) {
+        for (const ShadingModelRow& b : kShadingModels) {
+            CHECK(
+                (lobe_number(a.model) == lobe_number(b.model))
+                == (std::string_view(a.lobe) == b.lobe));
+        }
+        all |= 1u << stored_number(a.model);
+        lobes |= 1u << lobe_number(a.model);
+    }
+    CHECK(lobes_of(all) == lobes);
+    CHECK(
+        lobes_of(1u << stored_number(ShadingModel::Unlit)) == 1u << lobe_number(ShadingModel::Pbr));
 }
 
 TEST_CASE("shading models: each is the same lit deferred, forward or one by one") {

@@ -6,7 +6,8 @@
 //     Response lobe_<lobe>(Reflector r, Cosines c)              reflection of one light; models may share it
 //
 // prepare_pbr() has run before the prepare function of any other model. SHADE_<MODEL> is defined if some surface may
-// use the model; that only saves a software OpenGL needless work. SMOOTH_NORMALS is defined if some skin is lit by its
+// use the model; that only saves a software OpenGL needless work. SHADING_LOBE, a lobe_number(), is defined if all
+// surfaces have this lobe. SMOOTH_NORMALS is defined if some skin is lit by its
 // normal without wrinkles, too.
 
 #include "lib/brdf.glsl"
