@@ -59,9 +59,9 @@ constexpr Crease kCreases[] = {
     {{12.4f, 45.4f}, {13.6f, 48.6f}, {12.8f, 52.6f}, 1.1f, 0.09f},
     // upper lip, from its border upwards, of uneven lengths and distances
     {{0.8f, 46.4f}, {0.8f, 45.3f}, {0.9f, 44.1f}, 0.5f, 0.06f},
-    {{1.8f, 46.6f}, {2.0f, 44.8f}, {2.1f, 42.8f}, 0.6f, 0.09f},
+    {{1.8f, 46.6f}, {2.0f, 44.8f}, {2.1f, 42.8f}, 0.6f, 0.07f},
     {{3.1f, 46.6f}, {3.4f, 45.3f}, {3.7f, 44.0f}, 0.5f, 0.06f},
-    {{4.0f, 47.0f}, {4.6f, 45.1f}, {5.0f, 43.2f}, 0.6f, 0.09f},
+    {{4.0f, 47.0f}, {4.6f, 45.1f}, {5.0f, 43.2f}, 0.65f, 0.06f},
     {{5.3f, 47.2f}, {6.0f, 45.8f}, {6.6f, 44.6f}, 0.55f, 0.06f},
     // below the lower lip: short ones that radiate from the mouth, and the furrow above the chin
     {{0.9f, 53.8f}, {1.0f, 54.8f}, {0.9f, 55.6f}, 0.7f, 0.05f},
