@@ -13,6 +13,7 @@ namespace limn {
 
 namespace {
 
+constexpr double kMinShare = 0.0025;  ///< less of both vertices' values is not moved
 constexpr double kMaxStep = 2.0 / 3;  ///< moved away in one step; of equal triangles, S >= 0 then
 
 /// Neighbors of each vertex, in order.
@@ -120,7 +121,12 @@ SkinDiffusion make_skin_diffusion(
             }
             shares = row.take();
         }
+        const double own_area = double{area[welded[v]]};
         for (const auto& [vertex, share] : shares) {
+            const double back = share * own_area / std::max(double{area[vertex]}, 1e-300);
+            row.add(std::max(share, back) < kMinShare ? welded[v] : vertex, share);
+        }
+        for (const auto& [vertex, share] : row.take()) {
             diffusion.shares.emplace_back(vertex, static_cast<float>(share));
         }
     }
