@@ -31,8 +31,20 @@ const FoldingRule kRules[] = {
      {"AU7"},
      {"crows_feet", "lower_lid"},
      {"forehead", "glabella", "nasolabial", "upper_lip"}},
+    {"squint beside the nose",
+     {"AU7"},
+     {"inner_canthus"},
+     {"forehead", "glabella", "nose_root", "nasolabial", "upper_lip"}},
     {"nose sneer", {"AU9"}, {"nose_side"}, {"mentolabial"}},
     {"lip pucker", {"AU18"}, {"upper_lip"}, {"forehead", "glabella", "nose_root", "crows_feet"}},
+    {"lip corners down",
+     {"AU15"},
+     {"marionette"},
+     {"forehead", "glabella", "nose_root", "nose_side", "crows_feet", "lower_lid", "upper_lip"}},
+    {"chin raise",
+     {"AU17"},
+     {"chin"},
+     {"forehead", "glabella", "nose_root", "nose_side", "crows_feet", "nasolabial", "upper_lip"}},
 };
 
 /// "AU12" of "AU12_L".

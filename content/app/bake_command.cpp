@@ -1,6 +1,7 @@
 #include "content/app/bake_command.h"
 
 #include "content/app/bake_photometric.h"
+#include "content/app/bake_strain_model.h"
 #include "content/app/image_file.h"
 #include "content/app/progress.h"
 #include "content/bake/furrow_recipe.h"
@@ -152,6 +153,8 @@ Status bake_furrows(const BakeOptions& options) {
 constexpr BakeKind kKinds[] = {
     {"furrows", "wrinkle furrows of skin along vector fields: height and normal map", bake_furrows},
     {"photometric", "normals and reflectance from photographs in one light each", bake_photometric},
+    {"strain_model", "wrinkles of captured normal maps, as a model of the strain of a face",
+     bake_strain_model},
 };
 
 }  // namespace

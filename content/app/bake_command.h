@@ -12,7 +12,7 @@ namespace limn {
 /// `limn bake`: makes maps from a mesh or from photographs.
 struct BakeOptions {
     std::string kind;
-    std::string in;                       ///< .gltf or .glb; of photometric, .json
+    std::string in;                       ///< .gltf or .glb; of photometric and strain_model, .json
     std::string out;                      ///< NAME.png or NAME.exr; a kind adds to the name
     std::string recipe;                   ///< JSON of the kind; empty = its defaults
     std::string mesh;                     ///< name of a mesh of the file; empty = its largest

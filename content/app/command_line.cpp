@@ -353,7 +353,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
     CLI::App* app = program.add_subcommand("bake", "Make maps from a mesh or from photographs");
     std::string kinds;
     for (const BakeKind& kind : bake_kinds()) {
-        kinds += fmt::format("  {:<11} {}\n", kind.name, kind.doc);
+        kinds += fmt::format("  {:<12} {}\n", kind.name, kind.doc);
     }
     add_parsed(
         *app, "kind", "of maps", options.kind,
@@ -366,7 +366,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         })
         ->type_name("KIND")
         ->required();
-    app->add_option("in", options.in, ".gltf or .glb; of photometric: .json")
+    app->add_option("in", options.in, ".gltf or .glb; of photometric and strain_model: .json")
         ->type_name("IN")
         ->required();
     add_parsed(
@@ -396,9 +396,16 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "0.02}}\n"
         "of at least three photographs of a matt surface from one place, each in one of equally\n"
         "bright lights, and writes NAME_normal.png and NAME_albedo.png.\n"
+        "strain_model reads a file that says\n"
+        "  {{\"face\": \"face.glb\", \"rest\": \"rest.png\", \"poses\": [\n"
+        "    {{\"image\": \"smile.png\", \"shapes\": [{{\"name\": \"mouthSmile_L\"}}, ...]}}, "
+        "...]}}\n"
+        "of normal maps of the face in expressions, and writes NAME.exr, the wrinkle texture of a\n"
+        "wrinkle_surface with the method model.\n"
         "Files are written under a temporary name and renamed when complete.\n\n"
         "Examples:\n"
         "  limn bake photometric shots.json -o face.png\n"
+        "  limn bake strain_model poses.json -o wrinkles.exr\n"
         "  limn bake furrows model.glb -o skin.png --set projection=cylinder\n"
         "  limn bake furrows model.glb -o skin.exr --set projection=planar --set preset=hand",
         kinds));

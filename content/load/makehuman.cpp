@@ -5,6 +5,7 @@
 #include "content/load/json_document.h"
 #include "content/load/makehuman_files.h"
 #include "content/load/obj_file.h"
+#include "content/load/obj_subdivision.h"
 #include "ecs/base/text.h"
 
 #include <glm/geometric.hpp>
@@ -313,6 +314,7 @@ class MakehumanImporter {
         LIMN_TRY(find_reference());
         LIMN_TRY(read_rig());
         LIMN_TRY(read_eyes());
+        subdivide_face();
         const SkinWeights skin = rig_ ? normalized(rig_->influences) : SkinWeights{};
         GltfScene scene =
             make_face_scene("person", obj_, kScale, make_parts(), shapes_, reference_, skin);
@@ -435,6 +437,7 @@ class MakehumanImporter {
         const std::vector<Vec3> fitted =
             fit_proxy(proxy, std::span(obj_.positions).first(kVertices));
         append_faces(eyes);
+        eye_vertices_ = std::max<std::size_t>(eyes.positions.size() / 2, 1);
         obj_.positions.insert(obj_.positions.end(), fitted.begin(), fitted.end());
         for (FaceShape& shape : shapes_) {
             const std::vector<Vec3> moved = fit_offsets(proxy, shape.offsets);
@@ -454,11 +457,40 @@ class MakehumanImporter {
             }
         }
         for (std::size_t side = 0; side < 2; ++side) {
-            const std::size_t first = side * (eyes.positions.size() / 2);
+            const std::size_t first = side * eye_vertices_;
             const std::size_t count = std::min(kEyeVertices, eyes.positions.size() - first);
             eyes_[side] = find_eye_ball(std::span(fitted).subspan(first, count), kLimbus);
         }
         return Done{};
+    }
+
+    /// The base mesh was drawn as a cage: as it is, the skin of the face has edges too long for
+    /// normals and strain to vary smoothly between them.
+    void subdivide_face() {
+        std::vector<char> chosen;
+        for (const ObjFace& face : obj_.faces) {
+            const std::span<const ObjCorner> corners(&obj_.corners[face.first], face.count);
+            chosen.push_back(std::ranges::all_of(corners, [this](const ObjCorner& corner) {
+                return is_finite(reference_[corner.position]);
+            }));
+        }
+        const PointMeans means = subdivide_obj(obj_, chosen);
+        reference_ = apply_means<Vec3>(means, reference_);
+        for (FaceShape& shape : shapes_) {
+            shape.offsets = apply_means<Vec3>(means, shape.offsets);
+        }
+        if (!rig_) {
+            return;
+        }
+        std::vector<Influences> influences(obj_.positions.size());
+        for (std::size_t p = 0; p < influences.size(); ++p) {
+            for (std::uint32_t i = means.first[p]; i < means.first[p + 1]; ++i) {
+                for (const auto& [joint, weight] : rig_->influences[means.points[i]]) {
+                    influences[p].emplace_back(joint, weight * std::max(means.weights[i], 0.0f));
+                }
+            }
+        }
+        rig_->influences = std::move(influences);
     }
 
     void append_faces(const ObjFile& eyes) {
@@ -498,8 +530,7 @@ class MakehumanImporter {
             return "";
         }
         const std::span<const ObjCorner> corners(&obj_.corners[face.first], face.count);
-        const std::size_t half = (obj_.positions.size() - kVertices) / 2;
-        if ((corners[0].position - kVertices) % half >= kEyeVertices) {
+        if ((corners[0].position - kVertices) % eye_vertices_ >= kEyeVertices) {
             return "iris";
         }
         const bool on_cornea = std::all_of(corners.begin(), corners.end(), [&](const ObjCorner& c) {
@@ -533,7 +564,8 @@ class MakehumanImporter {
 
     std::filesystem::path folder_;
     const ImportProgress& progress_;
-    ObjFile obj_;  ///< with the eyes at the end
+    ObjFile obj_;  ///< the eyes after the base mesh, then points that subdivide the face
+    std::size_t eye_vertices_ = 0;  ///< of one eye
     std::vector<FaceShape> shapes_;
     std::vector<Vec3> reference_;
     std::optional<Rig> rig_;

@@ -37,7 +37,7 @@ constexpr Crease kCreases[] = {
     // glabella and root of the nose
     {{2.7f, 20.6f}, {1.2f, 23.2f}, {2.0f, 27.4f}, 1.0f, 0.26f},
     {{4.6f, 22.2f}, {3.6f, 23.6f}, {3.7f, 25.8f}, 0.7f, 0.11f},
-    {{0, 27.6f}, {1.2f, 27.8f}, {2.9f, 29.4f}, 0.8f, 0.12f},
+    {{0, 27.6f}, {1.2f, 27.8f}, {2.9f, 29.4f}, 1.1f, 0.09f},
     {{0, 29.4f}, {1.1f, 29.5f}, {2.3f, 30.8f}, 0.6f, 0.08f},
     // crow's feet: a fan from the outer corner of the eye
     {{14.6f, 27.8f}, {16.4f, 26.0f}, {18.8f, 23.2f}, 0.8f, 0.15f},
@@ -56,13 +56,13 @@ constexpr Crease kCreases[] = {
     {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.45f, 0.14f},
     {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.45f, 0.14f},
     // outside the corner of the mouth
-    {{11.2f, 45.2f}, {12.6f, 48.4f}, {12.0f, 52.6f}, 0.9f, 0.12f},
-    // upper lip, of uneven lengths and distances
-    {{0.9f, 44.1f}, {0.8f, 45.0f}, {0.8f, 46.0f}, 0.5f, 0.05f},
-    {{2.1f, 42.8f}, {2.0f, 44.4f}, {1.8f, 46.2f}, 0.55f, 0.09f},
-    {{3.7f, 44.0f}, {3.4f, 45.0f}, {3.1f, 46.2f}, 0.45f, 0.06f},
-    {{5.0f, 43.2f}, {4.6f, 44.9f}, {4.0f, 46.6f}, 0.55f, 0.09f},
-    {{6.6f, 44.6f}, {6.0f, 45.6f}, {5.3f, 46.8f}, 0.5f, 0.06f},
+    {{12.4f, 45.4f}, {13.6f, 48.6f}, {12.8f, 52.6f}, 1.1f, 0.09f},
+    // upper lip, from its border upwards, of uneven lengths and distances
+    {{0.8f, 46.4f}, {0.8f, 45.3f}, {0.9f, 44.1f}, 0.5f, 0.06f},
+    {{1.8f, 46.6f}, {2.0f, 44.8f}, {2.1f, 42.8f}, 0.6f, 0.07f},
+    {{3.1f, 46.6f}, {3.4f, 45.3f}, {3.7f, 44.0f}, 0.5f, 0.06f},
+    {{4.0f, 47.0f}, {4.6f, 45.1f}, {5.0f, 43.2f}, 0.65f, 0.06f},
+    {{5.3f, 47.2f}, {6.0f, 45.8f}, {6.6f, 44.6f}, 0.55f, 0.06f},
     // below the lower lip: short ones that radiate from the mouth, and the furrow above the chin
     {{0.9f, 53.8f}, {1.0f, 54.8f}, {0.9f, 55.6f}, 0.7f, 0.05f},
     {{2.7f, 52.8f}, {3.1f, 54.6f}, {3.1f, 56.6f}, 0.9f, 0.09f},
@@ -72,8 +72,8 @@ constexpr Crease kCreases[] = {
 
 /// Nasolabial fold and marionette line: the cheek hangs over them.
 constexpr Crease kOverhangs[] = {
-    {{4.8f, 36.4f}, {8.8f, 41.6f}, {9.2f, 51.6f}, 1.4f, 0.32f},
-    {{5.4f, 52.0f}, {7.6f, 53.4f}, {9.8f, 54.6f}, 1.2f, 0.22f},
+    {{4.8f, 36.4f}, {9.2f, 41.2f}, {10.6f, 53.0f}, 1.4f, 0.32f},
+    {{5.2f, 52.0f}, {7.8f, 53.5f}, {10.2f, 54.9f}, 1.2f, 0.17f},
 };
 
 /// The nearest place on a crease.
@@ -114,6 +114,13 @@ float crease_taper(const Crease& crease, float along) {
 /// A share of the depth of a crease: no face has long ones in one piece.
 float crease_pieces(const Vec2& uv, std::uint32_t seed) {
     return glm::mix(0.3f, 1.0f, glm::smoothstep(-0.5f, 0.1f, fbm(uv, 9, seed, 2)));
+}
+
+/// |x|, but smooth: lines that cross the middle of the face have no kink there.
+float mirrored(float x) {
+    constexpr float kWidth = 2;  // columns
+    const float left = std::abs(x);
+    return left < kWidth ? left * left * (2 * kWidth - left) / square(kWidth) : left;
 }
 
 constexpr float kReach = 3.2f;  ///< of a crease in widths
@@ -172,7 +179,7 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
         const Vec2 bend = {fbm(uv, 23, seed), fbm(uv, 23, seed + 1)};
         const Vec2 sway = {fbm(uv, 7, seed + 3, 2), fbm(uv, 7, seed + 4, 2)};
         Vec2 p = chart + pattern.wander * kMm * (2.0f * bend + 3.0f * sway);
-        p.x = std::abs(p.x);
+        p.x = mirrored(p.x);
         float height = 0;
         std::uint32_t number = seed + 6;
         for (const Crease& crease : kCreases) {

@@ -83,6 +83,7 @@ struct WrinkleSurface {
     float slack = 0.03f;
     float share = 0.3f;
     float narrowing = 0;
+    float smoothing = 0;
     std::vector<RestingFolds> resting{};
     std::string resting_shape{};
     Vec3 center = {0, 0, 0};
@@ -163,6 +164,11 @@ LIMN_FIELDS(WrinkleSurface) {
         "unless mean_length",
         "", 0, 0.5);
     LIMN_FIELD(
+        smoothing,
+        "how far what is measured spreads over the skin, in edges of its mesh, so that folds of "
+        "coarse skin do not show its triangles; not for radial",
+        "", 0, 2);
+    LIMN_FIELD(
         resting, "regions whose skin folds at rest, and more easily when it is compressed; not for "
                  "radial, strain_view and model");
     LIMN_FIELD(
@@ -207,6 +213,7 @@ struct WrinkleRest {
     std::vector<WrinkleCorner> around;  ///< triangles that have a direction, vertex after vertex
     std::vector<std::uint32_t> first;   ///< per vertex and one more: index of its first in `around`
     bool mean_length = false;           ///< of means at vertices, see WrinkleSurface
+    bool wide = false;                  ///< triangles around a vertex need not have it as a corner
     /// Triangles from this one on count by how much longer they are, max(ratio - 1, 0), in
     /// addition.
     std::uint32_t stretch_from = ~0u;

@@ -61,11 +61,12 @@ void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector
     const std::uint32_t next = (corner + 1) % 3;
     const std::uint32_t last = (corner + 2) % 3;
     const float factor = rest.mean_length ? at.weight : std::sqrt(at.weight);
-    const std::uint32_t mark = counts_by_stretch(rest, at) ? layout::kWrinkleStretch : 0u;
+    const std::uint32_t mark = (counts_by_stretch(rest, at) ? layout::kWrinkleStretch : 0u)
+                               | (rest.wide ? layout::kWrinkleAway : 0u);
     texels.push_back({rest.corners[3 * triangle + next] | mark, rest.corners[3 * triangle + last]});
     texels.push_back({bits(factor * share[next]), bits(factor * share[last])});
     if (mark != 0) {
-        texels.push_back({bits(at.weight), 0});
+        texels.push_back({bits(at.weight), rest.corners[at.corner]});
     }
 }
 
@@ -122,10 +123,11 @@ std::vector<Texel> rest_texels(const WrinkleState& state) {
 
 /// Texels of a block.
 std::uint32_t block_texels(const WrinkleRest& rest) {
-    const auto stretched = std::ranges::count_if(
-        rest.around, [&](const WrinkleCorner& at) { return counts_by_stretch(rest, at); });
+    const auto marked = std::ranges::count_if(rest.around, [&](const WrinkleCorner& at) {
+        return rest.wide || counts_by_stretch(rest, at);
+    });
     return static_cast<std::uint32_t>(rest.first.size() + 2 * rest.around.size())
-           + static_cast<std::uint32_t>(stretched);
+           + static_cast<std::uint32_t>(marked);
 }
 
 /// The texels of a state, uploaded on first use.

@@ -31,15 +31,18 @@ float compression(int triangle, int end, uint vertex, uint first, bool mean_leng
     while (triangle < end) {
         uvec2 corners = texelFetch(rest, triangle).xy;
         bool by_stretch = (corners.x & kWrinkleStretch) != 0u;
-        corners.x &= ~kWrinkleStretch;
+        bool away = (corners.x & kWrinkleAway) != 0u;
+        corners.x &= ~(kWrinkleStretch | kWrinkleAway);
         vec2 across = uintBitsToFloat(texelFetch(rest, triangle + 1).xy);
-        vec3 chord = across.x * (position_of(first + corners.x) - at) + across.y * (position_of(first + corners.y) - at);
+        uvec2 more = by_stretch || away ? texelFetch(rest, triangle + 2).xy : uvec2(0u);
+        vec3 from = away ? position_of(first + more.y) : at;
+        vec3 chord = across.x * (position_of(first + corners.x) - from) + across.y * (position_of(first + corners.y) - from);
         float along = dot(chord, chord);
         if (by_stretch) {
-            along = max(along - uintBitsToFloat(texelFetch(rest, triangle + 2).x), 0.0);
+            along = max(along - uintBitsToFloat(more.x), 0.0);
         }
         ratio += mean_length ? sqrt(along) : along;
-        triangle += by_stretch ? 3 : 2;
+        triangle += by_stretch || away ? 3 : 2;
     }
     ratio = mean_length ? ratio * ratio : ratio;
     return ratio >= 0.0 && ratio < 1e30 ? ratio : 1.0;

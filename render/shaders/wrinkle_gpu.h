@@ -5,8 +5,9 @@
 // its folds stay, 16 bits each; in the second and third block the
 // angle and the side of its tangent instead (WrinkleState::frames; 0: none). A second layer is another block, with its own mask. Then two per triangle at a vertex, whose third corner
 // is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
-// root of the triangle's weight at the vertex (the weight itself where means are of lengths). One that counts by its
-// stretch has the highest bit of the first of them set, and its weight in one more texel. Last, of displaced skin,
+// root of the triangle's weight at the vertex (the weight itself where means are of lengths). Marks in the highest bits of
+// the first of them ask for one more texel, the weight and the third corner: of one that counts by its stretch, and of
+// one that is not at that vertex. Last, of displaced skin,
 // the heights of the folds of both layers per vertex.
 
 #ifdef __cplusplus
@@ -62,6 +63,7 @@ const uint kWrinkleByRadius = 3u;
 
 const uint kFoldSteps = 16u;
 const uint kWrinkleStretch = 0x80000000u;
+const uint kWrinkleAway = 0x40000000u;
 
 #ifdef __cplusplus
 static_assert(sizeof(WrinkleJob) == 16 * kWrinkleJobTexels);

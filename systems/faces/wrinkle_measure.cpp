@@ -2,6 +2,7 @@
 
 #include "ecs/base/check.h"
 #include "ecs/components/weld.h"
+#include "systems/faces/skin_diffusion.h"
 
 #include <algorithm>
 #include <array>
@@ -154,6 +155,55 @@ WrinkleRest rest_of_triangles(
     return rest;
 }
 
+/// Measures a triangle along u, v and (u + v) / sqrt(2) of a vertex, turned into its plane.
+void append_axes(
+    std::array<WrinkleRest, 3>& rests, const std::array<std::uint32_t, 3>& v,
+    const RestTriangle& triangle, const Vec3& u, const Vec3& normal) {
+    const Vec3 along_u = turn_with(u, normal, triangle.normal);
+    const Vec3 along_v = glm::cross(triangle.normal, along_u);
+    const Vec3 directions[] = {
+        along_u, along_v, (along_u + along_v) * std::numbers::sqrt2_v<float> * 0.5f};
+    for (std::size_t i = 0; i < 3; ++i) {
+        rests[i].corners.insert(rests[i].corners.end(), v.begin(), v.end());
+        rests[i].across.push_back(in_edges(triangle, directions[i]));
+    }
+}
+
+/// `rests` measure each triangle three times, in the axes of its corners; now also in those of the
+/// vertices that it diffuses to.
+std::array<WrinkleRest, 3> diffuse_strain_rests(
+    const std::array<WrinkleRest, 3>& rests, std::span<const Vec3> positions,
+    std::span<const std::uint32_t> indices, std::span<const Vec3> u, std::span<const Vec3> normals,
+    float smoothing) {
+    const std::vector<char> used(positions.size(), 1);
+    const SkinDiffusion diffusion = make_skin_diffusion(positions, indices, used, smoothing);
+    const DiffusedCorners diffused = diffuse_corners(diffusion, rests[0], 9);
+    const std::vector<std::uint32_t> welded = weld_positions(positions);
+    std::array<WrinkleRest, 3> wide;
+    for (std::uint32_t vertex = 0; vertex < positions.size(); ++vertex) {
+        const std::uint32_t from = welded[vertex];
+        for (WrinkleRest& rest : wide) {
+            rest.wide = true;
+            rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
+        }
+        for (std::uint32_t i = diffused.first[vertex]; i < diffused.first[vertex + 1]; ++i) {
+            const std::uint32_t* const at = &rests[0].corners[9 * diffused.around[i].corner];
+            const std::array<std::uint32_t, 3> v = {at[0], at[1], at[2]};
+            const auto first = static_cast<std::uint32_t>(wide[0].corners.size());
+            append_axes(
+                wide, v, rest_triangle(positions[v[0]], positions[v[1]], positions[v[2]]), u[from],
+                normals[from]);
+            for (WrinkleRest& rest : wide) {
+                rest.around.push_back({first, diffused.around[i].weight});
+            }
+        }
+    }
+    for (WrinkleRest& rest : wide) {
+        rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
+    }
+    return wide;
+}
+
 float region_weight(const VertexRegion& region, std::size_t v) {
     return std::clamp(finite_or(region.weights[v], 0), 0.0f, 1.0f);
 }
@@ -303,7 +353,7 @@ WrinkleRest make_edge_rest(
 
 std::array<WrinkleRest, 3> make_strain_rest(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
-    std::span<const Vec3> u, std::span<const Vec3> normals, WrinkleWeight weight) {
+    std::span<const Vec3> u, std::span<const Vec3> normals, WrinkleWeight weight, float smoothing) {
     LIMN_CHECK(u.size() == positions.size());
     LIMN_CHECK(normals.size() == positions.size());
     std::array<WrinkleRest, 3> rests;
@@ -315,23 +365,18 @@ std::array<WrinkleRest, 3> make_strain_rest(
             const std::array<float, 3> weights = corner_weights(triangle, weight);
             for (std::uint32_t k = 0; k < 3 && has_area; ++k) {
                 const std::uint32_t vertex = welded[v[k]];
-                const Vec3 along_u = turn_with(u[vertex], normals[vertex], triangle.normal);
-                const Vec3 along_v = glm::cross(triangle.normal, along_u);
-                const Vec3 directions[] = {
-                    along_u, along_v, (along_u + along_v) * std::numbers::sqrt2_v<float> * 0.5f};
-                for (std::size_t i = 0; i < 3; ++i) {
-                    WrinkleRest& rest = rests[i];
-                    const auto first = static_cast<std::uint32_t>(rest.corners.size());
-                    rest.corners.insert(rest.corners.end(), v.begin(), v.end());
-                    rest.across.push_back(in_edges(triangle, directions[i]));
-                    corners[i].push_back({vertex, {first + k, weights[k]}});
+                const auto first = static_cast<std::uint32_t>(rests[0].corners.size());
+                append_axes(rests, v, triangle, u[vertex], normals[vertex]);
+                for (std::vector<VertexCorner>& of_rest : corners) {
+                    of_rest.push_back({vertex, {first + k, weights[k]}});
                 }
             }
         });
     for (std::size_t i = 0; i < 3; ++i) {
         collect_corners(rests[i], corners[i], welded);
     }
-    return rests;
+    return smoothing > 0 ? diffuse_strain_rests(rests, positions, indices, u, normals, smoothing)
+                         : rests;
 }
 
 SkinStrain tensor_of_ratios(float along_u, float along_v, float between) {

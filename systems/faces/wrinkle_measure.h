@@ -69,11 +69,12 @@ struct AlongFolds {
 
 /// The right Cauchy-Green tensor at each vertex, C = mean of F^T F, as the squares of lengths along
 /// u, v and (u + v) / sqrt(2): axes `u` (unit, tangent) and v = normal x u of the vertex, turned
-/// into the plane of each triangle with the normal.
+/// into the plane of each triangle with the normal. `smoothing`: see WrinkleSurface; tensors then
+/// come to a vertex from farther away, each in the axes of the vertex, turned so.
 [[nodiscard]] std::array<WrinkleRest, 3> make_strain_rest(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
     std::span<const Vec3> u, std::span<const Vec3> normals,
-    WrinkleWeight weight = WrinkleWeight::Angle);
+    WrinkleWeight weight = WrinkleWeight::Angle, float smoothing = 0);
 
 /// C of lengths along u, v and (u + v) / sqrt(2), squared.
 [[nodiscard]] SkinStrain tensor_of_ratios(float along_u, float along_v, float between);

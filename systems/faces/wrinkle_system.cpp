@@ -2,6 +2,7 @@
 
 #include "ecs/base/hash.h"
 #include "systems/faces/fold_height.h"
+#include "systems/faces/skin_diffusion.h"
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_fold.h"
 #include "systems/faces/wrinkle_measure.h"
@@ -63,7 +64,7 @@ bool wrinkles_everywhere(const WrinkleSurface& surface, const MeshData& mesh) {
 }
 
 std::vector<WrinkleRest>
-make_strain_rests(const MeshData& mesh, WrinkleWeight weight, std::vector<Vec2>& frames) {
+make_strain_rests(const MeshData& mesh, const WrinkleSurface& surface, std::vector<Vec2>& frames) {
     const SkinTriangles skin = make_skin_triangles(mesh.positions, mesh.indices, 0);
     std::vector<Vec3> normals;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -77,8 +78,8 @@ make_strain_rests(const MeshData& mesh, WrinkleWeight weight, std::vector<Vec2>&
             frames.emplace_back(std::atan2(along_v, along_u), mesh.tangents[v].w < 0 ? -1 : 1);
         }
     }
-    std::array<WrinkleRest, 3> rests =
-        make_strain_rest(mesh.positions, mesh.indices, skin.vertex_u, normals, weight);
+    std::array<WrinkleRest, 3> rests = make_strain_rest(
+        mesh.positions, mesh.indices, skin.vertex_u, normals, surface.weight, surface.smoothing);
     return {std::make_move_iterator(rests.begin()), std::make_move_iterator(rests.end())};
 }
 
@@ -95,6 +96,9 @@ std::vector<float> add_second_layer(
         mesh.positions, mesh.indices, field.across, surface.weight,
         {.aside = field.aside, .narrowing = narrowing_of(surface)}));
     rests.back().mean_length = surface.mean_length;
+    if (surface.smoothing > 0) {
+        diffuse_rest(rests.back(), mesh.positions, mesh.indices, surface.smoothing);
+    }
     return std::move(field.mask);
 }
 
@@ -113,12 +117,15 @@ std::vector<WrinkleRest> make_rests(
         rests.push_back(make_edge_rest(mesh.positions, mesh.indices, surface.weight));
         break;
     case WrinkleDriver::Strain:
-        return make_strain_rests(mesh, surface.weight, frames);
+        return make_strain_rests(mesh, surface, frames);
     case WrinkleDriver::Radial:
         break;
     }
     for (WrinkleRest& rest : rests) {
         rest.mean_length = surface.mean_length;
+        if (surface.smoothing > 0) {
+            diffuse_rest(rest, mesh.positions, mesh.indices, surface.smoothing);
+        }
     }
     return rests;
 }
@@ -201,6 +208,7 @@ wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, cons
         }
     }
     hash = hash_combine(hash, std::bit_cast<std::uint32_t>(narrowing_of(surface)));
+    hash = hash_combine(hash, std::bit_cast<std::uint32_t>(surface.smoothing));
     hash = surface.resting.empty() ? hash : hash_combine(hash, hash_resting(surface));
     if (is_displaced(surface) && map != nullptr) {
         const TextureSlot& slot = *slot_of(instance, assets);

@@ -1,5 +1,7 @@
 #include "content/load/exr_file.h"
+#include "content/load/gltf_write.h"
 #include "content/load/image_load.h"
+#include "content/load/png_file.h"
 #include "ecs/base/srgb.h"
 #include "ecs/components/surface.h"
 #include "tests/app/run_program.h"
@@ -212,6 +214,105 @@ TEST_CASE("bake: what is wrong is one line that says what was found and what was
     const ProgramRun absent = run_limn(folder, {"bake", "furrows", "none.glb", "-o", "a.png"});
     CHECK(absent.exit_code == 1);
     CHECK(absent.err.find("none.glb") != std::string::npos);
+}
+
+namespace {
+
+/// A square of skin with the shape "narrow", which shortens it by 0.3 along u.
+void write_skin(const std::string& path) {
+    GltfScene scene;
+    scene.name = "skin";
+    MeshData& mesh = scene.meshes.emplace_back();
+    mesh.name = "skin";
+    for (const Vec2 uv : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1)}) {
+        mesh.positions.emplace_back(uv.x, 1 - uv.y, 0);
+        mesh.normals.emplace_back(0, 0, 1);
+        mesh.tangents.emplace_back(1, 0, 0, 1);
+        mesh.uvs.push_back(uv);
+    }
+    mesh.indices = {0, 2, 1, 1, 2, 3};
+    MorphTarget& morph = mesh.morphs.emplace_back();
+    morph.name = "narrow";
+    morph.vertices = {1, 3};
+    morph.positions = {{-0.3f, 0, 0}, {-0.3f, 0, 0}};
+    scene.materials.emplace_back();
+    GltfNode node;
+    node.name = "skin";
+    node.first_morph = 0;
+    node.parts = {{0, 0}};
+    scene.nodes.push_back(node);
+    scene.morph_weights = {0};
+    const Status saved = save_glb(path, scene);
+    REQUIRE_MESSAGE(saved.ok(), saved.error().message);
+}
+
+/// 4 x 4 texels with one normal.
+void write_normals(const std::string& path, std::uint8_t x, std::uint8_t y) {
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < 16; ++i) {
+        pixels.insert(pixels.end(), {x, y, 240});
+    }
+    REQUIRE(write_png(path, 4, 4, 3, pixels).ok());
+}
+
+}  // namespace
+
+TEST_CASE("bake: a strain model has the slopes of the captured map, less those at rest") {
+    const TemporaryFolder folder;
+    write_skin(folder.file("skin.glb"));
+    write_normals(folder.file("narrow.png"), 128 + 56, 128 - 28);
+    write_normals(folder.file("rest.png"), 128, 128 - 28);
+    write_text(
+        folder.file("poses.json"),
+        R"({"face": "skin.glb", "rest": "rest.png", "size": 8, "degree": 1,
+            "poses": [{"image": "narrow.png", "shapes": [{"name": "narrow"}]}]})");
+    const ProgramRun run =
+        run_limn(folder, {"bake", "strain_model", folder.file("poses.json"), "-o", "skin.exr"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const auto model = read_exr(folder.file("skin.exr"));
+    REQUIRE(model.ok());
+    REQUIRE(model->width == 8);
+    REQUIRE(model->height == 4 * 8);
+    const auto at = [&](const char* channel, std::size_t tile) {
+        return find_channel(*model, channel)->values[8 * 8 * tile + 27];
+    };
+    CHECK(std::abs(at("R", 0) + 0.3f) < 1e-3f);  // the least strain along the tangent
+    CHECK(std::abs(at("G", 0)) < 1e-3f);
+    // Where that is all, the slope is less the first coefficient: -(56, 0) / 112.
+    CHECK(std::abs(at("R", 2) - 0.5f) < 2e-3f);
+    CHECK(std::abs(at("G", 2)) < 2e-3f);
+    const auto loaded = load_image(folder.file("skin.exr"), false);  // as a level does
+    REQUIRE(loaded.ok());
+    CHECK(loaded->format == PixelFormat::Rgba16F);
+}
+
+TEST_CASE("bake: a strain model of wrong shapes, maps or faces is refused by name") {
+    const TemporaryFolder folder;
+    write_skin(folder.file("skin.glb"));
+    write_normals(folder.file("a.png"), 128, 128);
+    const auto says = [&](const char* poses, const char* expected) {
+        write_text(folder.file("poses.json"), poses);
+        const ProgramRun run =
+            run_limn(folder, {"bake", "strain_model", folder.file("poses.json"), "-o", "a.exr"});
+        CAPTURE(run.err);
+        CHECK(run.exit_code == 1);
+        CHECK(count_lines(run.err) == 1);
+        CHECK(run.err.find(expected) != std::string::npos);
+        CHECK_FALSE(std::filesystem::exists(folder.file("a.exr")));
+    };
+    says(R"({"face": "skin.glb"})", "poses.json: found 0 poses, expected at least 1");
+    says(
+        R"({"face": "skin.glb", "poses": [{"image": "a.png", "shapes": [{"name": "narrov"}]}]})",
+        "found the shape \"narrov\", expected a morph target of the face");
+    says(
+        R"({"face": "skin.glb", "poses": [{"image": "b.png", "shapes": [{"name": "narrow"}]}]})",
+        "b.png: ");
+    says(R"({"face": "no.glb", "poses": [{"image": "a.png"}]})", "no.glb");
+    says(
+        R"({"face": "skin.glb", "uv_set": 1, "poses": [{"image": "a.png"}]})",
+        "skin.glb: found no texture coordinates 1, expected the maps' ones");
+    says(R"({"face": "skin.glb", "size": 0, "poses": [{"image": "a.png"}]})", "size");
 }
 
 }  // namespace limn

@@ -1,5 +1,6 @@
 #include "content/make/face_fold_pattern.h"
 #include "content/make/head.h"
+#include "content/make/head_layout.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -69,4 +70,24 @@ TEST_CASE("face folds: lines of a region lie across the direction whose shorteni
         ++regions;
     }
     CHECK(regions == 12);
+}
+
+TEST_CASE("face folds: lines that cross the middle of the face are smooth there") {
+    FaceFoldsPattern pattern;
+    pattern.image.size = 1024;
+    pattern.wander = 0;
+    const PatternMaps maps = make_face_folds(pattern);
+    float along = 0;
+    float aside = 0;
+    const int chin = 1024 * (52 + 13) / (kHeadRows + 13);  // its dimples are not mirrored
+    for (int row = 0; row < chin; ++row) {
+        for (const float column : {511.5f, 512.5f}) {
+            const Vec2 slope =
+                slope_at(maps.normal, Vec2(column, static_cast<float>(row) + 0.5f) / 1024.0f);
+            along = std::max(along, std::abs(slope.y));
+            aside = std::max(aside, std::abs(slope.x));
+        }
+    }
+    CHECK(along > 0.3f);
+    CHECK(aside < 0.05f * along);
 }

@@ -127,6 +127,21 @@ void check_expression(const ImportedSkin& skin, const Expression& expression, do
     }
 }
 
+/// Of the triangles that may fold [m].
+double mean_folding_edge(const MeshData& mesh) {
+    double sum = 0;
+    double count = 0;
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+        const std::uint32_t a = mesh.indices[i];
+        const std::uint32_t b = mesh.indices[i % 3 < 2 ? i + 1 : i - 2];
+        const bool folds = std::ranges::any_of(
+            mesh.regions, [&](const VertexRegion& region) { return region.weights[a] > 0; });
+        sum += folds ? static_cast<double>(glm::distance(mesh.positions[a], mesh.positions[b])) : 0;
+        count += folds ? 1 : 0;
+    }
+    return sum / count;
+}
+
 void check_regions(const MeshData& mesh) {
     REQUIRE(mesh.regions.size() == face_region_names().size());
     for (const VertexRegion& region : mesh.regions) {
@@ -366,6 +381,7 @@ TEST_CASE(
     CHECK(skin.bounds.max.y < 1.9f);
     CHECK(imported->skins[0].joints.size() == 163);
     check_regions(skin);
+    CHECK(mean_folding_edge(skin) < 0.003);  // 4.8 mm in the cage
     // At rest every joint is where its inverse bind matrix says.
     const std::vector<Affine> joints = find_rest_joints(imported->skeleton);
     const SkinData& rig = imported->skins[0];

@@ -47,6 +47,11 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
         surfaces.back().radius = 1.3f;
         surfaces.back().activation = 0.7f;
     }
+    for (const std::size_t i : {5u, 6u, 7u, 8u}) {  // narrowing, and the drivers that measure
+        surfaces.push_back(surfaces[i]);
+        surfaces.back().smoothing = 1.5f;
+        surfaces.back().lambda = 0.5f;  // wrinkles at rest: little is compressed on the mean
+    }
     for (const WrinkleSurface& asked : surfaces) {
         const WrinkleMethod method = asked.method;
         MeshData tube = make_tube(24, 12, 1);

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "ecs/base/result.h"
+
+namespace limn {
+
+struct BakeOptions;
+
+/// `limn bake strain_model POSES.json -o NAME.exr`: the wrinkles of captured normal maps, one for
+/// each expression of a face, as a model of the strain of its skin (wrinkle_model.h), for the
+/// wrinkle texture of the method model.
+Status bake_strain_model(const BakeOptions& options);
+
+}  // namespace limn
