@@ -60,6 +60,7 @@ using V = hn::Vec<Floats>;
 constexpr Floats d;
 using Four = hn::FixedTag<float, waves::kLinesAtOnce>;
 using V4 = hn::Vec<Four>;
+constexpr Four d4;
 
 template <typename V>
 struct SinCos {
@@ -69,26 +70,26 @@ struct SinCos {
 
 template <typename V>
 HWY_INLINE SinCos<V> sin_cos(V angle) {
-    constexpr hn::DFromV<V> d;
-    const V turns = hn::Round(hn::Mul(angle, hn::Set(d, waves::kOverPi)));
-    V x = hn::Sub(angle, hn::Mul(turns, hn::Set(d, waves::kPi0)));
-    x = hn::Sub(x, hn::Mul(turns, hn::Set(d, waves::kPi1)));
-    x = hn::Sub(x, hn::Mul(turns, hn::Set(d, waves::kPi2)));
+    constexpr hn::DFromV<V> dv;
+    const V turns = hn::Round(hn::Mul(angle, hn::Set(dv, waves::kOverPi)));
+    V x = hn::Sub(angle, hn::Mul(turns, hn::Set(dv, waves::kPi0)));
+    x = hn::Sub(x, hn::Mul(turns, hn::Set(dv, waves::kPi1)));
+    x = hn::Sub(x, hn::Mul(turns, hn::Set(dv, waves::kPi2)));
     // Odd half turns change the sign: 1 - 2 (turns - 2 round(turns / 2))^2.
-    const V half = hn::Round(hn::Mul(turns, hn::Set(d, 0.5f)));
+    const V half = hn::Round(hn::Mul(turns, hn::Set(dv, 0.5f)));
     const V odd = hn::Sub(turns, hn::Add(half, half));
-    const V sign = hn::Sub(hn::Set(d, 1.0f), hn::Mul(hn::Set(d, 2.0f), hn::Mul(odd, odd)));
+    const V sign = hn::Sub(hn::Set(dv, 1.0f), hn::Mul(hn::Set(dv, 2.0f), hn::Mul(odd, odd)));
     const V x2 = hn::Mul(x, x);
-    V s = hn::Add(hn::Mul(hn::Set(d, waves::kSin3), x2), hn::Set(d, waves::kSin2));
-    s = hn::Add(hn::Mul(s, x2), hn::Set(d, waves::kSin1));
-    s = hn::Add(hn::Mul(s, x2), hn::Set(d, waves::kSin0));
-    V c = hn::Add(hn::Mul(hn::Set(d, waves::kCos4), x2), hn::Set(d, waves::kCos3));
-    c = hn::Add(hn::Mul(c, x2), hn::Set(d, waves::kCos2));
-    c = hn::Add(hn::Mul(c, x2), hn::Set(d, waves::kCos1));
-    c = hn::Add(hn::Mul(c, x2), hn::Set(d, waves::kCos0));
+    V s = hn::Add(hn::Mul(hn::Set(dv, waves::kSin3), x2), hn::Set(dv, waves::kSin2));
+    s = hn::Add(hn::Mul(s, x2), hn::Set(dv, waves::kSin1));
+    s = hn::Add(hn::Mul(s, x2), hn::Set(dv, waves::kSin0));
+    V c = hn::Add(hn::Mul(hn::Set(dv, waves::kCos4), x2), hn::Set(dv, waves::kCos3));
+    c = hn::Add(hn::Mul(c, x2), hn::Set(dv, waves::kCos2));
+    c = hn::Add(hn::Mul(c, x2), hn::Set(dv, waves::kCos1));
+    c = hn::Add(hn::Mul(c, x2), hn::Set(dv, waves::kCos0));
     return {
         hn::Mul(sign, hn::Add(x, hn::Mul(x, hn::Mul(x2, s)))),
-        hn::Mul(sign, hn::Add(hn::Set(d, 1.0f), hn::Mul(x2, c)))};
+        hn::Mul(sign, hn::Add(hn::Set(dv, 1.0f), hn::Mul(x2, c)))};
 }
 
 /// Returns the number of points processed; the scalar version handles the remainder.
@@ -130,16 +131,15 @@ struct FourLines {
     V4 kx, ky, side_x, side_y, phase, amplitude, lean, frequency;
 };
 HWY_INLINE FourLines load_lines(std::span<const WaveLine> lines, std::size_t first) {
-    constexpr Four d;
     constexpr hn::RebindToSigned<Four> di;
     constexpr int kWords = sizeof(WaveLine) / sizeof(float);
     static_assert(sizeof(WaveLine) == 8 * sizeof(float));
     const auto lane = hn::Iota(di, 0);
     const auto left = hn::Set(di, static_cast<std::int32_t>(lines.size() - first));
-    const auto is_there = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, hn::Lt(lane, left))));
+    const auto is_there = hn::MaskFromVec(hn::BitCast(d4, hn::VecFromMask(di, hn::Lt(lane, left))));
     const auto index = hn::Mul(hn::Min(lane, hn::Sub(left, hn::Set(di, 1))), hn::Set(di, kWords));
     const float* const words = &lines[first].k.x;
-    const auto word = [&](int i) { return hn::GatherIndex(d, words + i, index); };
+    const auto word = [&](int i) { return hn::GatherIndex(d4, words + i, index); };
     return {
         word(0),
         word(1),
@@ -153,20 +153,19 @@ HWY_INLINE FourLines load_lines(std::span<const WaveLine> lines, std::size_t fir
 
 /// False where there are no vectors.
 bool sum_lines_vector(std::span<const WaveLine> lines, const Vec2& at, WavePoint& point) {
-    constexpr Four d;
-    const V4 zero = hn::Zero(d);
-    const V4 one = hn::Set(d, 1.0f);
+    const V4 zero = hn::Zero(d4);
+    const V4 one = hn::Set(d4, 1.0f);
     V4 ox = zero, oy = zero, oz = zero, xx = zero, xy = zero, xz = zero;
     V4 zx = zero, zy = zero, zz = zero, vx = zero, vy = zero, vz = zero;
     for (std::size_t first = 0; first < lines.size(); first += waves::kLinesAtOnce) {
         const FourLines line = load_lines(lines, first);
         const V4 phase = hn::Add(
-            hn::Add(hn::Mul(line.kx, hn::Set(d, at.x)), hn::Mul(line.ky, hn::Set(d, at.y))),
+            hn::Add(hn::Mul(line.kx, hn::Set(d4, at.x)), hn::Mul(line.ky, hn::Set(d4, at.y))),
             line.phase);
         const SinCos<V4> turn = sin_cos(phase);
         const V4 leaning = hn::IfThenElseZero(hn::Gt(turn.sin, zero), line.lean);
         SinCos<V4> moved = turn;
-        if (!hn::AllTrue(d, hn::Eq(line.lean, zero))) {
+        if (!hn::AllTrue(d4, hn::Eq(line.lean, zero))) {
             moved = sin_cos(hn::Sub(phase, hn::Mul(leaning, turn.sin)));
         }
         // By phase.
@@ -190,7 +189,7 @@ bool sum_lines_vector(std::span<const WaveLine> lines, const Vec2& at, WavePoint
     }
     const auto total = [&](V4 sum) {
         float lanes[waves::kLinesAtOnce];
-        hn::StoreU(sum, d, lanes);
+        hn::StoreU(sum, d4, lanes);
         return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
     };
     point = {

@@ -10,7 +10,7 @@ const float kMirrorStep = 10.0;       // [px] on average; what is narrower may b
 const float kMinMirrorSteps = 10.0;
 const float kMaxMirrorSteps = 48.0;
 const float kMirrorReach = 2000.0;    // [m]
-const int kMaxTiles = 64;
+const int kMaxClearTiles = 64;
 const float kMirrorThickness = 0.2;   // of what they meet, relative to the path, by eye
 const int kBendSteps = 8;
 const float kOpenReach = 150.0;       // of refracted rays over no ground: what is met farther down is lost in the water [m]
@@ -77,38 +77,30 @@ float blocking_nearness(vec2 pixel, Side side) {
     return near > 0.0 && side.up * up > 0.0 ? near : 1.0 / kInfiniteDistance;
 }
 
-// Where a ray along `along` in the image has to be followed, in units of that and up to `end`: from the first to the last
-// tile in which anything above the water may hide the ray, which leaves `height` [m] and climbs by `climb` per meter.
-// Rays below water are followed everywhere.
-vec2 blocked_way(ScreenRay ray, vec2 along, float height, float climb, float end, Side side) {
-    vec2 from = gl_FragCoord.xy;
+// How far a ray from `from` [px] along the image goes, in units of `along` and up to `end`, through tiles without
+// anything above the level of a side that is above water. One that goes up leaves a column of such tiles at once.
+float clear_way(vec2 from, vec2 along, float end, Side side) {
     vec2 slope = mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
     vec2 inverse = 1.0 / slope;
     vec2 beyond = step(0.0, slope) + 1e-3 * sign(slope);  // the next tile [tiles]
     ivec2 last = textureSize(highest_surfaces, 0) - 1;
-    vec2 blocked = vec2(end, 0.0);
     float way = 0.0;
+    bool is_clear;
     int tiles = 0;
     do {
         ivec2 tile = clamp(ivec2(from + way * along) / kHighestTile, ivec2(0), last);
         vec2 highest = texelFetch(highest_surfaces, tile, 0).rg;  // in the tile, and in it and those above it
-        // What hides a point of the ray is nearer, in the same pixel: above the point or above the camera. The ray has
-        // climbed by path * climb, with path = way * from.z / (1 - way * along.z).
-        float ray_height = height + climb * way * ray.from.z / (1.0 - way * ray.along.z);
-        vec2 limit = vec2(max(side.level, min(ray_height, view.camera_ws.y)));
-        bvec2 is_clear = bvec2(side.up > 0.0 && highest.x <= limit.x, side.up > 0.0 && along.y > 0.0 && highest.y <= limit.y);
+        is_clear = side.up > 0.0 && highest.x <= side.level;
         vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) * inverse;
-        float next = max(way, is_clear.y ? leaving.x : min(leaving.x, leaving.y));
-        blocked = is_clear.x ? blocked : vec2(min(blocked.x, way), next);
-        way = next;
-    } while (way < end && ++tiles < kMaxTiles);
-    float first = min(blocked.x, way);
-    return vec2(first, clamp(way < end ? end : blocked.y, first, end));
+        float next = along.y > 0.0 && highest.y <= side.level ? leaving.x : min(leaving.x, leaving.y);
+        way = is_clear ? max(way, next) : way;
+    } while (is_clear && way < end && ++tiles < kMaxClearTiles);
+    return min(way, end);
 }
 
 // Radiance along a reflected ray: from the image where the ray hits something on screen, else `around`, at infinite
 // distance. The ray is followed in the image, where pixels and the reciprocal of the distance are linear, up to where it
-// leaves the screen; steps grow from the first tile on in which anything may hide it.
+// leaves the screen; steps grow from the first tile on in which anything is above the water.
 RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     ScreenRay ray = screen_ray(position, direction);
     vec2 from = gl_FragCoord.xy;
@@ -118,9 +110,8 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     float reach = ray.along.z < 0.0 ? min(kMirrorReach, -0.95 * ray.from.z / ray.along.z) : kMirrorReach;
     float u_reach = reach / (ray.from.z + reach * ray.along.z);
     float u_end = max(min(u_reach, min(leaving.x, leaving.y)), 0.0);
-    vec2 blocked = blocked_way(ray, along, direction.y < 0.0 ? -kNoHeight : position.y, max(direction.y, 0.0), u_end, side);
-    float u_begin = blocked.x;
-    float rest = blocked.y - u_begin;
+    float u_begin = clear_way(from, along, u_end, side);
+    float rest = u_end - u_begin;
     float count = rest > 0.0 ? ceil(clamp(rest * length(along) / kMirrorStep, kMinMirrorSteps, kMaxMirrorSteps)) : 1.0;
     float low = u_begin;
     float high = u_begin;
