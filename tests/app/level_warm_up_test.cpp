@@ -35,7 +35,7 @@ const std::map<std::string, int> kMaxPrograms = {
     {"markers", 48},   {"million", 54},  {"museum", 103},
     {"ocean", 57},     {"phonglab", 60}, {"pond", 60},
     {"portrait", 53},  {"raceway", 78},  {"relax", 50},
-    {"stilllife", 73}, {"storm", 72},    {"stress-instances", 41},
+    {"stilllife", 73}, {"storm", 73},    {"stress-instances", 41},
     {"vale", 97}};
 
 HeadlessRenderer& shared_headless() {

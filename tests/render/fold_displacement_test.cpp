@@ -210,7 +210,7 @@ TEST_CASE_FIXTURE(
         add(make_square()), add(Material{matte}), affine_from({0, 0, -2}, {1, 0, 0, 0}, {4, 4, 1}));
     const Entity light =
         shine(SpotLight{.intensity = 60, .radius = 30, .outer_angle = 0.7f}, at({1.2f, 0.2f, 4}));
-    world.add(light, Shadow{.method = ShadowMethod::Map, .resolution = 2048});
+    world.add(light, Shadow{.method = ShadowMethod::Map, .resolution = 2048, .detail = 0});
     const RenderView front = look({-1.5f, 0, 2}, {-0.5f, 0, -1}, 256, 256);
     const Entity entity = tube(1, 1);
     const gpu::FloatImage depth = aov(front, "depth");
