@@ -31,7 +31,7 @@ quick() {
     'limn view'*) command="$command -o viewed.png" ;;
     'limn bench'*) command="$command --size 64x36 --frames 2 --warmup 1" ;;
     'limn hash'*) command="$command --frames 20" ;;
-    'limn import'* | 'limn speak'*) [ -d ../shared/assets ] || return ;;
+    'limn import'* | 'limn speak'* | 'limn bake strain_model'*) [ -d ../shared/assets ] || return ;;
     'limn quality --html'*) command=${command/quality/quality surfaces} ;;
     esac
     echo "$command"
@@ -54,6 +54,9 @@ done
 
 echo '{"shots": [{"image": "a.png", "to_light": [1, 0, 1]}, {"image": "b.png", "to_light": [-1, 0, 1]},
     {"image": "before.png", "to_light": [0, 1, 1]}]}' >"$folder/shots.json"
+echo '{"face": "face.glb", "degree": 1, "size": 16, "poses": [{"image": "a.png", "shapes": [{"name": "mouthSmile_L"}]},
+    {"image": "b.png", "shapes": [{"name": "browDown_L"}]}, {"image": "before.png", "shapes": [{"name": "jawOpen"}]}]}' \
+    >"$folder/poses.json"
 {
     printf 'PathFileType\t4\t(X/Y/Z)\ttake.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n50\t50\t2\t7\tmm\n'
     printf 'Frame#\tTime\thead1\t\t\thead2\t\t\thead3\t\t\tskin24_4_L\t\t\tmouth9_270_M\t\t\tskin60_0_M\t\t\tskin39_16_L\t\t\n\t\tX1\tY1\tZ1\n\n'
