@@ -1,10 +1,10 @@
 #include "content/load/exr_file.h"
-#include "content/load/gltf_write.h"
 #include "content/load/image_load.h"
 #include "content/load/png_file.h"
 #include "ecs/base/srgb.h"
 #include "ecs/components/surface.h"
 #include "tests/app/run_program.h"
+#include "tests/one_mesh_glb.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -235,15 +235,7 @@ void write_skin(const std::string& path) {
     morph.name = "narrow";
     morph.vertices = {1, 3};
     morph.positions = {{-0.3f, 0, 0}, {-0.3f, 0, 0}};
-    scene.materials.emplace_back();
-    GltfNode node;
-    node.name = "skin";
-    node.first_morph = 0;
-    node.parts = {{0, 0}};
-    scene.nodes.push_back(node);
-    scene.morph_weights = {0};
-    const Status saved = save_glb(path, scene);
-    REQUIRE_MESSAGE(saved.ok(), saved.error().message);
+    test::write_one_mesh(path, scene, "skin");
 }
 
 /// 4 x 4 texels with one normal.

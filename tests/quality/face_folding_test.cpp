@@ -6,6 +6,7 @@
 #include "content/make/head.h"
 #include "content/make/shapes.h"
 #include "tests/near.h"
+#include "tests/one_mesh_glb.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -143,16 +144,8 @@ TEST_CASE("face folding: a file of a face with other names is measured as the fa
         morph.action_unit.clear();
         morph.name = found != names.end() ? found->second : "x" + morph.name;
     }
-    scene.materials.emplace_back();
-    GltfNode node;
-    node.name = "face";
-    node.first_morph = 0;
-    node.parts = {{0, 0}};
-    scene.nodes.push_back(node);
-    scene.morph_weights.assign(head.morphs.size(), 0.0f);
     const std::string file = folder.file("face.glb");
-    const Status saved = save_glb(file, scene);
-    REQUIRE_MESSAGE(saved.ok(), saved.error().message);
+    test::write_one_mesh(file, scene, "face");
     QualityReport report;
     const Status status = measure_face_file(file, report);
     REQUIRE_MESSAGE(status.ok(), status.error().message);
