@@ -11,6 +11,7 @@
 #include "render/material_pool.h"
 #include "render/passes/texture_wave_pass.h"
 #include "render/render_frame.h"
+#include "render/shading_models.h"
 #include "render/view_block.h"
 #include "render/water/foam_pattern.h"
 #include "render/water/water_reflection.h"
@@ -24,6 +25,7 @@ namespace limn {
 namespace {
 
 constexpr unsigned kPatchesUnit = 0;
+constexpr unsigned kSeenUnit = 0;
 constexpr unsigned kBehindUnit = 5;
 constexpr unsigned kHighestUnit = 13;
 constexpr unsigned kReflectionMapUnit = 22;
@@ -33,6 +35,7 @@ constexpr unsigned kDetailsUnit = 25;
 constexpr unsigned kBehindDepthUnit = 26;
 constexpr unsigned kFoamUnit = 29;
 constexpr unsigned kFloorMapUnit = 27;
+constexpr int kLobe = static_cast<int>(lobe_number(ShadingModel::Pbr));
 constexpr int kCells = layout::kWaterGrid;
 constexpr int kSide = kCells + 1;
 constexpr int kIndices = 6 * kCells * kCells;
@@ -66,11 +69,19 @@ const gpu::Texture* floor_map(const FrameData& frame, const WaterSurfaces& water
     return look != nullptr ? frame.materials->images().find_texture(look->floor_map) : nullptr;
 }
 
-/// What all waters of the view need.
-Variant variant_of(const ViewData& view, const WaterSurfaces& waters) {
+/// What the surfaces of all waters of the view need.
+Variant surface_variant(const ViewData& view, const WaterSurfaces& waters) {
+    Variant variant;
+    variant.add_if(view.velocity, "VELOCITY");
+    variant.add_if(waters.any_seas(), "OCEAN");
+    return variant;
+}
+
+/// What their light needs.
+Variant light_variant(const ViewData& view, const WaterSurfaces& waters) {
     const WaterList& list = waters.list;
     Variant variant = view.lighting.variant;
-    variant.add_if(view.velocity, "VELOCITY");
+    variant.add("SHADING_LOBE", kLobe);
     variant.add_if(view.attributes, "ATTRIBUTES");
     variant.add_if(waters.any_seas(), "OCEAN");
     variant.add_if(list.looks, "LOOKS");
@@ -147,6 +158,56 @@ find_highest(FrameGraph& graph, const WaterEffect& effect, const ViewData& view,
     return columns;
 }
 
+/// What is seen of the surfaces, before it is lit: texels of lib/seen_water.glsl, and as a depth
+/// the pixels that show water.
+struct SeenWater {
+    TextureId surfaces;
+    TextureId pixels;
+};
+
+SeenWater draw_surfaces(
+    FrameGraph& graph, WaterEffect& effect, const ViewData& view, const WaterSurfaces& waters) {
+    const IVec2 size = view.size();
+    const SeenWater seen = {
+        graph.create(
+            {.name = "water surfaces",
+             .format = GL_RGBA32UI,
+             .width = size.x,
+             .height = size.y,
+             .depth = 2,
+             .target = GL_TEXTURE_2D_ARRAY}),
+        create_target(graph, "water pixels", GL_DEPTH_COMPONENT32F, size)};
+    std::vector<Use> writes = {
+        target_level(cleared(seen.surfaces), 0, 0), target_level(discarded(seen.surfaces), 0, 1),
+        view.gbuffer.depth};
+    if (view.velocity) {
+        writes.emplace_back(view.gbuffer.velocity);
+    }
+    graph.add_pass(
+        "water surfaces", {}, std::span<const Use>(writes),
+        [&effect, &waters, &view](PassContext& context) {
+            const gpu::Program* program = effect.surface.get(surface_variant(view, waters));
+            if (program == nullptr) {
+                return;
+            }
+            gpu::Device& device = context.device();
+            device.use(gpu::Pipeline{program, {.cull = GL_NONE}});
+            bind_view(context, view);
+            waters.patches.bind(device, kPatchesUnit);
+            bind_water_surfaces(device, waters);
+            device.bind_vertex_array(effect.grid);
+            device.draw_indexed(
+                GL_TRIANGLES, kIndices, GL_UNSIGNED_SHORT, 0, 0,
+                static_cast<int>(waters.list.patches.size()));
+        });
+    gpu::PipelineState state = gpu::kFullscreenState;
+    state.depth = {.test = true, .write = true, .func = GL_ALWAYS};
+    add_fullscreen_pass(
+        graph, "water pixels", {sampled(seen.surfaces, kSeenUnit)}, {discarded(seen.pixels)},
+        effect.pixels, state, [](PassContext&, const gpu::Program&) {});
+    return seen;
+}
+
 bool any_water(const FrameData& frame) {
     return !frame.world->query<const Water>().empty();
 }
@@ -169,7 +230,11 @@ bool WaterEffect::is_used(const FrameData& frame) {
 Result<WaterEffect> WaterEffect::create(gpu::Device& device, const RenderSettings&) {
     gpu::ShaderLibrary& shaders = device.shaders();
     WaterEffect effect{
-        .surface = ProgramVariants(device, {.vertex = "water.vert", .fragment = "water.frag"}),
+        .surface =
+            ProgramVariants(device, {.vertex = "water.vert", .fragment = "water_surface.frag"}),
+        .light = ProgramVariants::fullscreen(device, "water.frag"),
+        .pixels =
+            LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_pixels.frag"})),
         .highest =
             LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_highest.frag"})),
         .columns =
@@ -214,8 +279,10 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
         return;
     }
     const BehindWater behind = copy_behind(graph, view);
+    const SeenWater seen = draw_surfaces(graph, *this, view, *waters);
     std::vector<Use> reads = lighting_reads(
-        view, {sampled(behind.radiance, kBehindUnit), sampled(behind.depth, kBehindDepthUnit)});
+        view, {sampled(behind.radiance, kBehindUnit), sampled(behind.depth, kBehindDepthUnit),
+               sampled(seen.surfaces, kSeenUnit), depth_tested(seen.pixels)});
     if (waters->list.traced || waters->list.seen_from_below) {
         const TextureId surfaces = find_highest(graph, *this, view, behind.depth);
         reads.push_back(sampled(surfaces, kHighestUnit));
@@ -233,24 +300,20 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
             reads.emplace_back(graph.import("water map", *map));
         }
     }
-    std::vector<Use> writes = {view.radiance, view.gbuffer.depth};
-    if (view.velocity) {
-        writes.emplace_back(view.gbuffer.velocity);
-    }
+    std::vector<Use> writes = {view.radiance};
     if (view.attributes) {
         writes.emplace_back(view.gbuffer.surface);
     }
     graph.add_pass(
         "water", std::span<const Use>(reads), std::span<const Use>(writes),
         [this, waters, &view](PassContext& context) {
-            const gpu::Program* program = surface.get(variant_of(view, *waters));
+            const gpu::Program* program = light.get(light_variant(view, *waters));
             if (program == nullptr) {
                 return;
             }
             gpu::Device& device = context.device();
-            device.use(gpu::Pipeline{program, {.cull = GL_NONE}});
+            device.use(gpu::Pipeline{program, kWhereLobe});
             bind_lighting(context, view);
-            waters->patches.bind(device, kPatchesUnit);
             bind_water_surfaces(device, *waters);
             if (waters->any_seas()) {
                 bind_foam(device, *this);
@@ -262,10 +325,7 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
                 device.bind_texture(kFloorMapUnit, *floor, &repeat);
                 program->set("floor_tile", waters->list.floor->floor_tile);
             }
-            device.bind_vertex_array(grid);
-            device.draw_indexed(
-                GL_TRIANGLES, kIndices, GL_UNSIGNED_SHORT, 0, 0,
-                static_cast<int>(waters->list.patches.size()));
+            device.draw_fullscreen();
         });
 }
 

@@ -7,15 +7,16 @@
 
 namespace limn {
 
-// Draws all bodies of water over the lit scene with one draw call.
+// Draws all bodies of water over the lit scene: with one draw call what is seen of their surfaces,
+// then over the pixels that show them their light.
 //
 // Reads    WaterList, radiance, depth, light clusters, environment
 // Writes   radiance, depth, velocity and, if requested, surface attributes where there is water
 // Order    after lights and sky, before blended surfaces
-// Shaders  water_behind.frag, water_highest.frag, water_columns.frag, water.vert, water.frag,
-// lib/water_surface.glsl,
-//          lib/water_reflection.glsl, lib/water_refraction.glsl,
-//          lib/water_tracing.glsl, lib/water_foam.glsl
+// Shaders  water_behind.frag, water_highest.frag, water_columns.frag, water.vert,
+//          water_surface.frag, water_pixels.frag, water.frag, lib/water_surface.glsl,
+//          lib/water_reflection.glsl, lib/water_refraction.glsl, lib/water_tracing.glsl,
+//          lib/water_foam.glsl
 //
 // A body may have a planar reflection (WaterLook): a view of its own, at lower resolution, that
 // WaterMirrorEffect asks for and stores.
@@ -24,7 +25,9 @@ namespace limn {
 // shows neither itself nor blended surfaces.
 
 struct WaterEffect {
-    ProgramVariants surface;
+    ProgramVariants surface;  ///< water_surface.frag
+    ProgramVariants light;    ///< water.frag
+    const gpu::Program* pixels = nullptr;
     const gpu::Program* highest = nullptr;
     const gpu::Program* columns = nullptr;
     const gpu::Program* waves = nullptr;  ///< texture_waves.frag

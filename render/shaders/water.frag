@@ -1,13 +1,13 @@
-// Water surface, seen from above or from below: reflection and refraction by the Fresnel equations; light is absorbed
-// and scattered in the water (Beer-Lambert). Definitions VELOCITY; ATTRIBUTES: also writes the G-buffer; FROM_BELOW:
-// the camera may see the surface from below (a software OpenGL executes both sides of every if); and those of
-// lib/water_detail.glsl, lib/water_reflection.glsl and lib/water_refraction.glsl.
+// Light of a water surface, seen from above or from below, over the pixels that show it (water_surface.frag): reflection
+// and refraction by the Fresnel equations; light is absorbed and scattered in the water (Beer-Lambert). Definitions
+// ATTRIBUTES: also writes the G-buffer; FROM_BELOW: the camera may see the surface from below (a software OpenGL executes
+// both sides of every if); and those of lib/water_detail.glsl, lib/water_reflection.glsl and lib/water_refraction.glsl.
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
 #define ON_WATER
 #include "lib/lighting.glsl"
 #include "lib/optics.glsl"
-#include "lib/velocity.glsl"
+#include "lib/seen_water.glsl"
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
 #include "lib/water_detail.glsl"
@@ -18,20 +18,10 @@
 #include "lib/water_tracing.glsl"
 #include "lib/water_refraction.glsl"
 
-layout(location = 0) in vec2 rest;
-layout(location = 1) flat in int body;
-layout(location = 3) in vec4 wave_by_x;
-layout(location = 4) in vec3 wave_by_z;
-#ifdef VELOCITY
-layout(location = 2) in vec3 previous_clip;
-layout(location = 1) out vec2 velocity;
-#endif
+layout(binding = 0) uniform usampler2DArray seen_water;  // water_surface.frag
+
 #ifdef ATTRIBUTES
-#ifdef VELOCITY
-layout(location = 2) out uvec4 surface;
-#else
 layout(location = 1) out uvec4 surface;
-#endif
 #endif
 layout(location = 0) out vec4 radiance;
 
@@ -39,22 +29,21 @@ const float kSmooth = 1e-5;  // minimum slope variance, for ripples that are not
 const float kSurfaceTransmittance = 0.54;    // transmittance of the surface for upwelling radiance (Mobley 1999)
 
 void main() {
-    WaterRecord water = water_record(body);
-    vec3 position = world_position(gl_FragCoord.xy, gl_FragCoord.z);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    SeenWater seen = unpack_seen_water(
+        texelFetch(seen_water, ivec3(pixel, 0), 0), texelFetch(seen_water, ivec3(pixel, 1), 0));
+    WaterRecord water = water_record(seen.body);
+    vec3 position = world_position(gl_FragCoord.xy, seen.depth);
     vec3 to_camera = normalize(view.camera_ws.xyz - position);
-    vec2 across = dFdx(rest);
-    vec2 along = dFdy(rest);
-    // For elongated footprints less blur than needed, so that grazing views stay crisp.
-    float footprint = sqrt(sqrt(dot(across, across) * dot(along, along)));
-    WaterBend bend = field_bend(water, rest, footprint);
-    bend.by_x += wave_by_x.xyz;
-    bend.by_z += wave_by_z;
-    bend.variance += wave_by_x.w;
-    add_detail(bend, body, rest, footprint);
+    WaterBend bend = field_bend(water, seen.rest, seen.footprint);
+    bend.by_x += seen.by_x;
+    bend.by_z += seen.by_z;
+    bend.variance += seen.variance;
+    add_detail(bend, seen.body, seen.rest, seen.footprint);
     vec3 up = water_to_world(water, water_normal(bend));
     float roughness = sqrt(sqrt(kSmooth + bend.variance));  // a normal distribution's alpha is the root of this
 #ifdef FROM_BELOW
-    bool above = gl_FrontFacing;
+    bool above = seen.above;
 #else
     const bool above = true;
 #endif
@@ -84,7 +73,7 @@ void main() {
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
     if (above) {
         add_directional(sum, r, position, gl_FragCoord.xy);
-        add_listed(sum, r, cell_list(gl_FragCoord.xy, view_distance(gl_FragCoord.z)), position, gl_FragCoord.xy);
+        add_listed(sum, r, cell_list(gl_FragCoord.xy, view_distance(seen.depth)), position, gl_FragCoord.xy);
     }
     vec3 glints = r.specular_0 * (sum.specular - sum.fresnel) + r.specular_90 * sum.fresnel;
     vec3 falling = sum.diffuse / kPi + irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
@@ -93,11 +82,11 @@ void main() {
     vec3 glow = falling * (kUpwelling * kSurfaceTransmittance) * water.scattering.rgb / max(extinction, vec3(1e-6));
 
     vec3 bent = share < 1.0 ? refract(-to_camera, normal, 1.0 / index) : -normal;
-    float depth = water.absorption.w + position.y - water.origin.y;
-    float max_distance = above && water.absorption.w > 0.0 ? 1.05 * depth / max(-bent.y, 0.05) : kInfiniteDistance;
+    float below = water.absorption.w + position.y - water.origin.y;  // down to the ground
+    float max_distance = above && water.absorption.w > 0.0 ? 1.05 * below / max(-bent.y, 0.05) : kInfiniteDistance;
     RayHit through = refracted_light(water, position, normal, bent, max_distance, above);
     vec3 left = exp(-extinction * through.path);
-    vec3 seen = through.color * left + glow * (1.0 - left);
+    vec3 refracted = through.color * left + glow * (1.0 - left);
     vec3 away = reflect(-to_camera, normal);
     vec3 around = environment_light(position, normal, away, roughness).mirrored;
     Side side = Side(water.origin.y - 0.02, 1.0);
@@ -105,7 +94,7 @@ void main() {
     vec3 scattered = scattered_light(water, 0.0, away);
     if (!above) {
         vec3 sky = environment_light(position, normal, bent, roughness).mirrored;
-        seen = through.path < kInfiniteDistance ? through.color : sky;
+        refracted = through.path < kInfiniteDistance ? through.color : sky;
         vec3 ground = mix(scattered, bottom_light(water), exp(-extinction * distance_to_bottom(water, away)));
         around = water.absorption.w > 0.0 ? ground : scattered;
         side = Side(water.origin.y + 0.02, -1.0);
@@ -132,18 +121,14 @@ void main() {
     }
 #endif
 #ifdef OCEAN
-    seen = above ? with_bubbles(seen, bend.foam, falling, extinction) : seen;
+    refracted = above ? with_bubbles(refracted, bend.foam, falling, extinction) : refracted;
 #endif
-    vec3 color = mix(seen, mirror, share) + glints;
+    vec3 color = mix(refracted, mirror, share) + glints;
 #ifdef OCEAN
-    color = above ? with_foam(color, bend.foam, rest, footprint, falling) : color;
+    color = above ? with_foam(color, bend.foam, seen.rest, seen.footprint, falling) : color;
 #endif
     radiance = vec4(storable(color), 1.0);
 #ifdef ATTRIBUTES
     surface = pack_surface(s);
-#endif
-#ifdef VELOCITY
-    vec2 now = 2.0 * gl_FragCoord.xy * view.size.zw - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = velocity_from(now, previous_clip);
 #endif
 }

@@ -227,7 +227,8 @@ void add_units(const std::string& path, std::map<int, std::string>& types) {
 
 TEST_CASE("shader: no definition gives a unit two types of texture") {
     const std::vector<std::vector<std::string>> programs = {
-        {"water.vert", "water.frag"},
+        {"water.vert", "water_surface.frag"},
+        {"water.frag"},
         {"mesh.vert", "gbuffer.frag"},
         {"mesh.vert", "blend.frag"},
         {"mesh.vert", "forward_list.frag"},

@@ -402,6 +402,36 @@ TEST_CASE_FIXTURE(Pond, "water: its velocity is that of the surface; at rest it 
     CHECK(tested > 20);
 }
 
+TEST_CASE_FIXTURE(Pond, "water: only pixels that show a pool change, each by its own water") {
+    surround({0.1f, 0.1f, 0.1f});
+    const RenderView view = look({0, 5, 0.1f}, {0, 0, 0});
+    const gpu::FloatImage without = radiance(view);
+    const gpu::FloatImage far = aov(view, "depth");
+    const Water red = {.size = {2, 2}, .absorption = Vec3(0.5f), .scattering = {0.5f, 0, 0}};
+    const Water green = {.size = {2, 2}, .absorption = Vec3(0.5f), .scattering = {0, 0.5f, 0}};
+    pour(red, at({-1.5f, 0, 0}));
+    pour(green, at({1.5f, 0, 0}));
+    const gpu::FloatImage with = radiance(view);
+    const gpu::FloatImage depth = aov(view, "depth");
+    int pools[2] = {};
+    int wrong = 0;
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const Vec3 light = {with.at(x, y, 0), with.at(x, y, 1), with.at(x, y, 2)};
+            if (depth.at(x, y, 0) == far.at(x, y, 0)) {
+                wrong += light != Vec3(without.at(x, y, 0)) ? 1 : 0;
+                continue;
+            }
+            const bool left = 2 * x < view.width;
+            ++pools[left ? 0 : 1];
+            wrong += left ? light.x <= light.y : light.y <= light.x;
+        }
+    }
+    CHECK(wrong == 0);
+    CHECK(pools[0] > 20);
+    CHECK(pools[1] > 20);
+}
+
 TEST_CASE_FIXTURE(Pond, "water: a hundred pools are one draw") {
     surround({1, 1, 1});
     const RenderView view = look({0, 6, 12}, {0, 0, 0});

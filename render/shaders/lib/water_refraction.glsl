@@ -28,10 +28,10 @@ RayHit floor_refraction(WaterRecord water, vec3 position, vec3 bent) {
 
 #ifdef LOOKS
 // The image, offset by the tilt of the normal; never what is in front of the water or above it (Vlachos et al. 2004).
-RayHit shifted_refraction(WaterRecord water, vec3 normal) {
+RayHit shifted_refraction(WaterRecord water, vec3 position, vec3 normal) {
+    float here = dot(position - view.camera_ws.xyz, view.ray_forward.xyz);
     vec2 lean = vec2(dot(normal.xz, view.ray_right.xz) / length(view.ray_right.xyz), dot(normal.xz, view.ray_forward.xz));
     vec2 to = clamp_to_screen(gl_FragCoord.xy + kShift * water.ocean.w * lean * view.size.xy);
-    float here = view_distance(gl_FragCoord.z);
     float there = distance_at(to);
     bool outside = there > 0.0 && (there <= here || height_of(to, there) > water.origin.y);
     to = outside ? gl_FragCoord.xy : to;
@@ -44,7 +44,7 @@ RayHit shifted_refraction(WaterRecord water, vec3 normal) {
 RayHit refracted_light(WaterRecord water, vec3 position, vec3 normal, vec3 bent, float max_distance, bool above) {
 #ifdef LOOKS
     int how = above ? int(water.scattering.w) >> 4 & 3 : kTracedRefraction;
-    RayHit through = shifted_refraction(water, normal);
+    RayHit through = shifted_refraction(water, position, normal);
 #if defined(FROM_BELOW) || !defined(NO_TRACED_REFRACTION)
     RayHit traced = trace_refraction(position, bent, max_distance, above);
     if (how == kTracedRefraction) {
