@@ -56,7 +56,7 @@ constexpr Crease kCreases[] = {
     {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.45f, 0.14f},
     {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.45f, 0.14f},
     // outside the corner of the mouth
-    {{12.4f, 45.4f}, {13.6f, 48.6f}, {12.8f, 52.6f}, 1.1f, 0.09f},
+    {{14.6f, 45.6f}, {16.2f, 49.2f}, {14.9f, 53.4f}, 1.5f, 0.06f},
     // upper lip, from its border upwards, of uneven lengths and distances
     {{0.8f, 46.4f}, {0.8f, 45.3f}, {0.9f, 44.1f}, 0.5f, 0.06f},
     {{1.8f, 46.6f}, {2.0f, 44.8f}, {2.1f, 42.8f}, 0.6f, 0.07f},
@@ -83,25 +83,35 @@ struct CreasePlace {
     bool right = false;  ///< of the way from `a` to `c`, with rows downwards
 };
 
+/// Of the curve itself, not of chords, whose corners would show as lines across the crease.
 CreasePlace nearest_on(const Crease& crease, const Vec2& p) {
-    constexpr int kChords = 8;
-    CreasePlace nearest;
-    Vec2 from = crease.a;
-    for (int i = 1; i <= kChords; ++i) {
-        const float t = static_cast<float>(i) / kChords;
-        const Vec2 to =
-            glm::mix(glm::mix(crease.a, crease.b, t), glm::mix(crease.b, crease.c, t), t);
-        const Vec2 chord = to - from;
-        const float s = glm::clamp(glm::dot(p - from, chord) / glm::dot(chord, chord), 0.0f, 1.0f);
-        const Vec2 offset = p - from - s * chord;
-        const float distance = glm::length(offset);
-        if (distance < nearest.distance) {
-            const bool right = chord.x * offset.y > chord.y * offset.x;
-            nearest = {distance, (static_cast<float>(i - 1) + s) / kChords, right};
+    constexpr int kGuesses = 8;
+    constexpr int kNewtonSteps = 3;
+    const Vec2 to_b = crease.b - crease.a;
+    const Vec2 bend = crease.c - crease.b - to_b;
+    const auto offset_at = [&](float t) { return p - crease.a - t * (2.0f * to_b + t * bend); };
+    float t = 0;
+    float least = 1e12f;
+    for (int i = 0; i <= kGuesses; ++i) {
+        const float guess = static_cast<float>(i) / kGuesses;
+        const Vec2 offset = offset_at(guess);
+        if (glm::dot(offset, offset) < least) {
+            least = glm::dot(offset, offset);
+            t = guess;
         }
-        from = to;
     }
-    return nearest;
+    // One that crosses the middle of the face goes on beyond it.
+    const float start = crease.a.x == 0 ? -0.2f : 0.0f;
+    for (int i = 0; i < kNewtonSteps; ++i) {
+        const Vec2 way = 2.0f * (to_b + t * bend);
+        const Vec2 offset = offset_at(t);
+        const float slope = glm::dot(way, way) - 2 * glm::dot(offset, bend);
+        const float step = glm::dot(offset, way) / std::max(slope, 0.25f * glm::dot(way, way));
+        t = glm::clamp(t + step, start, 1.0f);
+    }
+    const Vec2 way = to_b + t * bend;
+    const Vec2 offset = offset_at(t);
+    return {glm::length(offset), std::max(t, 0.0f), way.x * offset.y > way.y * offset.x};
 }
 
 /// 0 at the ends of a crease, 1 in its middle; one that crosses the middle of the face has no end
@@ -123,7 +133,7 @@ float mirrored(float x) {
     return left < kWidth ? left * left * (2 * kWidth - left) / square(kWidth) : left;
 }
 
-constexpr float kReach = 3.2f;  ///< of a crease in widths
+constexpr float kReach = 4.5f;  ///< of a crease in widths
 
 bool is_near(const Crease& crease, const Vec2& p) {
     const Vec2 low = glm::min(crease.a, glm::min(crease.b, crease.c)) - kReach * crease.width;
@@ -151,12 +161,11 @@ float crease_height(const Crease& crease, const Vec2& p) {
     });
 }
 
-/// A step from a broad bulge down to flat skin on its right side, by a valley.
+/// A step from a broad bulge down to flat skin on its right side, by a valley. Both sides meet.
 float overhang_height(const Crease& crease, const Vec2& p) {
     return height_of(crease, p, [](float d, bool right) {
-        const float side = right ? 0.08f * std::exp(-square(d - 1.2f))
-                                 : 0.6f * std::exp(-square((d - 1.3f) / 0.9f));
-        return side - std::exp(-square(1.2f * d));
+        const float bulge = right ? 0.0f : 0.62f * square(d) * std::exp(-square(d / 1.4f));
+        return bulge - std::exp(-square(1.2f * d));
     });
 }
 
@@ -176,7 +185,8 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
         const Vec2 chart = {(uv.x - 0.5f) * kHeadColumns, uv.y * (kHeadRows + 13) - 13};
-        const Vec2 bend = {fbm(uv, 23, seed), fbm(uv, 23, seed + 1)};
+        // No octave near the size of a texel, which would show as hatching.
+        const Vec2 bend = {fbm(uv, 23, seed, 2), fbm(uv, 23, seed + 1, 2)};
         const Vec2 sway = {fbm(uv, 7, seed + 3, 2), fbm(uv, 7, seed + 4, 2)};
         Vec2 p = chart + pattern.wander * kMm * (2.0f * bend + 3.0f * sway);
         p.x = mirrored(p.x);
@@ -188,8 +198,7 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
             ++number;
         }
         for (const Crease& crease : kOverhangs) {
-            const float step = overhang_height(crease, p);
-            height += step != 0 ? step * crease_pieces(uv, number) : 0.0f;
+            height += overhang_height(crease, p);
         }
         // No fold is as deep all along, or as deep as that of the other side.
         height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;
