@@ -64,16 +64,16 @@ constexpr Crease kCreases[] = {
     {{4.0f, 47.0f}, {4.6f, 45.1f}, {5.0f, 43.2f}, 0.65f, 0.06f},
     {{5.3f, 47.2f}, {6.0f, 45.8f}, {6.6f, 44.6f}, 0.55f, 0.06f},
     // below the lower lip: short ones that radiate from the mouth, and the furrow above the chin
-    {{0.9f, 53.8f}, {1.0f, 54.8f}, {0.9f, 55.6f}, 0.7f, 0.05f},
-    {{2.7f, 52.8f}, {3.1f, 54.6f}, {3.1f, 56.6f}, 0.9f, 0.09f},
-    {{4.6f, 52.9f}, {5.1f, 54.0f}, {5.4f, 55.0f}, 0.7f, 0.06f},
-    {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.1f, 0.06f},
+    {{0.9f, 53.6f}, {1.0f, 54.8f}, {0.9f, 56.2f}, 0.8f, 0.045f},
+    {{2.7f, 52.6f}, {3.1f, 54.6f}, {3.1f, 57.0f}, 1.0f, 0.085f},
+    {{4.6f, 52.5f}, {5.1f, 54.0f}, {5.4f, 55.4f}, 0.8f, 0.055f},
+    {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.2f, 0.06f},
 };
 
 /// Nasolabial fold and marionette line: the cheek hangs over them.
 constexpr Crease kOverhangs[] = {
     {{4.8f, 36.4f}, {9.2f, 41.2f}, {10.6f, 53.0f}, 1.4f, 0.32f},
-    {{5.2f, 52.0f}, {7.8f, 53.5f}, {10.2f, 54.9f}, 1.2f, 0.17f},
+    {{4.8f, 51.8f}, {7.6f, 53.5f}, {10.4f, 55.0f}, 1.4f, 0.14f},
 };
 
 /// The nearest place on a crease.
@@ -204,7 +204,7 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
         height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;
         const float chin =
             1 - glm::smoothstep(0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6.5f, 3.8f)));
-        height += chin > 0 ? chin * 0.09f * dimple_height(chart, seed + 2) : 0.0f;
+        height += chin > 0 ? chin * 0.16f * dimple_height(chart, seed + 2) : 0.0f;
         PatternTexel t;
         t.height = pattern.depth * height / kHeadColumns;
         return t;
