@@ -1,5 +1,6 @@
 #include "content/make/face_fold_pattern.h"
 
+#include "content/bake/wrinkle_map.h"
 #include "content/make/head_layout.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace limn {
 
@@ -53,8 +55,8 @@ constexpr Crease kCreases[] = {
     {{6.3f, 32.0f}, {5.7f, 33.2f}, {4.9f, 35.0f}, 0.55f, 0.08f},
     {{5.3f, 30.1f}, {4.5f, 30.6f}, {3.5f, 31.7f}, 0.4f, 0.06f},
     // side of the nose
-    {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.45f, 0.14f},
-    {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.45f, 0.14f},
+    {{1.8f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.6f, 0.14f},
+    {{1.8f, 35.6f}, {3.0f, 34.8f}, {4.3f, 33.3f}, 0.75f, 0.12f},
     // outside the corner of the mouth
     {{14.6f, 45.6f}, {16.2f, 49.2f}, {14.9f, 53.4f}, 1.5f, 0.06f},
     // upper lip, from its border upwards, of uneven lengths and distances
@@ -183,7 +185,9 @@ float dimple_height(const Vec2& p, std::uint32_t seed) {
 
 PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
-    return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
+    const int size = pattern.image.size;
+    std::vector<float> heights(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    PatternMaps maps = make_pattern_maps(size, [&](const Vec2& uv) {
         const Vec2 chart = {(uv.x - 0.5f) * kHeadColumns, uv.y * (kHeadRows + 13) - 13};
         // No octave near the size of a texel, which would show as hatching.
         const Vec2 bend = {fbm(uv, 23, seed, 2), fbm(uv, 23, seed + 1, 2)};
@@ -207,8 +211,12 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
         height += chin > 0 ? chin * 0.16f * dimple_height(chart, seed + 2) : 0.0f;
         PatternTexel t;
         t.height = pattern.depth * height / kHeadColumns;
+        const IVec2 at(uv * static_cast<float>(size));
+        heights[static_cast<std::size_t>(at.y * size + at.x)] = t.height * static_cast<float>(size);
         return t;
     });
+    write_wrinkle_map(maps.normal, heights);
+    return maps;
 }
 
 }  // namespace limn
