@@ -25,14 +25,14 @@ constexpr ActionUnit kUnits[] = {
     {.name = "AU1",
      .sided = true,
      .pulls = {{
-         {{1.0f, 5.4f, 10.6f}, {0.2f, 5.6f, 0}, {2.1f, 2.9f, 3}, Lips::Both, kSlides},
-         {{1.6f, 10.2f, 8.8f}, {0, -1.5f, 0}, {3, 2.0f, 4}, Lips::Both, kSlides},
+         {{1.0f, 5.4f, 10.6f}, {0.2f, 5.6f, 0}, {2.1f, 3.7f, 3.4f}, Lips::Both, kSlides},
+         {{1.6f, 10.2f, 8.8f}, {0, -1.5f, 0}, {3, 2.6f, 4}, Lips::Both, kSlides},
      }}},
     {.name = "AU2",
      .sided = true,
      .pulls = {{
-         {{4.2f, 5.5f, 9.4f}, {0.8f, 8.2f, 0}, {2.6f, 3.0f, 3.5f}, Lips::Both, kSlides},
-         {{3.6f, 10.2f, 8.2f}, {0, -1.5f, 0}, {3, 2.0f, 4}, Lips::Both, kSlides},
+         {{4.2f, 5.5f, 9.4f}, {0.8f, 8.2f, 0}, {2.6f, 3.7f, 3.8f}, Lips::Both, kSlides},
+         {{3.6f, 10.2f, 8.2f}, {0, -1.5f, 0}, {3, 2.6f, 4}, Lips::Both, kSlides},
          {{3.6f, 4.6f, 9.4f}, {0, 1.5f, 0}, {1.8f, 0.9f, 2}, Lips::Both},
      }}},
     {.name = "AU4",
