@@ -1,5 +1,6 @@
 #include "content/make/face_fold_pattern.h"
 
+#include "content/bake/wrinkle_map.h"
 #include "content/make/head_layout.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace limn {
 
@@ -53,10 +55,10 @@ constexpr Crease kCreases[] = {
     {{6.3f, 32.0f}, {5.7f, 33.2f}, {4.9f, 35.0f}, 0.55f, 0.08f},
     {{5.3f, 30.1f}, {4.5f, 30.6f}, {3.5f, 31.7f}, 0.4f, 0.06f},
     // side of the nose
-    {{1.9f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.45f, 0.14f},
-    {{1.9f, 35.4f}, {3.1f, 34.6f}, {4.5f, 33.0f}, 0.45f, 0.14f},
+    {{1.8f, 33.6f}, {3.0f, 32.8f}, {4.3f, 31.2f}, 0.6f, 0.14f},
+    {{1.8f, 35.6f}, {3.0f, 34.8f}, {4.3f, 33.3f}, 0.75f, 0.12f},
     // outside the corner of the mouth
-    {{12.4f, 45.4f}, {13.6f, 48.6f}, {12.8f, 52.6f}, 1.1f, 0.09f},
+    {{14.6f, 45.6f}, {16.2f, 49.2f}, {14.9f, 53.4f}, 1.5f, 0.06f},
     // upper lip, from its border upwards, of uneven lengths and distances
     {{0.8f, 46.4f}, {0.8f, 45.3f}, {0.9f, 44.1f}, 0.5f, 0.06f},
     {{1.8f, 46.6f}, {2.0f, 44.8f}, {2.1f, 42.8f}, 0.6f, 0.07f},
@@ -64,16 +66,16 @@ constexpr Crease kCreases[] = {
     {{4.0f, 47.0f}, {4.6f, 45.1f}, {5.0f, 43.2f}, 0.65f, 0.06f},
     {{5.3f, 47.2f}, {6.0f, 45.8f}, {6.6f, 44.6f}, 0.55f, 0.06f},
     // below the lower lip: short ones that radiate from the mouth, and the furrow above the chin
-    {{0.9f, 53.8f}, {1.0f, 54.8f}, {0.9f, 55.6f}, 0.7f, 0.05f},
-    {{2.7f, 52.8f}, {3.1f, 54.6f}, {3.1f, 56.6f}, 0.9f, 0.09f},
-    {{4.6f, 52.9f}, {5.1f, 54.0f}, {5.4f, 55.0f}, 0.7f, 0.06f},
-    {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.1f, 0.06f},
+    {{0.9f, 53.6f}, {1.0f, 54.8f}, {0.9f, 56.2f}, 0.8f, 0.045f},
+    {{2.7f, 52.6f}, {3.1f, 54.6f}, {3.1f, 57.0f}, 1.0f, 0.085f},
+    {{4.6f, 52.5f}, {5.1f, 54.0f}, {5.4f, 55.4f}, 0.8f, 0.055f},
+    {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.2f, 0.06f},
 };
 
 /// Nasolabial fold and marionette line: the cheek hangs over them.
 constexpr Crease kOverhangs[] = {
     {{4.8f, 36.4f}, {9.2f, 41.2f}, {10.6f, 53.0f}, 1.4f, 0.32f},
-    {{5.2f, 52.0f}, {7.8f, 53.5f}, {10.2f, 54.9f}, 1.2f, 0.17f},
+    {{4.8f, 51.8f}, {7.6f, 53.5f}, {10.4f, 55.0f}, 1.4f, 0.14f},
 };
 
 /// The nearest place on a crease.
@@ -83,25 +85,35 @@ struct CreasePlace {
     bool right = false;  ///< of the way from `a` to `c`, with rows downwards
 };
 
+/// Of the curve itself, not of chords, whose corners would show as lines across the crease.
 CreasePlace nearest_on(const Crease& crease, const Vec2& p) {
-    constexpr int kChords = 8;
-    CreasePlace nearest;
-    Vec2 from = crease.a;
-    for (int i = 1; i <= kChords; ++i) {
-        const float t = static_cast<float>(i) / kChords;
-        const Vec2 to =
-            glm::mix(glm::mix(crease.a, crease.b, t), glm::mix(crease.b, crease.c, t), t);
-        const Vec2 chord = to - from;
-        const float s = glm::clamp(glm::dot(p - from, chord) / glm::dot(chord, chord), 0.0f, 1.0f);
-        const Vec2 offset = p - from - s * chord;
-        const float distance = glm::length(offset);
-        if (distance < nearest.distance) {
-            const bool right = chord.x * offset.y > chord.y * offset.x;
-            nearest = {distance, (static_cast<float>(i - 1) + s) / kChords, right};
+    constexpr int kGuesses = 8;
+    constexpr int kNewtonSteps = 3;
+    const Vec2 to_b = crease.b - crease.a;
+    const Vec2 bend = crease.c - crease.b - to_b;
+    const auto offset_at = [&](float t) { return p - crease.a - t * (2.0f * to_b + t * bend); };
+    float t = 0;
+    float least = 1e12f;
+    for (int i = 0; i <= kGuesses; ++i) {
+        const float guess = static_cast<float>(i) / kGuesses;
+        const Vec2 offset = offset_at(guess);
+        if (glm::dot(offset, offset) < least) {
+            least = glm::dot(offset, offset);
+            t = guess;
         }
-        from = to;
     }
-    return nearest;
+    // One that crosses the middle of the face goes on beyond it.
+    const float start = crease.a.x == 0 ? -0.2f : 0.0f;
+    for (int i = 0; i < kNewtonSteps; ++i) {
+        const Vec2 way = 2.0f * (to_b + t * bend);
+        const Vec2 offset = offset_at(t);
+        const float slope = glm::dot(way, way) - 2 * glm::dot(offset, bend);
+        const float step = glm::dot(offset, way) / std::max(slope, 0.25f * glm::dot(way, way));
+        t = glm::clamp(t + step, start, 1.0f);
+    }
+    const Vec2 way = to_b + t * bend;
+    const Vec2 offset = offset_at(t);
+    return {glm::length(offset), std::max(t, 0.0f), way.x * offset.y > way.y * offset.x};
 }
 
 /// 0 at the ends of a crease, 1 in its middle; one that crosses the middle of the face has no end
@@ -123,7 +135,7 @@ float mirrored(float x) {
     return left < kWidth ? left * left * (2 * kWidth - left) / square(kWidth) : left;
 }
 
-constexpr float kReach = 3.2f;  ///< of a crease in widths
+constexpr float kReach = 4.5f;  ///< of a crease in widths
 
 bool is_near(const Crease& crease, const Vec2& p) {
     const Vec2 low = glm::min(crease.a, glm::min(crease.b, crease.c)) - kReach * crease.width;
@@ -151,12 +163,11 @@ float crease_height(const Crease& crease, const Vec2& p) {
     });
 }
 
-/// A step from a broad bulge down to flat skin on its right side, by a valley.
+/// A step from a broad bulge down to flat skin on its right side, by a valley. Both sides meet.
 float overhang_height(const Crease& crease, const Vec2& p) {
     return height_of(crease, p, [](float d, bool right) {
-        const float side = right ? 0.08f * std::exp(-square(d - 1.2f))
-                                 : 0.6f * std::exp(-square((d - 1.3f) / 0.9f));
-        return side - std::exp(-square(1.2f * d));
+        const float bulge = right ? 0.0f : 0.62f * square(d) * std::exp(-square(d / 1.4f));
+        return bulge - std::exp(-square(1.2f * d));
     });
 }
 
@@ -174,9 +185,12 @@ float dimple_height(const Vec2& p, std::uint32_t seed) {
 
 PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
-    return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
+    const int size = pattern.image.size;
+    std::vector<float> heights(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    PatternMaps maps = make_pattern_maps(size, [&](const Vec2& uv) {
         const Vec2 chart = {(uv.x - 0.5f) * kHeadColumns, uv.y * (kHeadRows + 13) - 13};
-        const Vec2 bend = {fbm(uv, 23, seed), fbm(uv, 23, seed + 1)};
+        // No octave near the size of a texel, which would show as hatching.
+        const Vec2 bend = {fbm(uv, 23, seed, 2), fbm(uv, 23, seed + 1, 2)};
         const Vec2 sway = {fbm(uv, 7, seed + 3, 2), fbm(uv, 7, seed + 4, 2)};
         Vec2 p = chart + pattern.wander * kMm * (2.0f * bend + 3.0f * sway);
         p.x = mirrored(p.x);
@@ -188,18 +202,21 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
             ++number;
         }
         for (const Crease& crease : kOverhangs) {
-            const float step = overhang_height(crease, p);
-            height += step != 0 ? step * crease_pieces(uv, number) : 0.0f;
+            height += overhang_height(crease, p);
         }
         // No fold is as deep all along, or as deep as that of the other side.
         height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;
         const float chin =
             1 - glm::smoothstep(0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6.5f, 3.8f)));
-        height += chin > 0 ? chin * 0.09f * dimple_height(chart, seed + 2) : 0.0f;
+        height += chin > 0 ? chin * 0.16f * dimple_height(chart, seed + 2) : 0.0f;
         PatternTexel t;
         t.height = pattern.depth * height / kHeadColumns;
+        const IVec2 at(uv * static_cast<float>(size));
+        heights[static_cast<std::size_t>(at.y * size + at.x)] = t.height * static_cast<float>(size);
         return t;
     });
+    write_wrinkle_map(maps.normal, heights);
+    return maps;
 }
 
 }  // namespace limn

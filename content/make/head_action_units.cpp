@@ -25,14 +25,14 @@ constexpr ActionUnit kUnits[] = {
     {.name = "AU1",
      .sided = true,
      .pulls = {{
-         {{1.0f, 5.4f, 10.6f}, {0.2f, 5.6f, 0}, {2.1f, 2.9f, 3}, Lips::Both, kSlides},
-         {{1.6f, 10.2f, 8.8f}, {0, -1.5f, 0}, {3, 2.0f, 4}, Lips::Both, kSlides},
+         {{1.0f, 5.4f, 10.6f}, {0.2f, 5.6f, 0}, {2.1f, 3.7f, 3.4f}, Lips::Both, kSlides},
+         {{1.6f, 10.2f, 8.8f}, {0, -1.5f, 0}, {3, 2.6f, 4}, Lips::Both, kSlides},
      }}},
     {.name = "AU2",
      .sided = true,
      .pulls = {{
-         {{4.2f, 5.5f, 9.4f}, {0.8f, 8.2f, 0}, {2.6f, 3.0f, 3.5f}, Lips::Both, kSlides},
-         {{3.6f, 10.2f, 8.2f}, {0, -1.5f, 0}, {3, 2.0f, 4}, Lips::Both, kSlides},
+         {{4.2f, 5.5f, 9.4f}, {0.8f, 8.2f, 0}, {2.6f, 3.7f, 3.8f}, Lips::Both, kSlides},
+         {{3.6f, 10.2f, 8.2f}, {0, -1.5f, 0}, {3, 2.6f, 4}, Lips::Both, kSlides},
          {{3.6f, 4.6f, 9.4f}, {0, 1.5f, 0}, {1.8f, 0.9f, 2}, Lips::Both},
      }}},
     {.name = "AU4",
@@ -84,15 +84,16 @@ constexpr ActionUnit kUnits[] = {
      .pulls = {{{{2.1f, -1.6f, 10.9f}, {1.6f, 5.6f, 0}, {1.7f, 2.1f, 2.4f}, kUpper}}}},
     {.name = "AU12",
      .sided = true,
+     // Wide, so that cheek and lip gather instead of meeting at a ledge.
      .pulls = {{
-         {{2.6f, -3.45f, 10.2f}, {6.6f, 8.8f, -4.2f}, {2.9f, 2.6f, 3}},
-         {{4.1f, -0.4f, 9.3f}, {0.6f, 3.6f, 2.2f}, {2.4f, 2.0f, 3}},
-         {{3.4f, 1.8f, 9.4f}, {-0.3f, 1.6f, 0.3f}, {1.8f, 1.2f, 2}},
-         {{1.0f, -2.2f, 11.6f}, {0.6f, 1.0f, -2.6f}, {2.0f, 1.4f, 2.6f}, kUpper},  // lips thin on
+         {{3.0f, -3.3f, 9.9f}, {6.8f, 8.6f, -3.8f}, {3.3f, 3.4f, 3.4f}},
+         {{4.3f, 0.1f, 9.2f}, {0.2f, 3.2f, 2.0f}, {3.0f, 2.8f, 3.6f}},
+         {{1.9f, -0.9f, 10.8f}, {0.9f, 1.8f, 0.3f}, {1.5f, 1.9f, 2.4f}},
+         {{0.8f, -3.0f, 11.6f}, {0.6f, 0.4f, -2.0f}, {2.3f, 1.9f, 2.8f}, kUpper},  // lips thin on
                                                                                    // the teeth
-         {{1.0f, -4.2f, 11.4f}, {0.6f, 1.2f, -1.8f}, {2.0f, 1.4f, 2.6f}, kLower},
+         {{1.0f, -4.2f, 11.4f}, {0.6f, 1.2f, -1.8f}, {2.2f, 1.7f, 2.6f}, kLower},
      }},
-     .lower_lid = 0.08f},
+     .lower_lid = 0.12f},
     {.name = "AU13",
      .sided = true,
      .pulls = {{{{2.5f, -3.3f, 10.3f}, {0.6f, 6.6f, -0.4f}, {1.9f, 1.9f, 2.4f}}}}},

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 using namespace limn;
 
@@ -90,4 +91,77 @@ TEST_CASE("face folds: lines that cross the middle of the face are smooth there"
     }
     CHECK(along > 0.3f);
     CHECK(aside < 0.05f * along);
+}
+
+namespace {
+
+/// The largest difference of a slope and the mean of its four neighbors.
+float roughness_of(const ImageData& map) {
+    const auto slope = [&](int x, int y) {
+        return slope_at(map, (Vec2(x, y) + 0.5f) / Vec2(map.width, map.height));
+    };
+    float largest = 0;
+    const int chin = map.height * (55 + 13) / (kHeadRows + 13);  // above its dimples
+    for (int y = 1; y < chin; ++y) {
+        for (int x = 1; x + 1 < map.width; ++x) {
+            const Vec2 mean =
+                0.25f * (slope(x + 1, y) + slope(x - 1, y) + slope(x, y + 1) + slope(x, y - 1));
+            largest = std::max(largest, glm::length(slope(x, y) - mean));
+        }
+    }
+    return largest;
+}
+
+/// Valleys along a row between two columns, seen from both sides a fifth as deep as the deepest.
+int count_valleys(const ImageData& map, float row, float from, float to) {
+    constexpr float kStep = 0.05f;  // columns
+    std::vector<float> heights = {0};
+    for (float column = from; column < to; column += kStep) {
+        const Vec2 uv = {0.5f + column / kHeadColumns, (row + 13) / (kHeadRows + 13)};
+        heights.push_back(heights.back() + kStep * slope_at(map, uv).x);
+    }
+    const auto [low, high] = std::ranges::minmax(heights);
+    const float deep = 0.2f * (high - low);
+    int valleys = 0;
+    float top = heights[0];
+    float bottom = heights[0];
+    for (const float height : heights) {
+        bottom = std::min(bottom, height);
+        if (top - bottom > deep && height - bottom > deep) {
+            ++valleys;
+            top = height;
+            bottom = height;
+        }
+        top = std::max(top, height);
+        bottom = height >= top ? height : bottom;
+    }
+    return valleys;
+}
+
+}  // namespace
+
+TEST_CASE("face folds: on a map of twice the size neighbors differ half as much") {
+    FaceFoldsPattern pattern;
+    pattern.image.size = 1024;
+    const float coarse = roughness_of(make_face_folds(pattern).normal);
+    pattern.image.size = 2048;
+    const float fine = roughness_of(make_face_folds(pattern).normal);
+    CAPTURE(coarse);
+    CAPTURE(fine);
+    CHECK(fine < 0.65f * coarse);
+}
+
+TEST_CASE("face folds: beside the nasolabial fold there is no second one") {
+    FaceFoldsPattern pattern;
+    pattern.image.size = 1024;
+    for (const int seed : {1, 2, 3}) {
+        pattern.image.seed = seed;
+        const PatternMaps maps = make_face_folds(pattern);
+        for (float row = 42; row <= 50; row += 2) {
+            CAPTURE(seed);
+            CAPTURE(row);
+            CHECK(count_valleys(maps.normal, row, 6.9f, 13.5f) == 1);
+            CHECK(count_valleys(maps.normal, row, -13.5f, -6.9f) == 1);
+        }
+    }
 }

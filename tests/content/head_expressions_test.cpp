@@ -141,6 +141,39 @@ TEST_CASE("head expressions: skin 3 cm beyond the region of a unit moves less th
     }
 }
 
+/// Skin around lids, nostrils and the red of the lips.
+bool is_plain(const HeadPoint& point) {
+    return point.loops == HeadLoops::None || (point.loops == HeadLoops::Mouth && point.loop <= 6);
+}
+
+/// The shortest that a unit makes a side or a diagonal of a quad of such skin, as a share of its
+/// length at rest, with both halves at weight 1.
+float shortest_share(const ActionUnit& unit) {
+    float shortest = 1;
+    for (const auto& quad : head_layout().quads) {
+        for (std::size_t k = 0; k < 6; ++k) {
+            const HeadPoint& a = skin()[quad[k % 4]];
+            const HeadPoint& b = skin()[quad[(k + (k < 4 ? 1 : 2)) % 4]];
+            if (is_plain(a) && is_plain(b)) {
+                const Vec3 now = b.rest + action_offset(unit, b, kShape) - a.rest
+                                 - action_offset(unit, a, kShape);
+                shortest = std::min(shortest, glm::length(now) / glm::distance(a.rest, b.rest));
+            }
+        }
+    }
+    return shortest;
+}
+
+TEST_CASE("head expressions: a unit gathers the skin, and crumples it nowhere at a ledge") {
+    // In measured faces a twentieth of a region is shorter by up to 46 % in a strong unit.
+    for (const ActionUnit& unit : action_units()) {
+        if (unit.jaw == 0) {  // below an open jaw skin collapses
+            CAPTURE(unit.name);
+            CHECK(shortest_share(unit) >= 0.45f);
+        }
+    }
+}
+
 TEST_CASE("head expressions: both halves of a unit sum to the whole and are mirror images") {
     for (const ActionUnit& unit : action_units()) {
         if (!unit.sided) {

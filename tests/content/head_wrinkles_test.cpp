@@ -100,6 +100,22 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("head wrinkles: raised brows shorten all of the middle of the forehead, with no gap") {
+    const std::vector<Vec3> raised = posed({"AU1_L", "AU1_R", "AU2_L", "AU2_R"}, 1);
+    const auto region = std::ranges::find(head().regions, "forehead", &VertexRegion::name);
+    REQUIRE(region != head().regions.end());
+    const WrinkleRest rest = make_wrinkle_rest(head().positions, head().indices, region->across);
+    const std::vector<float> ratios = vertex_compression({&rest, 1}, raised);
+    float least = 1;
+    for (std::size_t v = 0; v < ratios.size(); ++v) {
+        const Vec3 p = 100.0f * head().positions[v];
+        if (region->weights[v] > 0.5f && std::abs(p.x) < 3 && p.y > 7.2f && p.y < 9.2f) {
+            least = std::min(least, 1 - std::sqrt(ratios[v]));
+        }
+    }
+    CHECK(least > 0.05f);
+}
+
 TEST_CASE("head wrinkles: at rest nothing is shorter") {
     for (const VertexRegion& region : head().regions) {
         CHECK(shortening(region.name, posed({}, 0)) < 1e-6f);

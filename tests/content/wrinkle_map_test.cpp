@@ -1,5 +1,6 @@
 #include "content/bake/wrinkle_map.h"
 #include "content/make/fold_pattern.h"
+#include "systems/faces/wrinkle_fold.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>
@@ -7,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 using namespace limn;
 using limn::test::near;
@@ -64,4 +67,35 @@ TEST_CASE("wrinkle map: folds can be made as flat as the fit to the sphere needs
     FoldsPattern limited = steep;
     limited.steepest = 0.6f;
     CHECK(steepest(make_folds(limited).normal) <= 0.6f);
+}
+
+TEST_CASE("wrinkle map: slopes of a hundredth of a step of 8 bits keep their mean, flat is exact") {
+    constexpr int kSize = 64;
+    ImageData map;
+    map.width = kSize;
+    map.height = kSize;
+    map.format = PixelFormat::Rgba8;
+    map.pixels.resize(std::size_t{4} * kSize * kSize);
+    std::vector<float> heights;
+    for (int y = 0; y < kSize; ++y) {
+        for (int x = 0; x < kSize; ++x) {  // flat, up, down
+            heights.push_back(y < 16 ? 0.0f : 0.0021f * static_cast<float>(x < 32 ? x : 64 - x));
+        }
+    }
+    write_wrinkle_map(map, heights);
+    const std::vector<Vec2> slopes = wrinkle_slopes(map);
+    Vec2 up = {0, 0};
+    Vec2 down = {0, 0};
+    for (int y = 0; y < kSize; ++y) {
+        for (int x = 0; x < kSize; ++x) {
+            const Vec2 slope = slopes[static_cast<std::size_t>(y * kSize + x)];
+            if (y > 0 && y < 15) {
+                CHECK(slope == Vec2(0));
+            } else if (y >= 18 && y < 62) {
+                (x < 32 ? up : down) += slope / (44.0f * 32.0f);
+            }
+        }
+    }
+    CHECK(up.x == near(0.0021).epsilon(0.1));
+    CHECK(down.x == near(-0.0021).epsilon(0.1));
 }
