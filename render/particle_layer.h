@@ -33,10 +33,10 @@ struct ParticleLayerPrograms {
 };
 [[nodiscard]] Result<ParticleLayerPrograms> create_particle_layer_programs(gpu::Device& device);
 
-/// Adds the pass that makes its depth from that of the view, where something within `bounds` may be
-/// seen.
+/// Adds the pass that makes its depth from that of the view, for what is drawn within `window`.
 [[nodiscard]] ParticleLayer begin_particle_layer(
-    FrameGraph& graph, const ParticleLayerPrograms& programs, ViewData& view, const Bounds& bounds);
+    FrameGraph& graph, const ParticleLayerPrograms& programs, ViewData& view,
+    const LightBounds& window);
 /// Adds the pass that lays it over the view's radiance.
 void end_particle_layer(
     FrameGraph& graph, const ParticleLayerPrograms& programs, const ParticleLayer& layer,
