@@ -121,11 +121,12 @@ void cull_particles(
             visible[i] = group_visible[look];
             continue;
         }
-        float radius = extent.radius;
-        if (extent.stretch > 0) {
-            radius += extent.stretch * glm::length(Vec3(instances[i].motion()));
+        const Vec3& place = instances[i].position;
+        visible[i] = may_be_in_view(planes, place, extent.radius);
+        if (visible[i] == 0 && extent.stretch > 0) {  // speeds of few are unpacked
+            const float speed = glm::length(Vec3(instances[i].motion()));
+            visible[i] = may_be_in_view(planes, place, extent.radius + extent.stretch * speed);
         }
-        visible[i] = may_be_in_view(planes, instances[i].position, radius);
     }
 }
 

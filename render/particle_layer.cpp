@@ -4,10 +4,7 @@
 #include "render/gpu/device.h"
 #include "render/view_block.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
-#include <cmath>
 
 namespace limn {
 namespace {
@@ -15,12 +12,6 @@ namespace {
 constexpr unsigned kLayerUnit = 0;
 constexpr unsigned kSceneDepthUnit = 4;
 constexpr unsigned kLayerDepthUnit = 1;
-
-LightBounds window_of(const RenderView& view, const Bounds& bounds) {
-    const Vec3 middle = 0.5f * (bounds.min + bounds.max);
-    const float radius = glm::distance(bounds.min, middle);
-    return light_bounds(view, middle, std::isfinite(radius) ? radius : INFINITY);
-}
 
 /// Pixels of the layer, with those that filters read.
 void set_layer_scissor(gpu::Device& device, const LightBounds& window) {
@@ -42,15 +33,14 @@ Result<ParticleLayerPrograms> create_particle_layer_programs(gpu::Device& device
 
 ParticleLayer begin_particle_layer(
     FrameGraph& graph, const ParticleLayerPrograms& programs, ViewData& view,
-    const Bounds& bounds) {
+    const LightBounds& window) {
     const IVec2 size = half_resolution(view.size());
     const ParticleLayer layer = {
-        window_of(view.camera, bounds),
-        create_target(graph, "particles.layer depth", GL_DEPTH_COMPONENT32F, size),
+        window, create_target(graph, "particles.layer depth", GL_DEPTH_COMPONENT32F, size),
         create_target(graph, "particles.layer", view.frame->radiance_format, size)};
     graph.add_pass(
         "particles.layer depth", {sampled(view.gbuffer.depth, kSceneDepthUnit)},
-        {discarded(layer.depth)}, [&programs, window = layer.window](PassContext& context) {
+        {discarded(layer.depth)}, [&programs, window](PassContext& context) {
             set_layer_scissor(context.device(), window);
             context.device().use(
                 gpu::Pipeline{programs.shrink, {.depth = {.func = GL_ALWAYS}, .cull = GL_NONE}});

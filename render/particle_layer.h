@@ -16,9 +16,9 @@ class Program;
 // four nearest texels, without those that are of another surface, so that the layer neither spills
 // over edges nor leaves a rim (Cantlay, "High-Speed, Off-Screen Particles", GPU Gems 3, 2007;
 // nearest-depth filter of Jansen and Bavoil, "Fast Rendering of Opacity-Mapped Particles Using
-// DirectX 11 Tessellation and Mixed Resolutions", 2011). Pixels count as one surface where depth
-// changes between them about as much as beside them, which is also true of ground at a shallow
-// angle.
+// DirectX 11 Tessellation and Mixed Resolutions", 2011). Four pixels count as one
+// surface where depth changes between them about as much as beside them, four texels where they are
+// alike, or in one plane with the pixel: as ground at a shallow angle is.
 
 struct ParticleLayer {
     LightBounds
@@ -33,10 +33,10 @@ struct ParticleLayerPrograms {
 };
 [[nodiscard]] Result<ParticleLayerPrograms> create_particle_layer_programs(gpu::Device& device);
 
-/// Adds the pass that makes its depth from that of the view, where something within `bounds` may be
-/// seen.
+/// Adds the pass that makes its depth from that of the view, for what is drawn within `window`.
 [[nodiscard]] ParticleLayer begin_particle_layer(
-    FrameGraph& graph, const ParticleLayerPrograms& programs, ViewData& view, const Bounds& bounds);
+    FrameGraph& graph, const ParticleLayerPrograms& programs, ViewData& view,
+    const LightBounds& window);
 /// Adds the pass that lays it over the view's radiance.
 void end_particle_layer(
     FrameGraph& graph, const ParticleLayerPrograms& programs, const ParticleLayer& layer,

@@ -17,7 +17,6 @@ namespace {
 
 constexpr float kMaxPoint = 4;     // [px] across, above which a disc is drawn as a quad
 constexpr float kHighestWave = 5;  // above the rest level of water [m]
-constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 
 /// Of those that are visible and drawn at half the resolution, the index of the middle one in the
 /// order; 0 without one.
@@ -78,6 +77,13 @@ void append_instance(
     seen.instances.push_back(instance);
 }
 
+/// Pixels of the view within which it may be seen.
+LightBounds
+window_of(const RenderView& view, const ParticleInstance& instance, const LookRecord& look) {
+    const bool has_reach = std::isfinite(bounds_of(instance, look).min.x);
+    return light_bounds(view, instance.position, has_reach ? reach_of(instance, look) : INFINITY);
+}
+
 /// Those of this layer in [first, last) that are visible, from back to front.
 void append_runs(
     const ParticleDraws& draws, const RenderView& camera, LookLayer layer, std::size_t first,
@@ -91,7 +97,7 @@ void append_runs(
         }
         append_instance(draws, camera, i, scale, first_run, seen);
         if (layer == LookLayer::Half) {
-            grow(seen.half_bounds, bounds_of(draws.sorted[i], draws.looks[look]));
+            grow(seen.half_window, window_of(camera, draws.sorted[i], draws.looks[look]));
         } else if (layer == LookLayer::Weighted) {
             grow(seen.weighted_bounds, {draws.sorted[i].position, draws.sorted[i].position});
         }
@@ -203,7 +209,7 @@ void select_particles(
     const ViewData& view, ParticlesInView& seen) {
     seen.instances.clear();
     seen.runs.clear();
-    seen.half_bounds = {};
+    seen.half_window = {};
     seen.weighted_bounds = {};
     seen.half_begin = 0;
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
@@ -217,10 +223,11 @@ void select_particles(
         append_runs(draws, view.camera, LookLayer::Full, 0, middle, seen);
         seen.half_begin = seen.runs.size();
         append_runs(draws, view.camera, LookLayer::Half, 0, draws.sorted.size(), seen);
-        for (const auto& [entity, pool] : gpu.pools()) {
-            grow(
-                seen.half_bounds,
-                draws.layers[pool->look] == LookLayer::Half ? kAnywhere : Bounds{});
+        const auto is_half = [&](const auto& pool) {
+            return draws.layers[pool.second->look] == LookLayer::Half;
+        };
+        if (frame.warm_up || std::any_of(gpu.pools().begin(), gpu.pools().end(), is_half)) {
+            seen.half_window = {0, 0, view.camera.width, view.camera.height, 0, 1};
         }
     }
     seen.half_end = seen.runs.size();

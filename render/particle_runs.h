@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "render/particle_list.h"
+#include "render/shadow/light_bounds.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +21,7 @@ struct ParticlesInView {
     std::vector<ParticleRun> runs{};
     std::size_t half_begin = 0;  ///< of the runs at half the resolution; those before are behind
     std::size_t half_end = 0;
-    Bounds half_bounds{};                 ///< of those
+    LightBounds half_window{};            ///< of the view's pixels, those where they may be seen
     std::size_t weighted_begin = 0;       ///< of the runs that are weighted
     Bounds weighted_bounds{};             ///< of those
     std::size_t under_begin = 0;          ///< of the runs under water, to the end
@@ -28,7 +29,8 @@ struct ParticlesInView {
     std::vector<std::uint8_t> visible{};  ///< of ParticleDraws::sorted
 };
 
-/// Leaves out what the view does not see. The bounds include those that the GPU moves.
+/// Leaves out what the view does not see. The window and the bounds include those that the GPU
+/// moves.
 void select_particles(
     const ParticleDraws& draws, const GpuParticlePools& gpu, const FrameData& frame,
     const ViewData& view, ParticlesInView& seen);

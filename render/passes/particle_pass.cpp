@@ -239,9 +239,9 @@ void ParticleEffect::add_layers(
             "particles.behind", "particles.veiled behind", view.gbuffer.depth, {view.radiance},
             Part::Behind);
     }
-    if (draws.has_halves && layer_programs && !is_empty(seen.half_bounds)) {
+    if (draws.has_halves && layer_programs && !is_empty(seen.half_window)) {
         const ParticleLayer layer =
-            begin_particle_layer(graph, *layer_programs, view, seen.half_bounds);
+            begin_particle_layer(graph, *layer_programs, view, seen.half_window);
         add_pass(
             "particles.half", "particles.veiled half", layer.depth, {cleared(layer.radiance)},
             Part::Half);

@@ -10,15 +10,7 @@ layout(binding = 4) uniform sampler2D scene_depth;
 layout(location = 0) out vec4 radiance;
 
 const float kAlike = 0.1;  // difference of distances up to which texels are of one surface, as a share
-
-// Depth per pixel along x and y, each on the side where it changes less: of the pixel's own surface at an edge, too.
-float slope_at(ivec2 at, float here) {
-    vec2 size = vec2(textureSize(scene_depth, 0));
-    vec4 before = textureGather(scene_depth, vec2(at) / size);
-    vec4 after = textureGather(scene_depth, vec2(at + 1) / size);
-    vec2 slope = min(abs(before.xz - here), abs(after.zx - here));
-    return slope.x + slope.y;
-}
+const float kOnPlane = 0.02;  // how far off the plane of the four a pixel of their surface is, likewise
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
@@ -32,12 +24,11 @@ void main() {
     vec4 apart = abs(four - here);
     float nearest = min(min(apart.x, apart.y), min(apart.z, apart.w));
     float farthest = max(max(apart.x, apart.y), max(apart.z, apart.w));
-    bool is_even = farthest <= kAlike * here || farthest <= kAlike * here + 2.0 * slope_at(at, here);
-    float limit = is_even ? farthest : nearest + kAlike * here;
-
     vec2 right = clamp(place - 0.5 - corner, 1e-3, 1.0 - 1e-3);  // all texels count, should one of them alone be left
-    vec4 weights = vec4(1.0 - right.x, right.x, right.x, 1.0 - right.x) * vec4(right.yy, 1.0 - right.yy)
-        * vec4(lessThanEqual(apart, vec4(limit)));
+    vec4 weights = vec4(1.0 - right.x, right.x, right.x, 1.0 - right.x) * vec4(right.yy, 1.0 - right.yy);
+    float off_plane = abs(dot(weights, four) - here) + abs(four.x - four.y + four.z - four.w);
+    bool is_even = farthest <= kAlike * here || off_plane <= kOnPlane * here;
+    weights *= vec4(lessThanEqual(apart, vec4(is_even ? farthest : nearest + kAlike * here)));
     ivec2 first = ivec2(corner);
     radiance = (weights.x * texelFetchOffset(layer, first, 0, ivec2(0, 1))
                 + weights.y * texelFetchOffset(layer, first, 0, ivec2(1, 1))

@@ -33,6 +33,21 @@ PixelRange to_pixels(const SlopeRange& slopes, float tangent, float jitter, int 
 
 }  // namespace
 
+void grow(LightBounds& bounds, const LightBounds& other) {
+    if (is_empty(bounds) || is_empty(other)) {
+        bounds = is_empty(other) ? bounds : other;
+        return;
+    }
+    const int right = std::max(bounds.x + bounds.width, other.x + other.width);
+    const int top = std::max(bounds.y + bounds.height, other.y + other.height);
+    bounds.x = std::min(bounds.x, other.x);
+    bounds.y = std::min(bounds.y, other.y);
+    bounds.width = right - bounds.x;
+    bounds.height = top - bounds.y;
+    bounds.depth_min = std::min(bounds.depth_min, other.depth_min);
+    bounds.depth_max = std::max(bounds.depth_max, other.depth_max);
+}
+
 SlopeRange sphere_slopes(float x, float z, float radius, float near) {
     const double d2 = square(static_cast<double>(x)) + square(static_cast<double>(z));
     const double r2 = square(static_cast<double>(radius));

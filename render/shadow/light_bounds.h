@@ -27,6 +27,9 @@ struct LightBounds {
     return bounds.width <= 0 || bounds.height <= 0;
 }
 
+/// Extends the rectangle of `bounds` to `other`, with the range of depths of both.
+void grow(LightBounds& bounds, const LightBounds& other);
+
 /// Range of slopes x / -z of the part of a sphere beyond the near plane.
 struct SlopeRange {
     float low = -INFINITY;

@@ -8,6 +8,7 @@
 #include "tests/render/shader_eval.h"
 
 #include <glm/geometric.hpp>
+#include <glm/packing.hpp>
 
 #include <cmath>
 #include <limits>
@@ -283,6 +284,25 @@ TEST_CASE("particle visibility: those in view are those of a brute-force test") 
     }
     CHECK(shown > 100);
     CHECK(shown < 1900);
+}
+
+TEST_CASE("particle visibility: a streak out of view is seen as far as its speed makes it reach") {
+    const Frustum frustum = make_frustum(Scene().look({0, 0, 5}, {0, 0, 0}).clip_from_world);
+    const auto shown = [&](float x, float stretch, float speed) {
+        ParticleInstance instance;
+        instance.position = {x, 0, 0};
+        instance.velocity_xy = glm::packHalf2x16(Vec2(speed, 0));
+        LookExtent extent;
+        extent.radius = 0.1f;
+        extent.stretch = stretch;
+        std::vector<std::uint8_t> visible;
+        cull_particles({instance}, {extent}, frustum, visible);
+        return visible[0] == 1;
+    };
+    CHECK(shown(0, 0.5f, 0));
+    CHECK(shown(50, 0.5f, 128));  // 64 m
+    CHECK_FALSE(shown(50, 0.5f, 32));
+    CHECK_FALSE(shown(50, 0, 128));
 }
 
 TEST_CASE("particle visibility: an emitter hides all with it, bounds only if none is in view") {

@@ -115,6 +115,21 @@ TEST_CASE("light_bounds: a light behind the camera or beside the image reaches n
     CHECK_FALSE(is_empty(light_bounds(view, {0, 0, -5}, 1)));
 }
 
+TEST_CASE("light_bounds: grown, a rectangle holds both and touches them, whichever comes first") {
+    const LightBounds low = {2, 3, 4, 5, 0.2f, 0.4f};
+    const LightBounds high = {10, 1, 6, 20, 0.1f, 0.3f};
+    const LightBounds both = {2, 1, 14, 20, 0.1f, 0.4f};
+    const auto grown = [](LightBounds bounds, const LightBounds& other) {
+        grow(bounds, other);
+        return bounds;
+    };
+    CHECK(grown(low, high) == both);
+    CHECK(grown(high, low) == both);
+    CHECK(grown(both, low) == both);
+    CHECK(grown({}, low) == low);
+    CHECK(grown(low, {}) == low);
+}
+
 TEST_CASE("light_bounds: depths are those of the nearest and the farthest point") {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1}, 1.0f);
     const LightBounds bounds = light_bounds(view, {0, 0, -10}, 1);

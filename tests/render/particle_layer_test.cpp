@@ -118,6 +118,13 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(LayerScene, "particle layer: puffs far apart in the image are all drawn") {
+    const ParticleLook small = puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.3f);
+    emit({{-0.9f, -0.7f, 0}, {0.9f, 0.7f, 0}, {0.9f, -0.6f, -1}}, small);
+    const gpu::FloatImage full = drawn(ParticleResolution::Full);
+    CHECK(decibels(drawn(ParticleResolution::Half), full) >= 40);
+}
+
 TEST_CASE_FIXTURE(LayerScene, "particle layer: points are as large as in the whole resolution") {
     for (const auto facing : {ParticleFacing::Point, ParticleFacing::Pixels}) {
         ParticleLook point = puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f);
