@@ -49,13 +49,15 @@ void sample_diffusion(const Vec3& d, const DiffusionDensity& density, std::span<
     double sorted[3] = {d.x, d.y, d.z};
     std::sort(std::begin(sorted), std::end(sorted), std::greater<>());
     const auto count = static_cast<double>(samples.size());
+    const double first = density.center > 0 ? density.center : 1 / count;
+    const double others = (1 - first) / std::max(count - 1, 1.0);
     double inner = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const auto n = static_cast<double>(i);
         const bool last = i + 1 == samples.size();
-        const double outer = radius_of(kSampledShare * (n + 1) / count, density, sorted);
-        samples[i].x =
-            static_cast<float>(radius_of(kSampledShare * (n + 0.5) / count, density, sorted));
+        const double end = first + static_cast<double>(i) * others;
+        const double middle = end - 0.5 * (i == 0 ? first : others);
+        const double outer = radius_of(kSampledShare * end, density, sorted);
+        samples[i].x = static_cast<float>(radius_of(kSampledShare * middle, density, sorted));
         for (int c = 0; c < 3; ++c) {
             const auto channel = static_cast<double>(d[c]);
             const double within = last ? 1.0 : diffused_within(outer, channel);

@@ -18,11 +18,14 @@ namespace limn {
 /// sums to 1.
 struct DiffusionDensity {
     double widest, middle, narrowest;
+    double center;  ///< share of samples that the first ring stands for; 0: as the others
 };
 // By a search over edges of light at all angles, these have the smallest error for skin. From afar
 // the narrowest channels spread light over no more than a pixel, which needs few samples.
-inline constexpr DiffusionDensity kDensityNear = {0.6, 0.2, 0.2};
-inline constexpr DiffusionDensity kDensityFar = {0.75, 0.15, 0.1};
+// From farther away the rings within a pixel are one.
+inline constexpr DiffusionDensity kDensityNear = {0.6, 0.2, 0.2, 0};
+inline constexpr DiffusionDensity kDensityFar = {0.75, 0.15, 0.1, 0};
+inline constexpr DiffusionDensity kDensityFarther = {0.75, 0.15, 0.1, 0.3};
 
 /// Share of the light that leaves within `radius`, 0 .. 1; all of it for d = 0.
 [[nodiscard]] double diffused_within(double radius, double d);

@@ -78,9 +78,11 @@ std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) 
         .specular = Vec4(m.specular, m.gloss),
         .diffusion = Vec4(d, m.gloss_roughness),
         .samples = {},
-        .few_samples = {}};
+        .few_samples = {},
+        .fewest_samples = {}};
     sample_diffusion(d, kDensityNear, block.samples);
     sample_diffusion(d, kDensityFar, block.few_samples);
+    sample_diffusion(d, kDensityFarther, block.fewest_samples);
     return block;
 }
 

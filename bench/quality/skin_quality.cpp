@@ -24,7 +24,9 @@ using glm::dvec3;
 constexpr int kSide = 256;     ///< of the images [px]
 constexpr float kLarger = 40;  ///< than real skin, so that shadows end at pixels [times]
 constexpr Vec3 kFreePath = kLarger * Vec3(3.67e-3f, 1.37e-3f, 0.68e-3f);
-constexpr double kHalf = 0.5;  ///< of the part of the plane that is compared [m]
+constexpr float kFewShare = 0.2f;       ///< of free paths whose last ring covers 22 px
+constexpr float kFewestShare = 0.107f;  ///< the same, 12 px
+constexpr double kHalf = 0.5;           ///< of the part of the plane that is compared [m]
 const char* const kChannels[3] = {"red", "green", "blue"};
 
 Material skin(const Vec3& free_path = kFreePath) {
@@ -115,6 +117,15 @@ Status measure_skin(HeadlessRenderer& headless, QualityReport& to) {
         QualityScene scene;
         populate_plane(scene, material, 0, 30);
         report(to, "edge of light", compare(headless, scene, material, oracle::diffused_edge));
+    }
+    // Farther away, where fewer rings are summed.
+    for (const auto& [title, share] :
+         {std::pair("edge of light, far", kFewShare),
+          std::pair("edge of light, farther", kFewestShare)}) {
+        QualityScene scene;
+        const Material small = skin(share * kFreePath);
+        populate_plane(scene, small, 0, 30);
+        report(to, title, compare(headless, scene, small, oracle::diffused_edge));
     }
     {
         QualityScene scene;

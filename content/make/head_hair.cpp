@@ -15,13 +15,13 @@ struct Strand {
     Vec3 root, middle, tip;  ///< of a quadratic Bezier curve, on the left side
     Vec3 across;             ///< direction of the ribbon's width, unit
     float width;             ///< at the root [cm]
+    std::uint32_t rows = 5;  ///< of vertices: the fewer, the less it is bent
     HeadPoint point;         ///< of the skin that it grows on
 };
 
 void append_strand(HeadPart& part, const Strand& strand, float side, float shade) {
-    constexpr std::uint32_t kRows = 5;
-    for (std::uint32_t row = 0; row < kRows; ++row) {
-        const float t = static_cast<float>(row) / (kRows - 1);
+    for (std::uint32_t row = 0; row < strand.rows; ++row) {
+        const float t = static_cast<float>(row) / static_cast<float>(strand.rows - 1);
         const Vec3 at = glm::mix(
             glm::mix(strand.root, strand.middle, t), glm::mix(strand.middle, strand.tip, t), t);
         const Vec3 half = 0.5f * strand.width * (1 - 0.85f * t * t) * strand.across;
@@ -34,7 +34,7 @@ void append_strand(HeadPart& part, const Strand& strand, float side, float shade
             part.points.push_back(point);
         }
     }
-    append_grid(part.mesh, kRows, 2, false, side > 0);
+    append_grid(part.mesh, strand.rows, 2, false, side > 0);
 }
 
 void append_both(HeadPart& part, const Strand& strand, float shade) {
@@ -104,6 +104,7 @@ void add_brows(HeadPart& part, Random& random, const HeadShape& shape) {
         strand.tip = root + length * along + 0.055f * out;
         strand.tip -= head_distance(strand.tip, shape, 1) * out - 0.05f * out;
         strand.across = glm::normalize(glm::cross(out, along));
+        strand.rows = 3;  // to 0.1 mm of the curve
         strand.width = 0.017f * glm::smoothstep(-0.3f, 0.15f, t) + 0.002f;
         append_both(part, strand, 0.7f + 0.6f * random.uniform());
     }

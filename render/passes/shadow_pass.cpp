@@ -42,6 +42,14 @@ void bind_shadows(PassContext& context, const ShadowBindings& shadows) {
     shadows.records.bind(context.device(), kShadowViewsUnit);
 }
 
+/// Not by a scissored clear, for which a software OpenGL draws every pixel.
+void clear_map(const gpu::Texture& atlas, const AtlasRect& place) {
+    constexpr float kFar = 0;
+    glClearTexSubImage(
+        atlas.id(), 0, place.x, place.y, 0, place.size, place.size, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
+        &kFar);
+}
+
 void draw_map(
     PassContext& context, ProgramVariants& programs, const ViewData& view, const ShadowDraw& draw) {
     gpu::Device& device = context.device();
@@ -50,8 +58,6 @@ void draw_map(
     device.set_viewport(place.x, place.y, place.size, place.size);
     device.set_scissor(place.x, place.y, place.size, place.size);
     device.apply(state);
-    constexpr float kFar = 0;
-    glClearBufferfv(GL_DEPTH, 0, &kFar);
     constexpr unsigned kViewBinding = 0;
     const gpu::RingSlice& block = draw.view_block;
     device.bind_uniforms(kViewBinding, block.buffer, block.offset, block.size);
@@ -71,7 +77,10 @@ TextureId draw_maps(
         const Use writes[] = {atlas};
         graph.add_pass(
             "shadows", mesh_reads(graph, *view.frame), writes,
-            [&programs, &view, &list](PassContext& context) {
+            [&programs, &texture, &view, &list](PassContext& context) {
+                for (const ShadowDraw& draw : list.due) {
+                    clear_map(texture, draw.place);
+                }
                 for (const ShadowDraw& draw : list.due) {
                     draw_map(context, programs, view, draw);
                 }

@@ -18,11 +18,11 @@ class Program;
 // Order    after lights, before all that lies in front of surfaces
 // Shaders  subsurface.frag, distance_moments.frag; diffusion_profile.h
 //
-// Each pixel sums 80 rings, or 36 where they cover few pixels, in the tangent plane of its surface,
-// in meters, so that neither distance nor tilt changes what is seen; each ring is one sample of a
-// mip level about as wide as the ring's share of the plane. What lies off the plane counts less by
-// how much farther it is, what does not scatter not at all, and the rest is scaled to a share of
-// one: uniform light is unchanged.
+// Each pixel sums 80 rings, or 36 or 20 where they cover few pixels, in the tangent plane of its
+// surface, in meters, so that neither distance nor tilt changes what is seen; each ring is one
+// sample of a mip level about as wide as the ring's share of the plane. What lies off the plane
+// counts less by how much farther it is, what does not scatter not at all, and the rest is scaled
+// to a share of one: uniform light is unchanged.
 //
 // Only pixels within the boxes of such surfaces are looked at, as a software OpenGL sums the rings
 // of all others in vain.

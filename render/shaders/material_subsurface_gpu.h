@@ -5,8 +5,8 @@
 //
 //     R(r) = (exp(-r/d) + exp(-r/3d)) / (8 pi d r),    share within r: 1 - exp(-r/d)/4 - 3 exp(-r/3d)/4
 //
-// The diffusion pass sums it over rings, each sampled at one point; over fewer where they cover few
-// pixels.
+// The diffusion pass sums it over rings, each sampled at one point; the fewer, the fewer pixels they
+// cover.
 
 #ifdef __cplusplus
 #pragma once
@@ -16,17 +16,20 @@ namespace limn::layout {
 
 const uint kDiffusionSamples = 80u;
 const uint kFewDiffusionSamples = 36u;
+const uint kFewestDiffusionSamples = 20u;
 
 struct SubsurfaceBlock {
     vec4 specular;  // reflectance head on; w: share of the second lobe
     vec4 diffusion;  // d for red, green and blue [m]; w: perceptual roughness of the second lobe
     vec4 samples[kDiffusionSamples];  // x: radius [m], increasing; yzw: share of the profile for red, green and blue
     vec4 few_samples[kFewDiffusionSamples];  // the same for surfaces far away
+    vec4 fewest_samples[kFewestDiffusionSamples];  // and farther away
 };
 
 const int kDiffusionTexel = 1;
 const int kSamplesTexel = 2;
 const int kFewSamplesTexel = kSamplesTexel + int(kDiffusionSamples);
+const int kFewestSamplesTexel = kFewSamplesTexel + int(kFewDiffusionSamples);
 
 #ifdef __cplusplus
 }  // namespace limn::layout

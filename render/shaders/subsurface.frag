@@ -15,6 +15,7 @@ layout(location = 0) out vec4 radiance;
 
 const vec2 kGoldenTurn = vec2(-0.73736888, 0.67549029);  // cosine and sine of the golden angle
 const float kFewWithin = 24.0;   // radius of the last ring [px] below which few rings differ by less than 1 % of an edge
+const float kFewestWithin = 12.0;  // the same of the fewest
 const float kMinFacing = 0.15;   // cosine between plane and viewer; planes seen more edge-on are turned
 const float kBlob = 0.9;         // side of a sample by the square root of its area; by trial, for least error
 const vec2 kSlack = vec2(1.0, 0.6);  // pixels, and parts of a sample, over which the plane's own slope counts as flat
@@ -46,8 +47,10 @@ void main() {
     vec3 falloff = 1.442695 / (3.0 * max(texelFetch(materials, first + kDiffusionTexel).rgb, vec3(kMinDiffusion)));
     float widest = texelFetch(materials, first + kFewSamplesTexel - 1).x * pixels_per_meter;
     bool few = widest < kFewWithin;
-    int begin = first + (few ? kFewSamplesTexel : kSamplesTexel);
-    int count = widest < 0.5 ? 0 : int(few ? kFewDiffusionSamples : kDiffusionSamples);
+    bool fewest = widest < kFewestWithin;
+    int begin = first + (fewest ? kFewestSamplesTexel : few ? kFewSamplesTexel : kSamplesTexel);
+    uint rings = fewest ? kFewestDiffusionSamples : few ? kFewDiffusionSamples : kDiffusionSamples;
+    int count = widest < 0.5 ? 0 : int(rings);
     float slope = sqrt(max(1.0 - facing * facing, 0.0)) / (facing * pixels_per_meter);  // of distance [m] per pixel
     float area_to_pixels = kBlob * kBlob * 3.14159265 * facing * pixels_per_meter * pixels_per_meter;
 

@@ -249,7 +249,7 @@ TEST_CASE("quality: the surfaces keep their bounds") {
 
 TEST_CASE("quality: light spreads in skin and shines through it as the profile says") {
     const TemporaryFolder folder;
-    CHECK(measured_rows("skin", folder).size() == 18);
+    CHECK(measured_rows("skin", folder).size() == 24);
     CHECK(read_text(folder.file("stdout.txt")).find("VIOLATED") == std::string::npos);
 }
 

@@ -132,15 +132,35 @@ RenderView turned(const Vec3& eye, float roll) {
 
 TEST_CASE("diffusion profile: every channel's rings hold all of its light, from the inside out") {
     for (const Vec3& d : {Vec3(0.98f, 0.39f, 0.19f), Vec3(1, 1, 1), Vec3(1, 0, 0.5f)}) {
-        std::array<Vec4, 48> rings;
-        sample_diffusion(d, kDensityNear, rings);
-        DVec3 sum(0);
-        for (std::size_t i = 0; i < rings.size(); ++i) {
-            sum += DVec3(rings[i].y, rings[i].z, rings[i].w);
-            CHECK(rings[i].x >= (i == 0 ? 0.0f : rings[i - 1].x));
+        for (const DiffusionDensity& density : {kDensityNear, kDensityFar, kDensityFarther}) {
+            std::array<Vec4, 48> rings;
+            sample_diffusion(d, density, rings);
+            DVec3 sum(0);
+            for (std::size_t i = 0; i < rings.size(); ++i) {
+                sum += DVec3(rings[i].y, rings[i].z, rings[i].w);
+                CHECK(rings[i].x >= (i == 0 ? 0.0f : rings[i - 1].x));
+            }
+            CHECK(glm::length(sum - 1.0) < 1e-5);
         }
-        CHECK(glm::length(sum - 1.0) < 1e-5);
     }
+}
+
+TEST_CASE("diffusion profile: the first of rings seen from far away stands for many") {
+    const Vec3 d = {0.98f, 0.39f, 0.19f};
+    std::array<Vec4, 20> many;
+    std::array<Vec4, 20> one;
+    sample_diffusion(d, kDensityFar, many);
+    sample_diffusion(d, kDensityFarther, one);
+    // 0.3 of the samples are six of 20.
+    for (int c = 1; c < 4; ++c) {
+        float held = 0;
+        for (int i = 0; i < 6; ++i) {
+            held += many[static_cast<std::size_t>(i)][c];
+        }
+        CHECK(one[0][c] == near(held).epsilon(1e-5));
+    }
+    // The others are as dense as 19 / 0.7 samples: their last one stands for less than that of 20.
+    CHECK(one[19].x > many[19].x);
 }
 
 TEST_CASE("diffusion profile: a ring's share is the integral of the profile over it") {

@@ -96,7 +96,7 @@ float blocker_depth(ShadowPoint p, float radius, vec2 turn) {
 // All filters in one loop over 2x2 texels, since a software OpenGL would execute one loop for each filter: one step
 // for the narrow filters; nine for the soft one, 6x6 texels of which the square covers 5x5; and for the
 // contact-hardening one, points of a disc as wide as the penumbra (Fernando 2005).
-float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
+float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel, bool asked) {
     float filter_kind = settings.x;
     bool contact = filter_kind == kFilterContactHardening;
     bool soft = filter_kind == kFilterSoft;
@@ -126,8 +126,9 @@ float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
 }
 #elif defined(SHADOW_SOFT)
 // The same without the last one. Rows of three steps, so that narrow filters end after the first.
-float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
-    bool soft = settings.x == kFilterSoft;
+// Not `asked`: any result will do, as soon as possible.
+float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel, bool asked) {
+    bool soft = asked && settings.x == kFilterSoft;
     vec2 corner = soft ? floor(p.st - kSoftHalf) : corner_at(p, p.st);
     vec2 middle = settings.x == kFilterHard ? corner + 0.5 + step(0.5, p.st - 0.5 - corner) : p.st;
     float half_side = soft ? kSoftHalf : 0.5;
@@ -178,7 +179,7 @@ float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_lig
 
     bool inside = q > 0.0 && all(greaterThan(p.st, p.rect.xy)) && all(lessThan(p.st, p.rect.zw));
 #ifdef SHADOW_SOFT
-    float lit = filtered_share(p, settings, pixel);
+    float lit = filtered_share(p, settings, pixel, inside);
 #else
     float lit = lit_share(p, settings.x == kFilterHard);
 #endif
