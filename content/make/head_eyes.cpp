@@ -178,8 +178,11 @@ HeadPart make_eye_balls() {
     // From the pupil over the iris to its root, up to the sclera and around the ball.
     std::vector<Ring> rings;
     const float plane = kApex - kIrisDepth;
-    for (const float radius : {0.001f, 0.1f, kPupil - 0.012f}) {
-        rings.push_back({radius, plane - 0.03f});
+    // A cone, which mirrors no lamp to the front: a pupil is a hole.
+    constexpr float kSteep = 2.5f;
+    constexpr float kRim = kPupil - 0.012f;
+    for (const float radius : {0.001f, 0.5f * kRim, kRim}) {
+        rings.push_back({radius, plane - 0.03f - kSteep * (kRim - radius)});
     }
     constexpr int kIrisRings = 14;
     for (int i = 0; i <= kIrisRings; ++i) {

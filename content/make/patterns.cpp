@@ -15,6 +15,7 @@
 #include "content/make/puff_pattern.h"
 #include "content/make/sprite_patterns.h"
 #include "content/make/strain_fold_pattern.h"
+#include "content/make/studio_pattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -435,6 +436,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<StonePattern, make_stone>("stone", "irregular flagstones"),
         pattern_kind<StrainFoldsPattern, make_strain_folds>(
             "strain_folds", "folds of a face as a model of its strain, for a wrinkle_surface"),
+        pattern_kind<StudioPattern, make_studio>(
+            "studio", "a panorama of soft boxes and windows around a model"),
         pattern_kind<TilesPattern, make_tiles>("tiles", "glazed tiles in grout"),
         pattern_kind<TreePattern, make_tree>(
             "tree", "a flipbook of trees in leaf, each another one"),

@@ -208,6 +208,27 @@ TEST_CASE("head: the tear line lies on the lower lid and the ball, and follows t
     CHECK(wet == 2 * 5 * 40);
 }
 
+TEST_CASE("head: a pupil mirrors no lamp to the front: nothing dark in it faces forward") {
+    const HeadPart balls = make_eye_balls();
+    const MeshData& mesh = balls.mesh;
+    int dark = 0;
+    int forward = 0;
+    for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
+        const std::uint32_t* const v = &mesh.indices[t];
+        if (mesh.colors[v[0]].x + mesh.colors[v[1]].x + mesh.colors[v[2]].x > 0.02f) {
+            continue;
+        }
+        const Vec3 a = mesh.positions[v[0]];
+        const Vec3 normal = glm::cross(mesh.positions[v[1]] - a, mesh.positions[v[2]] - a);
+        if (glm::length(normal) > 0) {
+            ++dark;
+            forward += glm::normalize(normal).z >= 0.5f ? 1 : 0;
+        }
+    }
+    CHECK(dark > 200);
+    CHECK(forward == 0);
+}
+
 TEST_CASE("head: a cornea has the radius and height of an eye's, and the iris lies 3 mm below") {
     constexpr float kScale = kBallRadius / 1.2f;  // of an eye whose ball has 24 mm
     float apex = 0;
