@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,13 @@ namespace {
 
 float brightness(const Vec3& color) {
     return std::max(color.x, std::max(color.y, color.z));
+}
+
+/// Into the space of the entity's Transform: that of its parent, which should not be stretched.
+Affine parent_from_world(const World& world, Entity entity) {
+    const Entity parent = parent_of(world, entity);
+    const auto* const place = parent.is_null() ? nullptr : world.find<WorldTransform>(parent);
+    return place != nullptr ? to_affine(glm::inverse(to_mat4(place->world))) : Affine{};
 }
 
 /// The edit of a light's place, as if it were not done yet.
@@ -38,28 +46,18 @@ std::optional<Entity> brightest_light(const World& world, const Vec3& point) {
     std::optional<Entity> found;
     float most = 0;
     const auto offer = [&](Entity entity, float illuminance) {
-        if (illuminance > most && parent_of(world, entity).is_null()) {
+        if (illuminance > most) {
             most = illuminance;
             found = entity;
         }
     };
-    const auto at_distance = [&](const Transform& place, float intensity) {
-        const Vec3 way = place.position - point;
-        return intensity / std::max(glm::dot(way, way), 1e-6f);
+    const auto offer_lamp = [&](Entity entity, const auto& lamp, const Transform& place) {
+        const Vec3 way = place.position - transform_point(parent_from_world(world, entity), point);
+        const float intensity = lamp.enabled ? lamp.intensity * brightness(lamp.color) : 0.0f;
+        offer(entity, intensity / std::max(glm::dot(way, way), 1e-6f));
     };
-    world.query<const PointLight, const Transform>().each(
-        [&](Entity entity, const PointLight& light, const Transform& place) {
-            offer(
-                entity, light.enabled
-                            ? at_distance(place, light.intensity * brightness(light.color))
-                            : 0.0f);
-        });
-    world.query<const SpotLight, const Transform>().each([&](Entity entity, const SpotLight& light,
-                                                             const Transform& place) {
-        offer(
-            entity,
-            light.enabled ? at_distance(place, light.intensity * brightness(light.color)) : 0.0f);
-    });
+    world.query<const PointLight, const Transform>().each(offer_lamp);
+    world.query<const SpotLight, const Transform>().each(offer_lamp);
     world.query<const DirectionalLight, const Transform>().each(
         [&](Entity entity, const DirectionalLight& light, const Transform&) {
             offer(entity, light.enabled ? light.illuminance * brightness(light.color) : 0.0f);
@@ -71,8 +69,8 @@ Transform turned_light(
     const Transform& place, const Vec3& center, const Vec2& motion, float height,
     const Affine& world_from_camera) {
     const float angle = kPi / std::max(height, 1.0f);
-    const Vec3 right = transform_vector(world_from_camera, {1, 0, 0});
-    const Vec3 up = transform_vector(world_from_camera, {0, 1, 0});
+    const Vec3 right = glm::normalize(transform_vector(world_from_camera, {1, 0, 0}));
+    const Vec3 up = glm::normalize(transform_vector(world_from_camera, {0, 1, 0}));
     const Quat turn =
         glm::angleAxis(motion.x * angle, up) * glm::angleAxis(motion.y * angle, right);
     Transform turned = place;
@@ -98,8 +96,12 @@ void LightDrag::drag(
         return;
     }
     const Transform place = *std::as_const(world).find<Transform>(*light);
-    Edit edit =
-        edit_of(world, *light, turned_light(place, center, motion, height, world_from_camera));
+    const Affine to_parent = parent_from_world(world, *light);
+    Edit edit = edit_of(
+        world, *light,
+        turned_light(
+            place, transform_point(to_parent, center), motion, height,
+            to_parent * world_from_camera));
     apply_edit_value(world, edit, edit.after);
     if (begins || undo.redo_count() > 0 || undo.undo_count() == 0) {
         undo.record(std::move(edit));
@@ -112,7 +114,12 @@ void LightDrag::drag(
 void face_light(World& world, UndoStack& undo, const Vec3& center, const Vec3& direction) {
     if (const std::optional<Entity> light = brightest_light(world, center)) {
         const Transform place = *std::as_const(world).find<Transform>(*light);
-        Edit edit = edit_of(world, *light, facing_light(place, center, direction));
+        const Affine to_parent = parent_from_world(world, *light);
+        Edit edit = edit_of(
+            world, *light,
+            facing_light(
+                place, transform_point(to_parent, center),
+                glm::normalize(transform_vector(to_parent, direction))));
         apply_edit_value(world, edit, edit.after);
         undo.record(std::move(edit));
     }

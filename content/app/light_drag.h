@@ -14,9 +14,11 @@ class World;
 // Directing a light by the mouse: the light that matters most at a point turns about it, as if held
 // on a string.
 
-/// The light with a Transform of its own, without a parent, that is on and brightest at `point`
-/// [lx], its cone and what stands in its way aside; of several, the first.
+/// The light with a Transform of its own that is on and brightest at `point` [lx], its cone and
+/// what stands in its way aside; of several, the first.
 [[nodiscard]] std::optional<Entity> brightest_light(const World& world, const Vec3& point);
+
+// Places, centers and cameras of the next two are in one space, that of the light's parent.
 
 /// `place` turned about `center` by a drag of `motion` pixels in an image of `height` pixels whose
 /// camera is at `world_from_camera`: a light before the camera follows the pointer, half a turn for
@@ -29,7 +31,8 @@ class World;
 [[nodiscard]] Transform
 facing_light(const Transform& place, const Vec3& center, const Vec3& direction);
 
-/// A drag of the brightest light: one edit from its first move to its release.
+/// A drag of the brightest light: one edit from its first move to its release. What carries the
+/// light goes on to do so. `center` and the camera are in the world.
 class LightDrag {
   public:
     void drag(

@@ -1,0 +1,98 @@
+#include "content/app/light_drag.h"
+#include "content/app/undo.h"
+#include "ecs/components/light.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+#include "systems/transform_system.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr Vec3 kCenter = {0.2f, 1.5f, -0.1f};
+
+/// A lamp at `place` in the world, carried by an arm that is turned and moved.
+struct Studio {
+    explicit Studio(bool carried) {
+        const Transform arm = {
+            .position = {1, 2, 3}, .rotation = glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 0)))};
+        const Vec3 from_arm = glm::inverse(arm.rotation) * (kLamp - arm.position);
+        lamp = world.create(
+            Transform{
+                .position = carried ? from_arm : kLamp,
+                .rotation = carried ? glm::inverse(arm.rotation) : Quat(1, 0, 0, 0)},
+            PointLight{.intensity = 5});
+        if (carried) {
+            REQUIRE(set_parent(world, lamp, world.create(arm)).ok());
+        }
+        update();
+    }
+    void update() {
+        world.run(add_world_transforms);
+        world.run(update_transforms);
+    }
+    [[nodiscard]] Affine place() const { return world.get<WorldTransform>(lamp).world; }
+
+    static constexpr Vec3 kLamp = {-0.8f, 2.0f, 0.9f};
+    World world;
+    UndoStack undo;
+    Entity lamp;
+};
+
+float difference(const Affine& a, const Affine& b) {
+    float most = 0;
+    for (int i = 0; i < 3; ++i) {
+        most = std::max(most, glm::length(a.row[i] - b.row[i]));
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("light drag: a lamp that something carries turns as a free one does") {
+    const Affine camera = affine_from({0, 1.5f, 2}, glm::angleAxis(0.2f, Vec3(0, 1, 0)), Vec3(1));
+    Studio free(false);
+    Studio carried(true);
+    CHECK(difference(free.place(), carried.place()) < 1e-5f);
+    for (Studio* const studio : {&free, &carried}) {
+        LightDrag drag;
+        drag.drag(studio->world, studio->undo, kCenter, {90, 40}, 720, camera);
+        drag.drag(studio->world, studio->undo, kCenter, {-20, 10}, 720, camera);
+        studio->update();
+    }
+    CHECK(difference(free.place(), carried.place()) < 1e-5f);
+    const Vec3 now = transform_point(carried.place(), Vec3(0));
+    CHECK(glm::distance(now, Studio::kLamp) > 0.2f);
+    CHECK(std::abs(glm::distance(now, kCenter) - glm::distance(Studio::kLamp, kCenter)) < 1e-5f);
+    carried.undo.undo(carried.world);  // one edit
+    carried.update();
+    CHECK(glm::distance(transform_point(carried.place(), Vec3(0)), Studio::kLamp) < 1e-5f);
+}
+
+TEST_CASE("light drag: the brightest at a point is meant, wherever its parent has it") {
+    Studio studio(true);
+    const Entity weak =
+        studio.world.create(Transform{.position = Studio::kLamp}, PointLight{.intensity = 4});
+    CHECK(brightest_light(studio.world, kCenter) == studio.lamp);
+    studio.world.get<PointLight>(studio.lamp).enabled = false;
+    CHECK(brightest_light(studio.world, kCenter) == weak);
+}
+
+TEST_CASE("light drag: a light that is to face shines on the center from the direction") {
+    Studio studio(true);
+    const Vec3 direction = glm::normalize(Vec3(0.3f, 0.1f, 1));
+    face_light(studio.world, studio.undo, kCenter, direction);
+    studio.update();
+    const float distance = glm::distance(Studio::kLamp, kCenter);
+    CHECK(
+        glm::distance(transform_point(studio.place(), Vec3(0)), kCenter + distance * direction)
+        < 1e-5f);
+    CHECK(glm::distance(transform_vector(studio.place(), {0, 0, -1}), -direction) < 1e-5f);
+}
+
+}  // namespace limn
