@@ -92,13 +92,12 @@ TEST_CASE("even chart: a part of a cylinder unrolls at its size, with axes as th
     CHECK(std::abs(across.y) < 0.2f);
 }
 
-TEST_CASE("even chart: skin with a triangle without area has a chart of numbers") {
+TEST_CASE("even chart: a triangle without area changes nothing") {
     MeshData mesh = make_trough();
-    mesh.indices.insert(mesh.indices.end(), {3, 3, 4});
     const std::vector<float> importance(mesh.positions.size(), 1.0f);
-    for (const Vec2& place : make_even_chart(mesh, 0.5f, importance)) {
-        CHECK(std::isfinite(place.x + place.y));
-    }
+    const std::vector<Vec2> without = make_even_chart(mesh, 0.5f, importance);
+    mesh.indices.insert(mesh.indices.end(), {3, 3, 4});
+    CHECK(make_even_chart(mesh, 0.5f, importance) == without);
 }
 
 TEST_CASE("head: pores are nearly round all over the face, beside the nose too") {
