@@ -1,5 +1,7 @@
 #include "content/make/studio_pattern.h"
 
+#include "content/make/pattern_tools.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -50,12 +52,14 @@ float light_share(const StudioLight& light, const Vec3& direction, float pixel) 
 }  // namespace
 
 PatternMaps make_studio(const StudioPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
     const float pixel = glm::pi<float>() / static_cast<float>(pattern.image.size);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
         const Vec3 direction = direction_at(uv);
         const float down = glm::smoothstep(0.05f, 0.7f, -direction.y);
+        const float uneven = (1 + 0.4f * fbm(uv, 3, seed, 3)) * (1 - 0.7f * std::abs(direction.y));
         PatternTexel t;
-        t.color = glm::mix(pattern.wall * (1 - 0.7f * std::abs(direction.y)), pattern.floor, down);
+        t.color = glm::mix(uneven * pattern.wall, pattern.floor, down);
         for (const StudioLight& light : pattern.lights) {
             t.color += light.color * light_share(light, direction, pixel);
         }

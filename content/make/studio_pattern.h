@@ -44,7 +44,9 @@ struct StudioPattern {
 
 LIMN_FIELDS(StudioPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(wall, .doc = "light of the walls at eye level", .min = 0, .max = 1, .color = true);
+    LIMN_FIELD(
+        wall, .doc = "light of the walls at eye level, which is uneven", .min = 0, .max = 1,
+        .color = true);
     LIMN_FIELD(floor, .doc = "of the floor", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(lights, "soft boxes and windows; nearer ones hide none");
 }
