@@ -26,7 +26,8 @@ LIMN_FIELDS(StudioLight) {
 }
 
 /// The surroundings of a model in a studio, as an equirectangular panorama for the environment:
-/// eyes and gloss then mirror soft boxes, not points of light.
+/// eyes and gloss then mirror soft boxes, not points of light. The sky `studio` is a room whose
+/// lamps are fixed; this one has those of a level.
 struct StudioPattern {
     PatternSize image;
     Vec3 wall = {0.02f, 0.02f, 0.021f};

@@ -158,7 +158,7 @@ find_highest(FrameGraph& graph, const WaterEffect& effect, const ViewData& view,
     return columns;
 }
 
-/// What is seen of the surfaces, before it is lit: texels of lib/seen_water.glsl, and as a depth
+/// What is seen of the surfaces, before it is lit: texels of lib/water_seen.glsl, and as a depth
 /// the pixels that show water.
 struct SeenWater {
     TextureId surfaces;

@@ -16,7 +16,7 @@ namespace limn {
 // Shaders  water_behind.frag, water_highest.frag, water_columns.frag, water.vert,
 //          water_surface.frag, water_pixels.frag, water.frag, lib/water_surface.glsl,
 //          lib/water_reflection.glsl, lib/water_refraction.glsl, lib/water_tracing.glsl,
-//          lib/water_foam.glsl
+//          lib/water_foam.glsl, lib/water_seen.glsl
 //
 // A body may have a planar reflection (WaterLook): a view of its own, at lower resolution, that
 // WaterMirrorEffect asks for and stores.

@@ -7,7 +7,7 @@
 #define ON_WATER
 #include "lib/lighting.glsl"
 #include "lib/optics.glsl"
-#include "lib/seen_water.glsl"
+#include "lib/water_seen.glsl"
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
 #include "lib/water_detail.glsl"

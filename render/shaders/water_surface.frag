@@ -1,7 +1,7 @@
 // What is seen of a water surface, for water.frag to light pixel by pixel: its triangles are small, and a GPU shades
 // more than the pixels of each. Definition VELOCITY.
 #version 450
-#include "lib/seen_water.glsl"
+#include "lib/water_seen.glsl"
 #include "lib/velocity.glsl"
 #include "lib/view.glsl"
 
