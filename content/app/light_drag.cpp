@@ -23,6 +23,12 @@ float brightness(const Vec3& color) {
     return std::max(color.x, std::max(color.y, color.z));
 }
 
+/// Of the illuminance of a white ball, what its viewer sees: 1 from behind the viewer, 0 from
+/// behind the ball.
+float seen_share(const Vec3& to_light, const Vec3& to_viewer) {
+    return 0.5f + 0.5f * glm::dot(normalize_or(to_light, to_viewer), to_viewer);
+}
+
 /// Into the space of the entity's Transform: that of its parent, which should not be stretched.
 Affine parent_from_world(const World& world, Entity entity) {
     const Entity parent = parent_of(world, entity);
@@ -42,7 +48,8 @@ Edit edit_of(const World& world, Entity light, const Transform& after) {
 
 }  // namespace
 
-std::optional<Entity> brightest_light(const World& world, const Vec3& point) {
+std::optional<Entity>
+brightest_light(const World& world, const Vec3& point, const Vec3& to_viewer) {
     std::optional<Entity> found;
     float most = 0;
     const auto offer = [&](Entity entity, float illuminance) {
@@ -52,16 +59,23 @@ std::optional<Entity> brightest_light(const World& world, const Vec3& point) {
         }
     };
     const auto offer_lamp = [&](Entity entity, const auto& lamp, const Transform& place) {
-        const Vec3 way = place.position - transform_point(parent_from_world(world, entity), point);
+        const Affine to_parent = parent_from_world(world, entity);
+        const Vec3 way = place.position - transform_point(to_parent, point);
         const float intensity = lamp.enabled ? lamp.intensity * brightness(lamp.color) : 0.0f;
-        offer(entity, intensity / std::max(glm::dot(way, way), 1e-6f));
+        const float share =
+            seen_share(way, normalize_or(transform_vector(to_parent, to_viewer), {0, 0, 1}));
+        offer(entity, share * intensity / std::max(glm::dot(way, way), 1e-6f));
     };
     world.query<const PointLight, const Transform>().each(offer_lamp);
     world.query<const SpotLight, const Transform>().each(offer_lamp);
-    world.query<const DirectionalLight, const Transform>().each(
-        [&](Entity entity, const DirectionalLight& light, const Transform&) {
-            offer(entity, light.enabled ? light.illuminance * brightness(light.color) : 0.0f);
-        });
+    world.query<const DirectionalLight, const Transform>().each([&](Entity entity,
+                                                                    const DirectionalLight& light,
+                                                                    const Transform& place) {
+        const Vec3 seen_from =
+            normalize_or(transform_vector(parent_from_world(world, entity), to_viewer), {0, 0, 1});
+        const float share = seen_share(place.rotation * Vec3(0, 0, 1), seen_from);
+        offer(entity, light.enabled ? share * light.illuminance * brightness(light.color) : 0.0f);
+    });
     return found;
 }
 
@@ -91,7 +105,9 @@ void LightDrag::drag(
     World& world, UndoStack& undo, const Vec3& center, const Vec2& motion, float height,
     const Affine& world_from_camera) {
     const bool begins = !world.alive(light_);
-    const std::optional<Entity> light = begins ? brightest_light(world, center) : light_;
+    const Vec3 to_camera = transform_point(world_from_camera, Vec3(0)) - center;
+    const std::optional<Entity> light =
+        begins ? brightest_light(world, center, normalize_or(to_camera, {0, 0, 1})) : light_;
     if (!light || motion == Vec2(0)) {
         return;
     }
@@ -112,7 +128,7 @@ void LightDrag::drag(
 }
 
 void face_light(World& world, UndoStack& undo, const Vec3& center, const Vec3& direction) {
-    if (const std::optional<Entity> light = brightest_light(world, center)) {
+    if (const std::optional<Entity> light = brightest_light(world, center, direction)) {
         const Transform place = *std::as_const(world).find<Transform>(*light);
         const Affine to_parent = parent_from_world(world, *light);
         Edit edit = edit_of(

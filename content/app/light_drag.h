@@ -14,9 +14,11 @@ class World;
 // Directing a light by the mouse: the light that matters most at a point turns about it, as if held
 // on a string.
 
-/// The light with a Transform of its own that is on and brightest at `point` [lx], its cone and
-/// what stands in its way aside; of several, the first.
-[[nodiscard]] std::optional<Entity> brightest_light(const World& world, const Vec3& point);
+/// The light with a Transform of its own that is on and lights `point` [lx] most on the side toward
+/// `to_viewer` (unit), its cone and what stands in its way aside: a rim light counts for little. Of
+/// several, the first.
+[[nodiscard]] std::optional<Entity>
+brightest_light(const World& world, const Vec3& point, const Vec3& to_viewer);
 
 // Places, centers and cameras of the next two are in one space, that of the light's parent.
 

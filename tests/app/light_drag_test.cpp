@@ -74,13 +74,24 @@ TEST_CASE("light drag: a lamp that something carries turns as a free one does") 
     CHECK(glm::distance(transform_point(carried.place(), Vec3(0)), Studio::kLamp) < 1e-5f);
 }
 
-TEST_CASE("light drag: the brightest at a point is meant, wherever its parent has it") {
+TEST_CASE(
+    "light drag: the brightest on the side that is seen is meant, wherever its parent has it") {
     Studio studio(true);
+    const Vec3 front = {0, 0, 1};
     const Entity weak =
         studio.world.create(Transform{.position = Studio::kLamp}, PointLight{.intensity = 4});
-    CHECK(brightest_light(studio.world, kCenter) == studio.lamp);
+    CHECK(brightest_light(studio.world, kCenter, front) == studio.lamp);
     studio.world.get<PointLight>(studio.lamp).enabled = false;
-    CHECK(brightest_light(studio.world, kCenter) == weak);
+    CHECK(brightest_light(studio.world, kCenter, front) == weak);
+    const Entity rim = studio.world.create(
+        Transform{.position = 2.0f * kCenter - Studio::kLamp}, PointLight{.intensity = 8});
+    CHECK(brightest_light(studio.world, kCenter, front) == weak);
+    CHECK(brightest_light(studio.world, kCenter, -front) == rim);
+    const Entity moon = studio.world.create(
+        Transform{.rotation = glm::angleAxis(kPi, Vec3(0, 1, 0))},
+        DirectionalLight{.illuminance = 50});
+    CHECK(brightest_light(studio.world, kCenter, front) == weak);
+    CHECK(brightest_light(studio.world, kCenter, -front) == moon);
 }
 
 TEST_CASE("light drag: a light that is to face shines on the center from the direction") {
