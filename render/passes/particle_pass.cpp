@@ -55,7 +55,7 @@ bool is_six_way(const ParticleRun& run) {
 
 }  // namespace
 
-Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
+Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings& settings) {
     ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
         ProgramVariants(device, {.compute = "particle_light.comp"}),
@@ -71,6 +71,7 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
     effect.finest_sampler =
         gpu::Sampler("finest particle images", {.minify = GL_LINEAR, .wrap = GL_CLAMP_TO_EDGE});
     effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
+    effect.splats = LIMN_TRY(create_particle_splats(device, settings));
     return effect;
 }
 
@@ -255,6 +256,48 @@ void ParticleEffect::add_layers(
             {cleared(mixed.sum), cleared(mixed.kept, Vec4(1))}, Part::Weighted);
         resolve_weighted(graph, *resolve, mixed, view);
     }
+    if (has_splats(view)) {
+        add_splats(graph, view);
+    }
+}
+
+/// What a blended surface hides, points in front of it among them, is drawn by the rasterizer.
+bool ParticleEffect::has_splats(const ViewData& view) const {
+    return view.is(kMainViews) && !is_clipped(view) && !view.data.get<ParticlesInFront>().veil;
+}
+
+bool ParticleEffect::are_splats(const GpuParticlePool& pool) const {
+    return draws.layers[pool.look] == LookLayer::Full
+           && can_be_splats(pool, draws.looks[pool.look]);
+}
+
+void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
+    float brightest = 0;
+    std::vector<Use> reads = {sampled(view.gbuffer.depth, kSceneDepthUnit)};
+    for (const auto& [entity, pool] : gpu.pools()) {
+        if (are_splats(*pool)) {
+            brightest = std::max(brightest, brightest_of(draws.looks[pool->look]));
+            reads.emplace_back(graph.import("particles", pool->instances));
+        }
+    }
+    if (brightest <= 0) {
+        return;
+    }
+    begin_particle_splats(splats, view, brightest);
+    const Use writes[] = {graph.import("sums of particles", splats.sums)};
+    graph.add_pass(
+        "particles.splats", std::span<const Use>(reads), writes,
+        [this, &view](PassContext& context) {
+            bind_view(context, view);
+            look_texels.bind(context.device(), kLooksUnit);
+            for (const auto& [entity, pool] : gpu.pools()) {
+                if (are_splats(*pool)) {
+                    pool->texels.bind(context.device(), kParticlesUnit);
+                    draw_particle_splats(context, splats, *pool);
+                }
+            }
+        });
+    add_particle_sums(graph, splats, view);
 }
 
 void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view) {
@@ -472,7 +515,9 @@ void ParticleEffect::draw_runs(PassContext& context, const ViewData& view, Part 
                                : layer == LookLayer::Half     ? Part::Half
                                : layer == LookLayer::Weighted ? Part::Weighted
                                                               : Part::Front;
-        if (count > 0 && (pool_part == part || part == Part::All)
+        const bool is_drawn = pool_part == part || part == Part::All;
+        const bool is_splat = part == Part::Front && has_splats(view) && are_splats(*pool);
+        if (count > 0 && is_drawn && !is_splat
             && is_group_in_view(draws.extents[pool->look], frustum)) {
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
             draw_run(

@@ -7,6 +7,7 @@
 #include "render/particle_draws.h"
 #include "render/particle_layer.h"
 #include "render/particle_runs.h"
+#include "render/particle_splats.h"
 
 #include <optional>
 #include <span>
@@ -24,7 +25,8 @@ namespace limn {
 // Order    what is in water before it, what is behind blended surfaces before these, the rest after
 //          them and before the lens
 // Shaders  particle_light.comp, particle.vert, particle.frag, particle_velocity.frag,
-// particle_focus.frag, particle_weighted.frag; layout in particle_gpu.h
+// particle_focus.frag, particle_weighted.frag, particle_splat.comp, particle_splat_add.comp; layout
+// in particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
@@ -34,7 +36,8 @@ namespace limn {
 // a layer (particle_layer.h) behind all others. Each view leaves out what it does not see; of
 // particles on the GPU, emitters whose shape alone counts. Looks that are weighted instead of
 // sorted (particle_weighted.h) are one layer before all others. Where blended surfaces are seen
-// there are two of each layer, one on each side of these.
+// there are two of each layer, one on each side of these. Points on the GPU that only add light are
+// drawn after all others, by compute (particle_splats.h), where no blended surface is seen.
 
 struct ParticleEffect {
     /// What is drawn at half the resolution, and what the middle one of it hides or is hidden by;
@@ -62,6 +65,7 @@ struct ParticleEffect {
     std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
     const gpu::Program* resolve = nullptr;  ///< of weighted ones, created with the first
     const gpu::Program* depth_copy = nullptr;
+    ParticleSplats splats = {};
     gpu::Sampler image_sampler = {};
     gpu::Sampler finest_sampler = {};  ///< without mip levels
     DepthMemory seen_depth = {};       ///< while some on the GPU meet what the camera sees
@@ -90,6 +94,9 @@ struct ParticleEffect {
         std::span<const Use> targets, Part part, const std::optional<TextureId>& veil = {},
         bool behind = false);
     void create_layer_programs(gpu::Device& device);
+    [[nodiscard]] bool has_splats(const ViewData& view) const;
+    [[nodiscard]] bool are_splats(const GpuParticlePool& pool) const;
+    void add_splats(FrameGraph& graph, ViewData& view);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
     [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape) const;
     void

@@ -17,6 +17,7 @@
 #include "lib/view.glsl"
 
 #include "lib/height_fog.glsl"
+#include "lib/particle_point.glsl"
 #include "lib/particle_quad.glsl"
 #if defined(LIT) || defined(IN_WATER)
 #include "lib/lighting.glsl"
@@ -100,12 +101,6 @@ SixWayLight six_way_light(vec3 position_ws, vec3 normal, mat3 axes, float radius
 #endif
 
 #endif
-
-// Extent of a pixel at this place [m].
-float pixel_extent(vec3 position_ws) {
-    float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
-    return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
-}
 
 const float kSmallDisc = 3.0;  // half its width, up to which it is drawn as one triangle [px]
 
@@ -206,15 +201,10 @@ void main() {
         p.share = segment.rest.w;
     }
 #endif
-    float size = size_of(p, shape);
-    vec4 color = color_of(p);
+    int facing = int(glow.w);
     float away = distance(p.position, view.camera_ws.xyz);
-    color.a *= more.y > 0.0 ? smoothstep(0.0, more.y, away) : 1.0;
-    color.a *= more.z > 0.0 ? smoothstep(more.z, 0.6 * more.z, away) : 1.0;
-    vec4 point = look_texel(look, kLookMore + 1u);
-    if (int(glow.w) == kFacingPixels) {
-        size *= inversesqrt(max(point.x + away * (point.y + away * point.z), 1e-12)) * pixel_extent(p.position);
-    }
+    float size = size_from(p, shape, facing, away);
+    vec4 color = color_from(p, away);
 
 #ifdef BILLBOARDS
     bool is_billboard = uint(glow.w) == kFacingBillboard;
@@ -223,17 +213,12 @@ void main() {
     }
 #endif
 #ifdef POINTS
-    // One that faces the camera is an oval off the image's middle: a disc as large. Less than a pixel: fainter instead of
-    // smaller.
-    float diameter = size * resolution / pixel_extent(p.position);
-    if (int(glow.w) == kFacingCamera) {
-        diameter *= sqrt(away / max(dot(p.position - view.camera_ws.xyz, view.ray_forward.xyz), 1e-4));
-    }
+    float diameter = resolution * point_diameter(p.position, size, facing, away);
     gl_PointSize = max(diameter, 1.0);
-    color.a *= min(diameter * diameter, 1.0);
+    color.a *= point_opacity(diameter);
     Quad quad = Quad(vec3(0.0), vec3(0.0));
 #else
-    Quad quad = quad_of(p, shape, streak, more.w, int(glow.w), size);
+    Quad quad = quad_of(p, shape, streak, more.w, facing, size);
 #endif
 #ifdef BILLBOARDS
     if (is_billboard) {

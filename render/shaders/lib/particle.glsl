@@ -6,6 +6,11 @@
 layout(binding = 2) uniform usamplerBuffer particles;
 layout(binding = 3) uniform samplerBuffer looks;
 
+const int kFacingCamera = 0;  // ParticleFacing
+const int kFacingVelocity = 1;
+const int kFacingGround = 2;
+const int kFacingPixels = 3;
+
 const int kFramesShuffle = 1;
 const int kFramesPick = 2;
 

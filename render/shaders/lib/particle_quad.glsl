@@ -1,9 +1,5 @@
 // Where the quad of a particle is: after lib/particle.glsl and lib/view.glsl.
 
-const int kFacingCamera = 0;
-const int kFacingVelocity = 1;
-const int kFacingGround = 2;
-const int kFacingPixels = 3;
 const float kFilterPixels = 1.0;  // that a mip level as coarse as a pixel spreads what a frame shows
 
 // Half the extents of the quad in world space: along x and y of `corner`.

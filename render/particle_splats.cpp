@@ -1,0 +1,97 @@
+#include "render/particle_splats.h"
+
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/gpu_particle_pools.h"
+#include "render/render_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kSumsBinding = 0;
+constexpr unsigned kRadianceImage = 0;
+constexpr unsigned kAddGroup = 64;  // pixels of a row
+/// Of the sums, that the brightest point adds to a pixel: 32,768 of these fit.
+constexpr float kBrightestSteps = 1 << 17;
+
+bool is_positive(float x) {
+    return x > 0 && std::isfinite(x);
+}
+
+}  // namespace
+
+Result<ParticleSplats> create_particle_splats(gpu::Device& device, const RenderSettings& settings) {
+    const bool full_float =  // as FrameData::radiance_format
+        settings.full_float || device.caps().profile == gpu::Profile::Software;
+    const char* const format = full_float ? "rgba32f" : "rgba16f";
+    ParticleSplats splats;
+    splats.splat = LIMN_TRY(device.shaders().load({.compute = "particle_splat.comp"}));
+    splats.add = LIMN_TRY(device.shaders().load(
+        {.compute = "particle_splat_add.comp", .defines = {{"RADIANCE_FORMAT", format}}}));
+    return splats;
+}
+
+bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look) {
+    const float softness = look[1].z;
+    const float lit = look[2].y;
+    const float cover = look[2].z;
+    return pool.count > 0 && !pool.sorted && is_point(look) && lit == 0 && cover == 0
+           && softness == 0;
+}
+
+float brightest_of(const LookRecord& look) {
+    Vec4 most = {0, 0, 0, 0};
+    for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
+        most = glm::max(most, look[layout::kLookColors + i]);
+    }
+    const Vec4& varied = look[layout::kLookMore + 3];
+    const float color = std::max({most.x + varied.y, most.y + varied.z, most.z + varied.w});
+    const float brightest = look[2].x * color * most.w;
+    return is_positive(brightest) ? brightest : 0;
+}
+
+void begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest) {
+    splats.unit = brightest > 0 ? kBrightestSteps / brightest : 1;
+    const IVec2 size = view.size();
+    const std::size_t words =
+        3 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    if (splats.sums.size() < words * sizeof(std::uint32_t)) {
+        const std::vector<std::uint32_t> zeros(words);
+        splats.sums = gpu::Buffer::of("sums of particles", std::span(zeros));
+    }
+}
+
+void draw_particle_splats(
+    PassContext& context, const ParticleSplats& splats, const GpuParticlePool& pool) {
+    gpu::Device& device = context.device();
+    device.use(*splats.splat);
+    device.bind_storage(kSumsBinding, splats.sums);
+    splats.splat->set("count", static_cast<int>(pool.count));
+    splats.splat->set("unit", splats.unit);
+    device.dispatch((pool.count + layout::kParticleGroup - 1) / layout::kParticleGroup);
+}
+
+void add_particle_sums(FrameGraph& graph, const ParticleSplats& splats, ViewData& view) {
+    const BufferId sums = graph.import("sums of particles", splats.sums);
+    const TextureId radiance = view.radiance;
+    graph.add_pass(
+        "particles.sums", {}, {sums, image(radiance)},
+        [&splats, sums, radiance](PassContext& context) {
+            gpu::Device& device = context.device();
+            device.use(*splats.add);
+            context.bind_storage(kSumsBinding, sums);
+            context.bind_image(kRadianceImage, radiance, GL_READ_WRITE);
+            splats.add->set("unit", splats.unit);
+            const gpu::Texture& target = context.texture(radiance);
+            const auto width = static_cast<unsigned>(target.width());
+            device.dispatch(
+                (width + kAddGroup - 1) / kAddGroup, static_cast<unsigned>(target.height()));
+        });
+}
+
+}  // namespace limn

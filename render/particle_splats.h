@@ -1,0 +1,50 @@
+#pragma once
+
+#include "render/frame_data.h"
+#include "render/gpu/buffer.h"
+#include "render/particle_list.h"
+
+namespace limn {
+
+namespace gpu {
+class Device;
+class Program;
+}  // namespace gpu
+
+struct GpuParticlePool;
+struct RenderSettings;
+
+// Points that the GPU moves and that only add light, drawn by a compute shader instead of the
+// rasterizer, which takes several times as long where triangles and points have a few pixels
+// (M. Schütz, B. Kerbl, M. Wimmer, "Rendering Point Clouds with Compute Shaders and Vertex Order
+// Optimization", 2021). Each adds its light to integer sums of the pixels that it covers, so that
+// the image does not depend on the order; then the sums are added to the radiance. What is between
+// two integers is rounded to either, at random by its distance: a million faint ones count in full.
+
+struct ParticleSplats {
+    const gpu::Program* splat = nullptr;
+    const gpu::Program* add = nullptr;
+    gpu::Buffer sums = {};  ///< three words a pixel, 0 between the frames
+    float unit = 1;         ///< of radiance, in the sums of this frame
+};
+
+[[nodiscard]] Result<ParticleSplats>
+create_particle_splats(gpu::Device& device, const RenderSettings& settings);
+
+/// Whether this pool may be drawn so, in views that nothing hides but what is opaque.
+[[nodiscard]] bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look);
+
+/// The most light that a point of this look adds to a pixel.
+[[nodiscard]] float brightest_of(const LookRecord& look);
+
+/// Before those of a view are added; `brightest`: brightest_of() all of them.
+void begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest);
+
+/// With the view, its depth (unit 4), particles and looks bound.
+void draw_particle_splats(
+    PassContext& context, const ParticleSplats& splats, const GpuParticlePool& pool);
+
+/// Adds the pass that adds what was drawn to the view's radiance.
+void add_particle_sums(FrameGraph& graph, const ParticleSplats& splats, ViewData& view);
+
+}  // namespace limn

@@ -1,0 +1,41 @@
+// Particles that are discs which face the camera, of particle.vert and particle_splat.comp. Include after
+// lib/particle.glsl and lib/view.glsl.
+
+// Extent of a pixel at this place [m].
+float pixel_extent(vec3 position_ws) {
+    float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
+    return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
+}
+
+// Color and opacity from `away` [m]: some fade near by, or far away.
+vec4 color_from(Particle p, float away) {
+    vec4 more = look_texel(p.look, kLookMore);
+    vec4 color = color_of(p);
+    color.a *= more.y > 0.0 ? smoothstep(0.0, more.y, away) : 1.0;
+    color.a *= more.z > 0.0 ? smoothstep(more.z, 0.6 * more.z, away) : 1.0;
+    return color;
+}
+
+// Diameter from `away` [m], also of what is as wide as so many pixels; `shape`: texel 0 of the look.
+float size_from(Particle p, vec4 shape, int facing, float away) {
+    float size = size_of(p, shape);
+    if (facing == kFacingPixels) {
+        vec4 point = look_texel(p.look, kLookMore + 1u);
+        size *= inversesqrt(max(point.x + away * (point.y + away * point.z), 1e-12)) * pixel_extent(p.position);
+    }
+    return size;
+}
+
+// Diameter [px]. One that faces the camera is an oval off the image's middle: a disc as large.
+float point_diameter(vec3 position_ws, float size, int facing, float away) {
+    float diameter = size / pixel_extent(position_ws);
+    if (facing == kFacingCamera) {
+        diameter *= sqrt(away / max(dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz), 1e-4));
+    }
+    return diameter;
+}
+
+// Less than a pixel: fainter instead of smaller.
+float point_opacity(float diameter) {
+    return min(diameter * diameter, 1.0);
+}

@@ -1,0 +1,100 @@
+// Discs that only add light, one invocation each: adds theirs to the sums of the pixels that they cover. The sums are
+// integers, so that they do not depend on the order (render/particle_splats.h).
+#version 450
+#include "lib/particle.glsl"
+#include "lib/view.glsl"
+
+#include "lib/height_fog.glsl"
+#include "lib/particle_point.glsl"
+
+layout(local_size_x = 128) in;  // kParticleGroup
+layout(binding = 4) uniform sampler2D scene_depth;
+layout(std430, binding = 0) buffer Sums {
+    uint sums[];  // of red, green and blue of each pixel
+};
+
+uniform int count;
+uniform float unit;  // of radiance, in the sums
+
+struct Disc {
+    vec2 middle;   // [px]
+    float radius;  // [px]
+    float depth;
+    vec3 light;    // in the middle
+    uint random;   // bits
+};
+
+const float kLargest = 4.0;  // radius of those that one invocation draws alone [px]
+
+const float kMost = 1048576.0;  // of a disc in a pixel: not reached, but by what is infinite or NaN
+
+shared Disc large[128];
+shared uint large_count;
+
+// Radius 0: it is not seen.
+Disc disc_of(Particle p) {
+    vec4 glow = look_texel(p.look, 2u);
+    float away = distance(p.position, view.camera_ws.xyz);
+    float size = size_from(p, look_texel(p.look, 0u), int(glow.w), away);
+    float diameter = point_diameter(p.position, size, int(glow.w), away);
+    vec4 color = color_from(p, away);
+    color.a *= point_opacity(diameter);
+    vec4 clip = view.clip_from_world * vec4(p.position, 1.0);
+    bool is_seen = !p.is_dead && size > 0.0 && color.a > 0.0 && clip.w > 0.0 && clip.z <= clip.w;
+    vec3 light = color.rgb * (glow.x * color.a * (1.0 - fog_before(p.position).a));
+    return Disc((clip.xy / clip.w * 0.5 + 0.5) * view.size.xy, is_seen ? max(0.5 * diameter, 0.5) : 0.0,
+                clip.z / clip.w, light, p.random);
+}
+
+// Pixels whose centers are in the square about it: the first, and the one after the last.
+ivec4 pixels_of(Disc disc) {
+    vec2 low = clamp(ceil(disc.middle - disc.radius - 0.5), vec2(0.0), view.size.xy);
+    vec2 high = clamp(ceil(disc.middle + disc.radius - 0.5), vec2(0.0), view.size.xy);
+    return ivec4(low, high);
+}
+
+void add(Disc disc, ivec2 pixel) {
+    vec2 place = (vec2(pixel) + 0.5 - disc.middle) / disc.radius;
+    float inside = max(1.0 - dot(place, place), 0.0);
+    if (inside <= 0.0 || texelFetch(scene_depth, pixel, 0).r > disc.depth) {
+        return;
+    }
+    uint bits = uint(pixel.x) * 0x9e3779b9u + uint(pixel.y);
+    float chance = 0.5 + 0.5 * random_share(disc.random ^ bits, 0u);
+    uvec3 amount = uvec3(min(disc.light * (inside * inside * unit), vec3(kMost)) + chance);
+    int first = 3 * (pixel.y * int(view.size.x) + pixel.x);
+    for (int i = 0; i < 3; ++i) {
+        atomicAdd(sums[first + i], amount[i]);
+    }
+}
+
+void main() {
+    int index = int(gl_GlobalInvocationID.x);
+    if (gl_LocalInvocationIndex == 0u) {
+        large_count = 0u;
+    }
+    barrier();
+    Disc disc = Disc(vec2(0.0), 0.0, 0.0, vec3(0.0), 0u);
+    if (index < count) {
+        disc = disc_of(read_particle(index));
+    }
+    if (disc.radius > kLargest) {
+        large[atomicAdd(large_count, 1u)] = disc;
+    } else if (disc.radius > 0.0) {
+        ivec4 pixels = pixels_of(disc);
+        for (int y = pixels.y; y < pixels.w; ++y) {
+            for (int x = pixels.x; x < pixels.z; ++x) {
+                add(disc, ivec2(x, y));
+            }
+        }
+    }
+    barrier();
+    for (uint i = 0u; i < large_count; ++i) {
+        ivec4 pixels = pixels_of(large[i]);
+        int width = pixels.z - pixels.x;
+        int area = width * (pixels.w - pixels.y);
+        for (int at = int(gl_LocalInvocationIndex); at < area; at += int(kParticleGroup)) {
+            add(large[i], pixels.xy + ivec2(at % width, at / width));
+        }
+    }
+}
