@@ -1,6 +1,5 @@
 #include "content/make/face_fold_pattern.h"
 
-#include "content/bake/wrinkle_map.h"
 #include "content/make/head_layout.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -185,9 +184,7 @@ float dimple_height(const Vec2& p, std::uint32_t seed) {
 
 PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
-    const int size = pattern.image.size;
-    std::vector<float> heights(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    PatternMaps maps = make_pattern_maps(size, [&](const Vec2& uv) {
+    return make_wrinkle_maps(pattern.image.size, [&](const Vec2& uv) {
         const Vec2 chart = {(uv.x - 0.5f) * kHeadColumns, uv.y * (kHeadRows + 13) - 13};
         // No octave near the size of a texel, which would show as hatching.
         const Vec2 bend = {fbm(uv, 23, seed, 2), fbm(uv, 23, seed + 1, 2)};
@@ -211,12 +208,8 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
         height += chin > 0 ? chin * 0.16f * dimple_height(chart, seed + 2) : 0.0f;
         PatternTexel t;
         t.height = pattern.depth * height / kHeadColumns;
-        const IVec2 at(uv * static_cast<float>(size));
-        heights[static_cast<std::size_t>(at.y * size + at.x)] = t.height * static_cast<float>(size);
         return t;
     });
-    write_wrinkle_map(maps.normal, heights);
-    return maps;
 }
 
 }  // namespace limn

@@ -15,7 +15,7 @@ namespace limn {
 PatternMaps make_folds(const FoldsPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     const auto count = static_cast<float>(pattern.count);
-    PatternMaps maps = make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
+    PatternMaps maps = make_wrinkle_maps(pattern.image.size, [&](const Vec2& uv) {
         const float bend = fbm(uv, 3, seed) + 0.35f * fbm(uv, 9, seed + 1);
         const float fold = uv.y * count + pattern.wander * 2 * bend;
         const float wave = 0.5f - 0.5f * std::cos(2 * kPi * fold);         // 0 in the valley

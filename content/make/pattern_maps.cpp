@@ -1,5 +1,6 @@
 #include "content/make/pattern_maps.h"
 
+#include "content/bake/wrinkle_map.h"
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
 
@@ -52,17 +53,17 @@ void for_pixels(int size, Body&& body) {
     });
 }
 
-}  // namespace
+using Texels = std::function<PatternTexel(const Vec2& uv)>;
 
-PatternMaps make_pattern_maps(int size, const std::function<PatternTexel(const Vec2& uv)>& texel) {
+/// All but the normals; `heights`: in pixels, row by row.
+PatternMaps make_surface_maps(int size, const Texels& texel, std::vector<float>& heights) {
     LIMN_CHECK(size >= 1);
     PatternMaps maps;
     maps.base_color = make_image(size, true);
     maps.normal = make_image(size, false);
     maps.orm = make_image(size, false);
-    std::vector<float> heights(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    heights.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
     const float pixels = static_cast<float>(size);
-
     for_pixels(size, [&](int x, int y, std::size_t pixel) {
         const PatternTexel t = texel((Vec2(x, y) + 0.5f) / pixels);
         heights[pixel] = t.height * pixels;
@@ -71,6 +72,14 @@ PatternMaps make_pattern_maps(int size, const std::function<PatternTexel(const V
             to_byte(encode_srgb(c.z)), to_byte(t.opacity));
         put(maps.orm, pixel, to_byte(t.occlusion), to_byte(t.roughness), to_byte(t.metalness));
     });
+    return maps;
+}
+
+}  // namespace
+
+PatternMaps make_pattern_maps(int size, const Texels& texel) {
+    std::vector<float> heights;
+    PatternMaps maps = make_surface_maps(size, texel, heights);
     for_pixels(size, [&](int x, int y, std::size_t pixel) {
         const auto height = [&](int i, int j) {
             const int column = (i + size) % size;
@@ -85,6 +94,14 @@ PatternMaps make_pattern_maps(int size, const std::function<PatternTexel(const V
         const Vec3 n = 0.5f + 0.5f * glm::normalize(Vec3(-right, down, 1.0f));
         put(maps.normal, pixel, to_byte(n.x), to_byte(n.y), to_byte(n.z));
     });
+    return maps;
+}
+
+PatternMaps make_wrinkle_maps(int size, const Texels& texel) {
+    std::vector<float> heights;
+    PatternMaps maps = make_surface_maps(size, texel, heights);
+    for_pixels(size, [&](int, int, std::size_t pixel) { put(maps.normal, pixel, 128, 128, 255); });
+    write_wrinkle_map(maps.normal, heights);
     return maps;
 }
 

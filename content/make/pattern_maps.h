@@ -34,4 +34,8 @@ struct PatternMaps {
 [[nodiscard]] PatternMaps
 make_pattern_maps(int size, const std::function<PatternTexel(const Vec2& uv)>& texel);
 
+/// Likewise, with normals for skin that folds (write_wrinkle_map).
+[[nodiscard]] PatternMaps
+make_wrinkle_maps(int size, const std::function<PatternTexel(const Vec2& uv)>& texel);
+
 }  // namespace limn
