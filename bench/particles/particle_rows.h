@@ -57,7 +57,7 @@ void add_update_rows(
 void add_sort_rows(ParticleBench& bench);       ///< 10 .. 12
 void add_collision_rows(ParticleBench& bench);  ///< 13 .. 15
 void add_world_rows(ParticleBench& bench);      ///< memory, emitters, growth, threads: 22 .. 27
-/// Drawing, and moving on the GPU: 18 .. 21, 28. Nothing but a note without OpenGL.
+/// Drawing, and moving on the GPU: 18 .. 21, 28, 29. Nothing but a note without OpenGL.
 void add_draw_rows(ParticleBench& bench);
 /// From a thousand to `most` particles: motion by the engine and by hand, births, deaths, sorting.
 void add_growth(ParticleBench& bench, std::size_t most);
