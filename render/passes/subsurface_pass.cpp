@@ -86,6 +86,7 @@ Result<SubsurfaceEffect> SubsurfaceEffect::create(gpu::Device& device, const Ren
         .moments = LIMN_TRY(
             in_compute ? device.shaders().load({.compute = "distance_moments.comp"})
                        : load_fullscreen(device, "distance_moments.frag")),
+        .levels = LIMN_TRY(create_mip_levels(device)),
         .sampler = gpu::Sampler(
             "scattered", {.minify = GL_LINEAR_MIPMAP_LINEAR, .wrap = GL_CLAMP_TO_EDGE})};
     LIMN_TRY(effect.programs.load(diffusion_variant()));
@@ -113,9 +114,9 @@ void SubsurfaceEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData&
     const TextureId distances = measure_distances(graph, *this, view);
     graph.add_pass(
         "scattered.levels", {}, {image(view.scattered), image(distances)},
-        [&view, distances](PassContext& context) {
-            glGenerateTextureMipmap(context.texture(view.scattered).id());
-            glGenerateTextureMipmap(context.texture(distances).id());
+        [this, &view, distances](PassContext& context) {
+            fill_mip_levels(context.device(), levels, context.texture(view.scattered));
+            fill_mip_levels(context.device(), levels, context.texture(distances));
         });
     const TextureId radiance = view.radiance;
     const Use reads[] = {

@@ -2,6 +2,7 @@
 
 #include "render/effect.h"
 #include "render/gpu/texture.h"
+#include "render/mip_levels.h"
 #include "render/variant.h"
 
 namespace limn {
@@ -38,6 +39,7 @@ struct SubsurfaceEffect {
     bool in_compute;  ///< gpu::Profile::Gpu
     ProgramVariants programs;
     const gpu::Program* moments = nullptr;
+    MipLevels levels;
     gpu::Sampler sampler;
 
     [[nodiscard]] static Result<SubsurfaceEffect>
