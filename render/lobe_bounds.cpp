@@ -16,16 +16,20 @@ PixelBounds all_pixels(const RenderView& view) {
 PixelBounds pixels_of(const RenderView& view, const Bounds& box) {
     Vec2 low(INFINITY);
     Vec2 high(-INFINITY);
+    int ahead = 0;  // corners; one that is NaN is neither
+    int behind = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 p = {
             (corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
             (corner & 4) != 0 ? box.max.z : box.min.z};
         const Vec4 clip = view.clip_from_world * Vec4(p, 1);
-        if (!(clip.w > 1e-6f)) {
-            return all_pixels(view);
-        }
+        ahead += clip.w > 1e-6f ? 1 : 0;
+        behind += clip.w <= 1e-6f ? 1 : 0;
         low = glm::min(low, Vec2(clip) / clip.w);
         high = glm::max(high, Vec2(clip) / clip.w);
+    }
+    if (ahead < 8) {
+        return behind == 8 ? PixelBounds{} : all_pixels(view);
     }
     const Vec2 size = {view.width, view.height};
     const auto pixel = [&](const Vec2& ndc) {

@@ -24,8 +24,8 @@ struct PixelBounds {
 /// By lobe_number().
 using LobeBounds = std::array<PixelBounds, kMaxShadingModels>;
 
-/// Of what is drawn with the materials of `items`. Boxes of items that reach behind the camera, and
-/// all items of the base lobe, count as the whole view.
+/// Of what is drawn with the materials of `items`. Boxes of items that reach behind the camera, but
+/// are not all behind it, and all items of the base lobe count as the whole view.
 [[nodiscard]] LobeBounds find_lobe_bounds(const RenderItems& items, const RenderView& view);
 
 }  // namespace limn

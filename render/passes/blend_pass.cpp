@@ -20,17 +20,17 @@ bool has_any(std::span<const DrawRun> runs, SurfaceFeature feature) {
 }
 
 /// A copy of the image so far, with mip levels.
-TextureId copy_behind(FrameGraph& graph, TextureId radiance) {
+TextureId copy_behind(FrameGraph& graph, const MipLevels& levels, TextureId radiance) {
     TextureSpec spec = graph.spec(radiance);
     spec.name = "behind clear media";
     spec.levels = gpu::full_level_count(spec.width, spec.height);
     const TextureId behind = graph.create(spec);
     graph.add_pass(
         "behind clear media", {radiance}, {image(behind)},
-        [behind, radiance](PassContext& context) {
+        [&levels, behind, radiance](PassContext& context) {
             const gpu::Texture& copy = context.texture(behind);
             context.texture(radiance).copy_to(copy);
-            glGenerateTextureMipmap(copy.id());
+            fill_mip_levels(context.device(), levels, copy);
         });
     return behind;
 }
@@ -57,7 +57,8 @@ void draw_blended(
 Result<BlendEffect> BlendEffect::create(gpu::Device& device, const RenderSettings&) {
     BlendEffect effect{
         .programs = ProgramVariants::of_meshes(device, "blend.frag"),
-        .depths = ProgramVariants::of_meshes(device, "depth_first.frag")};
+        .depths = ProgramVariants::of_meshes(device, "depth_first.frag"),
+        .levels = LIMN_TRY(create_mip_levels(device))};
     LIMN_TRY(effect.programs.load());
     return effect;
 }
@@ -70,7 +71,7 @@ void BlendEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     std::vector<Use> reads =
         mesh_reads(graph, *view.frame, lighting_reads(view, {depth_tested(view.gbuffer.depth)}));
     if (has_any(runs, kTransmission)) {
-        reads.push_back(sampled(copy_behind(graph, view.radiance), kBehindUnit));
+        reads.push_back(sampled(copy_behind(graph, levels, view.radiance), kBehindUnit));
         reads.push_back(sampled(view.gbuffer.depth, kBehindDepthUnit));
     }
     const Use writes[] = {view.radiance};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/effect.h"
+#include "render/mip_levels.h"
 
 namespace limn {
 
@@ -20,6 +21,7 @@ namespace limn {
 struct BlendEffect {
     ProgramVariants programs;
     ProgramVariants depths;
+    MipLevels levels;
 
     [[nodiscard]] static Result<BlendEffect> create(gpu::Device& device, const RenderSettings&);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);

@@ -2,6 +2,8 @@
 
 #include "render/effect.h"
 #include "render/gpu/texture.h"
+#include "render/mip_levels.h"
+#include "render/variant.h"
 
 namespace limn {
 
@@ -16,7 +18,8 @@ class Program;
 // Reads    diffuse light before the albedo, which the light pass draws apart; G-buffer, depth
 // Writes   radiance: adds what leaves, times the albedo there
 // Order    after lights, before all that lies in front of surfaces
-// Shaders  subsurface.frag, distance_moments.frag; diffusion_profile.h
+// Shaders  lib/diffused_light.glsl in subsurface.frag or .comp, distance_moments.frag or .comp;
+//          diffusion_profile.h
 //
 // Each pixel sums 80 rings, or 36 or 20 where they cover few pixels, in the tangent plane of its
 // surface, in meters, so that neither distance nor tilt changes what is seen; each ring is one
@@ -24,16 +27,19 @@ class Program;
 // counts less by how much farther it is, what does not scatter not at all, and the rest is scaled
 // to a share of one: uniform light is unchanged.
 //
-// Only pixels within the boxes of such surfaces are looked at, as a software OpenGL sums the rings
-// of all others in vain.
+// Only pixels within the boxes of such surfaces are visited, none where no box is in view. A
+// software OpenGL runs fragment shaders, which skip all others early; a GPU runs the same function
+// in compute shaders, as GPUs made for computing rasterize with few of their processors.
 //
 // Only with LightMethod::Clustered; the others shade such surfaces without diffusion, and so do
 // probes and blended surfaces. Light enters with the albedo of where it leaves: textures stay
 // sharp.
 
 struct SubsurfaceEffect {
-    const gpu::Program* program = nullptr;
+    bool in_compute;  ///< gpu::Profile::Gpu
+    ProgramVariants programs;
     const gpu::Program* moments = nullptr;
+    MipLevels levels;
     gpu::Sampler sampler;
 
     [[nodiscard]] static Result<SubsurfaceEffect>

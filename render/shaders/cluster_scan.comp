@@ -2,7 +2,7 @@
 // cells, the group scans the runs.
 #version 450
 
-layout(local_size_x = 256) in;
+layout(local_size_x = 1024) in;  // the largest that OpenGL promises: runs are read one cell after another
 layout(std430, binding = 1) buffer Cells {
     uvec2 cells[];  // begin and length of each list
 };

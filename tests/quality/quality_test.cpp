@@ -43,9 +43,13 @@ std::size_t count_of(const std::string& text, std::string_view word) {
 }
 
 /// The rows of `limn quality EFFECT`, which must hold.
-nlohmann::json measured_rows(const std::string& effect, const TemporaryFolder& folder = {}) {
-    const ProgramRun run =
-        run_limn(folder, {"quality", effect, "--json", "q.json", "--html", "q.html"});
+nlohmann::json measured_rows(
+    const std::string& effect, const TemporaryFolder& folder = {},
+    const std::vector<std::string>& options = {}) {
+    std::vector<std::string> arguments = {"quality", effect,   "--json",
+                                          "q.json",  "--html", "q.html"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramRun run = run_limn(folder, arguments);
     CAPTURE(run.out);
     CAPTURE(run.err);
     CHECK(run.exit_code == 0);
@@ -248,9 +252,11 @@ TEST_CASE("quality: the surfaces keep their bounds") {
 }
 
 TEST_CASE("quality: light spreads in skin and shines through it as the profile says") {
-    const TemporaryFolder folder;
-    CHECK(measured_rows("skin", folder).size() == 24);
-    CHECK(read_text(folder.file("stdout.txt")).find("VIOLATED") == std::string::npos);
+    for (const char* profile : {"software", "gpu"}) {
+        const TemporaryFolder folder;
+        CHECK(measured_rows("skin", folder, {"--profile", profile}).size() == 24);
+        CHECK(read_text(folder.file("stdout.txt")).find("VIOLATED") == std::string::npos);
+    }
 }
 
 TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep their law") {

@@ -5,6 +5,7 @@
 #include "ecs/components/shadow_volume.h"
 #include "render/diffusion_profile.h"
 #include "tests/near.h"
+#include "tests/render/profile_renderer.h"
 #include "tests/render/scene_fixture.h"
 
 #include <doctest/doctest.h>
@@ -27,6 +28,14 @@ using oracle::DVec3;
 /// Of skin, forty times as large.
 constexpr Vec3 kFreePath = {0.147f, 0.0548f, 0.0272f};
 constexpr int kSide = 256;  ///< of images [px]
+constexpr gpu::Profile kProfiles[] = {gpu::Profile::Software, gpu::Profile::Gpu};
+
+/// Draws diffusion (Software) or computes it (Gpu), in 32-bit floats.
+ProfileRenderer& renderer_of(gpu::Profile profile) {
+    static ProfileRenderer software(gpu::Profile::Software);
+    static ProfileRenderer gpu(gpu::Profile::Gpu, {.full_float = true});
+    return profile == gpu::Profile::Gpu ? gpu : software;
+}
 
 Material wax(const Vec3& free_path = kFreePath) {
     return {
@@ -79,12 +88,15 @@ DVec3 point_at(const RenderView& view, double x, double y) {
 }
 
 /// Largest difference of each channel from the profile's convolution of the image without
-/// diffusion, a pixel a patch, along a row and a column through the middle; of the lit plane.
+/// diffusion, a pixel a patch, along a row and a column through the middle; of the lit plane, by
+/// either renderer.
 DVec3 largest_errors(LitPlane& scene, const RenderView& view) {
     auto& assets = scene.world.resource<Assets>();
     const Material material = assets.materials[0];
     const DVec3 d = scales(material);
-    const gpu::FloatImage found = scene.radiance(view);
+    const gpu::FloatImage found[] = {
+        renderer_of(kProfiles[0]).radiance(scene.world, view),
+        renderer_of(kProfiles[1]).radiance(scene.world, view)};
     assets.materials[0].scatter = Vec3(0);
     ++assets.material_version;
     const gpu::FloatImage before = scene.radiance(view);
@@ -111,9 +123,10 @@ DVec3 largest_errors(LitPlane& scene, const RenderView& view) {
                     patches, static_cast<std::size_t>(y * view.width + x), d[c]);
                 const double scale = static_cast<double>(material.base_color.x)
                                      / static_cast<double>(material.base_color[c]);
-                errors[c] = std::max(
-                    errors[c],
-                    std::abs(static_cast<double>(found.at(x, y, c)) * scale - exact) / brightest);
+                for (const gpu::FloatImage& image : found) {
+                    const auto light = static_cast<double>(image.at(x, y, c)) * scale;
+                    errors[c] = std::max(errors[c], std::abs(light - exact) / brightest);
+                }
             }
         }
     }
@@ -209,15 +222,18 @@ TEST_CASE("subsurface: a thin line of light becomes the profile") {
 
 TEST_CASE("subsurface: an evenly lit plane is as bright as without diffusion") {
     for (const Vec3& eye : {Vec3(0, 0, 1), Vec3(0.9f, 0.3f, 0.5f), Vec3(0, 0, 3)}) {
-        gpu::FloatImage images[2];
-        for (const bool spread : {false, true}) {
-            LitPlane scene(wax(spread ? kFreePath : Vec3(0)));
-            scene.shine_past();
-            images[spread ? 1 : 0] = scene.radiance(turned(eye, 0.3f));
-            CHECK(frame_graph(shared_renderer()).was_run("subsurface") == spread);
+        for (const gpu::Profile profile : kProfiles) {
+            ProfileRenderer& renderer = renderer_of(profile);
+            gpu::FloatImage images[2];
+            for (const bool spread : {false, true}) {
+                LitPlane scene(wax(spread ? kFreePath : Vec3(0)));
+                scene.shine_past();
+                images[spread ? 1 : 0] = renderer.radiance(scene.world, turned(eye, 0.3f));
+                CHECK(renderer.graph().was_run("subsurface") == spread);
+            }
+            CHECK(images[0].at(128, 128, 0) > 0.1f);
+            CHECK(largest_difference(images[0], images[1]) < 1e-5f);
         }
-        CHECK(images[0].at(128, 128, 0) > 0.1f);
-        CHECK(largest_difference(images[0], images[1]) < 1e-5f);
     }
 }
 
@@ -229,17 +245,20 @@ TEST_CASE("subsurface: no light comes from what does not scatter, nor leaves for
     scene.world.add(
         scene.place(scene.square, scene.add(Material{.roughness = 1}), at({1, 0, 1e-4f})),
         NoShadow{});
-    const gpu::FloatImage image = scene.radiance(turned({0, 0, 1}, 0));
-    for (int x = 0; x < kSide; ++x) {
-        const float red = image.at(x, 128, 0);
-        const bool floor = x >= kSide / 2;
-        CHECK((floor ? std::abs(red - image.at(200, 128, 0)) : red) < 1e-4f);
+    for (const gpu::Profile profile : kProfiles) {
+        const gpu::FloatImage image =
+            renderer_of(profile).radiance(scene.world, turned({0, 0, 1}, 0));
+        for (int x = 0; x < kSide; ++x) {
+            const float red = image.at(x, 128, 0);
+            const bool floor = x >= kSide / 2;
+            CHECK((floor ? std::abs(red - image.at(200, 128, 0)) : red) < 1e-4f);
+        }
     }
 }
 
 TEST_CASE("subsurface: light spreads wherever a surface is seen, also at the image's edges") {
     for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
-        gpu::FloatImage images[2];
+        std::array<gpu::FloatImage, 2> images[2];
         for (const bool another_behind : {false, true}) {
             Scene scene;
             const MeshId ball = scene.add(make_ball());
@@ -249,9 +268,96 @@ TEST_CASE("subsurface: light spreads wherever a surface is seen, also at the ima
                 scene.place(ball, skin, at({0, 0, 2}));  // around the camera: its box is all pixels
             }
             scene.shine(PointLight{.intensity = 20, .radius = 0}, at({1, 1, 3}));
-            images[another_behind ? 1 : 0] = scene.radiance(turned({0, 0, 2}, 0));
+            for (const std::size_t i : {0u, 1u}) {
+                images[another_behind ? 1 : 0][i] =
+                    renderer_of(kProfiles[i]).radiance(scene.world, turned({0, 0, 2}, 0));
+            }
         }
-        CHECK(largest_difference(images[0], images[1]) == 0);
+        CHECK(largest_difference(images[0][0], images[1][0]) == 0);
+        CHECK(largest_difference(images[0][1], images[1][1]) == 0);
+    }
+}
+
+namespace {
+
+/// Two balls of wax, one half out of the image, before a wall that does not scatter.
+class WaxBalls : public Scene {
+  public:
+    explicit WaxBalls(const Vec3& free_path = kFreePath) {
+        const MeshId ball = add(make_ball());
+        const MaterialId skin = add(wax(free_path));
+        place(ball, skin, at({-0.4f, 0.1f, 0}));
+        place(ball, skin, at({3.1f, -1.2f, -0.5f}));
+        place(add(make_square()), add(Material{}), affine_from({0, 0, -1}, {1, 0, 0, 0}, Vec3(9)));
+        shine(DirectionalLight{.illuminance = 3}, look_at({0, 0, 0}, {-1, -0.5f, -1}));
+    }
+    /// 250 x 131 px, no multiple of a work group.
+    [[nodiscard]] RenderView seen() const { return look({0, 0, 3}, {0, 0, 0}, 250, 131); }
+};
+
+int dispatches(ProfileRenderer& renderer, const Scene& scene, const RenderView& view) {
+    renderer.draw(scene.world, view);
+    return renderer.stats().dispatches;
+}
+
+}  // namespace
+
+TEST_CASE("subsurface: what a GPU computes is what a software OpenGL draws") {
+    const WaxBalls scene;
+    const RenderView view = scene.seen();
+    const gpu::FloatImage drawn = renderer_of(gpu::Profile::Software).radiance(scene.world, view);
+    const gpu::FloatImage computed = renderer_of(gpu::Profile::Gpu).radiance(scene.world, view);
+    CHECK(largest_difference(drawn, computed) < 1e-6f);
+
+    // Half floats: what is spread, what it is added to and the sum are rounded or truncated.
+    const gpu::FloatImage half = ProfileRenderer(gpu::Profile::Gpu).radiance(scene.world, view);
+    float largest = 0;
+    for (std::size_t i = 0; i < half.pixels.size(); ++i) {
+        const float exact = drawn.pixels[i];
+        largest = std::max(largest, std::abs(half.pixels[i] - exact) / std::max(exact, 0.05f));
+    }
+    CHECK(largest < 3.0f / 1024);
+}
+
+TEST_CASE("subsurface: pixels of other surfaces keep every bit") {
+    WaxBalls scene;
+    const WaxBalls dull(Vec3(0));
+    const RenderView view = scene.seen();
+    const gpu::FloatImage albedo = scene.aov(view, "albedo");
+    for (const gpu::Profile profile : kProfiles) {
+        const gpu::FloatImage with = renderer_of(profile).radiance(scene.world, view);
+        const gpu::FloatImage without = renderer_of(profile).radiance(dull.world, view);
+        int changed = 0;
+        for (int y = 0; y < view.height; ++y) {
+            for (int x = 0; x < view.width; ++x) {
+                const bool same = rgb_at(with, x, y) == rgb_at(without, x, y);
+                const bool is_wax = albedo.at(x, y, 0) < 0.6f;  // the wall is brighter
+                CHECK((same || is_wax));
+                CHECK(with.at(x, y, 3) == without.at(x, y, 3));
+                changed += same ? 0 : 1;
+            }
+        }
+        CHECK(changed > 1000);
+    }
+}
+
+TEST_CASE("subsurface: a GPU computes it, and dispatches nothing where no skin is in view") {
+    const WaxBalls scene;
+    const WaxBalls dull(Vec3(0));
+    const RenderView behind = scene.look({0, 0, 3}, {0, 0, 9});
+    const RenderView aside = scene.look({-9, 0, 3}, {-9, 0, 0});
+    for (const gpu::Profile profile : kProfiles) {
+        ProfileRenderer& renderer = renderer_of(profile);
+        const int seen = dispatches(renderer, scene, scene.seen());
+        CHECK(renderer.graph().was_run("subsurface"));
+        // Distances, five mip levels of two textures, diffusion.
+        const int expected = profile == gpu::Profile::Gpu ? 1 + 2 * 5 + 1 : 0;
+        CHECK(seen - dispatches(renderer, dull, scene.seen()) == expected);
+        for (const RenderView& away : {behind, aside}) {
+            const int found = dispatches(renderer, scene, away);
+            CHECK_FALSE(renderer.graph().was_run("subsurface"));
+            CHECK(found == dispatches(renderer, dull, away));
+        }
     }
 }
 
@@ -283,12 +389,15 @@ TEST_CASE("subsurface: dark skin behind a bright edge of skin stays dark") {
     scene.place(square, skin, at({1, 0, 0}));
     // Reaches the plate in front, not the wall.
     scene.shine(PointLight{.intensity = 4, .radius = 0.7f}, at({0.2f, 0, 0.4f}));
-    const gpu::FloatImage image = scene.radiance(turned({0, 0, 1}, 0));
-    const float edge = image.at(kSide / 2 + 1, kSide / 2, 0);
-    CHECK(edge > 0.05f);
-    for (int x = 0; x < kSide / 2; ++x) {
-        CAPTURE(x);
-        CHECK(image.at(x, kSide / 2, 0) < 3e-3f * edge);
+    for (const gpu::Profile profile : kProfiles) {
+        const gpu::FloatImage image =
+            renderer_of(profile).radiance(scene.world, turned({0, 0, 1}, 0));
+        const float edge = image.at(kSide / 2 + 1, kSide / 2, 0);
+        CHECK(edge > 0.05f);
+        for (int x = 0; x < kSide / 2; ++x) {
+            CAPTURE(x);
+            CHECK(image.at(x, kSide / 2, 0) < 3e-3f * edge);
+        }
     }
 }
 

@@ -1,0 +1,18 @@
+// A mip level from the next larger one: at the center of each texel, filtered linearly.
+#version 450
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 0) uniform sampler2D source;  // all levels
+layout(binding = 0) writeonly uniform image2D level;  // of any format
+
+uniform int source_level;
+
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(level);
+    if (all(lessThan(texel, size))) {
+        vec2 uv = (vec2(texel) + 0.5) / vec2(size);
+        imageStore(level, texel, textureLod(source, uv, float(source_level)));
+    }
+}
