@@ -3,7 +3,6 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/gpu_particle_pools.h"
-#include "render/render_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,15 +24,10 @@ bool is_positive(float x) {
 
 }  // namespace
 
-Result<ParticleSplats> create_particle_splats(gpu::Device& device, const RenderSettings& settings) {
-    const bool full_float =  // as FrameData::radiance_format
-        settings.full_float || device.caps().profile == gpu::Profile::Software;
-    const char* const format = full_float ? "rgba32f" : "rgba16f";
-    ParticleSplats splats;
-    splats.splat = LIMN_TRY(device.shaders().load({.compute = "particle_splat.comp"}));
-    splats.add = LIMN_TRY(device.shaders().load(
-        {.compute = "particle_splat_add.comp", .defines = {{"RADIANCE_FORMAT", format}}}));
-    return splats;
+Result<ParticleSplats> create_particle_splats(gpu::Device& device) {
+    return ParticleSplats{
+        .splat = LIMN_TRY(device.shaders().load({.compute = "particle_splat.comp"})),
+        .add = ProgramVariants(device, {.compute = "particle_splat_add.comp"})};
 }
 
 bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look) {
@@ -76,22 +70,26 @@ void draw_particle_splats(
     device.dispatch((pool.count + layout::kParticleGroup - 1) / layout::kParticleGroup);
 }
 
-void add_particle_sums(FrameGraph& graph, const ParticleSplats& splats, ViewData& view) {
+void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view) {
+    Variant variant;
+    variant.add_if(view.frame->radiance_format == GL_RGBA32F, "FULL_FLOATS");
+    const gpu::Program* const program = splats.add.get(variant);
     const BufferId sums = graph.import("sums of particles", splats.sums);
     const TextureId radiance = view.radiance;
-    graph.add_pass(
-        "particles.sums", {}, {sums, image(radiance)},
-        [&splats, sums, radiance](PassContext& context) {
-            gpu::Device& device = context.device();
-            device.use(*splats.add);
-            context.bind_storage(kSumsBinding, sums);
-            context.bind_image(kRadianceImage, radiance, GL_READ_WRITE);
-            splats.add->set("unit", splats.unit);
-            const gpu::Texture& target = context.texture(radiance);
-            const auto width = static_cast<unsigned>(target.width());
-            device.dispatch(
-                (width + kAddGroup - 1) / kAddGroup, static_cast<unsigned>(target.height()));
-        });
+    const auto run = [&splats, program, sums, radiance](PassContext& context) {
+        if (program == nullptr) {
+            return;
+        }
+        context.device().use(*program);
+        context.bind_storage(kSumsBinding, sums);
+        context.bind_image(kRadianceImage, radiance, GL_READ_WRITE);
+        program->set("unit", splats.unit);
+        const gpu::Texture& target = context.texture(radiance);
+        context.device().dispatch(
+            (static_cast<unsigned>(target.width()) + kAddGroup - 1) / kAddGroup,
+            static_cast<unsigned>(target.height()));
+    };
+    graph.add_pass("particles.sums", {}, {sums, image(radiance)}, run);
 }
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include "render/frame_data.h"
 #include "render/gpu/buffer.h"
 #include "render/particle_list.h"
+#include "render/variant.h"
 
 namespace limn {
 
@@ -12,7 +13,6 @@ class Program;
 }  // namespace gpu
 
 struct GpuParticlePool;
-struct RenderSettings;
 
 // Points that the GPU moves and that only add light, drawn by a compute shader instead of the
 // rasterizer, which takes several times as long where triangles and points have a few pixels
@@ -23,13 +23,12 @@ struct RenderSettings;
 
 struct ParticleSplats {
     const gpu::Program* splat = nullptr;
-    const gpu::Program* add = nullptr;
+    ProgramVariants add;
     gpu::Buffer sums = {};  ///< three words a pixel, 0 between the frames
     float unit = 1;         ///< of radiance, in the sums of this frame
 };
 
-[[nodiscard]] Result<ParticleSplats>
-create_particle_splats(gpu::Device& device, const RenderSettings& settings);
+[[nodiscard]] Result<ParticleSplats> create_particle_splats(gpu::Device& device);
 
 /// Whether this pool may be drawn so, in views that nothing hides but what is opaque.
 [[nodiscard]] bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look);
@@ -45,6 +44,6 @@ void draw_particle_splats(
     PassContext& context, const ParticleSplats& splats, const GpuParticlePool& pool);
 
 /// Adds the pass that adds what was drawn to the view's radiance.
-void add_particle_sums(FrameGraph& graph, const ParticleSplats& splats, ViewData& view);
+void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view);
 
 }  // namespace limn

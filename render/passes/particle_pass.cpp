@@ -55,13 +55,14 @@ bool is_six_way(const ParticleRun& run) {
 
 }  // namespace
 
-Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings& settings) {
+Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
     ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
         ProgramVariants(device, {.compute = "particle_light.comp"}),
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"}),
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_focus.frag"}),
-        ProgramVariants::of_meshes(device, "depth_first.frag")};
+        ProgramVariants::of_meshes(device, "depth_first.frag"),
+        LIMN_TRY(create_particle_splats(device))};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
     // As of materials: between mip levels only where that costs nothing.
     const GLenum minify =
@@ -71,7 +72,6 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
     effect.finest_sampler =
         gpu::Sampler("finest particle images", {.minify = GL_LINEAR, .wrap = GL_CLAMP_TO_EDGE});
     effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
-    effect.splats = LIMN_TRY(create_particle_splats(device, settings));
     return effect;
 }
 

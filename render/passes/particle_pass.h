@@ -59,13 +59,13 @@ struct ParticleEffect {
     ProgramVariants velocity_programs;
     ProgramVariants focus_programs;
     ProgramVariants veil_programs;  ///< depth of blended surfaces
+    ParticleSplats splats;
     ParticleDraws draws = {};
     GpuParticlePools gpu = {};  ///< drawn after the others
     GpuParticleView gpu_view = {};
     std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
     const gpu::Program* resolve = nullptr;  ///< of weighted ones, created with the first
     const gpu::Program* depth_copy = nullptr;
-    ParticleSplats splats = {};
     gpu::Sampler image_sampler = {};
     gpu::Sampler finest_sampler = {};  ///< without mip levels
     DepthMemory seen_depth = {};       ///< while some on the GPU meet what the camera sees

@@ -1,10 +1,9 @@
-// Adds the sums of particle_splat.comp to the image and sets them to 0. Definition:
-//   RADIANCE_FORMAT  of the image: rgba16f or rgba32f
+// Adds the sums of particle_splat.comp to the image and sets them to 0. Definition: that of
+// lib/radiance_image.glsl.
 #version 450
-#include "lib/radiance.glsl"
+#include "lib/radiance_image.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, RADIANCE_FORMAT) uniform image2D radiance;
 layout(std430, binding = 0) buffer Sums {
     uint sums[];  // of red, green and blue of each pixel
 };
@@ -25,6 +24,5 @@ void main() {
     for (int i = 0; i < 3; ++i) {
         sums[first + i] = 0u;
     }
-    vec4 before = imageLoad(radiance, pixel);
-    imageStore(radiance, pixel, vec4(storable(before.rgb + vec3(sum) / unit), before.a));
+    add_radiance(pixel, vec3(sum) / unit);
 }

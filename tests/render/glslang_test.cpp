@@ -37,7 +37,6 @@ const std::vector<KnownDefine>& known_defines() {
         {"RADIUS", {"3", "15"}},
         {"SIZE", {"32u", "256u"}},
         {"SINGLE_LIGHTS", {"1", "4"}},
-        {"RADIANCE_FORMAT", {"rgba16f", "rgba32f"}},
     };
     return known;
 }
