@@ -58,6 +58,33 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: a buffer gives back what was written")
     CHECK(Buffer::of("none", std::span<const int>()).size() == 1);
 }
 
+TEST_CASE_FIXTURE(
+    test::RenderTest, "gpu: what is written after a clear or a copy on the GPU stays") {
+    for (int round = 0; round < 20; ++round) {
+        CAPTURE(round);
+        constexpr std::size_t kWords = 1 << 18;
+        const std::vector<std::uint32_t> numbers(1000, 7u + round);
+        const Buffer sevens = Buffer::of("source", std::span<const std::uint32_t>(numbers));
+        Buffer cleared("cleared", kWords * 4, BufferUse::Dynamic);
+        cleared.clear(5);
+        cleared.write(400, std::span<const std::uint32_t>(numbers).first(10));
+        CHECK(cleared.read_value<std::uint32_t>(396) == 5);
+        CHECK(cleared.read_value<std::uint32_t>(400) == numbers[0]);
+        CHECK(cleared.read_value<std::uint32_t>(kWords * 4 - 4) == 5);
+        cleared.copy_from(sevens, 4, 8, 40);
+        const std::uint32_t one = 1;
+        cleared.write(12, std::span(&one, 1));
+        CHECK(cleared.read_value<std::uint32_t>(4) == 5);
+        CHECK(cleared.read_value<std::uint32_t>(8) == numbers[0]);
+        CHECK(cleared.read_value<std::uint32_t>(12) == 1);
+        CHECK(cleared.read_value<std::uint32_t>(44) == numbers[0]);
+        CHECK(cleared.read_value<std::uint32_t>(48) == 5);
+        cleared.clear(3, 12);
+        CHECK(cleared.read_value<std::uint32_t>(8) == 3);
+        CHECK(cleared.read_value<std::uint32_t>(12) == 1);
+    }
+}
+
 TEST_CASE_FIXTURE(test::RenderTest, "gpu: objects and their memory are counted while they live") {
     const auto buffers = gpu::live_objects(gpu::ObjectKind::Buffer);
     const auto textures = gpu::live_objects(gpu::ObjectKind::Texture);
