@@ -39,7 +39,8 @@ TEST_CASE_FIXTURE(test::RenderTest, "numbers: NaN and infinite motion becomes no
     const float inf = Limits::infinity();
     const std::vector<Vec4> moved = test::evaluate_shader(
         "#include \"lib/motion.glsl\"\n#include \"lib/velocity.glsl\"\n",
-        "y = vec4(bounded_motion(x.xy, 10.0), velocity_from(x.xy, vec3(0.0, 0.0, 1.0)));",
+        "y = vec4(bounded_motion(x.xy, 10.0), velocity_from(x.xy, vec3(0.0, 0.0, 1.0), "
+        "vec2(100.0)));",
         {Vec4(nan, 0, 0, 0), Vec4(0, inf, 0, 0), Vec4(-nan, inf, 0, 0), Vec4(3, 4, 0, 0)});
     CHECK(moved[0] == Vec4(0));
     CHECK(moved[1] == Vec4(0));
