@@ -1,6 +1,7 @@
 #include "render/gpu/buffer.h"
 
 #include "ecs/base/check.h"
+#include "render/gpu/undefined_memory.h"
 
 #include <utility>
 
@@ -21,6 +22,10 @@ Buffer::Buffer(std::string_view label, std::size_t size, BufferUse use, const vo
     const GLbitfield flags = use == BufferUse::Dynamic ? GL_DYNAMIC_STORAGE_BIT : 0;
     glNamedBufferStorage(id(), static_cast<GLsizeiptr>(size), data, flags);
     object_.set_bytes(size);
+    if (data == nullptr && fills_undefined_memory()) {
+        constexpr std::uint32_t kNan = 0x7fc00001;  // as an integer far beyond any range
+        clear(kNan, size / sizeof(kNan) * sizeof(kNan));
+    }
 }
 
 void Buffer::write(std::size_t offset, std::span<const std::byte> bytes) {

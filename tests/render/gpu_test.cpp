@@ -8,7 +8,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
+#include <string>
 
 namespace limn {
 namespace {
@@ -56,6 +58,25 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: a buffer gives back what was written")
     CHECK(dynamic.read_value<int>(4 * sizeof(int)) == 0);
     CHECK(dynamic.read_value<int>(11 * sizeof(int)) == 7);
     CHECK(Buffer::of("none", std::span<const int>()).size() == 1);
+}
+
+TEST_CASE_FIXTURE(
+    test::RenderTest, "gpu: LIMN_UNDEFINED=nan shows reads of what nobody has written") {
+    const char* const found = std::getenv("LIMN_UNDEFINED");
+    const std::string before = found != nullptr ? found : "";
+    REQUIRE(::setenv("LIMN_UNDEFINED", "nan", 1) == 0);
+    const Buffer buffer("unwritten", 8, BufferUse::GpuOnly);
+    CHECK(std::isnan(buffer.read_value<float>(4)));
+    const float half = 0.5f;
+    const Buffer written("written", 4, BufferUse::Static, &half);
+    CHECK(written.read_value<float>(0) == half);
+    for (const GLenum format : {GL_RGBA16F, GL_RGBA32F}) {
+        const Texture texture("unwritten", {.format = format, .width = 3, .height = 2});
+        CHECK(std::isnan(gpu::read_floats(texture).at(2, 1, 3)));
+    }
+    const Texture codes("unwritten codes", {.format = GL_RGBA8, .width = 3, .height = 2});
+    CHECK(gpu::read_bytes(codes).at(2, 1, 3) == 255);
+    REQUIRE(::setenv("LIMN_UNDEFINED", before.c_str(), 1) == 0);
 }
 
 TEST_CASE_FIXTURE(
