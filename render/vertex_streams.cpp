@@ -32,7 +32,8 @@ constexpr StreamInfo kStreams[kVertexStreams] = {
     {"fold heights", sizeof(float), false, VertexStream::FoldHeight},
 };
 
-constexpr std::uint16_t kWhite[4] = {0x3c00, 0x3c00, 0x3c00, 0x3c00};  // half floats
+constexpr std::uint32_t kWhitePair = 0x3c003c00;  // two half floats, 1 each
+constexpr std::uint32_t kWhite[2] = {kWhitePair, kWhitePair};
 
 constexpr GLuint kPosition = static_cast<GLuint>(VertexStream::Position);
 constexpr GLuint kFrame = static_cast<GLuint>(VertexStream::Frame);
@@ -93,7 +94,7 @@ std::span<const gpu::VertexAttribute> mesh_attributes() {
 
 VertexStreams::VertexStreams(std::string name)
     : name_(std::move(name)), vertices_(name_, kMeshAttributes) {
-    white_ = gpu::Buffer::of("white", std::span<const std::uint16_t>(kWhite));
+    white_ = gpu::Buffer::of("white", std::span<const std::uint32_t>(kWhite));
 }
 
 void VertexStreams::reserve(std::uint32_t capacity) {
@@ -123,10 +124,8 @@ void VertexStreams::require(VertexStream stream) {
     const std::size_t bytes = capacity_ * info.stride;
     gpu::Buffer made = gpu::grown_buffer(
         name_ + ", " + info.name, buffer(info.stand_in), constant ? 0 : bytes, bytes);
-    if (stream == VertexStream::FoldHeight) {
-        glClearNamedBufferData(made.id(), GL_R32F, GL_RED, GL_FLOAT, nullptr);  // to 0
-    } else if (constant) {
-        glClearNamedBufferData(made.id(), GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, kWhite);
+    if (constant) {
+        made.clear(stream == VertexStream::FoldHeight ? 0 : kWhitePair);
     }
     buffers_[index_of(stream)] = std::move(made);
     bind(stream);
@@ -152,10 +151,8 @@ void VertexStreams::copy(
         if (from.has(stream)) {
             require(stream);
             const std::size_t stride = kStreams[i].stride;
-            glCopyNamedBufferSubData(
-                from.buffer(stream).id(), buffer(stream).id(),
-                static_cast<GLintptr>(from_first * stride),
-                static_cast<GLintptr>(to_first * stride), static_cast<GLsizeiptr>(count * stride));
+            buffers_[i].copy_from(
+                from.buffer(stream), from_first * stride, to_first * stride, count * stride);
         }
     }
 }

@@ -8,11 +8,13 @@
 #include "ecs/components/rendering.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -89,13 +91,14 @@ DVec3 reflected(const std::vector<Lamp>& lamps, const DVec3& point) {
     return sum;
 }
 
-/// The oracle's image of the floor z = 0; black beyond it.
-gpu::FloatImage oracle_image(const std::vector<Lamp>& lamps, const RenderView& view) {
+/// The oracle's image of the floor z = 0, shifted by `shift` [px]; black beyond it.
+gpu::FloatImage
+oracle_image(const std::vector<Lamp>& lamps, const RenderView& view, const glm::dvec2& shift) {
     gpu::FloatImage image{.width = kWidth, .height = kHeight, .channels = 3, .pixels = {}};
     const DVec3 eye = eye_of(view);
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-            const DVec3 ray = pixel_ray(view, x, y);
+            const DVec3 ray = pixel_ray(view, x + shift.x, y + shift.y);
             const DVec3 point = eye - ray * (eye.z / ray.z);
             const bool on_floor =
                 ray.z < 0 && std::abs(point.x) < kHalfFloor && std::abs(point.y) < kHalfFloor;
@@ -106,6 +109,22 @@ gpu::FloatImage oracle_image(const std::vector<Lamp>& lamps, const RenderView& v
         }
     }
     return image;
+}
+
+/// Largest difference of any channel from the values that it has in `allowed`, or between them.
+float largest_excess(const ColorImage& found, const std::vector<ColorImage>& allowed) {
+    float largest = 0;
+    for (std::size_t i = 0; i < found.pixels.size(); ++i) {
+        Vec3 low = allowed[0].pixels[i];
+        Vec3 high = low;
+        for (const ColorImage& image : allowed) {
+            low = glm::min(low, image.pixels[i]);
+            high = glm::max(high, image.pixels[i]);
+        }
+        const Vec3 excess = glm::max(low - found.pixels[i], found.pixels[i] - high);
+        largest = std::max({largest, excess.x, excess.y, excess.z});
+    }
+    return largest;
 }
 
 void measure_images(HeadlessRenderer& headless, QualityReport& report) {
@@ -126,14 +145,21 @@ void measure_images(HeadlessRenderer& headless, QualityReport& report) {
     }
     // At a slant, so that the floor crosses many depth slices.
     const RenderView view = quality_view({0, -13, 4}, {0, -2, 0}, kWidth, kHeight, radians(60.0f));
-    const ColorImage expected = displayed(oracle_image(lamps, view));
+    const ColorImage expected = displayed(oracle_image(lamps, view, {0, 0}));
+    // Hardware may snap vertices to 1/256 of a pixel, which moves what is in between by half of it:
+    // 4 of 255 at the rims of cones in the dark.
+    std::vector<ColorImage> allowed = {expected};
+    if (!headless.device->caps().software) {
+        for (const glm::dvec2& corner : {glm::dvec2(-1), {1, -1}, {-1, 1}, {1, 1}}) {
+            allowed.push_back(displayed(oracle_image(lamps, view, corner / 512.0)));
+        }
+    }
     for (int method = 0; method < kLightMethods; ++method) {
         scene.world.insert_resource(Rendering{static_cast<LightMethod>(method)});
         const ColorImage found = displayed(scene.radiance(headless, view));
         report.at_most(
             fmt::format("{} lights, {}: largest difference on screen", kLamps, kMethods[method]),
-            255.0 * static_cast<double>(largest_difference(found, expected).difference), 1,
-            "/ 255");
+            255.0 * static_cast<double>(largest_excess(found, allowed)), 1, "/ 255");
         if (method == 0) {
             report.images.push_back({fmt::format("{} lights, clustered", kLamps), found, expected});
         }

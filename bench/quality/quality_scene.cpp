@@ -156,7 +156,7 @@ RenderView quality_view(const Vec3& eye, const Vec3& target, int width, int heig
         {.fov_y = fov_y, .near = 0.05f}, pose, pose, {.width = width, .height = height});
 }
 
-dvec3 pixel_ray(const RenderView& view, int x, int y) {
+dvec3 pixel_ray(const RenderView& view, double x, double y) {
     const Affine& pose = view.world_from_camera;
     const double right = (2 * (x + 0.5) / view.width - 1) * static_cast<double>(view.tangent.x);
     const double up = (1 - 2 * (y + 0.5) / view.height) * static_cast<double>(view.tangent.y);

@@ -65,7 +65,7 @@ inline constexpr Vec3 kCourtTarget = {-0.25f, 0.75f, -0.6f};
 [[nodiscard]] RenderView
 quality_view(const Vec3& eye, const Vec3& target, int width, int height, float fov_y);
 /// The ray through the center of a pixel, rows from the top, one meter long along the view axis.
-[[nodiscard]] glm::dvec3 pixel_ray(const RenderView& view, int x, int y);
+[[nodiscard]] glm::dvec3 pixel_ray(const RenderView& view, double x, double y);
 [[nodiscard]] glm::dvec3 eye_of(const RenderView& view);
 
 /// A level after its first second, with the view and exposure of its camera.

@@ -17,7 +17,10 @@ namespace {
 
 constexpr int kWidth = 240;
 constexpr int kHeight = 135;
-constexpr double kMaxError = 0.05;  // [px] (design 7)
+/// [px] (design 7). Half floats may be truncated: another 1/1024 of the fastest along each axis.
+double max_error(const HeadlessRenderer& headless) {
+    return headless.device->caps().profile == gpu::Profile::Gpu ? 0.07 : 0.05;
+}
 
 struct MotionStage : QualityScene {
     Entity move(MeshId mesh, const Affine& before, const Affine& now) {
@@ -200,7 +203,8 @@ void measure_scene(
         }
     }
     report.at_most(
-        fmt::format("{}: largest difference from ray casting", name), worst, kMaxError, "px");
+        fmt::format("{}: largest difference from ray casting", name), worst, max_error(headless),
+        "px");
     report.inform(fmt::format("{}: fastest pixel", name), fastest, "px");
 }
 
@@ -250,7 +254,8 @@ Status measure_velocity(HeadlessRenderer& headless, QualityReport& report) {
     measure("skinned, linear blend", populate_linear);
     measure("skinned, dual quaternions", populate_dual);
     measure("morphed", populate_morphs);
-    report.at_most("sky: largest difference from ray casting", worst_sky, kMaxError, "px");
+    report.at_most(
+        "sky: largest difference from ray casting", worst_sky, max_error(headless), "px");
     report.at_least("pixels compared (the others are silhouettes)", 100 * min_compared, 97, "%");
     measure_stillness(headless, report);
     return Done{};

@@ -18,7 +18,8 @@ Status check_image_size(const gpu::Device& device, const IVec2& size) {
     return Done{};
 }
 
-Result<HeadlessRenderer> create_headless_renderer(std::optional<gpu::Profile> profile) {
+Result<HeadlessRenderer>
+create_headless_renderer(std::optional<gpu::Profile> profile, const RenderSettings& settings) {
     HeadlessRenderer headless;
     Result<std::unique_ptr<gpu::Context>> context = gpu::create_headless_context();
     if (!context) {
@@ -30,7 +31,7 @@ Result<HeadlessRenderer> create_headless_renderer(std::optional<gpu::Profile> pr
         return device.error();
     }
     headless.device = *std::move(device);
-    Result<RendererPtr> renderer = create_renderer(*headless.device);
+    Result<RendererPtr> renderer = create_renderer(*headless.device, settings);
     if (!renderer) {
         return renderer.error();
     }

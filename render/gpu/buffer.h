@@ -28,13 +28,22 @@ class Buffer {
                              : Buffer(label, items.size_bytes(), BufferUse::Static, items.data());
     }
 
-    /// Replaces bytes from `offset` on, within bounds; Dynamic buffers only.
+    /// Replaces bytes from `offset` on, within bounds; Dynamic buffers only. The first one after
+    /// clear() or copy_from() waits for the GPU: not for every frame.
     void write(std::size_t offset, std::span<const std::byte> bytes);
     template <typename T>
     void write(std::size_t offset, std::span<const T> items) {
         static_assert(std::is_trivially_copyable_v<T>);
         write(offset, std::as_bytes(items));
     }
+
+    /// Sets its first `bytes`, all by default, to the 32-bit `word`, on the GPU. Contents are not
+    /// what const is about here, as in textures.
+    void clear(std::uint32_t word, std::size_t bytes) const;
+    void clear(std::uint32_t word) const { clear(word, size_); }
+    /// Copies `bytes` of another buffer, within bounds of both, on the GPU.
+    void copy_from(
+        const Buffer& source, std::size_t source_offset, std::size_t offset, std::size_t bytes);
 
     /// Reads bytes back, waiting for the GPU: for tests and tools.
     void read(std::size_t offset, std::span<std::byte> bytes) const;
@@ -54,6 +63,7 @@ class Buffer {
     GlObject<ObjectKind::Buffer> object_;
     std::size_t size_ = 0;
     BufferUse use_ = BufferUse::Static;
+    mutable bool filled_by_gpu_ = false;  ///< by clear() or copy_from(), since the last write()
 };
 
 }  // namespace limn::gpu

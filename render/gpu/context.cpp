@@ -1,6 +1,7 @@
 #include "render/gpu/context.h"
 
 #include "ecs/base/text.h"
+#include "render/gpu/device_caps.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -62,6 +63,11 @@ std::vector<Candidate> list_candidates() {
             {EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, true, "EGL surfaceless"});
     }
     return candidates;
+}
+
+bool asks_for_software() {
+    const char* wish = std::getenv("LIMN_GL_DEVICE");
+    return wish != nullptr && std::string_view(wish) == "software";
 }
 
 /// Applies LIMN_GL_DEVICE; hardware first if it is not set.
@@ -166,6 +172,10 @@ Result<std::unique_ptr<Context>> create_headless_context(const ContextDesc& desc
         context->origin_ = desc.share != nullptr ? desc.share->origin_ : candidate.name;
         if (!context->make_current()) {
             skip("cannot be made current");
+            continue;
+        }
+        if (asks_for_software() && !read_device_caps().software) {
+            skip("not software, which LIMN_GL_DEVICE asks for");  // any driver may be surfaceless
             continue;
         }
         return context;

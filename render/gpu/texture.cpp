@@ -2,11 +2,13 @@
 
 #include "ecs/base/text.h"
 #include "render/gpu/device_caps.h"
+#include "render/gpu/undefined_memory.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace limn::gpu {
 namespace {
@@ -132,6 +134,13 @@ std::size_t client_pixel_bytes(GLenum format, GLenum type) {
     }
 }
 
+/// What fills_undefined_memory() puts into a texture.
+Vec4 undefined_value(const FormatInfo& info) {
+    const bool floats = info.pixel_type == GL_HALF_FLOAT || info.pixel_type == GL_FLOAT
+                        || info.pixel_type == GL_UNSIGNED_INT_10F_11F_11F_REV;
+    return Vec4(info.depth ? 0.5f : floats ? std::numeric_limits<float>::quiet_NaN() : 1.0f);
+}
+
 }  // namespace
 
 const FormatInfo& format_info(GLenum format) {
@@ -221,6 +230,11 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
         set_defaults();
     }
     object_.set_bytes(texture_bytes(desc_));
+    if (desc.samples == 0 && !format_info(desc.format).integer && fills_undefined_memory()) {
+        for (int level = 0; level < desc_.levels; ++level) {
+            clear(undefined_value(format_info(desc.format)), level);
+        }
+    }
 }
 
 void Texture::set_defaults() {

@@ -41,10 +41,7 @@ void sum_on_gpu(
     const BufferId light = graph.create_buffer({"caustics.light", bytes});
     graph.add_pass("caustic splats", {rays}, {light}, [=, &pass, &list](PassContext& context) {
         gpu::Device& device = context.device();
-        const std::uint32_t none = 0;
-        glClearNamedBufferSubData(
-            context.buffer(light).id(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
-            GL_UNSIGNED_INT, &none);
+        context.buffer(light).clear(0, bytes);
         use_with_jobs(device, list, *pass.splat);
         pass.splat->set("width", static_cast<int>(width));
         context.bind_storage(kRaysBinding, rays);

@@ -70,9 +70,7 @@ ClusterLists clear_clusters(FrameGraph& graph, ClusterPass& pass, const ClusterS
         create_cells(graph, shape), create_indices(graph, 0), &pass.cells, &pass.indices};
     graph.add_pass(
         "clusters.none", {}, {lists.cells, lists.indices}, [&pass, lists](PassContext& context) {
-            const std::uint32_t none = 0;
-            glClearNamedBufferData(
-                context.buffer(lists.cells).id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+            context.buffer(lists.cells).clear(0);
             pass.cells.set(context.buffer(lists.cells));
             pass.indices.set(context.buffer(lists.indices));
         });

@@ -28,7 +28,7 @@ void main() {
 #endif
 #ifdef VELOCITY
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = velocity_from(now_ndc, previous_clip);
+    velocity = velocity_from(now_ndc, previous_clip, view.size.xy);
 #endif
 #ifdef ALPHA_MASK
     // Last: a discard leaves the derivatives of the quad undefined, and the texture lookups above need them.

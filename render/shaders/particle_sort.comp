@@ -4,6 +4,7 @@
 //   LOCAL   all passes of the runs `run` .. `last_run` whose partners are less than 1,024 apart, in shared memory
 //   none    writes the particles in their order
 #version 450
+#include "lib/numbers.glsl"
 #include "particle_gpu.h"
 
 layout(local_size_x = 512) in;  // kSortGroup
@@ -39,12 +40,19 @@ const uint kPad = 0xffffffffu;   // last
 
 // As depth_key() in ecs/base/depth_sort.h: ascends from far to near, NaN first.
 uint depth_key(float depth) {
-    if (isnan(depth)) {
+    if (is_nan(depth)) {
         return 0u;
     }
     uint bits = floatBitsToUint(depth + 0.0);
     bits = (bits >> 31) != 0u ? ~bits : bits | 0x80000000u;
     return ~bits;
+}
+
+// Along the view, rounded as on the CPU: equally far particles must stay equal.
+float depth_of(vec3 place) {
+    vec3 away = place - eye;
+    precise float depth = away.x * forward.x + away.y * forward.y + away.z * forward.z;
+    return depth;
 }
 
 bool comes_after(uvec2 a, uvec2 b) {
@@ -59,7 +67,7 @@ void main() {
         uint word = kParticleWords * i;
         vec3 place = uintBitsToFloat(uvec3(instances[word], instances[word + 1u], instances[word + 2u]));
         bool is_dead = unpackHalf2x16(instances[word + 5u]).y < 0.0;
-        key = is_dead ? kDead : min(depth_key(dot(place - eye, forward)), kDead - 1u);
+        key = is_dead ? kDead : min(depth_key(depth_of(place)), kDead - 1u);
     }
     if (i < size) {
         entries[i] = uvec2(key, i);

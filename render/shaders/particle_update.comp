@@ -4,6 +4,7 @@
 //   OLD    all were born before these steps
 //   PLAIN  with OLD: one step, under gravity and drag alone
 #version 450
+#include "lib/numbers.glsl"
 #include "lib/philox.glsl"
 #include "particle_gpu.h"
 
@@ -229,7 +230,8 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     } else {
         rewind(p, at, texel);
     }
-    if (!(abs(dot(p.place + p.velocity, vec3(1.0)) + p.life) < 1e30)) {  // settings beyond reason: it is never seen
+    float sum = dot(p.place + p.velocity, vec3(1.0)) + p.life;
+    if (!is_finite(sum) || abs(sum) >= 1e30) {  // settings beyond reason: it is never seen
         p.place = vec3(0.0);
         p.velocity = vec3(0.0);
         p.life = 0.0;

@@ -25,7 +25,7 @@ void main() {
     fade = clamp(room / max(blend.y, 1e-4), 0.0, 1.0);
 #endif
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = velocity_from(now_ndc, previous_clip);
+    velocity = velocity_from(now_ndc, previous_clip, view.size.xy);
     if (light.a * s.a * fade * blend.x <= 1.0) {  // blend.x: cover, as a multiple of the least that counts
         discard;
     }

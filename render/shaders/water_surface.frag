@@ -27,6 +27,6 @@ void main() {
     bend = texels[1];
 #ifdef VELOCITY
     vec2 now = 2.0 * gl_FragCoord.xy * view.size.zw - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = velocity_from(now, previous_clip);
+    velocity = velocity_from(now, previous_clip, view.size.xy);
 #endif
 }

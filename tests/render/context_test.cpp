@@ -137,7 +137,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE("context: LIMN_GL_DEVICE is obeyed and a wrong one is one clear line") {
-    std::thread([] {  // contexts are current per thread: the shared one stays untouched
+    const bool has_hardware = !test::shared_device().caps().software;
+    std::thread([has_hardware] {  // contexts are current per thread: the shared one stays untouched
         for (const char* wrong : {"99", "-1", "fast", "1x", "123456789012345678901234567890"}) {
             const DeviceChoice choice(wrong);
             const auto context = gpu::create_headless_context();
@@ -149,8 +150,12 @@ TEST_CASE("context: LIMN_GL_DEVICE is obeyed and a wrong one is one clear line")
         {
             const DeviceChoice choice("software");
             const auto context = gpu::create_headless_context();
-            REQUIRE(context.ok());
-            CHECK(gpu::read_device_caps().software);
+            REQUIRE((context.ok() || has_hardware));  // which may be all there is
+            if (context.ok()) {
+                CHECK(gpu::read_device_caps().software);
+            } else {
+                CHECK(context.error().message.find("LIMN_GL_DEVICE") != std::string::npos);
+            }
         }
         {
             const DeviceChoice choice("surfaceless");

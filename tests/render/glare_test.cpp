@@ -105,13 +105,14 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(RenderTest, "glare: NaN never spreads") {
     const float kNan = std::numeric_limits<float>::quiet_NaN();
+    const bool half_floats = device().caps().profile == gpu::Profile::Gpu;  // have none
     for (const float broken : {kNan, std::numeric_limits<float>::infinity()}) {
         const gpu::FloatImage made = glare_of(10, {.strength = 1}, broken);
         int count = 0;
         for (const float value : made.pixels) {
             count += std::isfinite(value) ? 0 : 1;
         }
-        CHECK(count == 1);
+        CHECK(count == (half_floats ? 0 : 1));
     }
 }
 

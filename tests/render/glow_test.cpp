@@ -253,7 +253,8 @@ TEST_CASE_FIXTURE(RenderTest, "glow: NaN and infinity never spread") {
         for (int i = 0; i < size.x * size.y; ++i) {
             broken += std::isfinite(made.pixels[i].x + made.pixels[i].y + made.pixels[i].z) ? 0 : 1;
         }
-        CHECK(broken == 2);
+        const bool half_floats = device().caps().profile == gpu::Profile::Gpu;  // have none
+        CHECK(broken == (half_floats ? 0 : 2));
         CHECK(made.at(45, 30).y > 0);
         CHECK(made.at(5, 35).y < 65504);
     }

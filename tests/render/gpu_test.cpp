@@ -8,7 +8,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
+#include <string>
 
 namespace limn {
 namespace {
@@ -56,6 +58,53 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: a buffer gives back what was written")
     CHECK(dynamic.read_value<int>(4 * sizeof(int)) == 0);
     CHECK(dynamic.read_value<int>(11 * sizeof(int)) == 7);
     CHECK(Buffer::of("none", std::span<const int>()).size() == 1);
+}
+
+TEST_CASE_FIXTURE(
+    test::RenderTest, "gpu: LIMN_UNDEFINED=nan shows reads of what nobody has written") {
+    const char* const found = std::getenv("LIMN_UNDEFINED");
+    const std::string before = found != nullptr ? found : "";
+    REQUIRE(::setenv("LIMN_UNDEFINED", "nan", 1) == 0);
+    const Buffer buffer("unwritten", 8, BufferUse::GpuOnly);
+    CHECK(std::isnan(buffer.read_value<float>(4)));
+    const float half = 0.5f;
+    const Buffer written("written", 4, BufferUse::Static, &half);
+    CHECK(written.read_value<float>(0) == half);
+    for (const GLenum format : {GL_RGBA16F, GL_RGBA32F}) {
+        const Texture texture("unwritten", {.format = format, .width = 3, .height = 2});
+        CHECK(std::isnan(gpu::read_floats(texture).at(2, 1, 3)));
+    }
+    const Texture codes("unwritten codes", {.format = GL_RGBA8, .width = 3, .height = 2});
+    CHECK(gpu::read_bytes(codes).at(2, 1, 3) == 255);
+    REQUIRE(::setenv("LIMN_UNDEFINED", before.c_str(), 1) == 0);
+}
+
+TEST_CASE_FIXTURE(
+    test::RenderTest, "gpu: what is written after a clear or a copy on the GPU stays") {
+    for (int round = 0; round < 20; ++round) {
+        CAPTURE(round);
+        constexpr std::size_t kWords = 1 << 18;
+        std::vector<std::uint32_t> numbers(1000);
+        std::iota(numbers.begin(), numbers.end(), 7u + round);
+        const Buffer source = Buffer::of("source", std::span<const std::uint32_t>(numbers));
+        Buffer cleared("cleared", kWords * 4, BufferUse::Dynamic);
+        cleared.clear(5);
+        cleared.write(400, std::span<const std::uint32_t>(numbers).first(10));
+        CHECK(cleared.read_value<std::uint32_t>(396) == 5);
+        CHECK(cleared.read_value<std::uint32_t>(400) == numbers[0]);
+        CHECK(cleared.read_value<std::uint32_t>(kWords * 4 - 4) == 5);
+        cleared.copy_from(source, 4, 8, 40);
+        const std::uint32_t one = 1;
+        cleared.write(12, std::span(&one, 1));
+        CHECK(cleared.read_value<std::uint32_t>(4) == 5);
+        CHECK(cleared.read_value<std::uint32_t>(8) == numbers[1]);
+        CHECK(cleared.read_value<std::uint32_t>(12) == 1);
+        CHECK(cleared.read_value<std::uint32_t>(44) == numbers[10]);
+        CHECK(cleared.read_value<std::uint32_t>(48) == 5);
+        cleared.clear(3, 12);
+        CHECK(cleared.read_value<std::uint32_t>(8) == 3);
+        CHECK(cleared.read_value<std::uint32_t>(12) == 1);
+    }
 }
 
 TEST_CASE_FIXTURE(test::RenderTest, "gpu: objects and their memory are counted while they live") {

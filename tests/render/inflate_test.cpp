@@ -133,7 +133,9 @@ TEST_CASE_FIXTURE(InflateScene, "inflate: a ball of 1 inflated by 0.2 looks like
         const Entity swollen = ball(1, &more);
         CHECK(largest_difference(radiance(view), want) < 1e-3f);
         CHECK(largest_difference(aov(view, "normal"), normals) < 1e-3f);
-        CHECK(largest_difference(aov(view, "depth"), depth) < 1e-4f);
+        // Positions differ by rounding, which hardware snaps to other 1/256 of a pixel.
+        const float bound = shared_device().caps().software ? 1e-4f : 1e-3f;
+        CHECK(largest_difference(aov(view, "depth"), depth) < bound);
         // By 0 it is the mesh as it is, bit for bit.
         world.get<Inflate>(swollen).distance = 0;
         const gpu::FloatImage same = radiance(view);

@@ -39,7 +39,8 @@ TEST_CASE_FIXTURE(test::RenderTest, "numbers: NaN and infinite motion becomes no
     const float inf = Limits::infinity();
     const std::vector<Vec4> moved = test::evaluate_shader(
         "#include \"lib/motion.glsl\"\n#include \"lib/velocity.glsl\"\n",
-        "y = vec4(bounded_motion(x.xy, 10.0), velocity_from(x.xy, vec3(0.0, 0.0, 1.0)));",
+        "y = vec4(bounded_motion(x.xy, 10.0), velocity_from(x.xy, vec3(0.0, 0.0, 1.0), "
+        "vec2(100.0)));",
         {Vec4(nan, 0, 0, 0), Vec4(0, inf, 0, 0), Vec4(-nan, inf, 0, 0), Vec4(3, 4, 0, 0)});
     CHECK(moved[0] == Vec4(0));
     CHECK(moved[1] == Vec4(0));
@@ -48,11 +49,16 @@ TEST_CASE_FIXTURE(test::RenderTest, "numbers: NaN and infinite motion becomes no
 }
 
 TEST_CASE_FIXTURE(test::RenderTest, "numbers: radiance for half floats is clamped to their range") {
-    const std::string half = "#define HALF_FLOATS\n#include \"lib/radiance.glsl\"\n";
+    // The profile of a GPU defines it for all shaders.
+    const std::string radiance = "#include \"lib/radiance.glsl\"\n";
+    const std::string half = "#undef HALF_FLOATS\n#define HALF_FLOATS\n" + radiance;
+    const std::string full = "#undef HALF_FLOATS\n" + radiance;
     const std::string body = "y.xyz = storable(x.xyz);";
     const Vec4 bright(1, 1e9f, Limits::infinity(), 0);
     CHECK(test::evaluate_shader(half, body, {bright})[0] == Vec4(1, 65504, 65504, 0));
-    CHECK(test::evaluate_shader("#include \"lib/radiance.glsl\"\n", body, {bright})[0] == bright);
+    CHECK(test::evaluate_shader(full, body, {bright})[0] == bright);
+    const Vec4 broken(Limits::quiet_NaN(), 1, -Limits::quiet_NaN(), 0);
+    CHECK(test::evaluate_shader(half, body, {broken})[0] == Vec4(0, 1, 0, 0));
 }
 
 }  // namespace

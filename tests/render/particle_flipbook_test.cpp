@@ -113,6 +113,9 @@ TEST_CASE_FIXTURE(
     FlipbookScene, "particle flipbook: quads without what is transparent show what whole ones do") {
     look_.motion_strength = 0;
     const ImageId still = look_.motion;
+    // Both quads have other corners: hardware snaps them to 1/256 of a pixel, and weighs texels in
+    // as many steps.
+    const float bound = device().caps().software ? 0.004f : 3.0f / 256;
     for (const float angle : {0.0f, 1.0f}) {
         for (const float away : {0.7f, 1.0f, 3.0f, 9.0f}) {
             for (const float shown : {0.0f, 0.5f, 1.25f, 3.0f}) {
@@ -134,7 +137,7 @@ TEST_CASE_FIXTURE(
                 CAPTURE(away);
                 CAPTURE(shown);
                 CHECK(sum > 1);
-                CHECK(most < 0.004f);
+                CHECK(most < bound);
             }
         }
     }

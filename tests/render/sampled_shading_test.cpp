@@ -66,7 +66,9 @@ TEST_CASE_FIXTURE(
     mesh.indices = {0, 1, 2};
     show(mesh);
     directional_light({0, 0.2f, 1});  // behind no vertex: the renderer has no highlights there
-    compare_all();
+    // At two vertices N.L is 0, and rounding decides whether hw-quadratic has a highlight there:
+    // hardware fuses other operations.
+    compare_all(device().caps().software ? kStep : 2 * kStep);
 }
 
 }  // namespace limn::test

@@ -54,6 +54,12 @@ ColorImage colors(const gpu::FloatImage& image) {
     return result;
 }
 
+/// Programs of a comparison differ from those of a method alone, and compilers for hardware may
+/// fuse other operations in each.
+float rounding() {
+    return shared_device().caps().software ? 0.0f : 1e-6f;
+}
+
 /// As shading_comparison.frag stores what is displayed.
 float srgb_decoded(float c) {
     return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
@@ -84,7 +90,7 @@ TEST_CASE_FIXTURE(
                     }
                 }
             }
-            CHECK(largest == 0);
+            CHECK(largest <= rounding());
         }
         CHECK(largest_difference(colors(left), colors(right)).difference > 0.1f);
     }
@@ -106,7 +112,7 @@ TEST_CASE_FIXTURE(
         int different = 0;
         for (int y = 8; y < view.height - kLabelRows; ++y) {
             for (int x = 24; x < view.width; ++x) {  // right of the divider with its handle
-                different += both.at(x, y, 0) == alone.at(x, y, 0) ? 0 : 1;
+                different += std::abs(both.at(x, y, 0) - alone.at(x, y, 0)) <= rounding() ? 0 : 1;
             }
         }
         CHECK(different == 0);

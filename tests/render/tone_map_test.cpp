@@ -130,6 +130,12 @@ TEST_CASE_FIXTURE(ToneScene, "tone map: broken and endless radiance ends in the 
     CHECK(bytes.at(3, 3, 0) == 255);
 }
 
+/// Half a code and rounding; hardware may be off by 0.6 codes where it stores 8 bits
+/// (Direct3D 11.3, 3.2.3.6).
+double half_a_code() {
+    return shared_device().caps().software ? 0.52 : 0.62;
+}
+
 TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's to half a code") {
     for (const Vec3& color : kColors) {
         const double l = oracle::luminance(color);
@@ -149,7 +155,7 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's
                     const double want = oracle::knee_map(
                         color[c], 0,
                         {.exposure = std::exp2(ev), .contrast = contrast, .exponent = 1 / 2.2});
-                    CHECK(std::abs(got[c] - 255 * std::min(want, 1.0)) <= 0.52);
+                    CHECK(std::abs(got[c] - 255 * std::min(want, 1.0)) <= half_a_code());
                 }
             }
         }
@@ -161,7 +167,7 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's
                         .dither = false});
             for (int c = 0; c < 3; ++c) {
                 const double want = oracle::gamma_encode(std::min(color[c], 1.0f), gamma);
-                CHECK(std::abs(got[c] - 255 * want) <= 0.52);
+                CHECK(std::abs(got[c] - 255 * want) <= half_a_code());
             }
         }
     }
@@ -232,7 +238,7 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: defog takes a share of the mean off, in any c
             {.curve = ToneCurve::Knee, .contrast = 0.1f, .defog = share, .dither = false});
         const double want =
             oracle::knee_map(0.8, share * 0.8, {.contrast = 0.1, .exponent = 1 / 2.2});
-        CHECK(std::abs(knee.x - 255 * want) <= 0.52);
+        CHECK(std::abs(knee.x - 255 * want) <= half_a_code());
     }
     CHECK(shown_light(Vec3(0.8f), {.defog = 1}) == 0);
 }

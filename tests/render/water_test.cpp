@@ -356,6 +356,25 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(Pond, "water: without ripples it is flat, also at its origin, whoever has some") {
+    pour({.size = {40, 40}});
+    const Water other = {.size = {2, 2}};
+    RippleState raised = make_ripples(other, {.cell = 0.25f}, 1.0f / 60);
+    std::fill(raised.height.begin(), raised.height.end(), 0.5f);
+    std::fill(raised.previous.begin(), raised.previous.end(), 0.5f);
+    world.create(other, WorldTransform{at({500, 0, 0})}, std::move(raised));
+    const RenderView view = look({0, 3, 6}, {0, 0, 0}, 64, 48);
+    const gpu::FloatImage depth = aov(view, "depth");
+    float highest = -1;
+    for (int y = 16; y < 32; ++y) {
+        for (int x = 24; x < 40; ++x) {
+            const float ray_y = ray_through(view, x, y).y;
+            highest = std::max(highest, eye_of(view).y + depth.at(x, y, 0) * ray_y);
+        }
+    }
+    CHECK(highest == test::near(0).scale(1).epsilon(0.01));
+}
+
 TEST_CASE_FIXTURE(Pond, "water: its velocity is that of the surface; at rest it has none") {
     const Entity pond = pour({.size = {40, 40}});
     const RenderView view = look({0, 3, 6}, {0, 0, 0}, 64, 48);

@@ -42,6 +42,17 @@ constexpr WrinkleSurface in_full(WrinkleMethod method) {
     return {.method = method, .lambda = 0.1f, .beta = 50};
 }
 
+/// NaN if either has one.
+float largest_distance(const std::vector<float>& a, const std::vector<float>& b) {
+    REQUIRE(a.size() == b.size());
+    float most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const float distance = std::abs(a[i] - b[i]);
+        most = distance <= most ? most : distance;
+    }
+    return most;
+}
+
 }  // namespace
 
 TEST_CASE_FIXTURE(
@@ -69,16 +80,12 @@ TEST_CASE_FIXTURE(
          {LightMethod::Clustered, LightMethod::FullScreen, LightMethod::ObjectMajor,
           LightMethod::LightMajor}) {
         world.insert_resource(Rendering{.lights = method});
-        CHECK(
-            pixels({.method = WrinkleMethod::Blend}, 0)
-            == pixels({.method = WrinkleMethod::None}, 0));
+        const std::vector<float> blended_none = pixels({.method = WrinkleMethod::Blend}, 0);
+        const std::vector<float> none = pixels({.method = WrinkleMethod::None}, 0);
+        CHECK(largest_distance(blended_none, none) <= (device().caps().software ? 0.0f : 1e-6f));
         const std::vector<float> in_full_blended = pixels(in_full(WrinkleMethod::Blend));
         const std::vector<float> bumped = pixels(in_full(WrinkleMethod::Bump));
-        float difference = 0;
-        for (std::size_t i = 0; i < bumped.size(); ++i) {
-            difference = std::max(difference, std::abs(in_full_blended[i] - bumped[i]));
-        }
-        CHECK(difference <= 1e-6f);
+        CHECK(largest_distance(in_full_blended, bumped) <= 1e-6f);
         CHECK(pixels({.method = WrinkleMethod::Blend}) != pixels({.method = WrinkleMethod::None}));
         CHECK(pixels({.method = WrinkleMethod::Blend}) != pixels({.method = WrinkleMethod::Bump}));
     }

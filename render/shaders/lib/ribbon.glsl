@@ -1,6 +1,7 @@
 // The edges of ribbons that face the camera.
 
 const float kMaxMiter = 2.0;  // half widths to an edge at most
+const float kEndOn = 1e-5;    // pieces appear shorter than this share of their length only by rounding
 
 // The directions of the pieces that meet, as they appear from `to_camera` (unit). False: both are seen end-on.
 bool ribbon_turn(vec3 before, vec3 point, vec3 after, vec3 to_camera, out vec3 came, out vec3 goes, out float shorter) {
@@ -11,11 +12,14 @@ bool ribbon_turn(vec3 before, vec3 point, vec3 after, vec3 to_camera, out vec3 c
     float came_by = length(came);
     float goes_by = length(goes);
     shorter = min(came_by, goes_by);
-    if (came_by < 1e-6 && goes_by < 1e-6) {
+    // Seen end-on, what is left of a piece is rounding, in proportion to its length.
+    bool came_end_on = came_by < max(kEndOn * distance(before, point), 1e-6);
+    bool goes_end_on = goes_by < max(kEndOn * distance(point, after), 1e-6);
+    if (came_end_on && goes_end_on) {
         return false;
     }
-    came = came_by < 1e-6 ? goes / goes_by : came / came_by;
-    goes = goes_by < 1e-6 ? came : goes / goes_by;
+    came = came_end_on ? goes / goes_by : came / came_by;
+    goes = goes_end_on ? came : goes / goes_by;
     return true;
 }
 

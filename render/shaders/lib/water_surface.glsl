@@ -39,7 +39,8 @@ vec3 world_to_water(WaterRecord water, vec3 v) {
 }
 
 vec4 ripples_at(WaterRecord water, vec2 q) {
-    bool inside = all(lessThanEqual(abs(q), water.rippling.xy));
+    // Without a grid not even at the origin: an atlas without ripples is undefined.
+    bool inside = water.rippling.x > 0.0 && all(lessThanEqual(abs(q), water.rippling.xy));
     vec4 texel = textureLod(ripple_atlas, q * water.ripples.xy + water.ripples.zw, 0.0);
     return inside ? texel : vec4(0.0);
 }
