@@ -37,6 +37,7 @@ struct HeadShape {
     float build = 0.0f;
     float asymmetry = 0.0f;
     float scalp_shade = 0.0f;
+    bool shoulders = false;
     bool grows_old = false;
     std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
@@ -51,6 +52,9 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);
     LIMN_FIELD(asymmetry, "of the left and right half; 0: mirror images", "", 0, 1);
     LIMN_FIELD(scalp_shade, "of the skin: how much it is darkened where hair grows", "", 0, 1);
+    LIMN_FIELD(
+        shoulders, "the skin goes on over collar bones and shoulders, which stay when the head "
+                   "turns; it ends in a plane ring 27 cm below the ears, without: 14.5 cm");
     LIMN_FIELD(
         grows_old, "adds the shape `age`, which at weight 1 makes it seventy years old; set it of "
                    "all parts of a head");
