@@ -179,6 +179,8 @@ HeadPart make_part(const HeadShape& shape) {
         return make_face_hair(shape);
     case HeadPartKind::Scalp:
         return make_scalp_hair(shape);
+    case HeadPartKind::Shirt:
+        return make_shirt(shape);
     case HeadPartKind::Markers:
         return make_marker_surface(shape);
     }
@@ -218,11 +220,18 @@ SkinWeights head_weights(std::span<const HeadPoint> points, const HeadShape& sha
     return skin;
 }
 
+/// A shirt is worn on shoulders.
+HeadShape complete(HeadShape shape) {
+    shape.shoulders = shape.shoulders || shape.part == HeadPartKind::Shirt;
+    return shape;
+}
+
 /// With positions [cm] of the head that `shape` asks for, and normals.
 HeadPart make_placed_part(const HeadShape& shape) {
     HeadPart part = make_part(shape);
     MeshData& mesh = part.mesh;
-    const bool on_skin = shape.part == HeadPartKind::Skin || shape.part == HeadPartKind::Markers;
+    const bool on_skin = shape.part == HeadPartKind::Skin || shape.part == HeadPartKind::Shirt
+                         || shape.part == HeadPartKind::Markers;
     if (!on_skin) {  // points on the skin are those of a skewed head already
         for (Vec3& p : mesh.positions) {
             p = skew_head(p, shape);
@@ -255,7 +264,8 @@ MorphTarget make_aging(std::span<const Vec3> positions, const HeadShape& shape) 
 
 }  // namespace
 
-MeshData make_head(const HeadShape& shape) {
+MeshData make_head(const HeadShape& wanted) {
+    const HeadShape shape = complete(wanted);
     HeadPart part = make_placed_part(shape);
     MeshData& mesh = part.mesh;
     for (Vec3& p : mesh.positions) {
@@ -274,7 +284,8 @@ MeshData make_head(const HeadShape& shape) {
     return mesh;
 }
 
-MeshRig make_head_rig(const HeadShape& shape) {
+MeshRig make_head_rig(const HeadShape& wanted) {
+    const HeadShape shape = complete(wanted);
     const Vec3 right = kEyeCenter * Vec3(-1, 1, 1);
     std::vector<Vec3> places = {
         Vec3(0), Vec3(0, kJawAxis.x, kJawAxis.y), skew_head(kEyeCenter, shape),

@@ -26,9 +26,20 @@ namespace limn {
 //     mouth     gums and tongue
 //     hair      brows and lashes: ribbons, for a material with two sides
 //     scalp     a short cut: cards for a material with the images of HairPattern
+//     shirt     over shoulders, with a wide neckline
 //     markers   no part to be seen: a coarse surface that moves the skin (head_markers.h)
 
-enum class HeadPartKind : std::uint8_t { Skin, Eyes, Corneas, Teeth, Mouth, Hair, Scalp, Markers };
+enum class HeadPartKind : std::uint8_t {
+    Skin,
+    Eyes,
+    Corneas,
+    Teeth,
+    Mouth,
+    Hair,
+    Scalp,
+    Shirt,
+    Markers
+};
 
 struct HeadShape {
     HeadPartKind part = HeadPartKind::Skin;
@@ -46,7 +57,7 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(
         part,
         .doc = "part of the head; markers: a coarse surface, for a surface_binding of the skin",
-        .values = "skin eyes corneas teeth mouth hair scalp markers");
+        .values = "skin eyes corneas teeth mouth hair scalp shirt markers");
     LIMN_FIELD(age, "0: twenty years, 1: seventy; lips thin, tissue sags", "", 0, 1);
     LIMN_FIELD(sex, "-1: a woman's features, 1: a man's", "", -1, 1);
     LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);

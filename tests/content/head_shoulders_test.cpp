@@ -258,5 +258,66 @@ TEST_CASE("shoulders: pores have one size on most of their skin") {
     CHECK(even > 0.85f * static_cast<float>(edges));
 }
 
+/// Distances of points of a shirt from the skin [cm].
+struct ShirtFit {
+    float nearest = 100;
+    float farthest = -100;
+    float behind = -100;  ///< of the edge of the collar behind it
+};
+
+ShirtFit shirt_fit(HeadShape shape) {
+    constexpr std::size_t kRow = kHeadColumns + 1;
+    constexpr std::size_t kBehindRows = 5;
+    shape.part = HeadPartKind::Shirt;
+    const MeshData shirt = make_head(shape);
+    shape.shoulders = true;
+    ShirtFit fit;
+    for (std::size_t v = 0; v < shirt.positions.size(); ++v) {
+        const Vec3 p = 100.0f * shirt.positions[v];
+        const float distance = head_distance(p, shape, 1);
+        if (v < kRow) {
+            fit.behind = std::max(fit.behind, distance);
+        } else if (v >= kBehindRows * kRow && p.y > kShouldersEnd + 0.5f) {
+            fit.nearest = std::min(fit.nearest, distance);
+            fit.farthest = std::max(fit.farthest, distance);
+        }
+    }
+    return fit;
+}
+
+TEST_CASE("shoulders: a shirt lies on the skin of every body, and its collar leaves no gap") {
+    const std::array<HeadShape, 3> bodies = {bust(), bust(1, 1), bust(-1, -1)};
+    for (const HeadShape& body : bodies) {
+        const ShirtFit fit = shirt_fit(body);
+        CHECK(fit.nearest > 0.15f);
+        CHECK(fit.farthest < 2.5f);
+        CHECK(fit.behind < 0.05f);
+    }
+}
+
+TEST_CASE("shoulders: a shirt moves as the shoulders do, without shapes, its halves alike") {
+    HeadShape shape;
+    shape.part = HeadPartKind::Shirt;
+    const MeshData shirt = make_head(shape);
+    for (const MorphTarget& target : shirt.morphs) {
+        CHECK(target.vertices.empty());
+    }
+    const auto stays = [&](std::size_t v) {
+        float share = 0;
+        for (std::uint32_t i = shirt.skin.first[v]; i < shirt.skin.first[v + 1]; ++i) {
+            share += shirt.skin.joints[i] == 4 ? shirt.skin.weights[i] : 0.0f;
+        }
+        return share;
+    };
+    const std::size_t row = kHeadColumns + 1;
+    REQUIRE(shirt.positions.size() % row == 0);
+    for (std::size_t v = 0; v < shirt.positions.size(); ++v) {
+        const std::size_t column = v % row;
+        const Vec3 other = shirt.positions[v - column + kHeadColumns - column];
+        CHECK(glm::distance(shirt.positions[v], Vec3(-other.x, other.y, other.z)) < 1e-3f);
+        CHECK(stays(v) > 0.5f);
+    }
+}
+
 }  // namespace
 }  // namespace limn
