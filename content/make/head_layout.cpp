@@ -58,14 +58,13 @@ KeyRow row_at(float row) {
         cubic(a.back, b.back, c.back, d.back, t)};
 }
 
-/// Around the head, 0 in front.
-float column_angle(int column) {
-    const float turn = 2 * kPi * static_cast<float>(column) / static_cast<float>(kHeadColumns);
-    return turn - 0.45f * std::sin(turn);  // columns are closer in front
+float even_angle(int column) {
+    return 2 * kPi * static_cast<float>(column) / static_cast<float>(kHeadColumns);
 }
 
 Vec3 grid_point(int column, int row) {
-    const float angle = column_angle(column);
+    const float turn = even_angle(column);
+    const float angle = turn - 0.45f * std::sin(turn);  // columns are closer in front
     const KeyRow key = row_at(static_cast<float>(row));
     const float c = std::cos(angle);
     const Vec2 end = c > 0 ? key.front : key.back;
@@ -184,7 +183,7 @@ class Builder {
             for (int column = -kHeadColumns / 2; column < kHeadColumns / 2; ++column) {
                 HeadVertex vertex;
                 vertex.start = shoulder_start(
-                    layout_.vertices[at(column, kHeadRows)].start, column_angle(column),
+                    layout_.vertices[at(column, kHeadRows)].start, even_angle(column),
                     static_cast<float>(row - kHeadRows) / kShoulderRows);
                 vertex.chart = {column, row};
                 vertex.left = column >= 0;

@@ -15,6 +15,8 @@ namespace limn {
 
 namespace {
 
+constexpr Vec3 kShoulderAxis = {0, 0, -3};
+
 constexpr float kTop = -2;  ///< y above which shoulders change nothing
 
 constexpr std::array<Solid, 8> kSolids = {{
@@ -36,7 +38,7 @@ constexpr std::array<Solid, 8> kSolids = {{
 }};
 
 // Curves near the surface, onto which they are moved.
-constexpr std::array<Stroke, 14> kStrokes = {{
+constexpr std::array<Stroke, 15> kStrokes = {{
     // collar bone: bent forward, then back; its end beside the notch; the notch
     {{1.6f, -18.2f, 3.4f}, {10.5f, -18.8f, 5}, {17, -17.2f, -1.2f}, 0.8f, 0.38f, 0.03f, -0.25f},
     {{1.5f, -18.2f, 3.4f}, {1.7f, -18.2f, 3.4f}, {2.1f, -18.2f, 3.4f}, 0.9f, 0.12f, 0, -0.1f},
@@ -44,7 +46,8 @@ constexpr std::array<Stroke, 14> kStrokes = {{
     // hollows above and below it
     {{4.4f, -16.8f, 2}, {7, -16.6f, 2}, {10, -16.4f, 1}, 1.5f, -0.4f, 0, 0.3f},
     {{12.8f, -20, 2.4f}, {13.8f, -20.5f, 2.2f}, {14.4f, -21.5f, 2}, 1.6f, -0.3f, 0, 0.2f},
-    // muscle from behind the ear: its end on the breastbone, and that on the collar bone
+    // muscle from behind the ear, its end on the breastbone, and that on the collar bone
+    {{5.8f, -6, -1.4f}, {4.7f, -10.5f, 1}, {1.5f, -15.4f, 2.8f}, 0.8f, 0.24f, 0.08f, -0.15f},
     {{1.3f, -15.8f, 2.9f}, {1.2f, -16.6f, 3}, {1, -17.4f, 3.2f}, 0.75f, 0.3f, 0.05f, -0.15f},
     {{3, -12.4f, 2}, {3.6f, -15, 2}, {3.9f, -17.2f, 2.4f}, 0.8f, 0.15f, 0.04f, -0.1f},
     // tip of the shoulder
@@ -70,17 +73,25 @@ const std::vector<StrokePath>& stroke_paths() {
     return paths;
 }
 
-}  // namespace
-
-Vec3 scale_shoulders(const Vec3& p, const HeadShape& shape) {
-    constexpr Vec2 kAxis = {0, -3};  // x, z
-    const float low = glm::smoothstep(-10.0f, -17.0f, p.y);
-    const float neck = glm::smoothstep(-7.5f, -10.5f, p.y) * (1 - low);
+/// Of shoulders, by that of neutral ones: men's are broad.
+Vec3 shoulder_size(float y, const HeadShape& shape) {
+    const float low = glm::smoothstep(-10.0f, -17.0f, y);
+    const float neck = glm::smoothstep(-7.5f, -10.5f, y) * (1 - low);
     const float breadth =
         1 + low * (0.035f * shape.sex + 0.01f * shape.build) + 0.05f * neck * shape.sex;
     const float depth =
         1 + low * (0.03f * shape.sex + 0.07f * shape.build) + 0.04f * neck * shape.sex;
-    return {p.x / breadth, p.y, kAxis.y + (p.z - kAxis.y) / depth};
+    return {breadth, 1, depth};
+}
+
+}  // namespace
+
+Vec3 to_neutral_shoulders(const Vec3& p, const HeadShape& shape) {
+    return kShoulderAxis + (p - kShoulderAxis) / shoulder_size(p.y, shape);
+}
+
+Vec3 from_neutral_shoulders(const Vec3& p, const HeadShape& shape) {
+    return kShoulderAxis + (p - kShoulderAxis) * shoulder_size(p.y, shape);
 }
 
 float join_shoulders(float distance, const Vec3& p) {
@@ -92,13 +103,12 @@ float shoulder_relief(const Vec3& p, const HeadShape& shape) {
 }
 
 Vec3 shoulder_start(const Vec3& neck, float turn, float down) {
-    // Of the end: an oval, squarer than an ellipse.
-    constexpr float kPower = 0.75f;
-    const float s = std::sin(turn);
-    const float c = std::cos(turn);
-    const Vec3 end = {
-        23 * std::copysign(std::pow(std::abs(s), kPower), s), kShouldersEnd,
-        -2.5f + (c > 0 ? 9.5f : 10.5f) * std::copysign(std::pow(std::abs(c), kPower), c)};
+    // Of the end: an ellipse at nearly even distances, a little closer in front.
+    const float closer = turn - 0.2f * std::sin(turn);
+    const float angle = closer - 0.2f * std::sin(2 * closer);
+    const float s = std::sin(angle);
+    const float c = std::cos(angle);
+    const Vec3 end = {23 * s, kShouldersEnd, -2.5f + (c > 0 ? 9.5f : 10.5f) * c};
     const Vec3 above = {0.85f * end.x, glm::mix(neck.y - 1, -16.0f, s * s), 0.8f * end.z};
     return glm::mix(glm::mix(neck, above, down), glm::mix(above, end, down), down);
 }

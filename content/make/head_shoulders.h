@@ -14,8 +14,9 @@ namespace limn {
 inline constexpr int kShoulderRows = 36;     ///< of quads below those of the head
 inline constexpr float kShouldersEnd = -27;  ///< y of the ring where a body begins
 
-/// The place on neutral shoulders of `p`, which is on those of `shape`: men's are broad.
-[[nodiscard]] Vec3 scale_shoulders(const Vec3& p, const HeadShape& shape);
+/// The place on neutral shoulders of `p`, which is on those of `shape`; and the other way.
+[[nodiscard]] Vec3 to_neutral_shoulders(const Vec3& p, const HeadShape& shape);
+[[nodiscard]] Vec3 from_neutral_shoulders(const Vec3& p, const HeadShape& shape);
 
 /// Adds neutral shoulders to the surface that is `distance` away from `p`, without details.
 [[nodiscard]] float join_shoulders(float distance, const Vec3& p);
@@ -24,7 +25,7 @@ inline constexpr float kShouldersEnd = -27;  ///< y of the ring where a body beg
 [[nodiscard]] float shoulder_relief(const Vec3& p, const HeadShape& shape);
 
 /// Where a vertex begins, before it is wrapped: below `neck`, on the ring where the head ends;
-/// `turn`: around the ring, 0 in front, pi / 2 left; `down`: 0 at the neck, 1 at the end.
+/// `turn`: evenly around the ring, 0 in front, pi / 2 left; `down`: 0 at the neck, 1 at the end.
 [[nodiscard]] Vec3 shoulder_start(const Vec3& neck, float turn, float down);
 
 /// How much skin at `p` turns with the head, 0 .. 1: less and less down the neck.

@@ -191,7 +191,7 @@ float head_distance(const Vec3& point, const HeadShape& shape, float detail) {
     p.x /= 1 + 0.03f * shape.sex * low + 0.05f * shape.build * low;
     p.y /= 1 + 0.025f * shape.sex * low;
     if (shape.shoulders) {
-        p = scale_shoulders(p, shape);
+        p = to_neutral_shoulders(p, shape);
     }
     float distance = join(1e6f, kBase, p);
     if (shape.shoulders) {

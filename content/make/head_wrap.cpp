@@ -144,10 +144,12 @@ class HeadWrap {
     }
 
   private:
-    /// Out of the shoulders, upwards from beside the neck: the nearest surface may be below.
+    /// Where `p` of a neutral head begins: outside of the shoulders, above them, since the nearest
+    /// surface may be below.
     Vec3 raise(Vec3 p) const {
         constexpr float kStep = 0.2f;
         constexpr float kBelow = -8;  // [cm]
+        p = from_neutral_shoulders(p, shape_);
         if (p.y < kBelow && p.y > kShouldersEnd) {
             const Vec3 out = glm::normalize(Vec3(p.x, std::abs(p.x), p.z + 3));
             for (int i = 0; i < 40 && head_distance(p, shape_, 0) < 0; ++i) {
