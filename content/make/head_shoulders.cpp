@@ -114,7 +114,8 @@ Vec3 shoulder_start(const Vec3& neck, float turn, float down) {
 }
 
 float turns_with_head(const Vec3& p) {
-    const float height = glm::smoothstep(-16.5f, -8.0f, p.y);
+    const float higher = 2.2f * glm::smoothstep(2.0f, -6.0f, p.z);  // behind, up to the hair
+    const float height = glm::smoothstep(-16.5f, -8.0f, p.y - higher);
     const float aside = glm::length(Vec2(p.x, std::min(p.z + 2, 0.0f)));
     return height * (1 - glm::smoothstep(7.5f, 12.0f, aside) * glm::smoothstep(-7.0f, -10.0f, p.y));
 }
