@@ -38,7 +38,7 @@ constexpr std::array<Solid, 8> kSolids = {{
 }};
 
 // Curves near the surface, onto which they are moved.
-constexpr std::array<Stroke, 15> kStrokes = {{
+constexpr std::array<Stroke, 16> kStrokes = {{
     // collar bone: bent forward, then back; its end beside the notch; the notch
     {{1.6f, -18.2f, 3.4f}, {10.5f, -18.8f, 5}, {17, -17.2f, -1.2f}, 0.8f, 0.38f, 0.03f, -0.25f},
     {{1.5f, -18.2f, 3.4f}, {1.7f, -18.2f, 3.4f}, {2.1f, -18.2f, 3.4f}, 0.9f, 0.12f, 0, -0.1f},
@@ -50,6 +50,8 @@ constexpr std::array<Stroke, 15> kStrokes = {{
     {{5.8f, -6, -1.4f}, {4.7f, -10.5f, 1}, {1.5f, -15.4f, 2.8f}, 0.8f, 0.24f, 0.08f, -0.15f},
     {{1.3f, -15.8f, 2.9f}, {1.2f, -16.6f, 3}, {1, -17.4f, 3.2f}, 0.75f, 0.3f, 0.05f, -0.15f},
     {{3, -12.4f, 2}, {3.6f, -15, 2}, {3.9f, -17.2f, 2.4f}, 0.8f, 0.15f, 0.04f, -0.1f},
+    // Adam's apple
+    {{0, -11.2f, 4.4f}, {0, -11.8f, 4.2f}, {0, -12.3f, 4}, 0.7f, 0.13f, 0.17f, -0.05f},
     // tip of the shoulder
     {{18, -16.4f, -3}, {18.2f, -16.5f, -3}, {18.6f, -16.7f, -3}, 1.3f, 0.06f, 0, -0.06f},
     // shoulder muscle: its front edge
