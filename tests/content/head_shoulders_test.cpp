@@ -260,6 +260,18 @@ TEST_CASE("shoulders: pores have one size on most of their skin") {
     CHECK(even > 0.75f * static_cast<float>(edges));
 }
 
+/// How far the middle of the throat stands out from above and below [cm].
+float larynx(float sex) {
+    const float tall = 1 + 0.025f * sex;
+    const auto depth = [&](float y) { return project_forwards({0, tall * y, 0}, bust(sex), 1).z; };
+    return depth(-11.8f) - 0.5f * (depth(-10.3f) + depth(-13.3f));
+}
+
+TEST_CASE("shoulders: a man has an Adam's apple, a woman hardly one") {
+    CHECK(larynx(1) > larynx(-1) + 0.12f);
+    CHECK(larynx(1) > larynx(0));
+}
+
 /// Distances of points of a shirt from the skin [cm].
 struct ShirtFit {
     float nearest = 100;
