@@ -10,6 +10,7 @@
 #include "content/make/head_layout.h"
 #include "content/make/head_markers.h"
 #include "content/make/head_parts.h"
+#include "content/make/head_shoulders.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
 #include "ecs/base/check.h"
@@ -30,7 +31,8 @@ namespace limn {
 
 namespace {
 
-constexpr float kMeters = 0.01f;  ///< per centimeter
+constexpr float kMeters = 0.01f;      ///< per centimeter
+constexpr float kMinWeight = 0.001f;  ///< of a joint that counts
 
 float spot(const Vec3& p, const Vec3& center, float radius) {
     const Vec3 offset = p - center;
@@ -90,7 +92,7 @@ std::vector<Vec2> make_pore_chart(const HeadPart& part, std::span<const Vec3> re
 
 /// Vertices that the seam of the texture doubles are there twice.
 HeadPart make_skin(const HeadShape& shape) {
-    const HeadLayout& layout = head_layout();
+    const HeadLayout& layout = head_layout(shape.shoulders);
     const std::vector<Vec3> positions = wrap_head(shape);
     HeadPart part;
     part.mesh.name = "head";
@@ -128,10 +130,11 @@ HeadPart make_skin(const HeadShape& shape) {
         }
     }
     generate_normals(part.mesh);
-    // Ears, and what lies behind lids and lips, are no skin of the face.
+    // Ears, shoulders and what lies behind lids and lips are no skin of the face.
     std::vector<Vec3> reference;
     for (const HeadPoint& point : part.points) {
-        const bool face = point.loops == HeadLoops::None
+        const bool face = (point.loops == HeadLoops::None
+                           && (!shape.shoulders || turns_with_head(point.rest) > 0))
                           || (point.loops == HeadLoops::Eye && point.loop <= kLidLoop)
                           || (point.loops == HeadLoops::Nostril && point.loop <= kNostrilRim)
                           || (point.loops == HeadLoops::Mouth && point.loop <= kLipLoop);
@@ -143,7 +146,8 @@ HeadPart make_skin(const HeadShape& shape) {
 }
 
 /// Some vertices of the skin, where they are on it and in its texture.
-HeadPart make_marker_surface(const HeadShape& shape) {
+HeadPart make_marker_surface(HeadShape shape) {
+    shape.shoulders = false;
     const std::vector<Vec3> positions = wrap_head(shape);
     const HeadMarkers& markers = head_markers();
     HeadPart part;
@@ -175,17 +179,24 @@ HeadPart make_part(const HeadShape& shape) {
         return make_face_hair(shape);
     case HeadPartKind::Scalp:
         return make_scalp_hair(shape);
+    case HeadPartKind::Shirt:
+        return make_shirt(shape);
     case HeadPartKind::Markers:
         return make_marker_surface(shape);
     }
     return {};
 }
 
-enum class HeadJoint : std::uint16_t { Head, Jaw, LeftEye, RightEye };
+enum class HeadJoint : std::uint16_t { Head, Jaw, LeftEye, RightEye, Shoulders };
+
+/// How much it turns with the head, not the shoulders.
+float head_share(const HeadPoint& point) {
+    const float share = point.skin ? turns_with_head(point.rest) : 1.0f;
+    return share < kMinWeight ? 0 : share > 1 - kMinWeight ? 1 : share;
+}
 
 /// Of the joints of make_head_rig.
-SkinWeights head_weights(std::span<const HeadPoint> points) {
-    constexpr float kMinWeight = 0.001f;
+SkinWeights head_weights(std::span<const HeadPoint> points, const HeadShape& shape) {
     SkinWeights skin;
     const auto add = [&](HeadJoint joint, float weight) {
         if (weight >= kMinWeight) {
@@ -198,21 +209,30 @@ SkinWeights head_weights(std::span<const HeadPoint> points) {
         if (point.eye != 0) {
             add(point.eye > 0 ? HeadJoint::LeftEye : HeadJoint::RightEye, 1);
         } else {
-            const float jaw = point.jaw < kMinWeight ? 0 : point.jaw;
-            add(HeadJoint::Head, 1 - jaw);
+            const float turning = shape.shoulders ? head_share(point) : 1.0f;
+            const float jaw = turning * point.jaw < kMinWeight ? 0 : turning * point.jaw;
+            add(HeadJoint::Head, turning - jaw);
             add(HeadJoint::Jaw, jaw);
+            add(HeadJoint::Shoulders, 1 - turning);
         }
     }
     skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
     return skin;
 }
 
+/// A shirt is worn on shoulders.
+HeadShape complete(HeadShape shape) {
+    shape.shoulders = shape.shoulders || shape.part == HeadPartKind::Shirt;
+    return shape;
+}
+
 /// With positions [cm] of the head that `shape` asks for, and normals.
 HeadPart make_placed_part(const HeadShape& shape) {
     HeadPart part = make_part(shape);
     MeshData& mesh = part.mesh;
-    const bool is_skin = shape.part == HeadPartKind::Skin || shape.part == HeadPartKind::Markers;
-    if (!is_skin) {  // whose points are those of a skewed head already
+    const bool on_skin = shape.part == HeadPartKind::Skin || shape.part == HeadPartKind::Shirt
+                         || shape.part == HeadPartKind::Markers;
+    if (!on_skin) {  // points on the skin are those of a skewed head already
         for (Vec3& p : mesh.positions) {
             p = skew_head(p, shape);
         }
@@ -244,13 +264,14 @@ MorphTarget make_aging(std::span<const Vec3> positions, const HeadShape& shape) 
 
 }  // namespace
 
-MeshData make_head(const HeadShape& shape) {
+MeshData make_head(const HeadShape& wanted) {
+    const HeadShape shape = complete(wanted);
     HeadPart part = make_placed_part(shape);
     MeshData& mesh = part.mesh;
     for (Vec3& p : mesh.positions) {
         p *= kMeters;
     }
-    mesh.skin = head_weights(part.points);
+    mesh.skin = head_weights(part.points, shape);
     mesh.morphs = make_expressions(part.points, shape);
     fit_region_directions(mesh);
     if (shape.grows_old) {
@@ -263,14 +284,20 @@ MeshData make_head(const HeadShape& shape) {
     return mesh;
 }
 
-MeshRig make_head_rig(const HeadShape& shape) {
+MeshRig make_head_rig(const HeadShape& wanted) {
+    const HeadShape shape = complete(wanted);
     const Vec3 right = kEyeCenter * Vec3(-1, 1, 1);
-    const std::array<Vec3, 4> places = {
+    std::vector<Vec3> places = {
         Vec3(0), Vec3(0, kJawAxis.x, kJawAxis.y), skew_head(kEyeCenter, shape),
         skew_head(right, shape)};
     MeshRig rig;
     rig.skeleton.joints = {"head", "jaw", "left_eye", "right_eye"};
     rig.skeleton.parents = {-1, 0, 0, 0};
+    if (shape.shoulders) {  // last: skins of other parts know the rest
+        places.emplace_back(0, -16, -3);
+        rig.skeleton.joints.emplace_back("shoulders");
+        rig.skeleton.parents.push_back(-1);
+    }
     for (std::size_t i = 0; i < places.size(); ++i) {
         rig.skeleton.rest.translations.push_back(kMeters * places[i]);
         rig.skeleton.rest.rotations.emplace_back(1, 0, 0, 0);

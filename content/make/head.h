@@ -26,9 +26,20 @@ namespace limn {
 //     mouth     gums and tongue
 //     hair      brows and lashes: ribbons, for a material with two sides
 //     scalp     a short cut: cards for a material with the images of HairPattern
+//     shirt     over shoulders, with a wide neckline
 //     markers   no part to be seen: a coarse surface that moves the skin (head_markers.h)
 
-enum class HeadPartKind : std::uint8_t { Skin, Eyes, Corneas, Teeth, Mouth, Hair, Scalp, Markers };
+enum class HeadPartKind : std::uint8_t {
+    Skin,
+    Eyes,
+    Corneas,
+    Teeth,
+    Mouth,
+    Hair,
+    Scalp,
+    Shirt,
+    Markers
+};
 
 struct HeadShape {
     HeadPartKind part = HeadPartKind::Skin;
@@ -37,6 +48,7 @@ struct HeadShape {
     float build = 0.0f;
     float asymmetry = 0.0f;
     float scalp_shade = 0.0f;
+    bool shoulders = false;
     bool grows_old = false;
     std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
@@ -45,12 +57,15 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(
         part,
         .doc = "part of the head; markers: a coarse surface, for a surface_binding of the skin",
-        .values = "skin eyes corneas teeth mouth hair scalp markers");
+        .values = "skin eyes corneas teeth mouth hair scalp shirt markers");
     LIMN_FIELD(age, "0: twenty years, 1: seventy; lips thin, tissue sags", "", 0, 1);
     LIMN_FIELD(sex, "-1: a woman's features, 1: a man's", "", -1, 1);
     LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);
     LIMN_FIELD(asymmetry, "of the left and right half; 0: mirror images", "", 0, 1);
     LIMN_FIELD(scalp_shade, "of the skin: how much it is darkened where hair grows", "", 0, 1);
+    LIMN_FIELD(
+        shoulders, "the skin goes on over collar bones and shoulders, which stay when the head "
+                   "turns; it ends in a plane ring 27 cm below the ears, without: 14.5 cm");
     LIMN_FIELD(
         grows_old, "adds the shape `age`, which at weight 1 makes it seventy years old; set it of "
                    "all parts of a head");

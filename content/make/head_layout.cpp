@@ -1,5 +1,6 @@
 #include "content/make/head_layout.h"
 
+#include "content/make/head_shoulders.h"
 #include "content/make/head_surface.h"
 
 #include <glm/common.hpp>
@@ -57,8 +58,12 @@ KeyRow row_at(float row) {
         cubic(a.back, b.back, c.back, d.back, t)};
 }
 
+float even_angle(int column) {
+    return 2 * kPi * static_cast<float>(column) / static_cast<float>(kHeadColumns);
+}
+
 Vec3 grid_point(int column, int row) {
-    const float turn = 2 * kPi * static_cast<float>(column) / static_cast<float>(kHeadColumns);
+    const float turn = even_angle(column);
     const float angle = turn - 0.45f * std::sin(turn);  // columns are closer in front
     const KeyRow key = row_at(static_cast<float>(row));
     const float c = std::cos(angle);
@@ -115,7 +120,7 @@ bool inside(const Block& block, int column, int row, int margin) {
 
 class Builder {
   public:
-    HeadLayout build() {
+    HeadLayout build(bool shoulders) {
         for (int row = 0; row <= kHeadRows; ++row) {
             for (int column = -kHeadColumns / 2; column < kHeadColumns / 2; ++column) {
                 const bool removed =
@@ -131,10 +136,13 @@ class Builder {
                 }
             }
         }
-        add_grid_quads();
+        add_grid_quads(0, kHeadRows);
         add_cap();
         for (const Block& block : kBlocks) {
             add_loops(block);
+        }
+        if (shoulders) {
+            add_shoulders();
         }
         find_mirror();
         return std::move(layout_);
@@ -152,8 +160,8 @@ class Builder {
         return grid_.at({wrapped, row});
     }
 
-    void add_grid_quads() {
-        for (int row = 0; row < kHeadRows; ++row) {
+    void add_grid_quads(int first, int end) {
+        for (int row = first; row < end; ++row) {
             for (int column = -kHeadColumns / 2; column < kHeadColumns / 2; ++column) {
                 const bool removed =
                     std::any_of(kBlocks.begin(), kBlocks.end(), [&](const Block& block) {
@@ -167,6 +175,22 @@ class Builder {
                 }
             }
         }
+    }
+
+    void add_shoulders() {
+        layout_.rows = kHeadRows + kShoulderRows;
+        for (int row = kHeadRows + 1; row <= layout_.rows; ++row) {
+            for (int column = -kHeadColumns / 2; column < kHeadColumns / 2; ++column) {
+                HeadVertex vertex;
+                vertex.start = shoulder_start(
+                    layout_.vertices[at(column, kHeadRows)].start, even_angle(column),
+                    static_cast<float>(row - kHeadRows) / kShoulderRows);
+                vertex.chart = {column, row};
+                vertex.left = column >= 0;
+                grid_[{column, row}] = add(vertex);
+            }
+        }
+        add_grid_quads(kHeadRows, layout_.rows);
     }
 
     /// A square grid whose border is row 0; +i runs to the left, +j to the back.
@@ -317,8 +341,12 @@ class Builder {
 
 }  // namespace
 
-const HeadLayout& head_layout() {
-    static const HeadLayout layout = Builder().build();
+const HeadLayout& head_layout(bool shoulders) {
+    if (shoulders) {
+        static const HeadLayout with = Builder().build(true);
+        return with;
+    }
+    static const HeadLayout layout = Builder().build(false);
     return layout;
 }
 

@@ -32,6 +32,7 @@ struct HeadLayout {
     std::vector<HeadVertex> vertices;
     std::vector<std::array<std::uint32_t, 4>> quads;  ///< counter-clockwise seen from outside
     std::vector<std::uint32_t> mirror;                ///< of each vertex; its own on x = 0
+    int rows = kHeadRows;                             ///< to the ring where it ends
 };
 
 /// Loops of each kind, and which of them is the border of the opening.
@@ -43,6 +44,7 @@ inline constexpr int kNostrilLoops = 10;
 inline constexpr int kNostrilRim = 5;  ///< from there on loops line the cavity
 inline constexpr int kEarLoops = 28;
 
-[[nodiscard]] const HeadLayout& head_layout();
+/// With `shoulders`, kShoulderRows follow the end of the neck; what is above has the same indices.
+[[nodiscard]] const HeadLayout& head_layout(bool shoulders = false);
 
 }  // namespace limn

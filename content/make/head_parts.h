@@ -34,6 +34,10 @@ struct HeadPart {
 /// the scalp so that cards catch light as one body.
 [[nodiscard]] HeadPart make_scalp_hair(const HeadShape& shape);
 
+/// A shirt on the shoulders that `shape` has; it hangs a little lower than their skin ends. Its
+/// points move as skin does.
+[[nodiscard]] HeadPart make_shirt(const HeadShape& shape);
+
 /// How much hair grows at `p` on a head, 0 .. 1.
 [[nodiscard]] float scalp_hair_cover(const Vec3& p);
 

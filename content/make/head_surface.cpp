@@ -1,5 +1,8 @@
 #include "content/make/head_surface.h"
 
+#include "content/make/head_clay.h"
+#include "content/make/head_shoulders.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -10,23 +13,6 @@
 namespace limn {
 
 namespace {
-
-/// An ellipsoid swept from `a` to `b`, with radii that change from `ra` to `rb`.
-struct Solid {
-    Vec3 a, b;
-    Vec3 ra, rb;
-    float blend;  ///< width of the transition to the solids before [cm]; < 0: carved out
-};
-
-/// A quadratic Bezier curve of clay.
-struct Stroke {
-    Vec3 a, b, c;
-    float radius;
-    float amount;     ///< height on the surface [cm]; < 0: a groove
-    float sex = 0;    ///< added to `amount` times HeadShape::sex ...
-    float build = 0;  ///< ... build ...
-    float age = 0;    ///< ... and age - 0.3
-};
 
 constexpr std::array<Solid, 7> kBase = {{
     // cranium, and the forehead before it
@@ -191,73 +177,9 @@ constexpr std::array<Stroke, 32> kStrokes = {{
      0.1f},
 }};
 
-/// Scaled so that its gradient is about 1 near the surface.
-float solid_distance(const Solid& solid, const Vec3& p) {
-    const Vec3 along = solid.b - solid.a;
-    const float length2 = glm::dot(along, along);
-    const float t =
-        length2 > 0 ? glm::clamp(glm::dot(p - solid.a, along) / length2, 0.0f, 1.0f) : 0.0f;
-    const Vec3 radii = glm::mix(solid.ra, solid.rb, t);
-    const Vec3 q = p - solid.a - t * along;
-    const float k0 = glm::length(q / radii);
-    const float k1 = glm::length(q / (radii * radii));
-    return k1 > 1e-6f ? k0 * (k0 - 1) / k1 : -std::min({radii.x, radii.y, radii.z});
-}
-
-/// Smooth minimum that begins to blend where the distances differ by `width`.
-float blend_min(float a, float b, float width) {
-    const float h = std::max(width - std::abs(a - b), 0.0f) / width;
-    return std::min(a, b) - h * h * width * 0.25f;
-}
-
-float join(float distance, const Solid& solid, const Vec3& p) {
-    const float other = solid_distance(solid, p);
-    return solid.blend > 0 ? blend_min(distance, other, solid.blend)
-                           : -blend_min(-distance, other, -solid.blend);
-}
-
-constexpr float kFar = 100;  // [cm]
-
-/// Where a stroke counts: exp(-9) of it, beyond, does not.
-struct StrokeBox {
-    Vec3 low, high;
-};
-
-const std::array<StrokeBox, kStrokes.size()>& stroke_boxes() {
-    static const auto boxes = [] {
-        std::array<StrokeBox, kStrokes.size()> made;
-        for (std::size_t i = 0; i < made.size(); ++i) {
-            const Stroke& stroke = kStrokes[i];
-            made[i] = {
-                glm::min(stroke.a, glm::min(stroke.b, stroke.c)) - 3 * stroke.radius,
-                glm::max(stroke.a, glm::max(stroke.b, stroke.c)) + 3 * stroke.radius};
-        }
-        return made;
-    }();
-    return boxes;
-}
-
-bool contains(const StrokeBox& box, const Vec3& p) {
-    return p.x > box.low.x && p.y > box.low.y && p.z > box.low.z && p.x < box.high.x
-           && p.y < box.high.y && p.z < box.high.z;
-}
-
-/// To the curve, by its nearest of a few chords [cm].
-float stroke_distance(const Stroke& stroke, const Vec3& p) {
-    constexpr int kChords = 6;
-    float nearest2 = kFar * kFar;
-    Vec3 from = stroke.a;
-    for (int i = 1; i <= kChords; ++i) {
-        const float t = static_cast<float>(i) / kChords;
-        const Vec3 to =
-            glm::mix(glm::mix(stroke.a, stroke.b, t), glm::mix(stroke.b, stroke.c, t), t);
-        const Vec3 chord = to - from;
-        const float s = glm::clamp(glm::dot(p - from, chord) / glm::dot(chord, chord), 0.0f, 1.0f);
-        const Vec3 offset = p - from - s * chord;
-        nearest2 = std::min(nearest2, glm::dot(offset, offset));
-        from = to;
-    }
-    return std::sqrt(nearest2);
+const std::vector<StrokePath>& head_paths() {
+    static const std::vector<StrokePath> paths = make_stroke_paths(kStrokes);
+    return paths;
 }
 
 }  // namespace
@@ -268,26 +190,20 @@ float head_distance(const Vec3& point, const HeadShape& shape, float detail) {
     Vec3 p = {std::abs(point.x), point.y, point.z};
     p.x /= 1 + 0.03f * shape.sex * low + 0.05f * shape.build * low;
     p.y /= 1 + 0.025f * shape.sex * low;
-    float distance = 1e6f;
-    for (const Solid& solid : kBase) {
-        distance = join(distance, solid, p);
+    if (shape.shoulders) {
+        p = to_neutral_shoulders(p, shape);
+    }
+    float distance = join(1e6f, kBase, p);
+    if (shape.shoulders) {
+        distance = join_shoulders(distance, p);
     }
     const float base = distance;
     if (detail == 0) {
         return base;
     }
-    for (const Solid& solid : kFeatures) {
-        distance = join(distance, solid, p);
-    }
-    const std::array<StrokeBox, kStrokes.size()>& boxes = stroke_boxes();
-    for (std::size_t i = 0; i < kStrokes.size(); ++i) {
-        if (!contains(boxes[i], p)) {
-            continue;
-        }
-        const Stroke& stroke = kStrokes[i];
-        const float amount = stroke.amount + stroke.sex * shape.sex + stroke.build * shape.build
-                             + stroke.age * (shape.age - 0.3f);
-        distance -= amount * std::exp(-square(stroke_distance(stroke, p) / stroke.radius));
+    distance = join(distance, kFeatures, p) - relief(kStrokes, head_paths(), p, shape);
+    if (shape.shoulders) {
+        distance -= shoulder_relief(p, shape);
     }
     return glm::mix(base, distance, detail);
 }

@@ -2,6 +2,7 @@
 
 #include "content/make/head_ear.h"
 #include "content/make/head_layout.h"
+#include "content/make/head_shoulders.h"
 #include "content/make/head_surface.h"
 #include "ecs/base/jobs.h"
 
@@ -106,15 +107,17 @@ Vec3 nostril_point(const HeadVertex& vertex, const HeadShape& shape, float detai
 class HeadWrap {
   public:
     explicit HeadWrap(const HeadShape& shape)
-        : shape_(shape), layout_(head_layout()), neighbors_(layout_.vertices.size()) {
+        : shape_(shape), layout_(head_layout(shape.shoulders)),
+          neighbors_(layout_.vertices.size()) {
         for (const auto& quad : layout_.quads) {
             for (int k = 0; k < 4; ++k) {
                 neighbors_[quad[k]].push_back(quad[(k + 1) % 4]);
             }
         }
         for (std::uint32_t v = 0; v < layout_.vertices.size(); ++v) {
-            positions_.push_back(layout_.vertices[v].start);
-            const bool end = layout_.vertices[v].chart.y >= kHeadRows;
+            positions_.push_back(
+                shape.shoulders ? raise(layout_.vertices[v].start) : layout_.vertices[v].start);
+            const bool end = at_end(layout_.vertices[v]);
             free_.push_back(!end);
         }
     }
@@ -141,6 +144,25 @@ class HeadWrap {
     }
 
   private:
+    /// Where `p` of a neutral head begins: outside of the shoulders, above them, since the nearest
+    /// surface may be below.
+    Vec3 raise(Vec3 p) const {
+        constexpr float kStep = 0.2f;
+        constexpr float kBelow = -8;  // [cm]
+        p = from_neutral_shoulders(p, shape_);
+        if (p.y < kBelow && p.y > kShouldersEnd) {
+            const Vec3 out = glm::normalize(Vec3(p.x, std::abs(p.x), p.z + 3));
+            for (int i = 0; i < 40 && head_distance(p, shape_, 0) < 0; ++i) {
+                p += kStep * out;
+            }
+        }
+        return p;
+    }
+
+    bool at_end(const HeadVertex& vertex) const {
+        return vertex.chart.y >= static_cast<float>(layout_.rows);
+    }
+
     void set_curves(float detail) {
         for (std::size_t v = 0; v < positions_.size(); ++v) {
             const HeadVertex& vertex = layout_.vertices[v];
@@ -153,7 +175,7 @@ class HeadWrap {
             } else if (vertex.loops == HeadLoops::Nostril && vertex.loop >= kNostrilRim) {
                 positions_[v] = to_side(vertex, nostril_point(vertex, shape_, detail));
                 free_[v] = false;
-            } else if (vertex.chart.y >= kHeadRows) {
+            } else if (at_end(vertex)) {
                 for (int step = 0; step < 2; ++step) {  // a plane ring, where a body begins
                     positions_[v] = project_to_head(positions_[v], shape_, detail);
                     positions_[v].y = vertex.start.y;
@@ -274,9 +296,10 @@ class HeadWrap {
 }  // namespace
 
 Vec3 skew_head(Vec3 p, const HeadShape& shape) {
+    const float skewed = shape.asymmetry * glm::smoothstep(-20.0f, -14.5f, p.y);  // no shoulders
     const float low = glm::smoothstep(6.0f, -7.0f, p.y);
-    p.x += shape.asymmetry * 0.18f * low * glm::smoothstep(0.0f, 8.0f, p.z);
-    p.y += shape.asymmetry * 0.02f * p.x;
+    p.x += skewed * 0.18f * low * glm::smoothstep(0.0f, 8.0f, p.z);
+    p.y += skewed * 0.02f * p.x;
     return p;
 }
 
