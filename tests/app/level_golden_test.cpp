@@ -39,6 +39,17 @@ constexpr int kSteps = 60;
 constexpr int kStepsToRepeat = 10;
 constexpr double kMinPsnr = 45;  // between the profiles [dB]
 
+/// FLIP's largest mean, and its 99th percentile, against the golden images.
+struct Tolerance {
+    double mean;
+    double p99;
+};
+constexpr Tolerance kSoftware = {0.01, 0.1};
+/// Hardware filters with weights of 8 bits, rounds its own mip levels and snaps vertices to 1/256
+/// of a pixel: textures are up to a code or two of 255 darker, edges fall into other pixels. An
+/// NVIDIA H200 has 0.037 (cistern) and 0.23 (storm).
+constexpr Tolerance kHardware = {0.04, 0.25};
+
 HeadlessRenderer create_renderer(std::optional<gpu::Profile> profile) {
     // Anisotropic filters, which a software OpenGL never gets, draw other details than the goldens.
     Result<HeadlessRenderer> made = create_headless_renderer(profile, {.anisotropy = 1});
@@ -113,19 +124,24 @@ const std::vector<PlayedLevel>& played_levels() {
     return played;
 }
 
+struct DrawnLevels {
+    bool by_software = true;
+    std::vector<gpu::ByteImage> images{};
+};
+
 /// Of each level, by one profile's renderer.
-std::vector<gpu::ByteImage> draw_levels(gpu::Profile profile) {
+DrawnLevels draw_levels(gpu::Profile profile) {
     HeadlessRenderer headless = create_renderer(profile);
-    std::vector<gpu::ByteImage> images;
+    DrawnLevels drawn = {.by_software = headless.device->caps().software};
     for (const PlayedLevel& level : played_levels()) {
-        images.push_back(draw_level(headless, *level.stage));
+        drawn.images.push_back(draw_level(headless, *level.stage));
     }
-    return images;
+    return drawn;
 }
 
-const std::vector<gpu::ByteImage>& software_images() {
-    static const std::vector<gpu::ByteImage> images = draw_levels(gpu::Profile::Software);
-    return images;
+const DrawnLevels& software_levels() {
+    static const DrawnLevels drawn = draw_levels(gpu::Profile::Software);
+    return drawn;
 }
 
 void write_image_file(const std::string& path, const gpu::ByteImage& image) {
@@ -157,7 +173,7 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
         const std::string& name = levels[i].name;
         CAPTURE(name);
         CHECK_FALSE(levels[i].logged_error);
-        const gpu::ByteImage& drawn = software_images()[i];
+        const gpu::ByteImage& drawn = software_levels().images[i];
         const std::string golden_path =
             std::string(LIMN_SOURCE_DIR) + "/tests/golden/" + name + ".png";
         if (update) {
@@ -171,9 +187,10 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
         const ColorImage expected = color_image(kWidth, kHeight, 4, golden->pixels.data());
         const std::vector<float> errors = flip_map(expected, color_image(drawn));
         const ErrorSummary summary = summarize_errors(errors);
-        CHECK(summary.mean <= 0.01);
-        CHECK(summary.p99 <= 0.1);
-        if (summary.mean > 0.01 || summary.p99 > 0.1) {
+        const Tolerance& most = software_levels().by_software ? kSoftware : kHardware;
+        CHECK(summary.mean <= most.mean);
+        CHECK(summary.p99 <= most.p99);
+        if (summary.mean > most.mean || summary.p99 > most.p99) {
             leave_mismatch(name, drawn, errors);
         }
     }
@@ -198,10 +215,10 @@ TEST_CASE("level: every level is named and has a camera that moves or that keys 
 }
 
 TEST_CASE("level: every level looks the same with the formats and definitions of a GPU") {
-    const std::vector<gpu::ByteImage> images = draw_levels(gpu::Profile::Gpu);
+    const std::vector<gpu::ByteImage> images = draw_levels(gpu::Profile::Gpu).images;
     for (std::size_t i = 0; i < images.size(); ++i) {
         CAPTURE(played_levels()[i].name);
-        CHECK(psnr(color_image(images[i]), color_image(software_images()[i])) >= kMinPsnr);
+        CHECK(psnr(color_image(images[i]), color_image(software_levels().images[i])) >= kMinPsnr);
     }
 }
 

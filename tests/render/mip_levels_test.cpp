@@ -72,7 +72,8 @@ TEST_CASE_FIXTURE(
                     largest = std::max(largest, std::abs(found - sampled(above, image, x, y, c)));
                 }
             }
-            CHECK(largest < rounding);
+            // Hardware filters with weights of 8 bits.
+            CHECK(largest < (device().caps().software ? rounding : rounding + 1.0 / 256));
         }
     }
 }

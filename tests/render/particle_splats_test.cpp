@@ -146,8 +146,10 @@ TEST_CASE("particle splats: the image is that of rasterized points") {
     };
     const gpu::FloatImage splats = picture(false);
     CHECK(sum_of_red(splats) > 30);
-    // Which places them to 1/256 of a pixel: a disc of one changes by .006 of its light.
-    CHECK(largest_difference(splats, picture(true)) < 0.004f);
+    // Which places them to 1/256 of a pixel: a disc of one changes by .006 of its light. Hardware
+    // may have diameters in steps of 1/8 of a pixel.
+    const float bound = Points::device().caps().software ? 0.004f : 0.05f;
+    CHECK(largest_difference(splats, picture(true)) < bound);
 }
 
 TEST_CASE("particle splats: what is behind something opaque adds nothing, what is before it all") {

@@ -307,13 +307,14 @@ TEST_CASE("subsurface: what a GPU computes is what a software OpenGL draws") {
     const RenderView view = scene.seen();
     const gpu::FloatImage drawn = renderer_of(gpu::Profile::Software).radiance(scene.world, view);
     const gpu::FloatImage computed = renderer_of(gpu::Profile::Gpu).radiance(scene.world, view);
-    CHECK(largest_difference(drawn, computed) < 1e-6f);
+    // Hardware has its own filter for mip levels of odd sizes; NVIDIA's differs by 0.0064.
+    CHECK(largest_difference(drawn, computed) < (Scene::device().caps().software ? 1e-6f : 0.02f));
 
     // Half floats: what is spread, what it is added to and the sum are rounded or truncated.
     const gpu::FloatImage half = ProfileRenderer(gpu::Profile::Gpu).radiance(scene.world, view);
     float largest = 0;
     for (std::size_t i = 0; i < half.pixels.size(); ++i) {
-        const float exact = drawn.pixels[i];
+        const float exact = computed.pixels[i];
         largest = std::max(largest, std::abs(half.pixels[i] - exact) / std::max(exact, 0.05f));
     }
     CHECK(largest < 3.0f / 1024);
