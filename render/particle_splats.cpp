@@ -24,9 +24,9 @@ bool is_positive(float x) {
 
 }  // namespace
 
-Result<ParticleSplats> create_particle_splats(gpu::Device& device) {
-    return ParticleSplats{
-        .splat = LIMN_TRY(device.shaders().load({.compute = "particle_splat.comp"})),
+ParticleSplats create_particle_splats(gpu::Device& device) {
+    return {
+        .splat = ProgramVariants(device, {.compute = "particle_splat.comp"}),
         .add = ProgramVariants(device, {.compute = "particle_splat_add.comp"})};
 }
 
@@ -34,8 +34,7 @@ bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look) {
     const float softness = look[1].z;
     const float lit = look[2].y;
     const float cover = look[2].z;
-    return pool.count > 0 && !pool.sorted && is_point(look) && lit == 0 && cover == 0
-           && softness == 0;
+    return !pool.sorted && is_point(look) && lit == 0 && cover == 0 && softness == 0;
 }
 
 float brightest_of(const LookRecord& look) {
@@ -49,7 +48,8 @@ float brightest_of(const LookRecord& look) {
     return is_positive(brightest) ? brightest : 0;
 }
 
-void begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest) {
+const gpu::Program*
+begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest) {
     splats.unit = brightest > 0 ? kBrightestSteps / brightest : 1;
     const IVec2 size = view.size();
     const std::size_t words =
@@ -58,15 +58,17 @@ void begin_particle_splats(ParticleSplats& splats, const ViewData& view, float b
         const std::vector<std::uint32_t> zeros(words);
         splats.sums = gpu::Buffer::of("sums of particles", std::span(zeros));
     }
+    return splats.splat.get({});
 }
 
 void draw_particle_splats(
-    PassContext& context, const ParticleSplats& splats, const GpuParticlePool& pool) {
+    PassContext& context, const gpu::Program& program, const ParticleSplats& splats,
+    const GpuParticlePool& pool) {
     gpu::Device& device = context.device();
-    device.use(*splats.splat);
+    device.use(program);
     device.bind_storage(kSumsBinding, splats.sums);
-    splats.splat->set("count", static_cast<int>(pool.count));
-    splats.splat->set("unit", splats.unit);
+    program.set("count", static_cast<int>(pool.count));
+    program.set("unit", splats.unit);
     device.dispatch((pool.count + layout::kParticleGroup - 1) / layout::kParticleGroup);
 }
 

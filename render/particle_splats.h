@@ -22,13 +22,13 @@ struct GpuParticlePool;
 // two integers is rounded to either, at random by its distance: a million faint ones count in full.
 
 struct ParticleSplats {
-    const gpu::Program* splat = nullptr;
+    ProgramVariants splat;
     ProgramVariants add;
     gpu::Buffer sums = {};  ///< three words a pixel, 0 between the frames
     float unit = 1;         ///< of radiance, in the sums of this frame
 };
 
-[[nodiscard]] Result<ParticleSplats> create_particle_splats(gpu::Device& device);
+[[nodiscard]] ParticleSplats create_particle_splats(gpu::Device& device);
 
 /// Whether this pool may be drawn so, in views that nothing hides but what is opaque.
 [[nodiscard]] bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look);
@@ -36,12 +36,15 @@ struct ParticleSplats {
 /// The most light that a point of this look adds to a pixel.
 [[nodiscard]] float brightest_of(const LookRecord& look);
 
-/// Before those of a view are added; `brightest`: brightest_of() all of them.
-void begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest);
+/// Before those of a view are added; `brightest`: brightest_of() all of them. Null: does not
+/// compile.
+[[nodiscard]] const gpu::Program*
+begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest);
 
-/// With the view, its depth (unit 4), particles and looks bound.
+/// With that program, and with the view, its depth (unit 4), particles and looks bound.
 void draw_particle_splats(
-    PassContext& context, const ParticleSplats& splats, const GpuParticlePool& pool);
+    PassContext& context, const gpu::Program& program, const ParticleSplats& splats,
+    const GpuParticlePool& pool);
 
 /// Adds the pass that adds what was drawn to the view's radiance.
 void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view);

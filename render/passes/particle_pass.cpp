@@ -62,7 +62,7 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"}),
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_focus.frag"}),
         ProgramVariants::of_meshes(device, "depth_first.frag"),
-        LIMN_TRY(create_particle_splats(device))};
+        create_particle_splats(device)};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
     // As of materials: between mip levels only where that costs nothing.
     const GLenum minify =
@@ -283,17 +283,17 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
     if (brightest <= 0) {
         return;
     }
-    begin_particle_splats(splats, view, brightest);
+    const gpu::Program* const program = begin_particle_splats(splats, view, brightest);
     const Use writes[] = {graph.import("sums of particles", splats.sums)};
     graph.add_pass(
         "particles.splats", std::span<const Use>(reads), writes,
-        [this, &view](PassContext& context) {
+        [this, &view, program](PassContext& context) {
             bind_view(context, view);
             look_texels.bind(context.device(), kLooksUnit);
             for (const auto& [entity, pool] : gpu.pools()) {
-                if (are_splats(*pool)) {
+                if (program != nullptr && pool->count > 0 && are_splats(*pool)) {
                     pool->texels.bind(context.device(), kParticlesUnit);
-                    draw_particle_splats(context, splats, *pool);
+                    draw_particle_splats(context, *program, splats, *pool);
                 }
             }
         });

@@ -32,7 +32,7 @@ const std::map<std::string, int> kMaxPrograms = {
     {"cistern", 79},   {"cloister", 64}, {"crowd-of-faces", 48},
     {"forge", 57},     {"furrows", 48},  {"gallery", 43},
     {"herd", 43},      {"lagoon", 81},   {"lights", 43},
-    {"markers", 48},   {"million", 54},  {"museum", 105},
+    {"markers", 48},   {"million", 56},  {"museum", 105},
     {"ocean", 58},     {"phonglab", 60}, {"pond", 62},
     {"portrait", 53},  {"raceway", 78},  {"relax", 50},
     {"stilllife", 73}, {"storm", 75},    {"stress-instances", 41},

@@ -202,7 +202,6 @@ TEST_CASE("particle splats: glass before them dims them, and glass behind them d
 
 TEST_CASE("particle splats: only points that add light, and neither hide nor fade nor are lit") {
     GpuParticlePool pool;
-    pool.count = 1;
     const ParticleLook look = Points::look_of(1, {1, 1, 1});
     const auto can = [&](const ParticleLook& changed) {
         return can_be_splats(pool, make_look_record(changed, {}));
