@@ -14,9 +14,9 @@ namespace {
 
 constexpr unsigned kSumsBinding = 0;
 constexpr unsigned kRadianceImage = 0;
-constexpr unsigned kAddGroup = 64;  // pixels of a row
-/// Of the sums, that the brightest point adds to a pixel: 32,768 of these fit.
-constexpr float kBrightestSteps = 1 << 17;
+constexpr unsigned kAddGroup = 64;      // pixels of a row
+constexpr float kMostSteps = 1 << 17;   // that a point adds to a pixel; fewer, of 32,768 and more
+constexpr float kLargestSum = 4.29e9f;  // a little less than a word holds
 
 bool is_positive(float x) {
     return x > 0 && std::isfinite(x);
@@ -48,9 +48,11 @@ float brightest_of(const LookRecord& look) {
     return is_positive(brightest) ? brightest : 0;
 }
 
-const gpu::Program*
-begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest) {
-    splats.unit = brightest > 0 ? kBrightestSteps / brightest : 1;
+const gpu::Program* begin_particle_splats(
+    ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest) {
+    const float share = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
+    splats.most = std::max(std::min(kMostSteps, share) - 1, 1.0f);  // rounding may add one
+    splats.unit = brightest > 0 ? splats.most / brightest : 1;
     const IVec2 size = view.size();
     const std::size_t words =
         3 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
@@ -69,6 +71,7 @@ void draw_particle_splats(
     device.bind_storage(kSumsBinding, splats.sums);
     program.set("count", static_cast<int>(pool.count));
     program.set("unit", splats.unit);
+    program.set("most", splats.most);
     device.dispatch((pool.count + layout::kParticleGroup - 1) / layout::kParticleGroup);
 }
 

@@ -20,12 +20,14 @@ struct GpuParticlePool;
 // Optimization", 2021). Each adds its light to integer sums of the pixels that it covers, so that
 // the image does not depend on the order; then the sums are added to the radiance. What is between
 // two integers is rounded to either, at random by its distance: a million faint ones count in full.
+// A unit of the sums is so large that all points together fit, even at one place.
 
 struct ParticleSplats {
     ProgramVariants splat;
     ProgramVariants add;
     gpu::Buffer sums = {};  ///< three words a pixel, 0 between the frames
     float unit = 1;         ///< of radiance, in the sums of this frame
+    float most = 0;         ///< in the sums, that a point adds to a pixel
 };
 
 [[nodiscard]] ParticleSplats create_particle_splats(gpu::Device& device);
@@ -36,10 +38,9 @@ struct ParticleSplats {
 /// The most light that a point of this look adds to a pixel.
 [[nodiscard]] float brightest_of(const LookRecord& look);
 
-/// Before those of a view are added; `brightest`: brightest_of() all of them. Null: does not
-/// compile.
-[[nodiscard]] const gpu::Program*
-begin_particle_splats(ParticleSplats& splats, const ViewData& view, float brightest);
+/// Before those of a view are added: `count` in all, brightest_of() them. Null: does not compile.
+[[nodiscard]] const gpu::Program* begin_particle_splats(
+    ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest);
 
 /// With that program, and with the view, its depth (unit 4), particles and looks bound.
 void draw_particle_splats(

@@ -272,10 +272,12 @@ bool ParticleEffect::are_splats(const GpuParticlePool& pool) const {
 }
 
 void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
+    std::size_t count = 0;
     float brightest = 0;
     std::vector<Use> reads = {sampled(view.gbuffer.depth, kSceneDepthUnit)};
     for (const auto& [entity, pool] : gpu.pools()) {
         if (are_splats(*pool)) {
+            count += pool->count;
             brightest = std::max(brightest, brightest_of(draws.looks[pool->look]));
             reads.emplace_back(graph.import("particles", pool->instances));
         }
@@ -283,7 +285,7 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
     if (brightest <= 0) {
         return;
     }
-    const gpu::Program* const program = begin_particle_splats(splats, view, brightest);
+    const gpu::Program* const program = begin_particle_splats(splats, view, count, brightest);
     const Use writes[] = {graph.import("sums of particles", splats.sums)};
     graph.add_pass(
         "particles.splats", std::span<const Use>(reads), writes,

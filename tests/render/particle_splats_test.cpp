@@ -176,6 +176,15 @@ TEST_CASE("particle splats: many faint ones count in full beside a bright one") 
     CHECK(sum(true) / sum(false) == near(1).epsilon(0.03));
 }
 
+TEST_CASE("particle splats: a hundred thousand at one place are as bright as all together") {
+    Points scene;
+    scene.emit(Points::look_of(3, {0.5f, 0.25f, 0.125f}), 100000);
+    const Vec3 found = rgb_at(scene.picture(), kSide / 2, kSide / 2);
+    CHECK(found.x == near(50000).epsilon(0.001));
+    CHECK(found.y == near(25000).epsilon(0.001));
+    CHECK(found.z == near(12500).epsilon(0.001));
+}
+
 TEST_CASE("particle splats: the next frame begins without light") {
     Points scene;
     scene.emit(Points::look_of(3, {1, 1, 1}), 50, {0, 0, 0}, {0.5f, 0.5f, 0});
