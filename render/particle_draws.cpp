@@ -140,10 +140,13 @@ std::uint32_t add_look(
     draws.has_halves = draws.has_halves || draws.layers.back() == LookLayer::Half;
     draws.has_weighted = draws.has_weighted || draws.layers.back() == LookLayer::Weighted;
     draws.lit_in_middle = draws.lit_in_middle || is_lit_in_middle(draws.looks.back());
-    draws.features.images = draws.features.images || has_image;
-    draws.features.flipbooks = draws.features.flipbooks || look.columns > 1 || look.rows > 1;
-    draws.features.motions = draws.features.motions || has_motion;
-    draws.features.six_way = draws.features.six_way || is_six_way;
+    const SpriteFeatures features = {
+        .images = has_image,
+        .flipbooks = look.frames != ParticleFrames::Pick && (look.columns > 1 || look.rows > 1),
+        .motions = has_motion,
+        .six_way = is_six_way};
+    draws.features |= features;
+    draws.layer_features[static_cast<std::size_t>(draws.layers.back())] |= features;
     draws.soft = draws.soft || look.softness > 0;
     draws.moving = draws.moving || moves_pixels(draws.looks.back());
     draws.focused = draws.focused || look.velocity_cover < 1;
@@ -292,6 +295,7 @@ void clear(ParticleDraws& draws) {
     draws.extents.clear();
     draws.waters.clear();
     draws.features = {};
+    draws.layer_features = {};
     draws.lit_in_middle = draws.soft = draws.moving = draws.focused = false;
     draws.has_ribbons = draws.has_billboards = draws.has_halves = draws.has_weighted = false;
 }

@@ -9,6 +9,8 @@
 #include "render/particle_list.h"
 #include "render/ribbon_list.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -24,6 +26,7 @@ struct FrameData;
 
 /// What the particles of a look are drawn into.
 enum class LookLayer : std::uint8_t { Full, Half, Weighted };
+inline constexpr std::size_t kLookLayers = 3;
 
 struct DrawnWater {
     const Water* water = nullptr;
@@ -44,8 +47,9 @@ struct ParticleDraws {
     std::vector<ParticleInstance> sorted = {};     ///< likewise, from back to front
     DistanceOrder order = {};
     std::vector<DrawnWater> waters = {};
-    FrameInsetTable insets = {};  ///< from frame to frame
-    SpriteFeatures features = {};
+    FrameInsetTable insets = {};                                  ///< from frame to frame
+    SpriteFeatures features = {};                                 ///< of all looks
+    std::array<SpriteFeatures, kLookLayers> layer_features = {};  ///< of those of a LookLayer
     bool lit_in_middle = false;
     bool soft = false;     ///< some fade where they meet a surface
     bool moving = false;   ///< some look may cover enough to move pixels

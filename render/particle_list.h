@@ -66,9 +66,17 @@ struct ParticleArrays {
 /// What some look has: definitions of lib/sprite.glsl.
 struct SpriteFeatures {
     bool images = false;
-    bool flipbooks = false;  ///< of several frames
+    bool flipbooks = false;  ///< that go from frame to frame
     bool motions = false;    ///< with a motion map
     bool six_way = false;    ///< with images of the light from six sides
+
+    SpriteFeatures& operator|=(const SpriteFeatures& more) {
+        images = images || more.images;
+        flipbooks = flipbooks || more.flipbooks;
+        motions = motions || more.motions;
+        six_way = six_way || more.six_way;
+        return *this;
+    }
 
     void add_to(Variant& variant) const {
         variant.add_if(images, "IMAGES");

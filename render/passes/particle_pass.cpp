@@ -53,6 +53,28 @@ bool is_six_way(const ParticleRun& run) {
     return run.arrays.negative_lights != 0 && run.shape == SpriteShape::Quad;
 }
 
+using Part = ParticleEffect::Part;
+
+/// Of the looks that may be among what is drawn: others would cost each of its pixels fetches.
+const SpriteFeatures& features_of(const ParticleDraws& draws, Part part) {
+    const auto of = [&](LookLayer layer) -> const SpriteFeatures& {
+        return draws.layer_features[static_cast<std::size_t>(layer)];
+    };
+    switch (part) {
+    case Part::Half:
+        return of(LookLayer::Half);
+    case Part::Weighted:
+        return of(LookLayer::Weighted);
+    case Part::Behind:
+    case Part::Front:
+        return of(LookLayer::Full);
+    case Part::UnderWater:
+    case Part::All:
+        break;
+    }
+    return draws.features;
+}
+
 }  // namespace
 
 Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
@@ -355,7 +377,7 @@ void ParticleEffect::create_layer_programs(gpu::Device& device) {
     }
 }
 
-Variant ParticleEffect::sprite_variant(const ViewData& view, SpriteShape shape) const {
+Variant ParticleEffect::sprite_variant(const ViewData& view, SpriteShape shape, Part part) const {
     Variant variant;
     variant.add_if(is_clipped(view), "CLIPPED");
     variant.add_if(draws.soft, "SOFT");
@@ -363,7 +385,7 @@ Variant ParticleEffect::sprite_variant(const ViewData& view, SpriteShape shape) 
         variant.add("POINTS");
         return variant;
     }
-    draws.features.add_to(variant);
+    features_of(draws, part).add_to(variant);
     variant.add_if(draws.has_ribbons, "RIBBONS");
     variant.add_if(draws.has_billboards, "BILLBOARDS");
     return variant;
@@ -381,7 +403,7 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
     bind_view(context, view);
     draw_runs(context, view, Part::All, [&](const ParticleRun& run) {
         Variant variant("VELOCITY");
-        variant.add(sprite_variant(view, run.shape));
+        variant.add(sprite_variant(view, run.shape, Part::All));
         const gpu::Program* const program = velocity_programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{
@@ -396,7 +418,7 @@ void ParticleEffect::draw_lens_depth(PassContext& context, const ViewData& view)
     bind_view(context, view);
     draw_runs(context, view, Part::All, [&](const ParticleRun& run) {
         Variant variant("FOCUS");
-        variant.add(sprite_variant(view, run.shape));
+        variant.add(sprite_variant(view, run.shape, Part::All));
         const gpu::Program* const program = focus_programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, {.cull = GL_NONE}});
@@ -425,7 +447,7 @@ void ParticleEffect::draw_sprites(
         variant.add_if(is_weighted, "WEIGHTED");
         variant.add_if(veiled, "VEILED");
         variant.add_if(part == Part::UnderWater, "IN_WATER");
-        variant.add(sprite_variant(view, shape));
+        variant.add(sprite_variant(view, shape, part));
         const gpu::Program* const program = programs.get(variant);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, state});

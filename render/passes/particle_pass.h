@@ -98,7 +98,7 @@ struct ParticleEffect {
     [[nodiscard]] bool are_splats(const GpuParticlePool& pool) const;
     void add_splats(FrameGraph& graph, ViewData& view);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
-    [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape) const;
+    [[nodiscard]] Variant sprite_variant(const ViewData& view, SpriteShape shape, Part part) const;
     void
     draw_sprites(PassContext& context, const ViewData& view, Part part, bool veiled, bool behind);
     void draw_velocity(PassContext& context, const ViewData& view);

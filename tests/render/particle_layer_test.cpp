@@ -104,6 +104,40 @@ TEST_CASE_FIXTURE(LayerScene, "particle layer: smoke behind bars is that of all 
 }
 
 TEST_CASE_FIXTURE(
+    LayerScene, "particle layer: a flipbook plays whether those of the other layer play or not") {
+    ImageData image;  // a red frame and a green one
+    image.width = 8;
+    image.height = 4;
+    for (int i = 0; i < 8 * 4; ++i) {
+        for (const int value : {i % 8 < 4 ? 255 : 0, i % 8 < 4 ? 0 : 255, 0, 255}) {
+            image.pixels.push_back(static_cast<std::uint8_t>(value));
+        }
+    }
+    ParticleLook playing = puff({1, 1, 1}, 1, 1);
+    playing.image = add(image);
+    playing.columns = 2;  // at half the life, halfway between the two
+    ParticleLook picked = playing;
+    picked.frames = ParticleFrames::Pick;
+    for (const ParticleResolution resolution :
+         {ParticleResolution::Half, ParticleResolution::Full}) {
+        const bool is_half = resolution == ParticleResolution::Half;
+        playing.resolution = resolution;
+        picked.resolution = is_half ? ParticleResolution::Full : ParticleResolution::Half;
+        emit({{0.75f, 0, 0}}, playing);
+        emit({{-0.75f, 0, 0}}, picked);
+        const gpu::FloatImage seen = radiance(look({0, 0, 2}, {0, 0, 0}, 64, 32));
+        const Vec3 mixed = rgb_at(seen, 44, 16);
+        CHECK(mixed.x == near(0.5f).epsilon(0.05));
+        CHECK(mixed.y == near(0.5f).epsilon(0.05));
+        const Vec3 still = rgb_at(seen, 19, 16);
+        CHECK(std::max(still.x, still.y) == near(1).epsilon(0.05));
+        CHECK(std::min(still.x, still.y) == near(0));
+        world.clear();
+        world.insert_resource(FrameTime{});
+    }
+}
+
+TEST_CASE_FIXTURE(
     LayerScene,
     "particle layer: a puff anywhere in the image is drawn whole, and when it is gone") {
     for (const Vec3& place : {Vec3(0.6f, 0.4f, 0), Vec3(-0.9f, -0.7f, 0), Vec3(0, 0.9f, -3)}) {
