@@ -39,6 +39,7 @@ constexpr int kLobe = static_cast<int>(lobe_number(ShadingModel::Pbr));
 constexpr int kCells = layout::kWaterGrid;
 constexpr int kSide = kCells + 1;
 constexpr int kIndices = 6 * kCells * kCells;
+constexpr int kFanIndices = 3 * 4 * kCells;
 
 /// Two triangles per cell with alternating diagonals, so that vertices that morph onto their
 /// neighbors leave whole squares.
@@ -53,6 +54,25 @@ std::array<std::uint16_t, kIndices> grid_indices() {
             const int order[2][6] = {{0, 2, 3, 0, 3, 1}, {0, 2, 1, 1, 2, 3}};
             for (const int corner : order[turned ? 1 : 0]) {
                 indices[next++] = static_cast<std::uint16_t>(corners[corner]);
+            }
+        }
+    }
+    return indices;
+}
+
+/// The same square where it is flat: triangles around its middle, with all vertices of its border,
+/// so that it fits its neighbors.
+std::array<std::uint16_t, kFanIndices> fan_indices() {
+    std::array<std::uint16_t, kFanIndices> indices{};
+    constexpr int kMiddle = kCells / 2 * kSide + kCells / 2;
+    const int corners[4] = {0, kCells, kSide * kSide - 1, kCells * kSide};
+    const int steps[4] = {1, kSide, -1, -kSide};
+    std::size_t next = 0;
+    for (int side = 0; side < 4; ++side) {
+        for (int i = 0; i < kCells; ++i) {
+            const int from = corners[side] + i * steps[side];
+            for (const int vertex : {kMiddle, from + steps[side], from}) {
+                indices[next++] = static_cast<std::uint16_t>(vertex);
             }
         }
     }
@@ -196,9 +216,18 @@ SeenWater draw_surfaces(
             waters.patches.bind(device, kPatchesUnit);
             bind_water_surfaces(device, waters);
             device.bind_vertex_array(effect.grid);
-            device.draw_indexed(
-                GL_TRIANGLES, kIndices, GL_UNSIGNED_SHORT, 0, 0,
-                static_cast<int>(waters.list.patches.size()));
+            const auto draw = [&](int count, std::size_t offset, std::size_t first,
+                                  std::size_t end) {
+                if (first < end) {
+                    program->set("first_patch", static_cast<int>(first));
+                    device.draw_indexed(
+                        GL_TRIANGLES, count, GL_UNSIGNED_SHORT, offset, 0,
+                        static_cast<int>(end - first));
+                }
+            };
+            const std::size_t flat = waters.list.first_flat_patch;
+            draw(kIndices, 0, 0, flat);
+            draw(kFanIndices, kIndices * sizeof(std::uint16_t), flat, waters.list.patches.size());
         });
     gpu::PipelineState state = gpu::kFullscreenState;
     state.depth = {.test = true, .write = true, .func = GL_ALWAYS};
@@ -241,7 +270,8 @@ Result<WaterEffect> WaterEffect::create(gpu::Device& device, const RenderSetting
             LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_columns.frag"})),
         .waves = LIMN_TRY(
             shaders.load({.vertex = "fullscreen.vert", .fragment = "texture_waves.frag"}))};
-    const std::array<std::uint16_t, kIndices> indices = grid_indices();
+    std::array<std::uint16_t, kIndices + kFanIndices> indices{};
+    std::ranges::copy(fan_indices(), std::ranges::copy(grid_indices(), indices.begin()).out);
     effect.indices = gpu::Buffer::of("water grid", std::span<const std::uint16_t>(indices));
     effect.repeat = gpu::Sampler("water detail", {});
     effect.grid = gpu::VertexArray("water grid");

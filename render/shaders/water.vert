@@ -6,6 +6,8 @@ const float kPi = 3.14159265358979;
 
 layout(binding = 0) uniform samplerBuffer patches;  // WaterPatch
 
+uniform int first_patch;
+
 layout(location = 0) out vec2 rest;           // x and z at rest, in water space
 layout(location = 1) flat out int body;
 layout(location = 3) out vec4 wave_by_x;  // derivative of analytic waves; w: variance of unresolved slopes
@@ -21,8 +23,9 @@ vec3 surface_ws(WaterRecord water, vec2 q, vec3 offset) {
 }
 
 void main() {
-    vec4 square = texelFetch(patches, 2 * gl_InstanceID);
-    vec4 morph = texelFetch(patches, 2 * gl_InstanceID + 1);
+    int patch_index = first_patch + gl_InstanceID;
+    vec4 square = texelFetch(patches, 2 * patch_index);
+    vec4 morph = texelFetch(patches, 2 * patch_index + 1);
     vec2 grid = vec2(gl_VertexID % kCorners, gl_VertexID / kCorners);
     body = int(square.w);
     WaterRecord water = water_record(body);

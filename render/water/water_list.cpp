@@ -208,6 +208,20 @@ void add_body(
          .variance = Vec4(0)});
 }
 
+/// Moves patches that no wave moves, however near, behind the others; both stay in their order.
+void move_flat_back(WaterList& list) {
+    const auto is_flat = [&](const WaterPatch& patch) {
+        const layout::WaterRecord& body = list.bodies[static_cast<std::size_t>(patch.body)];
+        const bool has_fields = body.rippling.x > 0 || body.ocean.y > 0;
+        return patch.lines == 0 && body.waves.w == 0 && !has_fields;
+    };
+    list.flat_patches.clear();
+    std::ranges::copy_if(list.patches, std::back_inserter(list.flat_patches), is_flat);
+    std::erase_if(list.patches, is_flat);
+    list.first_flat_patch = list.patches.size();
+    list.patches.insert(list.patches.end(), list.flat_patches.begin(), list.flat_patches.end());
+}
+
 /// The look that is actually available: without the planar reflection a body falls back to
 /// screen-space reflections, without a floor map to traced refraction.
 WaterLook available_look(const Water& water, const WaterLook* look, bool planar) {
@@ -287,6 +301,7 @@ void place_waters(
     if (!sources.bodies.empty()) {
         place_ripples(ripples, sources.ripples, list);
     }
+    move_flat_back(list);
 }
 
 }  // namespace limn

@@ -55,7 +55,9 @@ struct WaterList {
     std::vector<layout::WaterRecord> bodies;  ///< in world order
     std::vector<layout::WaveLineRecord> lines;
     std::vector<layout::WaveRingRecord> rings;
-    std::vector<WaterPatch> patches;
+    std::vector<WaterPatch> patches;       ///< of all bodies; those that no wave moves last
+    std::vector<WaterPatch> flat_patches;  ///< for sorting them
+    std::size_t first_flat_patch = 0;
     std::optional<WaterAroundView> around{};  ///< the first found
     bool seen_from_below = false;  ///< for some surface the camera may be below its waves
     std::vector<Entity> entities;
