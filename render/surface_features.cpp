@@ -33,6 +33,7 @@ constexpr FeatureName kNames[] = {
     {kWrinkleLayers, "WRINKLE_LAYERS"},
     {kWrinkleIndependent, "WRINKLE_INDEPENDENT"},
     {kWrinklePhoto, "WRINKLE_PHOTO"},
+    {kWrinkleBounce, "WRINKLE_BOUNCE"},
 };
 
 constexpr bool has_bits_of_their_own() {

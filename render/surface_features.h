@@ -34,6 +34,7 @@ enum SurfaceFeature : std::uint32_t {
     kWrinkleLayers = 1u << 20,       // the map has two layers, each with a strength of its own
     kWrinkleIndependent = 1u << 21,  // with kWrinkleLayers: the second one covers the first
     kWrinklePhoto = 1u << 22,        // light from above is painted on the wrinkles
+    kWrinkleBounce = 1u << 23,       // light bounces within isometric folds
 };
 
 struct SurfaceFeatures {

@@ -78,6 +78,7 @@ struct WrinkleSurface {
     bool mean_length = false;
     bool interpolate = true;
     bool fade = false;
+    bool bounce = true;
     float lambda = 1.05f;
     float beta = 4;
     float slack = 0.03f;
@@ -148,6 +149,11 @@ LIMN_FIELDS(WrinkleSurface) {
         fade,
         "light fades where it grazes the skin without its wrinkles, and none reaches its back; "
         "such skin emits nothing");
+    LIMN_FIELD(
+        bounce,
+        "isometric: of the two walls of a fold one shades the other, and light bounces between "
+        "them, so that deep folds are not black but take on the color of the skin; off: every "
+        "slope is lit as if by itself; emissive skin is");
     LIMN_FIELD(
         lambda,
         "by what the square of the length is multiplied: wrinkles begin where that is 1; above 1 "

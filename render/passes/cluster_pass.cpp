@@ -11,6 +11,7 @@
 #include "render/render_frame.h"
 #include "render/shading_models.h"
 #include "render/skinning/deformed_list.h"
+#include "render/surface_features.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -224,7 +225,11 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(lights.linear_fade, "LINEAR_FADE");
     variant.add_if(!lights.reach.empty(), "LOCAL_LIGHTS");
     add_shading_models(variant, frame.materials->shading_models());
-    variant.add_if(frame.shapes->lights_smooth_skin(), "SMOOTH_NORMALS");
+    variant.add_if(
+        frame.shapes->has_wrinkles(kWrinkleBlend | kWrinkleFade | kWrinkleBounce),
+        "SMOOTH_NORMALS");
+    variant.add_if(frame.shapes->has_wrinkles(kWrinkleBlend), "BLENDED_SKIN");
+    variant.add_if(frame.shapes->has_wrinkles(kWrinkleBounce), "FOLD_LIGHT");
     return true;
 }
 

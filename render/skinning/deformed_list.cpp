@@ -35,6 +35,7 @@ std::uint32_t wrinkle_features(const WrinkleSurface& surface) {
         return kWrinkleView;
     }
     return (surface.method == WrinkleMethod::Blend ? kWrinkleBlend : 0u)
+           | (surface.method == WrinkleMethod::Isometric && surface.bounce ? kWrinkleBounce : 0u)
            | (surface.method == WrinkleMethod::Model ? kWrinkleModel : 0u)
            | (surface.method == WrinkleMethod::Photo ? kWrinklePhoto : 0u) | layer_features(surface)
            | (surface.fade ? kWrinkleFade : 0u) | (surface.interpolate ? 0u : kWrinkleFlat);
@@ -43,8 +44,12 @@ std::uint32_t wrinkle_features(const WrinkleSurface& surface) {
 /// The same where each column of the image has one of these methods.
 std::uint32_t
 column_features(const WrinkleSurface& surface, const std::vector<WrinkleMethod>& columns) {
-    const bool blends = std::ranges::find(columns, WrinkleMethod::Blend) != columns.end();
-    return kWrinkleColumns | (blends ? kWrinkleBlend : 0u) | (surface.fade ? kWrinkleFade : 0u)
+    const auto shown = [&](WrinkleMethod method) {
+        return std::ranges::find(columns, method) != columns.end();
+    };
+    const bool bounces = surface.bounce && shown(WrinkleMethod::Isometric);
+    return kWrinkleColumns | (shown(WrinkleMethod::Blend) ? kWrinkleBlend : 0u)
+           | (bounces ? kWrinkleBounce : 0u) | (surface.fade ? kWrinkleFade : 0u)
            | (surface.interpolate ? 0u : kWrinkleFlat);
 }
 
@@ -342,9 +347,9 @@ void DeformedList::update(
     }
 }
 
-bool DeformedList::lights_smooth_skin() const {
-    return std::ranges::any_of(active_, [this](std::uint32_t i) {
-        return (entries_[i].wrinkle_features & (kWrinkleBlend | kWrinkleFade)) != 0;
+bool DeformedList::has_wrinkles(std::uint32_t features) const {
+    return std::ranges::any_of(active_, [this, features](std::uint32_t i) {
+        return (entries_[i].wrinkle_features & features) != 0;
     });
 }
 

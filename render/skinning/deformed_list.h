@@ -92,8 +92,8 @@ class DeformedList {
         return entries_[index];
     }
 
-    /// Whether some wrinkled skin is lit by its normal without wrinkles, too.
-    [[nodiscard]] bool lights_smooth_skin() const;
+    /// Whether some wrinkled skin has one of these features (SurfaceFeature).
+    [[nodiscard]] bool has_wrinkles(std::uint32_t features) const;
 
     /// Requests an instance's vertices, with `before` also its previous positions. Returns its base
     /// vertex.

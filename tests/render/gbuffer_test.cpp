@@ -248,7 +248,8 @@ TEST_CASE_FIXTURE(
                                "    s.material = 0u;\n"
                                "    s.model = 15u;\n"
                                "    s.smooth_normal_ws = normalize(x.xyz);\n"
-                               "    s.raised = x.w;\n"
+                               "    s.bounces = x.w == 0.0;\n"
+                               "    s.raised = s.bounces ? 1.0 : x.w;\n"
                                "    s.fades = x.w > 0.5;\n"
                                "    s.smooth_is_stored = smooth_is_stored;\n"
                                "    return unpack_surface(pack_surface(s));\n"
@@ -260,13 +261,21 @@ TEST_CASE_FIXTURE(
         "+ "
         "abs(float(s.model) - 15.0));",
         inputs);
+    const std::vector<Vec4> bounces = evaluate_shader(
+        before,
+        "SurfaceSample s = stored(x, true); y.x = float(s.bounces);"
+        "s = stored(x, false); y.y = float(s.bounces);",
+        inputs);
     const std::vector<Vec4> without = evaluate_shader(
         before,
         "SurfaceSample s = stored(x, false); y = vec4(s.emission, s.raised + float(s.fades));",
         inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         CHECK(found[i].x < 2.1e-3f);  // sqrt(3) sqrt(6) half steps of 1 / 1023
-        CHECK(std::abs(found[i].y - inputs[i].w) <= 0.5001f / 511);
+        const float raised = inputs[i].w > 0 ? inputs[i].w : 1;
+        CHECK(std::abs(found[i].y - raised) <= 0.5001f / 511);
+        CHECK(bounces[i].x == (inputs[i].w > 0 ? 0 : 1));
+        CHECK(bounces[i].y == 0);
         CHECK(found[i].z == (inputs[i].w > 0.5f ? 1 : 0));
         CHECK(found[i].w == 0);
         CHECK(without[i] == Vec4(1, 2, 3, 1));

@@ -10,7 +10,7 @@
 // For Unlit, albedo is the mirrored share and its color is in emission. Wrinkled skin that needs its smooth normal when
 // lit (SMOOTH_NORMALS) emits nothing: w is
 //
-//     w   smooth normal, octahedral 11 + 11,  share of the wrinkles 9,  fades 1
+//     w   smooth normal, octahedral 11 + 11,  share of the wrinkles 9, 0: folds that light bounces in,  fades 1
 //
 // and the shading model has its highest bit set. Hair emits nothing: w is
 //
@@ -23,8 +23,14 @@
 #include "generated/model_numbers.glsl"
 #include "lib/octahedral.glsl"
 
-#if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE)) && !defined(SMOOTH_NORMALS)
+#if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE) || defined(WRINKLE_BOUNCE)) && !defined(SMOOTH_NORMALS)
 #define SMOOTH_NORMALS
+#endif
+#if defined(WRINKLE_BLEND) && !defined(BLENDED_SKIN)
+#define BLENDED_SKIN
+#endif
+#if defined(WRINKLE_BOUNCE) && !defined(FOLD_LIGHT)
+#define FOLD_LIGHT
 #endif
 #if defined(SHADE_HAIR) && !defined(STRANDS)
 #define STRANDS
@@ -42,6 +48,7 @@ struct SurfaceSample {
 #ifdef SMOOTH_NORMALS
     vec3 smooth_normal_ws;  // unit, of skin without its wrinkles
     float raised;           // how much of the light is that of normal_ws, the rest that of smooth_normal_ws
+    bool bounces;           // light does, within the folds, whose normal is normal_ws; raised is 1
     bool fades;             // light that grazes smooth_normal_ws
     bool smooth_is_stored;  // otherwise raised is 1
 #endif
@@ -57,6 +64,7 @@ void set_plain(inout SurfaceSample s) {
 #ifdef SMOOTH_NORMALS
     s.smooth_normal_ws = s.normal_ws;
     s.raised = 1.0;
+    s.bounces = false;
     s.fades = false;
     s.smooth_is_stored = false;
 #endif
@@ -106,13 +114,15 @@ vec3 unpack_direction(uint bits) {
 #ifdef SMOOTH_NORMALS
 uint pack_smooth_normal(SurfaceSample s) {
     uvec2 n = uvec2(clamp(octahedral_encode(s.smooth_normal_ws) * 1023.0 + 1024.5, 1.0, 2047.0));
-    uint raised = uint(clamp(s.raised, 0.0, 1.0) * 511.0 + 0.5);
+    uint raised = s.bounces ? 0u : max(uint(clamp(s.raised, 0.0, 1.0) * 511.0 + 0.5), 1u);
     return n.x | n.y << 11 | raised << 22 | (s.fades ? 1u : 0u) << 31;
 }
 
 void unpack_smooth_normal(inout SurfaceSample s, uint bits) {
     s.smooth_normal_ws = octahedral_decode((vec2(bits & 2047u, bits >> 11 & 2047u) - 1024.0) / 1023.0);
-    s.raised = s.smooth_is_stored ? float(bits >> 22 & 511u) / 511.0 : 1.0;
+    uint raised = bits >> 22 & 511u;
+    s.bounces = s.smooth_is_stored && raised == 0u;
+    s.raised = s.smooth_is_stored && raised > 0u ? float(raised) / 511.0 : 1.0;
     s.fades = s.smooth_is_stored && bits >> 31 != 0u;
 }
 #endif

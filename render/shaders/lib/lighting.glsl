@@ -155,7 +155,7 @@ void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, ve
     add_light(sum, r, light);
 #ifdef SHADE_SUBSURFACE
     vec3 share = transmitted_share(thickness, r.diffusion);
-    sum.diffuse += light.unshadowed * share * max(-dot(r.normal, light.to_light), 0.0);
+    sum.diffuse += light.unshadowed * share * max(-dot(body_normal(r), light.to_light), 0.0);
 #endif
 }
 #else
@@ -190,7 +190,7 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
     int directional = int(view.grid_depth.z);
     int n = 0;
     do {
-        Incoming light = incoming_directional(n, position_ws, r.normal, pixel);
+        Incoming light = incoming_directional(n, position_ws, body_normal(r), pixel);
         add_shadowed(sum, r, n, light, position_ws);
     } while (++n < directional);
 #endif
@@ -221,7 +221,7 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
     do {
         int existing = existing_light(index);
         Incoming light = incoming_local(existing, position_ws, r.normal, medium);
-        vec3 transmittance = light_transmittance(existing, position_ws, r.normal, light.to_light, pixel);
+        vec3 transmittance = light_transmittance(existing, position_ws, body_normal(r), light.to_light, pixel);
         light.irradiance *= i < end ? transmittance : vec3(0.0);
         light.unshadowed *= i < end ? 1.0 : 0.0;
         add_shadowed(sum, r, existing, light, position_ws);
@@ -249,6 +249,10 @@ Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
 #endif
     float open = specular_occlusion(r.n_v, s.occlusion, s.roughness);
     Reflected result;
+#ifdef FOLD_LIGHT
+    around.irradiance *= wall_light_around(r.open, r.diffuse);
+    open *= r.open;
+#endif
     result.diffuse = r.diffuse * (around.irradiance * s.occlusion);
     result.specular = r.mirror * around.mirrored * open;
 #ifdef OVER_WATER
@@ -261,7 +265,7 @@ Reflected add_reflected(Reflected a, Reflected b) {
     return Reflected(a.diffuse + b.diffuse, a.specular + b.specular);
 }
 
-#ifdef SMOOTH_NORMALS
+#ifdef BLENDED_SKIN
 // Skin without its wrinkles.
 SurfaceSample smooth_skin(SurfaceSample s) {
     s.normal_ws = s.smooth_normal_ws;
@@ -287,7 +291,7 @@ Reflected reflect_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2
 // Radiance toward the camera of a surface at `position_ws` in `pixel`, without its emission; `list` as in add_listed.
 Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
     Reflected light = reflect_by_normal(s, position_ws, pixel, list);
-#ifdef SMOOTH_NORMALS
+#ifdef BLENDED_SKIN
     if (s.raised < 1.0) {
         light = blend_skin(s, light, reflect_by_normal(smooth_skin(s), position_ws, pixel, list));
     }
@@ -298,7 +302,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list)
 // The surroundings' part of reflect_all().
 Reflected reflect_around(SurfaceSample s, vec3 position_ws) {
     Reflected light = reflect_surroundings(make_reflector(s, to_viewer(position_ws)), s, position_ws);
-#ifdef SMOOTH_NORMALS
+#ifdef BLENDED_SKIN
     SurfaceSample skin = smooth_skin(s);
     light = blend_skin(s, light, reflect_surroundings(make_reflector(skin, to_viewer(position_ws)), skin, position_ws));
 #endif

@@ -12,6 +12,7 @@
 //   STRANDS        of hair, which lies along v
 //   WRINKLE_BLEND  light of wrinkles in full and of smooth skin is blended
 //   WRINKLE_FADE   light that grazes smooth skin fades
+//   WRINKLE_BOUNCE  light bounces within isometric folds (lib/fold_light.glsl)
 //   WRINKLE_VIEW   in place of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and w
 //                  1 where that frame is known. After lib/view.glsl
 //   WRINKLE_MODEL  the wrinkle map is a model of the strain: wrinkle_strength is (tt, bb, tb), and w the share of its slopes
@@ -338,6 +339,15 @@ SurfaceSample surface_sample(vec3 albedo) {
         s.smooth_is_stored = stores && s.raised > 0.0;
         s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
     }
+#endif
+#ifdef WRINKLE_BOUNCE
+#ifdef WRINKLE_COLUMNS
+    bool folds = column_method() == kWrinkleIsometric;
+#else
+    const bool folds = true;
+#endif
+    s.bounces = folds && stores && s.emission == vec3(0.0) && s.normal_ws != smooth_normal;
+    s.smooth_is_stored = s.smooth_is_stored || s.bounces;
 #endif
 #ifdef WRINKLE_FADE
     s.fades = true;

@@ -8,9 +8,10 @@
 // prepare_pbr() has run before the prepare function of any other model. SHADE_<MODEL> is defined if some surface may
 // use the model; that only saves a software OpenGL needless work. SHADING_LOBE, a lobe_number(), is defined if all
 // surfaces have this lobe. SMOOTH_NORMALS is defined if some skin is lit by its
-// normal without wrinkles, too.
+// normal without wrinkles, too; BLENDED_SKIN, if light of both is blended; FOLD_LIGHT, if it bounces within folds.
 
 #include "lib/brdf.glsl"
+#include "lib/fold_light.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/hair.glsl"
 
@@ -41,6 +42,9 @@ struct Reflector {
 #ifdef SMOOTH_NORMALS
     vec4 fading;       // normal without wrinkles; w: 1 = light that grazes it fades
 #endif
+#ifdef FOLD_LIGHT
+    float open;        // of the fold that light bounces in, > 0 (lib/fold_light.glsl); 1: none
+#endif
 };
 
 // Between normal, light, viewer and the half vector h; and where the light is.
@@ -61,6 +65,8 @@ struct Response {
 
 #include "generated/model_functions.glsl"
 
+const float kMinOpen = 0.05;
+
 Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     Reflector r;
     r.normal = s.normal_ws;
@@ -78,8 +84,20 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
 #ifdef SMOOTH_NORMALS
     r.fading = vec4(s.smooth_normal_ws, s.fades ? 1.0 : 0.0);
 #endif
+#ifdef FOLD_LIGHT
+    r.open = s.bounces ? clamp(dot(s.normal_ws, s.smooth_normal_ws), kMinOpen, 1.0) : 1.0;
+#endif
     prepare_model(r, s);
     return r;
+}
+
+// Of the skin as its shadow maps know it, without folds that light bounces in.
+vec3 body_normal(Reflector r) {
+#ifdef FOLD_LIGHT
+    return r.open < 1.0 ? r.fading.xyz : r.normal;
+#else
+    return r.normal;
+#endif
 }
 
 // Sums over lights, before the material's factors (light.multi).
@@ -105,6 +123,15 @@ void add_light(inout LightSum sum, Reflector r, Incoming light) {
     light.irradiance *= mix(1.0, grazing_fade(dot(r.fading.xyz, light.to_light)), r.fading.w);
 #endif
     Response response = model_response(r, Cosines(n_l, h.x, h.y, l_v, light.to_light));
+#ifdef FOLD_LIGHT
+    if (r.open < 1.0) {
+        vec2 walls = wall_cosines(r.open, n_l, dot(r.fading.xyz, light.to_light));
+        float lit = walls.x / max(n_l, 1e-4);
+        response.diffuse = wall_light(r.open, r.diffuse, lit * response.diffuse, walls.y);
+        response.specular *= lit;
+        response.fresnel *= lit;
+    }
+#endif
     sum.diffuse += light.irradiance * response.diffuse;
     sum.specular += light.irradiance * response.specular;
     sum.fresnel += light.irradiance * response.fresnel;
