@@ -13,6 +13,7 @@
 #include "content/make/head_shoulders.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
+#include "content/make/keep_triangles.h"
 #include "ecs/base/check.h"
 
 #include <glm/common.hpp>
@@ -129,6 +130,14 @@ HeadPart make_skin(const HeadShape& shape) {
             part.mesh.indices.push_back(corners[(first + k) % 4]);
         }
     }
+    if (shape.dressed) {
+        const std::vector<bool> covered = find_covered_skin(positions);
+        for (const auto& quad : layout.quads) {
+            const bool hidden =
+                std::all_of(quad.begin(), quad.end(), [&](std::uint32_t v) { return covered[v]; });
+            part.covered.insert(part.covered.end(), 2, hidden);
+        }
+    }
     generate_normals(part.mesh);
     // Ears, shoulders and what lies behind lids and lips are no skin of the face.
     std::vector<Vec3> reference;
@@ -222,7 +231,7 @@ SkinWeights head_weights(std::span<const HeadPoint> points, const HeadShape& sha
 
 /// A shirt is worn on shoulders.
 HeadShape complete(HeadShape shape) {
-    shape.shoulders = shape.shoulders || shape.part == HeadPartKind::Shirt;
+    shape.shoulders = shape.shoulders || shape.dressed || shape.part == HeadPartKind::Shirt;
     return shape;
 }
 
@@ -262,6 +271,16 @@ MorphTarget make_aging(std::span<const Vec3> positions, const HeadShape& shape) 
     return target;
 }
 
+void leave_out(MeshData& mesh, const std::vector<bool>& triangles) {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (!triangles[t]) {
+            kept.insert(kept.end(), &mesh.indices[3 * t], &mesh.indices[3 * t] + 3);
+        }
+    }
+    keep_triangles(mesh, std::move(kept));
+}
+
 }  // namespace
 
 MeshData make_head(const HeadShape& wanted) {
@@ -280,6 +299,9 @@ MeshData make_head(const HeadShape& wanted) {
     generate_morph_normals(mesh);
     generate_tangents(mesh);
     generate_morph_tangents(mesh);
+    if (!part.covered.empty()) {
+        leave_out(mesh, part.covered);
+    }
     update_bounds(mesh);
     return mesh;
 }

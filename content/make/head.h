@@ -49,6 +49,7 @@ struct HeadShape {
     float asymmetry = 0.0f;
     float scalp_shade = 0.0f;
     bool shoulders = false;
+    bool dressed = false;
     bool grows_old = false;
     std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
@@ -66,6 +67,9 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(
         shoulders, "the skin goes on over collar bones and shoulders, which stay when the head "
                    "turns; it ends in a plane ring 27 cm below the ears, without: 14.5 cm");
+    LIMN_FIELD(
+        dressed, "of the skin: it ends some centimeters below the collar of a shirt, which is worn "
+                 "over it; has shoulders");
     LIMN_FIELD(
         grows_old, "adds the shape `age`, which at weight 1 makes it seventy years old; set it of "
                    "all parts of a head");
