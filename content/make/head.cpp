@@ -78,9 +78,19 @@ Vec2 uv_at(const Vec2& chart) {
     return {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)};
 }
 
+constexpr float kAroundNeck = 1.4f;  ///< in the chart of pores, about as far as it would lie
+
+/// Whether the seam of the texture is seen at `p` [cm], behind the neck.
+bool at_nape(const Vec3& p) {
+    constexpr float kTop = -3;  // within the hair
+    constexpr float kEnd = -14;
+    return p.y < kTop && p.y > kEnd;
+}
+
 /// For patterns of one size, a unit as long as one across the forehead by `uvs`. `reference`: of
-/// the skin of the face alone a number.
-std::vector<Vec2> make_pore_chart(const HeadPart& part, std::span<const Vec3> reference) {
+/// the skin of the face alone a number. `joins`: where they go on across the seam.
+std::vector<Vec2> make_pore_chart(
+    const HeadPart& part, std::span<const Vec3> reference, std::span<const ChartJoin> joins) {
     constexpr float kUnit = 33;       // [cm]
     constexpr float kFaceCounts = 9;  // times more than the rest, by trial
     std::vector<float> importance;
@@ -88,7 +98,7 @@ std::vector<Vec2> make_pore_chart(const HeadPart& part, std::span<const Vec3> re
         const float face = is_finite(p) ? glm::smoothstep(6.5f, 8.5f, p.z) : 0.0f;
         importance.push_back(1 + kFaceCounts * face);
     }
-    return make_even_chart(part.mesh, kUnit, importance);
+    return make_even_chart(part.mesh, kUnit, importance, joins);
 }
 
 /// Vertices that the seam of the texture doubles are there twice.
@@ -150,7 +160,14 @@ HeadPart make_skin(const HeadShape& shape) {
         reference.push_back(face ? point.rest : Vec3(std::numeric_limits<float>::quiet_NaN()));
     }
     part.mesh.regions = make_face_regions(reference, part.mesh.normals);
-    part.mesh.uvs1 = make_pore_chart(part, reference);
+    std::vector<ChartJoin> joins;
+    for (const auto& [vertex, beyond] : made) {
+        const auto before = made.find({vertex.first, false});
+        if (vertex.second && before != made.end() && at_nape(positions[vertex.first])) {
+            joins.push_back({.from = before->second, .to = beyond, .step = {kAroundNeck, 0}});
+        }
+    }
+    part.mesh.uvs1 = make_pore_chart(part, reference, joins);
     return part;
 }
 
