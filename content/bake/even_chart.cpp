@@ -24,13 +24,32 @@ constexpr double kMinArea = 1e-12;  ///< of a triangle, by `size` squared
 
 /// A triangle in its own plane.
 struct FlatTriangle {
-    std::array<std::uint32_t, 3> vertices;
-    std::array<Vec2d, 3> sides;     ///< from corner k to the next, in units of the chart
-    std::array<double, 3> weights;  ///< of sides: cotangents of the angles opposite of them
+    std::array<std::uint32_t, 3> vertices;  ///< those that are joined as one
+    std::array<Vec2d, 3> steps;             ///< of joins, from corner k to the next
+    std::array<Vec2d, 3> sides;             ///< from corner k to the next, in units of the chart
+    std::array<double, 3> weights;          ///< of sides: cotangents of the angles opposite of them
 };
 
-std::vector<FlatTriangle>
-flatten(const MeshData& mesh, float size, std::span<const float> importance) {
+/// A step from each vertex that is joined to another, or from itself.
+std::vector<ChartJoin> join_each(std::size_t vertices, std::span<const ChartJoin> joins) {
+    std::vector<ChartJoin> each(vertices);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        each[v].from = v;
+        each[v].to = v;
+    }
+    for (const ChartJoin& join : joins) {
+        LIMN_CHECK(join.from < vertices && join.to < vertices && each[join.to].from == join.to);
+        each[join.to] = join;
+    }
+    for (const ChartJoin& join : joins) {
+        LIMN_CHECK(each[join.from].from == join.from);
+    }
+    return each;
+}
+
+std::vector<FlatTriangle> flatten(
+    const MeshData& mesh, float size, std::span<const float> importance,
+    std::span<const ChartJoin> each) {
     std::vector<FlatTriangle> triangles;
     for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
         const std::uint32_t* const v = &mesh.indices[t];
@@ -46,7 +65,10 @@ flatten(const MeshData& mesh, float size, std::span<const float> importance) {
         const Vec2d b = {length, 0};
         const Vec2d c = {glm::dot(ac, ab) / length, -area / length};
         FlatTriangle& flat = triangles.emplace_back();
-        flat.vertices = {v[0], v[1], v[2]};
+        for (std::size_t k = 0; k < 3; ++k) {
+            flat.vertices[k] = each[v[k]].from;
+            flat.steps[k] = Vec2d(each[v[(k + 1) % 3]].step) - Vec2d(each[v[k]].step);
+        }
         flat.sides = {b, c - b, -c};
         // Between all triangles alike and by their area, so that dense parts get their share.
         const double mean = double{importance[v[0]] + importance[v[1]] + importance[v[2]]} / 3;
@@ -59,12 +81,17 @@ flatten(const MeshData& mesh, float size, std::span<const float> importance) {
     return triangles;
 }
 
+/// From corner `k` to the next.
+Vec2d side_in(const FlatTriangle& triangle, std::span<const Vec2d> chart, std::size_t k) {
+    return chart[triangle.vertices[(k + 1) % 3]] - chart[triangle.vertices[k]] + triangle.steps[k];
+}
+
 /// Of the rotation (cos, sin) that brings its sides nearest to those in the chart.
 Vec2d nearest_turn(const FlatTriangle& triangle, std::span<const Vec2d> chart) {
     Vec2d turn = {0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2d side = triangle.sides[k];
-        const Vec2d now = chart[triangle.vertices[(k + 1) % 3]] - chart[triangle.vertices[k]];
+        const Vec2d now = side_in(triangle, chart, k);
         turn += triangle.weights[k] * Vec2d(glm::dot(side, now), side.x * now.y - side.y * now.x);
     }
     const double length = glm::length(turn);
@@ -100,7 +127,7 @@ residual_of(std::span<const FlatTriangle> triangles, std::span<const Vec2d> char
             const std::uint32_t a = triangle.vertices[k];
             const std::uint32_t b = triangle.vertices[(k + 1) % 3];
             const Vec2d turned = {turn.x * s.x - turn.y * s.y, turn.y * s.x + turn.x * s.y};
-            const Vec2d pull = triangle.weights[k] * (turned - (chart[b] - chart[a]));
+            const Vec2d pull = triangle.weights[k] * (turned - side_in(triangle, chart, k));
             residual[a] -= pull;
             residual[b] += pull;
         }
@@ -151,11 +178,13 @@ void relax(
 
 }  // namespace
 
-std::vector<Vec2>
-make_even_chart(const MeshData& mesh, float size, std::span<const float> importance) {
+std::vector<Vec2> make_even_chart(
+    const MeshData& mesh, float size, std::span<const float> importance,
+    std::span<const ChartJoin> joins) {
     LIMN_CHECK(size > 0 && mesh.uvs.size() == mesh.positions.size());
     LIMN_CHECK(importance.size() == mesh.positions.size());
-    const std::vector<FlatTriangle> triangles = flatten(mesh, size, importance);
+    const std::vector<ChartJoin> each = join_each(mesh.positions.size(), joins);
+    const std::vector<FlatTriangle> triangles = flatten(mesh, size, importance, each);
     std::vector<double> diagonal(mesh.positions.size(), 0.0);
     for (const FlatTriangle& triangle : triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -174,6 +203,9 @@ make_even_chart(const MeshData& mesh, float size, std::span<const float> importa
     std::vector<Vec2d> chart(mesh.uvs.begin(), mesh.uvs.end());
     for (int round = 0; round < kRounds; ++round) {
         relax(triangles, diagonal, anchor, chart);
+    }
+    for (const ChartJoin& join : joins) {
+        chart[join.to] = chart[join.from] + Vec2d(join.step);
     }
     return {chart.begin(), chart.end()};
 }

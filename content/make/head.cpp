@@ -13,6 +13,7 @@
 #include "content/make/head_shoulders.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
+#include "content/make/keep_triangles.h"
 #include "ecs/base/check.h"
 
 #include <glm/common.hpp>
@@ -77,9 +78,19 @@ Vec2 uv_at(const Vec2& chart) {
     return {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)};
 }
 
+constexpr float kAroundNeck = 1.4f;  ///< in the chart of pores, about as far as it would lie
+
+/// Whether the seam of the texture is seen at `p` [cm], behind the neck.
+bool at_nape(const Vec3& p) {
+    constexpr float kTop = -3;  // within the hair
+    constexpr float kEnd = -14;
+    return p.y < kTop && p.y > kEnd;
+}
+
 /// For patterns of one size, a unit as long as one across the forehead by `uvs`. `reference`: of
-/// the skin of the face alone a number.
-std::vector<Vec2> make_pore_chart(const HeadPart& part, std::span<const Vec3> reference) {
+/// the skin of the face alone a number. `joins`: where they go on across the seam.
+std::vector<Vec2> make_pore_chart(
+    const HeadPart& part, std::span<const Vec3> reference, std::span<const ChartJoin> joins) {
     constexpr float kUnit = 33;       // [cm]
     constexpr float kFaceCounts = 9;  // times more than the rest, by trial
     std::vector<float> importance;
@@ -87,7 +98,7 @@ std::vector<Vec2> make_pore_chart(const HeadPart& part, std::span<const Vec3> re
         const float face = is_finite(p) ? glm::smoothstep(6.5f, 8.5f, p.z) : 0.0f;
         importance.push_back(1 + kFaceCounts * face);
     }
-    return make_even_chart(part.mesh, kUnit, importance);
+    return make_even_chart(part.mesh, kUnit, importance, joins);
 }
 
 /// Vertices that the seam of the texture doubles are there twice.
@@ -129,6 +140,14 @@ HeadPart make_skin(const HeadShape& shape) {
             part.mesh.indices.push_back(corners[(first + k) % 4]);
         }
     }
+    if (shape.dressed) {
+        const std::vector<bool> covered = find_covered_skin(positions);
+        for (const auto& quad : layout.quads) {
+            const bool hidden =
+                std::all_of(quad.begin(), quad.end(), [&](std::uint32_t v) { return covered[v]; });
+            part.covered.insert(part.covered.end(), 2, hidden);
+        }
+    }
     generate_normals(part.mesh);
     // Ears, shoulders and what lies behind lids and lips are no skin of the face.
     std::vector<Vec3> reference;
@@ -141,7 +160,14 @@ HeadPart make_skin(const HeadShape& shape) {
         reference.push_back(face ? point.rest : Vec3(std::numeric_limits<float>::quiet_NaN()));
     }
     part.mesh.regions = make_face_regions(reference, part.mesh.normals);
-    part.mesh.uvs1 = make_pore_chart(part, reference);
+    std::vector<ChartJoin> joins;
+    for (const auto& [vertex, beyond] : made) {
+        const auto before = made.find({vertex.first, false});
+        if (vertex.second && before != made.end() && at_nape(positions[vertex.first])) {
+            joins.push_back({.from = before->second, .to = beyond, .step = {kAroundNeck, 0}});
+        }
+    }
+    part.mesh.uvs1 = make_pore_chart(part, reference, joins);
     return part;
 }
 
@@ -222,7 +248,7 @@ SkinWeights head_weights(std::span<const HeadPoint> points, const HeadShape& sha
 
 /// A shirt is worn on shoulders.
 HeadShape complete(HeadShape shape) {
-    shape.shoulders = shape.shoulders || shape.part == HeadPartKind::Shirt;
+    shape.shoulders = shape.shoulders || shape.dressed || shape.part == HeadPartKind::Shirt;
     return shape;
 }
 
@@ -262,6 +288,16 @@ MorphTarget make_aging(std::span<const Vec3> positions, const HeadShape& shape) 
     return target;
 }
 
+void leave_out(MeshData& mesh, const std::vector<bool>& triangles) {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (!triangles[t]) {
+            kept.insert(kept.end(), &mesh.indices[3 * t], &mesh.indices[3 * t] + 3);
+        }
+    }
+    keep_triangles(mesh, std::move(kept));
+}
+
 }  // namespace
 
 MeshData make_head(const HeadShape& wanted) {
@@ -280,6 +316,9 @@ MeshData make_head(const HeadShape& wanted) {
     generate_morph_normals(mesh);
     generate_tangents(mesh);
     generate_morph_tangents(mesh);
+    if (!part.covered.empty()) {
+        leave_out(mesh, part.covered);
+    }
     update_bounds(mesh);
     return mesh;
 }

@@ -12,8 +12,9 @@ namespace limn {
 // triangles, but for the ring at the end of the neck: a grid of columns around the head and rows
 // from crown to neck, with a square cap on the crown and concentric loops around eyes, mouth and
 // ears (head_layout.h), wrapped around an implicit surface (head_surface.h). One UV seam runs down
-// the back; a second set of UVs hardly stretches patterns as pores (even_chart.h). Proportions
-// after Farkas, "Anthropometry of the Head and Face" (1994).
+// the back; a second set of UVs hardly stretches patterns as pores (even_chart.h), which go on
+// across the seam behind the neck if they repeat five times in a unit, or a multiple of that.
+// Proportions after Farkas, "Anthropometry of the Head and Face" (1994).
 //
 // Regions are those of face_regions.h. Expressions are morph targets (head_expressions.h), jaw and
 // eyes are joints as well: "head", "jaw", "left_eye", "right_eye". Each part is a mesh of its own,
@@ -49,6 +50,7 @@ struct HeadShape {
     float asymmetry = 0.0f;
     float scalp_shade = 0.0f;
     bool shoulders = false;
+    bool dressed = false;
     bool grows_old = false;
     std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
@@ -66,6 +68,9 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(
         shoulders, "the skin goes on over collar bones and shoulders, which stay when the head "
                    "turns; it ends in a plane ring 27 cm below the ears, without: 14.5 cm");
+    LIMN_FIELD(
+        dressed, "of the skin: it ends some centimeters below the collar of a shirt, which is worn "
+                 "over it; has shoulders");
     LIMN_FIELD(
         grows_old, "adds the shape `age`, which at weight 1 makes it seventy years old; set it of "
                    "all parts of a head");

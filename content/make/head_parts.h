@@ -12,6 +12,7 @@ namespace limn {
 struct HeadPart {
     MeshData mesh;                  ///< positions, uvs, colors and indices [cm]
     std::vector<HeadPoint> points;  ///< one per vertex
+    std::vector<bool> covered;      ///< per triangle, left out in the end; or empty
 };
 
 /// Both balls, of the radius kBallRadius, with an iris that lies as deep behind the cornea as in a
@@ -37,6 +38,10 @@ struct HeadPart {
 /// A shirt on the shoulders that `shape` has; it hangs a little lower than their skin ends. Its
 /// points move as skin does.
 [[nodiscard]] HeadPart make_shirt(const HeadShape& shape);
+
+/// Of each vertex of head_layout(true), which lie at `skin` [cm] at rest: whether it lies so far
+/// below the neckline of the shirt that it cannot be seen, however the head turns.
+[[nodiscard]] std::vector<bool> find_covered_skin(const std::vector<Vec3>& skin);
 
 /// How much hair grows at `p` on a head, 0 .. 1.
 [[nodiscard]] float scalp_hair_cover(const Vec3& p);

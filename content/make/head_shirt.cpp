@@ -4,6 +4,7 @@
 #include "content/make/head_shoulders.h"
 #include "content/make/head_surface.h"
 #include "content/make/head_wrap.h"
+#include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
 
 #include <glm/common.hpp>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace limn {
@@ -56,17 +58,28 @@ float above_neckline(const Vec3& p) {
 }
 
 /// A column of the skin's grid from the neck down.
-std::vector<Vec3> skin_column(const std::vector<Vec3>& skin, int column) {
+std::vector<std::uint32_t> column_vertices(int column) {
     const HeadLayout& layout = head_layout(true);
-    std::vector<Vec3> points;
-    for (std::size_t v = 0; v < skin.size(); ++v) {
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t v = 0; v < layout.vertices.size(); ++v) {
         const HeadVertex& vertex = layout.vertices[v];
         if (vertex.loops == HeadLoops::None && vertex.chart.x == static_cast<float>(column)
             && vertex.chart.y >= kHeadRows / 2) {
-            points.push_back(skin[v]);
+            vertices.push_back(v);
         }
     }
-    return points;
+    return vertices;
+}
+
+/// Places of all columns, from the back to the left.
+std::vector<std::vector<Vec3>> skin_columns(const std::vector<Vec3>& skin) {
+    std::vector<std::vector<Vec3>> lines(kHeadColumns);
+    for (int column = 0; column < kHeadColumns; ++column) {
+        for (const std::uint32_t v : column_vertices(column - kHeadColumns / 2)) {
+            lines[column].push_back(skin[v]);
+        }
+    }
+    return lines;
 }
 
 /// Lengths of a line from its first point to each.
@@ -111,6 +124,16 @@ void smooth_around(std::vector<float>& values) {
     }
 }
 
+/// Where each column crosses the neckline, a length from its first point.
+std::vector<float> necklines(const std::vector<std::vector<Vec3>>& lines) {
+    std::vector<float> starts;
+    for (const std::vector<Vec3>& line : lines) {
+        starts.push_back(neckline_along(line, lengths_along(line)));
+    }
+    smooth_around(starts);
+    return starts;
+}
+
 /// Points of the shirt before it is sewn: of each column of the skin, rows downwards.
 struct ShirtGrid {
     std::vector<Vec3> points;
@@ -147,14 +170,8 @@ void smooth(ShirtGrid& grid, const HeadShape& shape) {
 
 /// On the skin below a smooth neckline, and straight down from its end; then smoothed.
 ShirtGrid make_grid(const HeadShape& shape) {
-    const std::vector<Vec3> skin = wrap_head(shape);
-    std::vector<std::vector<Vec3>> lines;
-    std::vector<float> starts;
-    for (int column = 0; column < kHeadColumns; ++column) {
-        lines.push_back(skin_column(skin, column - kHeadColumns / 2));
-        starts.push_back(neckline_along(lines.back(), lengths_along(lines.back())));
-    }
-    smooth_around(starts);
+    const std::vector<std::vector<Vec3>> lines = skin_columns(wrap_head(shape));
+    const std::vector<float> starts = necklines(lines);
     ShirtGrid grid;
     grid.points.resize(kAllRows * kHeadColumns);
     for (int column = 0; column < kHeadColumns; ++column) {
@@ -203,6 +220,22 @@ std::vector<Vec3> sew_column(ShirtGrid& grid, int column, const HeadShape& shape
 }
 
 }  // namespace
+
+std::vector<bool> find_covered_skin(const std::vector<Vec3>& skin) {
+    constexpr float kMargin = 2;  // [cm], more than skin there moves with the head
+    LIMN_CHECK(skin.size() == head_layout(true).vertices.size());
+    const std::vector<float> starts = necklines(skin_columns(skin));
+    std::vector<bool> covered(skin.size(), false);
+    for (int column = 0; column < kHeadColumns; ++column) {
+        const std::vector<std::uint32_t> vertices = column_vertices(column - kHeadColumns / 2);
+        float length = 0;
+        for (std::size_t i = 1; i < vertices.size(); ++i) {
+            length += glm::distance(skin[vertices[i - 1]], skin[vertices[i]]);
+            covered[vertices[i]] = length > starts[column] + kMargin;
+        }
+    }
+    return covered;
+}
 
 HeadPart make_shirt(const HeadShape& shape) {
     ShirtGrid grid = make_grid(shape);

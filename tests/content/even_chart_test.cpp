@@ -100,6 +100,44 @@ TEST_CASE("even chart: a triangle without area changes nothing") {
     CHECK(make_even_chart(mesh, 0.5f, importance) == without);
 }
 
+TEST_CASE("even chart: joined sides of a seam stay a step apart, and what is between gives way") {
+    const MeshData mesh = make_trough();
+    const std::vector<float> importance(mesh.positions.size(), 1.0f);
+    std::vector<ChartJoin> joins;
+    for (std::uint32_t row = 0; row <= 8; ++row) {
+        joins.push_back({.from = row * 25, .to = row * 25 + 24, .step = {4, 0}});
+    }
+    const std::vector<Vec2> chart = make_even_chart(mesh, 0.5f, importance, joins);
+    for (const ChartJoin& join : joins) {
+        CHECK(glm::distance(chart[join.to], chart[join.from] + Vec2(4, 0)) < 1e-5f);
+    }
+    for (std::uint32_t i = 0; i < 24; ++i) {  // 4.19 long without joins
+        CHECK(std::abs(glm::distance(chart[100 + i], chart[101 + i]) - 4.0f / 24) < 0.01f);
+    }
+}
+
+TEST_CASE("head: behind the neck pores go on across the seam of the texture, hardly stretched") {
+    HeadShape shape;
+    shape.shoulders = true;
+    const MeshData bust = make_head(shape);
+    int joined = 0;
+    for (std::uint32_t a = 0; a < bust.positions.size(); ++a) {
+        const Vec3 p = 100.0f * bust.positions[a];
+        if (p.z > 0 || std::abs(p.x) > 0.1f || p.y > -4 || p.y < -13 || bust.uvs[a].x > 0.5f) {
+            continue;
+        }
+        for (std::uint32_t b = 0; b < bust.positions.size(); ++b) {
+            if (bust.positions[b] == bust.positions[a] && bust.uvs[b].x > 0.5f) {
+                ++joined;
+                CHECK(glm::distance(bust.uvs1[b], bust.uvs1[a] + Vec2(7.0f / 5, 0)) < 1e-5f);
+            }
+        }
+    }
+    CHECK(joined > 8);
+    CHECK(stretch_within(bust, bust.uvs1, {0, -13, -12}, {4, -4, -4}) < 1.35f);
+    CHECK(stretch_within(bust, bust.uvs1, {0, 6.5f, 7}, {4, 10, 20}) < 1.2f);
+}
+
 TEST_CASE("head: pores are nearly round all over the face, beside the nose too") {
     const MeshData head = make_head({});
     REQUIRE(head.uvs1.size() == head.positions.size());
