@@ -133,11 +133,20 @@ class PatchBinder {
         for (std::size_t i = 0; i < near.size() && place.patch == kNoPatch; ++i) {
             find_inside(point, {near[i]}, place);
         }
+        if (!near.empty() && near[0].first > kOnChart) {
+            // What goes on beyond the border is bound where the surface covers it closely.
+            const bool covered = (place.patch != kNoPatch || find_beside(point, {near[0]}, place))
+                                 && glm::length(place.offset) < kCloseTo * size_of(place.patch);
+            return covered ? finished(place, normal, tangent) : SurfacePlace{};
+        }
         const bool found = place.patch != kNoPatch || find_beside(point, {near[0]}, place);
         return found ? finished(place, normal, tangent) : SurfacePlace{};
     }
 
   private:
+    static constexpr float kOnChart = 1e-5f;
+    static constexpr float kCloseTo = 0.25f;  // of the size of a patch
+
     /// Faces, with the distances of their flat triangles.
     using Faces = std::vector<std::pair<float, std::uint32_t>>;
 

@@ -60,9 +60,10 @@ struct PatchChart {
 };
 
 /// Where the points are on the surface. A point above which no patch lies within `reach` [m] is not
-/// bound: patch = kNoPatch. With a chart the nearest patch there that is below it carries
-/// it, or the nearest of all; without one, those that are nearest in space and do not face away
-/// from its normal. Time grows as points * patches.
+/// bound: patch = kNoPatch. With a chart the nearest patch there that is below it carries it, or
+/// the nearest of all; what lies beyond all faces of the chart, as a torso below the surface of a
+/// head, is bound only within a quarter of a patch. Without a chart, those carry it that are
+/// nearest in space and do not face away from its normal. Time grows as points * patches.
 [[nodiscard]] std::vector<SurfacePlace> bind_to_patches(
     std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec4> tangents,
     std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach,

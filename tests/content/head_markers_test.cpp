@@ -109,8 +109,8 @@ std::string record_laugh(std::string_view lacks) {
     return text;
 }
 
-/// The skin at the end of a recording: imported, written, read and followed.
-std::vector<Vec3> perform(const std::string& recording) {
+/// `head` at the end of a recording: imported, written, read and followed.
+std::vector<Vec3> perform(const std::string& recording, const MeshData& head = skin()) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     const std::string trc = (folder / "limn_laugh.trc").string();
     const std::string glb = (folder / "limn_laugh.glb").string();
@@ -124,7 +124,7 @@ std::vector<Vec3> perform(const std::string& recording) {
     std::filesystem::remove(glb);
     World world;
     auto& assets = world.insert_resource(Assets{});
-    assets.meshes = {skin(), take.meshes[0]};
+    assets.meshes = {head, take.meshes[0]};
     assets.skeletons = {take.skeleton};
     assets.skins = take.skins;
     assets.clips = take.clips;
@@ -146,7 +146,7 @@ std::vector<Vec3> perform(const std::string& recording) {
     world.run(update_surface_bindings);
     const auto& state = world.get<SurfaceBindingState>(face);
     REQUIRE(state.places != nullptr);
-    std::vector<Vec3> positions = skin().positions;
+    std::vector<Vec3> positions = head.positions;
     move_by_patches(surface_shape(&state, state.patches), positions);
     return positions;
 }
@@ -294,6 +294,31 @@ TEST_CASE("head markers: a recording of them moves the head through their surfac
     const std::vector<Vec3> outside = perform(record_laugh("lid11"));
     CHECK(rms(outside, truth) < 0.25f * motion);
     CHECK(std::abs(gap(outside) - gap(truth)) < 1e-4f);
+}
+
+TEST_CASE("head markers: a bust follows them too; its shoulders stay, and its neck does not tear") {
+    constexpr float kNeckEnd = -0.145f;  // [m]
+    HeadShape shape;
+    shape.shoulders = true;
+    const MeshData bust = make_head(shape);
+    const std::vector<Vec3> truth = laugh(bust, 1);
+    const std::vector<Vec3> driven = perform(record_laugh(""), bust);
+    CHECK(rms(driven, truth) < 0.15f * rms(truth, bust.positions));
+    float moved = 0;
+    float stretch = 0;
+    for (std::size_t i = 0; i < bust.indices.size(); ++i) {
+        const std::uint32_t a = bust.indices[i];
+        const std::uint32_t b = bust.indices[i % 3 == 2 ? i - 2 : i + 1];
+        if (bust.positions[a].y < -0.2f) {
+            moved = std::max(moved, glm::distance(driven[a], bust.positions[a]));
+        }
+        if (std::abs(bust.positions[a].y - kNeckEnd) < 0.03f) {
+            const Vec3 along = driven[b] - driven[a];
+            stretch = std::max(stretch, glm::distance(along, truth[b] - truth[a]));
+        }
+    }
+    CHECK(moved == 0);
+    CHECK(stretch < 0.002f);  // half an edge of the skin there
 }
 
 TEST_CASE("head markers: a recording of other markers is refused with the nearest name") {
