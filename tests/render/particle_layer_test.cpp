@@ -123,15 +123,11 @@ TEST_CASE_FIXTURE(
         const bool is_half = resolution == ParticleResolution::Half;
         playing.resolution = resolution;
         picked.resolution = is_half ? ParticleResolution::Full : ParticleResolution::Half;
-        emit({{0.75f, 0, 0}}, playing);
-        emit({{-0.75f, 0, 0}}, picked);
-        const gpu::FloatImage seen = radiance(look({0, 0, 2}, {0, 0, 0}, 64, 32));
-        const Vec3 mixed = rgb_at(seen, 44, 16);
+        emit({{0, 0, 0}}, playing);
+        emit({{-1.5f, 0, 0}}, picked);
+        const Vec3 mixed = rgb_at(radiance(look({0, 0, 2}, {0, 0, 0}, 33, 33)), 16, 16);
         CHECK(mixed.x == near(0.5f).epsilon(0.05));
         CHECK(mixed.y == near(0.5f).epsilon(0.05));
-        const Vec3 still = rgb_at(seen, 19, 16);
-        CHECK(std::max(still.x, still.y) == near(1).epsilon(0.05));
-        CHECK(std::min(still.x, still.y) == near(0));
         world.clear();
         world.insert_resource(FrameTime{});
     }
