@@ -36,7 +36,7 @@ const std::map<std::string, int> kMaxPrograms = {
     {"ocean", 58},     {"phonglab", 60}, {"pond", 62},
     {"portrait", 53},  {"raceway", 78},  {"relax", 50},
     {"stilllife", 73}, {"storm", 75},    {"stress-instances", 41},
-    {"vale", 99}};
+    {"vale", 103}};
 
 HeadlessRenderer& shared_headless() {
     static HeadlessRenderer shared = [] {
