@@ -78,8 +78,8 @@ struct FoldLightScene : WrinkleScene {
     Entity light;
 };
 
-constexpr WrinkleSurface kFolds = {.share = 1};
-constexpr WrinkleSurface kSingleSlopes = {.bounce = false, .share = 1};
+const WrinkleSurface kFolds = {.share = 1};
+const WrinkleSurface kSingleSlopes = {.bounce = false, .share = 1};
 
 }  // namespace
 
