@@ -14,8 +14,9 @@ namespace {
 
 constexpr unsigned kSumsBinding = 0;
 constexpr unsigned kRadianceImage = 0;
-constexpr unsigned kAddGroup = 64;      // pixels of a row
-constexpr float kMostSteps = 1 << 17;   // that a point adds to a pixel; fewer, of 32,768 and more
+constexpr unsigned kAddGroup = 64;  // pixels of a row
+constexpr float kMaxSteps =
+    1 << 17;  // that a point adds to a pixel; less if there are more than 32,768
 constexpr float kLargestSum = 4.29e9f;  // a little less than a word holds
 
 bool is_positive(float x) {
@@ -51,8 +52,8 @@ float brightest_of(const LookRecord& look) {
 const gpu::Program* begin_particle_splats(
     ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest) {
     const float share = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
-    splats.most = std::max(std::min(kMostSteps, share) - 1, 1.0f);  // rounding may add one
-    splats.unit = brightest > 0 ? splats.most / brightest : 1;
+    splats.max_amount = std::max(std::min(kMaxSteps, share) - 1, 1.0f);  // rounding may add one
+    splats.unit = brightest > 0 ? splats.max_amount / brightest : 1;
     const IVec2 size = view.size();
     const std::size_t words =
         3 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
@@ -71,7 +72,7 @@ void draw_particle_splats(
     device.bind_storage(kSumsBinding, splats.sums);
     program.set("count", static_cast<int>(pool.count));
     program.set("unit", splats.unit);
-    program.set("most", splats.most);
+    program.set("max_amount", splats.max_amount);
     device.dispatch((pool.count + layout::kParticleGroup - 1) / layout::kParticleGroup);
 }
 

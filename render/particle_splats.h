@@ -27,7 +27,7 @@ struct ParticleSplats {
     ProgramVariants add;
     gpu::Buffer sums = {};  ///< three words a pixel, 0 between the frames
     float unit = 1;         ///< of radiance, in the sums of this frame
-    float most = 0;         ///< in the sums, that a point adds to a pixel
+    float max_amount = 0;   ///< that a point adds to a pixel, in units of the sums
 };
 
 [[nodiscard]] ParticleSplats create_particle_splats(gpu::Device& device);

@@ -151,9 +151,9 @@ LIMN_FIELDS(WrinkleSurface) {
         "such skin emits nothing");
     LIMN_FIELD(
         bounce,
-        "isometric: of the two walls of a fold one shades the other, and light bounces between "
-        "them, so that deep folds are not black but take on the color of the skin; off: every "
-        "slope is lit as if by itself; emissive skin is");
+        "isometric: the walls of a fold shade each other, and light bounces between them, so that "
+        "deep folds take on the color of the skin instead of going black; off: each slope is lit "
+        "by itself, as it always is on skin that emits light");
     LIMN_FIELD(
         lambda,
         "by what the square of the length is multiplied: wrinkles begin where that is 1; above 1 "

@@ -7,8 +7,9 @@
 
 namespace limn {
 
-// Draws all bodies of water over the lit scene: with one draw call what is seen of their surfaces,
-// then over the pixels that show them their light.
+// Draws all bodies of water over the lit scene: what is seen of their surfaces with one draw call
+// for the patches that waves move and one for flat ones, then over the pixels that show them their
+// light.
 //
 // Reads    WaterList, radiance, depth, light clusters, environment
 // Writes   radiance, depth, velocity and, if requested, surface attributes where there is water

@@ -15,7 +15,7 @@ layout(std430, binding = 0) buffer Sums {
 
 uniform int count;
 uniform float unit;  // of radiance, in the sums
-uniform float most;  // in the sums, that a disc adds to a pixel
+uniform float max_amount;  // that a disc adds to a pixel, in units of the sums
 
 struct Disc {
     vec2 middle;   // [px]
@@ -60,7 +60,7 @@ void add(Disc disc, ivec2 pixel) {
     }
     uint bits = uint(pixel.x) * 0x9e3779b9u + uint(pixel.y);
     float chance = 0.5 + 0.5 * random_share(disc.random ^ bits, 0u);
-    uvec3 amount = uvec3(min(disc.light * (inside * inside * unit), vec3(most)) + chance);
+    uvec3 amount = uvec3(min(disc.light * (inside * inside * unit), vec3(max_amount)) + chance);
     int first = 3 * (pixel.y * int(view.size.x) + pixel.x);
     for (int i = 0; i < 3; ++i) {
         atomicAdd(sums[first + i], amount[i]);

@@ -208,7 +208,7 @@ void add_body(
          .variance = Vec4(0)});
 }
 
-/// Moves patches that no wave moves, however near, behind the others; both stay in their order.
+/// Sorts flat patches, which no wave displaces, behind the others; both keep their order.
 void move_flat_back(WaterList& list) {
     const auto is_flat = [&](const WaterPatch& patch) {
         const layout::WaterRecord& body = list.bodies[static_cast<std::size_t>(patch.body)];

@@ -55,7 +55,7 @@ struct WaterList {
     std::vector<layout::WaterRecord> bodies;  ///< in world order
     std::vector<layout::WaveLineRecord> lines;
     std::vector<layout::WaveRingRecord> rings;
-    std::vector<WaterPatch> patches;       ///< of all bodies; those that no wave moves last
+    std::vector<WaterPatch> patches;       ///< of all bodies; flat ones last
     std::vector<WaterPatch> flat_patches;  ///< for sorting them
     std::size_t first_flat_patch = 0;
     std::optional<WaterAroundView> around{};  ///< the first found

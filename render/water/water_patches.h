@@ -13,7 +13,8 @@ namespace limn {
 // camera (CDLOD; Strugar, "Continuous Distance-Dependent Level of Detail", 2009). Each patch is
 // drawn with the same grid of layout::kWaterGrid cells per side; toward the distance of the next
 // coarser level every second vertex morphs onto its neighbor, so there are neither cracks nor
-// popping. Vertices are fixed in the water's own space, however the camera moves.
+// popping. Where no wave moves a patch, its inside is a fan of triangles, its border the same.
+// Vertices are fixed in the water's own space, however the camera moves.
 
 inline constexpr float kMinPatchDetail = 2.2f;
 inline constexpr int kMaxWaterPatches = 8192;

@@ -2,7 +2,7 @@
 // cosine of the slope, the sine of half the angle between the walls: the share of a wall's diffuse light that leaves the
 // groove, and of the light around that reaches a wall; what does not leave falls on the other wall. All walls are taken
 // as evenly lit, by means that are exact; folds are taken as V-shaped, as steep everywhere as where they are seen.
-// Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994; bounces without end as in Jimenez et al.,
+// Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994; infinite bounces as in Jimenez et al.,
 // "Practical Real-Time Strategies for Accurate Indirect Occlusion", 2016.
 
 // Mean cosines of a light at a wall and at the one opposite. What passes the mouth of the groove falls on both together:
