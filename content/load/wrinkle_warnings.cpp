@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -74,6 +75,19 @@ struct WrinkleCheck {
         }
     }
 
+    /// Every method draws its folds from the material's map, but the one that shows the strain.
+    void check_map(Entity entity, const WrinkleSurface& surface, const MeshInstance& instance) {
+        if (surface.method == WrinkleMethod::None || surface.method == WrinkleMethod::StrainView) {
+            return;
+        }
+        const std::uint32_t material = instance.material.index;
+        if (material < assets.materials.size()
+            && assets.materials[material].wrinkle_texture.image.index < assets.images.size()) {
+            return;
+        }
+        warn(entity, "wrinkle_surface draws nothing without a wrinkle_texture of its material");
+    }
+
     /// Images of a face that do not lie over each other.
     void check_maps() {
         world.query<const WrinkleMaps>().each([&](Entity entity, const WrinkleMaps& maps) {
@@ -115,6 +129,7 @@ void find_wrinkle_warnings(const World& world, std::vector<SceneWarning>& warnin
             if (instance.mesh.index < assets->meshes.size()) {
                 check.check_surface(entity, surface, assets->meshes[instance.mesh.index]);
             }
+            check.check_map(entity, surface, instance);
         });
     check.check_maps();
 }

@@ -377,9 +377,8 @@ TEST_CASE("scene warnings: regions and shapes of wrinkles that the mesh does not
                 "mesh_instance": {{"mesh": "face"}}, "wrinkle_surface": {{{}}}}}]}})",
             fields));
     };
-    CHECK(found("").empty());
     CHECK(
-        found(R"("regions": ["brow"])")
+        found(R"("method": "none", "regions": ["brow"])")
         == Warnings{"entity \"face\": wrinkle_surface.regions[0]: found \"brow\", no region of "
                     "mesh \"face\"; expected one of a mesh that has any"});
     World world;
@@ -391,13 +390,13 @@ TEST_CASE("scene warnings: regions and shapes of wrinkles that the mesh does not
     mesh.regions[1].name = "chin";
     mesh.morphs.emplace_back().name = "age";
     world.insert_resource(std::move(assets));
-    WrinkleSurface surface;
+    WrinkleSurface surface = {.method = WrinkleMethod::None};
     surface.regions = {"chin"};
     surface.second_regions = {"chin", "forhead"};
     surface.resting = {{"forehead", 0.1f}, {"cheek", 0.1f}};
     surface.resting_shape = "age";
     world.create(Name{"face"}, MeshInstance{MeshId{0}, {}}, surface);
-    surface = {};
+    surface = {.method = WrinkleMethod::None};
     surface.resting_shape = "old";
     world.create(Name{"other"}, MeshInstance{MeshId{0}, {}}, surface);
     Warnings lines;
@@ -413,4 +412,34 @@ TEST_CASE("scene warnings: regions and shapes of wrinkles that the mesh does not
             "mesh \"head\"; expected one of forehead chin",
             "entity \"other\": wrinkle_surface.resting_shape: found \"old\", no shape of mesh "
             "\"head\"; expected one of age"});
+}
+
+TEST_CASE("scene warnings: wrinkles whose material has no map of them") {
+    World world;
+    Assets assets;
+    assets.meshes.emplace_back();
+    assets.images.emplace_back();
+    assets.materials.resize(2);
+    assets.materials[1].wrinkle_texture.image = ImageId{0};
+    world.insert_resource(std::move(assets));
+    const auto create = [&](const char* name, WrinkleMethod method, MaterialId material) {
+        world.create(
+            Name{name}, MeshInstance{MeshId{0}, material}, WrinkleSurface{.method = method});
+    };
+    create("smooth", WrinkleMethod::Isometric, MaterialId{0});
+    create("gray", WrinkleMethod::Alpha, MaterialId{});
+    create("folded", WrinkleMethod::Isometric, MaterialId{1});
+    create("strained", WrinkleMethod::StrainView, MaterialId{0});
+    create("none", WrinkleMethod::None, MaterialId{0});
+    Warnings lines;
+    for (const SceneWarning& warning : find_scene_warnings(world)) {
+        lines.push_back(warning.text);
+    }
+    const char* const kText =
+        "wrinkle_surface draws nothing without a wrinkle_texture of its material";
+    CHECK(
+        lines
+        == Warnings{
+            fmt::format("entity \"smooth\": {}", kText),
+            fmt::format("entity \"gray\": {}", kText)});
 }
