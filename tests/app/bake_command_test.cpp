@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::bake_command_test {
 
 using test::count_lines;
 using test::ProgramRun;
@@ -307,4 +307,4 @@ TEST_CASE("bake: a strain model of wrong shapes, maps or faces is refused by nam
     says(R"({"face": "skin.glb", "size": 0, "poses": [{"image": "a.png"}]})", "size");
 }
 
-}  // namespace limn
+}  // namespace limn::bake_command_test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::bench_command_test {
 
 using Words = std::vector<std::string>;
 
@@ -38,4 +38,4 @@ TEST_CASE("bench_command: parts are for programs that have them") {
     CHECK(most.error().message.find("--most is for `particles`") != std::string::npos);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::bench_command_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::bench_fakephong_test {
 
 using test::ProgramRun;
 using test::run_limn;
@@ -72,4 +72,4 @@ TEST_CASE("bench_fakephong: every method is timed on every model under 1, 4 and 
     CHECK(run.out.find("Counted on a processor") != std::string::npos);
 }
 
-}  // namespace limn
+}  // namespace limn::bench_fakephong_test

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace limn {
+namespace limn::bench_lens_test {
 
 using test::ProgramRun;
 using test::run_limn;
@@ -123,4 +123,4 @@ TEST_CASE("bench_lens: limn bench lens runs each effect's own passes") {
     }
 }
 
-}  // namespace limn
+}  // namespace limn::bench_lens_test

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-namespace limn {
+namespace limn::bench_lights_test {
 
 using test::ProgramRun;
 using test::run_limn;
@@ -108,4 +108,4 @@ TEST_CASE("bench_lights: limn bench lights measures all five methods in one run"
     }
 }
 
-}  // namespace limn
+}  // namespace limn::bench_lights_test

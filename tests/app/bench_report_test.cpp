@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace limn {
+namespace limn::bench_report_test {
 namespace {
 
 BenchReport small_report() {
@@ -66,4 +66,4 @@ TEST_CASE("bench_report: the table counts the systems that do nothing, the JSON 
     CHECK(nlohmann::json::parse(bench_json(report))["systems"].size() == 4);
 }
 
-}  // namespace limn
+}  // namespace limn::bench_report_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-namespace limn {
+namespace limn::cli_test {
 
 using test::count_lines;
 using test::ProgramRun;
@@ -475,4 +475,4 @@ TEST_CASE("cli: the state hash of particles is the same for any number of thread
     }
 }
 
-}  // namespace limn
+}  // namespace limn::cli_test

@@ -4,7 +4,7 @@
 
 #include <initializer_list>
 
-namespace limn {
+namespace limn::command_values_test {
 
 TEST_CASE("command_values: a size is two whole numbers of pixels") {
     const Result<IVec2> size = parse_size("1280x720");
@@ -70,4 +70,4 @@ TEST_CASE("command_values: a list has no empty part") {
     CHECK_FALSE(parse_list("depth,,normal"));
 }
 
-}  // namespace limn
+}  // namespace limn::command_values_test

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::edit_json_test {
 namespace {
 
 constexpr const char* kLevel = R"({
@@ -369,4 +369,4 @@ TEST_CASE("edit_json: edits are a patch with the present values; removed compone
     CHECK((*patch)["resources"]["exposure"]["ev"].number == -2.0);
 }
 
-}  // namespace limn
+}  // namespace limn::edit_json_test

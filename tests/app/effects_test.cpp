@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::effects_test {
 namespace {
 
 struct EffectFile {
@@ -174,4 +174,4 @@ TEST_CASE("explosion: a snapshot in its middle continues with the same bits") {
     CHECK(hashes(*other) == expected);
 }
 
-}  // namespace limn
+}  // namespace limn::effects_test

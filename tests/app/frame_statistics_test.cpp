@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::frame_statistics_test {
 
 TEST_CASE("frame_statistics: median, p95 and max of 1 .. 100 in any order") {
     std::vector<double> samples;
@@ -38,4 +38,4 @@ TEST_CASE("frame_statistics: a history forgets the oldest sample first") {
     CHECK(history.sample(0) == 1.0);  // asking for the summary does not reorder it
 }
 
-}  // namespace limn
+}  // namespace limn::frame_statistics_test

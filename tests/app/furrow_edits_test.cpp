@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::furrow_edits_test {
 namespace {
 
 constexpr float kLength = 0.02f;  // of a vector of magnitude 1 [m]
@@ -373,4 +373,4 @@ TEST_CASE("furrow edits: a file that is none is refused with its place") {
     CHECK_FALSE(load_furrows(folder.file("absent.json")).ok());
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::furrow_edits_test

@@ -9,7 +9,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-namespace limn {
+namespace limn::gamepad_test {
 namespace {
 
 GLFWgamepadstate at_rest() {
@@ -74,4 +74,4 @@ TEST_CASE("gamepad: the right stick looks as a mouse does, in equal times equall
     CHECK(read_gamepad(state).click);
 }
 
-}  // namespace limn
+}  // namespace limn::gamepad_test

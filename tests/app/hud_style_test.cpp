@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::hud_style_test {
 
 TEST_CASE("hud_style: text is as high as the window allows, and never too small to read") {
     const auto text = [](float content_scale, int height) {
@@ -29,4 +29,4 @@ TEST_CASE("hud_style: text is as high as the window allows, and never too small 
     }
 }
 
-}  // namespace limn
+}  // namespace limn::hud_style_test

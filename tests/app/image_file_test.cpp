@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-namespace limn {
+namespace limn::image_file_test {
 
 TEST_CASE("image_file: the end of the name decides what is written") {
     CHECK(*image_file_kind("a.png") == ImageFileKind::Png);
@@ -28,4 +28,4 @@ TEST_CASE("image_file: %04d becomes the frame's number and nothing else is a for
     CHECK(numbered_path("still.png", 5) == "still.png");
 }
 
-}  // namespace limn
+}  // namespace limn::image_file_test

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::inspector_test {
 namespace {
 
 /// ImGui without a window: its frames are built and thrown away.
@@ -343,4 +343,4 @@ TEST_CASE("inspector: the selected entity may vanish at any time") {
     CHECK_FALSE(world.alive(inspector.selected()));
 }
 
-}  // namespace limn
+}  // namespace limn::inspector_test

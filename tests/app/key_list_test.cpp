@@ -9,7 +9,7 @@
 
 #include <set>
 
-namespace limn {
+namespace limn::key_list_test {
 namespace {
 
 /// 200 x 100 pixels from (10, 20); a value of 2 is at the upper edge.
@@ -170,4 +170,4 @@ TEST_CASE("emitter controls: counts, drops told, a restart without particles, an
     CHECK(seeds.size() == 1000);
 }
 
-}  // namespace limn
+}  // namespace limn::key_list_test

@@ -29,7 +29,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::level_golden_test {
 namespace {
 
 constexpr int kWidth = 320;
@@ -260,4 +260,4 @@ TEST_CASE("level: the same level runs to the same state twice") {
     }
 }
 
-}  // namespace limn
+}  // namespace limn::level_golden_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <string>
 
-namespace limn {
+namespace limn::level_page_test {
 
 using test::ProgramRun;
 using test::run_limn;
@@ -53,4 +53,4 @@ TEST_CASE("level page: the example has no warnings and renders lanterns brighter
     CHECK(red > 1.2 * blue);  // dusk
 }
 
-}  // namespace limn
+}  // namespace limn::level_page_test

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::level_shows_test {
 namespace {
 
 constexpr int kWidth = 160;
@@ -130,4 +130,4 @@ TEST_CASE("shows: what a level shows is a row of TECHNIQUES.md that names the le
     }
 }
 
-}  // namespace limn
+}  // namespace limn::level_shows_test

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::level_warm_up_test {
 namespace {
 
 constexpr IVec2 kSize = {64, 36};
@@ -161,4 +161,4 @@ TEST_CASE("warm-up: info prints how many shader programs a level needs") {
     CHECK(run.out.find(" shader programs\n") != std::string::npos);
 }
 
-}  // namespace limn
+}  // namespace limn::level_warm_up_test

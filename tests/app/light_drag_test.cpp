@@ -11,7 +11,7 @@
 
 #include <utility>
 
-namespace limn {
+namespace limn::light_drag_test {
 namespace {
 
 constexpr Vec3 kCenter = {0.2f, 1.5f, -0.1f};
@@ -106,4 +106,4 @@ TEST_CASE("light drag: a light that is to face shines on the center from the dir
     CHECK(glm::distance(transform_vector(studio.place(), {0, 0, -1}), -direction) < 1e-5f);
 }
 
-}  // namespace limn
+}  // namespace limn::light_drag_test

@@ -22,7 +22,7 @@
 #include <optional>
 #include <string>
 
-namespace limn {
+namespace limn::model_image_test {
 namespace {
 
 constexpr int kWidth = 160;
@@ -134,4 +134,4 @@ TEST_CASE("model image: the ground fades into every backdrop") {
     }
 }
 
-}  // namespace limn
+}  // namespace limn::model_image_test

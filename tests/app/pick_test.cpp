@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
-namespace limn {
+namespace limn::pick_test {
 namespace {
 
 /// A unit square in the xy plane with its lower right half missing.
@@ -165,4 +165,4 @@ TEST_CASE("skin drag: only a drag that begins on skin pulls, until the button is
     CHECK_FALSE(pulls(0, true));
 }
 
-}  // namespace limn
+}  // namespace limn::pick_test

@@ -9,7 +9,7 @@
 // `limn play` as a player meets it: a window on a virtual display (Xvfb), real key presses
 // (xdotool), and what the display shows, read from the memory of its screen.
 
-namespace limn {
+namespace limn::play_test {
 
 using test::can_play;
 using test::count_different;
@@ -435,4 +435,4 @@ TEST_CASE("play: without a display it renders the camera's way and says where th
     CHECK(count == 8);
 }
 
-}  // namespace limn
+}  // namespace limn::play_test

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
-namespace limn {
+namespace limn::player_camera_test {
 namespace {
 
 Vec3 position_of(const Affine& pose) {
@@ -162,4 +162,4 @@ TEST_CASE("player_camera: what is at the focus follows the pointer when the orbi
     CHECK(pixel.y == test::near(motion.y).epsilon(1e-3));
 }
 
-}  // namespace limn
+}  // namespace limn::player_camera_test

@@ -17,7 +17,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-namespace limn {
+namespace limn::player_help_test {
 namespace {
 
 /// The lines of the help.
@@ -139,4 +139,4 @@ TEST_CASE("play: frames are antialiased unless the player or the level says how"
     CHECK(world.resource<Rendering>().antialiasing == Antialiasing::Temporal);
 }
 
-}  // namespace limn
+}  // namespace limn::player_help_test

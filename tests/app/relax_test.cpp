@@ -17,7 +17,7 @@
 #include <memory>
 #include <vector>
 
-namespace limn {
+namespace limn::relax_test {
 namespace {
 
 constexpr IVec2 kSize = {160, 90};
@@ -141,4 +141,4 @@ TEST_CASE("relax: both clips move the same skin, and look different on the foreh
     CHECK(elsewhere == 0);
 }
 
-}  // namespace limn
+}  // namespace limn::relax_test

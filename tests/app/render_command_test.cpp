@@ -10,7 +10,7 @@
 #include <memory>
 #include <thread>
 
-namespace limn {
+namespace limn::render_command_test {
 
 using test::count_lines;
 using test::Picture;
@@ -269,4 +269,4 @@ TEST_CASE("render_command: compare finds an image equal to itself") {
     CHECK(read_image(folder.file("d.png")).whole);
 }
 
-}  // namespace limn
+}  // namespace limn::render_command_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::render_sampled_test {
 
 using test::Picture;
 using test::read_image;
@@ -242,4 +242,4 @@ TEST_CASE("render sampled: more samples come nearer, and layers are those of the
     CHECK(few.values[depth] > 1e9f);
 }
 
-}  // namespace limn
+}  // namespace limn::render_sampled_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-namespace limn {
+namespace limn::render_scale_test {
 
 TEST_CASE("render_scale: a processor draws 640 x 360 of a 16:9 window, a GPU all of it") {
     const IVec2 window = {1280, 720};
@@ -85,4 +85,4 @@ TEST_CASE("render_scale: without auto nothing changes") {
     CHECK(scale.scale == 0.5f);
 }
 
-}  // namespace limn
+}  // namespace limn::render_scale_test

@@ -8,7 +8,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-namespace limn {
+namespace limn::typing_queue_test {
 namespace {
 
 constexpr int kEnter = GLFW_KEY_ENTER;
@@ -85,4 +85,4 @@ TEST_CASE("typing queue: plain text does not wait, however much is typed in a fr
         == Frames{"+1'1+2'2-1-2+2'2"});
 }
 
-}  // namespace limn
+}  // namespace limn::typing_queue_test

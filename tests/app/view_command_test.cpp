@@ -15,7 +15,7 @@
 
 // `limn view`: images of known light, their PNG against the formula, and the window.
 
-namespace limn {
+namespace limn::view_command_test {
 
 using test::ProgramRun;
 using test::run_limn;
@@ -223,4 +223,4 @@ TEST_CASE("view: in the window a key and its opposite lead back to the same imag
     CHECK(session.program->wait().exit_code == 0);
 }
 
-}  // namespace limn
+}  // namespace limn::view_command_test

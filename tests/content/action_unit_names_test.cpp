@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-namespace limn {
+namespace limn::action_unit_names_test {
 namespace {
 
 TEST_CASE("action unit names: those of ARKit, ICT FaceKit, MakeHuman and FACS are the same units") {
@@ -35,4 +35,4 @@ TEST_CASE("action unit names: other names are none") {
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::action_unit_names_test

@@ -13,8 +13,7 @@
 #include <thread>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::asset_cache_test {
 namespace {
 
 PatternMaps numbered_maps(std::uint8_t first, int size) {
@@ -163,3 +162,5 @@ TEST_CASE("asset cache: what takes long to generate is generated once by two pro
         CHECK(calls == 1);
     }
 }
+
+}  // namespace limn::asset_cache_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::bar_test {
 
 TEST_CASE("bar: weights sum to 1, and change smoothly from one joint to the other") {
     const BarShape shape;
@@ -58,4 +58,4 @@ TEST_CASE("bar: its sides face outward, and its clips are those of its skeleton"
         == test::near(1).epsilon(1e-5));
 }
 
-}  // namespace limn
+}  // namespace limn::bar_test

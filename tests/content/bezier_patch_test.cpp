@@ -7,7 +7,8 @@
 
 #include <set>
 
-using namespace limn;
+namespace limn::bezier_patch_test {
+
 using namespace limn::test;
 
 namespace {
@@ -384,3 +385,5 @@ TEST_CASE("bezier_patch: level l holds 4^l sub-patches of the same surface, ever
         last = distance;
     }
 }
+
+}  // namespace limn::bezier_patch_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::boat_test {
 
 using namespace test;
 
@@ -86,4 +86,4 @@ TEST_CASE("boat: the sail's belly is to port, its boom and gaff point astern") {
     CHECK(mast_position(12).z == test::near(3.8));
 }
 
-}  // namespace limn
+}  // namespace limn::boat_test

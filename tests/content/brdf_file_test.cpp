@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace limn {
+namespace limn::brdf_file_test {
 namespace {
 
 const std::string kSet = "# synthetic\n"
@@ -90,4 +90,4 @@ TEST_CASE("brdf file: a material has what its file says, and so has one that sta
         != std::string::npos);
 }
 
-}  // namespace limn
+}  // namespace limn::brdf_file_test

@@ -24,8 +24,7 @@
 #include <string_view>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::component_json_test {
 namespace {
 
 enum class Mood : std::uint8_t { Calm, Busy, Wild };
@@ -580,3 +579,5 @@ TEST_CASE("component_json: degrees where radians are expected are told how to be
     CHECK(error_of<Measures>(R"({"angle": 1000})").find("degrees") == std::string::npos);
     CHECK(error_of<Measures>(R"({"length": -45})").find("degrees") == std::string::npos);
 }
+
+}  // namespace limn::component_json_test

@@ -19,7 +19,8 @@
 #include <cmath>
 #include <cstring>
 
-using namespace limn;
+namespace limn::creature_test {
+
 using namespace limn::test;
 
 namespace {
@@ -380,3 +381,5 @@ TEST_CASE("creature: a level makes one, and names its skeleton, skin and clips")
     CHECK(world.get<const Pose>(fox).joints.size() == kCreatureJoints);
     CHECK(world.get<const MorphWeights>(fox).weights.size() == 2);
 }
+
+}  // namespace limn::creature_test

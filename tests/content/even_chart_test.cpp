@@ -10,8 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::even_chart_test {
 namespace {
 
 /// A third of a cylinder of radius 1 and height 1 whose texture coordinates crowd to one side.
@@ -147,3 +146,5 @@ TEST_CASE("head: pores are nearly round all over the face, beside the nose too")
     CHECK(stretch_within(head, head.uvs1, {1, -1.2f, 9.5f}, {2.2f, 0.5f, 20}) < 1.6f);    // wings
     CHECK(stretch_within(head, head.uvs1, {0, -2.4f, 10}, {2, -1.2f, 20}) < 1.5f);        // lip
 }
+
+}  // namespace limn::even_chart_test

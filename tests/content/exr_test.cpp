@@ -12,7 +12,8 @@
 #include <fstream>
 #include <limits>
 
-using namespace limn;
+namespace limn::exr_test {
+
 using limn::test::TemporaryFolder;
 
 namespace {
@@ -255,3 +256,5 @@ TEST_CASE("exr: a damaged byte never does more than fail") {
         CHECK_FALSE(decode_exr(std::span(good).first(size), "short").ok());
     }
 }
+
+}  // namespace limn::exr_test

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn {
+namespace limn::face_chart_test {
 namespace {
 
 /// Of the skin that folds.
@@ -44,4 +44,4 @@ TEST_CASE("face chart: what is no part of the face is in the corner") {
     CHECK(make_face_chart(std::vector<Vec3>{none})[0] == Vec2{0, 0});
 }
 
-}  // namespace limn
+}  // namespace limn::face_chart_test

@@ -10,8 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::face_fold_pattern_test {
 namespace {
 
 /// The slope that the map stands for at a texture coordinate, as wrinkle_slopes has it.
@@ -165,3 +164,5 @@ TEST_CASE("face folds: beside the nasolabial fold there is no second one") {
         }
     }
 }
+
+}  // namespace limn::face_fold_pattern_test

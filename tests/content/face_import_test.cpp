@@ -21,7 +21,8 @@
 #include <string_view>
 #include <vector>
 
-using namespace limn;
+namespace limn::face_import_test {
+
 using limn::test::near;
 
 namespace {
@@ -407,3 +408,5 @@ TEST_CASE(
         check_expression(face, expression, 0.02);
     }
 }
+
+}  // namespace limn::face_import_test

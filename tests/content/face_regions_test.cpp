@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-using namespace limn;
+namespace limn::face_regions_test {
+
 using limn::test::near;
 
 namespace {
@@ -115,3 +116,5 @@ TEST_CASE("face regions: what is no skin of the face is in none") {
         CHECK(sample(name, {0, -30, 10}).weight == 0.0f);
     }
 }
+
+}  // namespace limn::face_regions_test

@@ -17,7 +17,7 @@
 #include <tuple>
 #include <vector>
 
-namespace limn {
+namespace limn::fragments_test {
 
 using namespace test;
 
@@ -207,4 +207,4 @@ TEST_CASE("fragments: in a level, of a mesh before them, and other meshes keep t
     CHECK(wrong.error().message.find("ball") != std::string::npos);
 }
 
-}  // namespace limn
+}  // namespace limn::fragments_test

@@ -11,8 +11,7 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::furrow_field_test {
 namespace {
 
 bool near_to(const Vec3& a, const Vec3& b, float tolerance = 1e-6f) {
@@ -277,3 +276,5 @@ TEST_CASE("furrow map: a mesh that cannot be laid flat is an error that says why
     REQUIRE(!map.ok());
     CHECK(map.error().message.find("stick: found 2 m along y") == 0);
 }
+
+}  // namespace limn::furrow_field_test

@@ -18,8 +18,7 @@
 #include <utility>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::furrow_height_test {
 namespace {
 
 const FurrowMap& skin_map() {
@@ -301,3 +300,5 @@ TEST_CASE("furrow presets: faint and distinct differ in bump alone, smooth and r
     distinct.functions.limit.x += 1;
     CHECK(needs_growth(style("faint"), distinct));
 }
+
+}  // namespace limn::furrow_height_test

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-using namespace limn;
-
+namespace limn::furrow_patterns_test {
 namespace {
 
 Vec3 normal_at(const PatternMaps& maps, int x, int y) {
@@ -81,3 +80,5 @@ TEST_CASE("furrows pattern: cells roughen the skin without a direction") {
     CHECK(rough.x > 0.02f);
     CHECK(rough.x == test::near(rough.y).epsilon(0.15));
 }
+
+}  // namespace limn::furrow_patterns_test

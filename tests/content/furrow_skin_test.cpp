@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::furrow_skin_test {
 namespace {
 
 constexpr int kSize = 96;
@@ -188,4 +188,4 @@ TEST_CASE("furrow skin: images and meshes that do not fit grow nothing, with a r
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::furrow_skin_test

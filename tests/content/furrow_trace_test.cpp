@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::furrow_trace_test {
 namespace {
 
 FurrowStyle make_straight_style() {
@@ -385,3 +384,5 @@ TEST_CASE("furrow topography: furrows of both fields cross and mostly enclose fo
     REQUIRE(all > 300);
     CHECK(patches[4] > 0.85 * all);
 }
+
+}  // namespace limn::furrow_trace_test

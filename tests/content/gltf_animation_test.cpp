@@ -14,7 +14,8 @@
 #include <functional>
 #include <optional>
 
-using namespace limn;
+namespace limn::gltf_animation_test {
+
 using namespace limn::test;
 
 namespace {
@@ -324,3 +325,5 @@ TEST_CASE("gltf animation: Fox has 24 joints in a row of parents, and three ways
         }
     }
 }
+
+}  // namespace limn::gltf_animation_test

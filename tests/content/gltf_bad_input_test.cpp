@@ -10,7 +10,8 @@
 #include <cmath>
 #include <filesystem>
 
-using namespace limn;
+namespace limn::gltf_bad_input_test {
+
 using namespace limn::test;
 
 namespace {
@@ -448,3 +449,5 @@ TEST_CASE("gltf: wrong components in extras.limn are refused at their place") {
     refused(R"({"no_such_thing": {}})", "nodes[1].extras.limn: found \"no_such_thing\"");
     refused(R"("{")", "nodes[1].extras.limn");
 }
+
+}  // namespace limn::gltf_bad_input_test

@@ -17,7 +17,8 @@
 
 #include <fstream>
 
-using namespace limn;
+namespace limn::gltf_character_test {
+
 using namespace limn::test;
 
 namespace {
@@ -283,3 +284,5 @@ TEST_CASE("gltf character: in a level, what names no character follows the one i
     CHECK(character(3).is_null());
     CHECK(character(4) == prefab_entity(5));
 }
+
+}  // namespace limn::gltf_character_test

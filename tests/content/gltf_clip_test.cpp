@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::gltf_clip_test {
 namespace {
 
 // One red pixel.
@@ -155,4 +155,4 @@ TEST_CASE("gltf clip: files without shapes, broken or missing ones are refused i
     CHECK(read_gltf_face(path).error().message.starts_with(path + ":1:"));
 }
 
-}  // namespace limn
+}  // namespace limn::gltf_clip_test

@@ -12,7 +12,8 @@
 #include <functional>
 #include <limits>
 
-using namespace limn;
+namespace limn::gltf_deform_test {
+
 using namespace limn::test;
 
 namespace {
@@ -339,3 +340,5 @@ TEST_CASE("gltf deform: bad morph targets and their weights are refused with the
         == "flag.glb: animations[0].samplers[0].output: found 2 values, expected 4 for 2 keys of 2 "
            "morph targets");
 }
+
+}  // namespace limn::gltf_deform_test

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::gltf_rare_test {
+
 using namespace limn::test;
 
 // Valid files that exporters seldom write.
@@ -152,3 +153,5 @@ TEST_CASE("gltf: points, lines, strips and fans become triangles") {
         CHECK(scene->meshes[0].indices.size() == kIndices[mode]);
     }
 }
+
+}  // namespace limn::gltf_rare_test

@@ -10,8 +10,7 @@
 #include <numeric>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::gltf_strokes_test {
 namespace {
 
 const std::vector<Vec3> kPositions = {{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {3, 4, 0}};
@@ -82,3 +81,5 @@ TEST_CASE("strokes: more points than are drawn are thinned out over all of them"
         REQUIRE(strokes.sources[i] <= strokes.sources[i - 6] + 4);
     }
 }
+
+}  // namespace limn::gltf_strokes_test

@@ -17,7 +17,8 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace limn;
+namespace limn::gltf_test {
+
 using namespace limn::test;
 
 namespace {
@@ -598,3 +599,5 @@ TEST_CASE("gltf: a camera that frames a box sees all of it, and not from far awa
         }
     }
 }
+
+}  // namespace limn::gltf_test

@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::gltf_write_test {
 namespace {
 
 /// A strip of five vertices with everything a mesh can have.
@@ -314,3 +313,5 @@ TEST_CASE("gltf: a region of another size is refused, and a direction without on
            "region "
            "of that name");
 }
+
+}  // namespace limn::gltf_write_test

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::head_correctives_test {
 namespace {
 
 const std::vector<HeadPoint>& skin() {
@@ -129,4 +129,4 @@ TEST_CASE("head correctives: an eye that two units close is closed once") {
     CHECK(opening({{"AU43_L", 1}, {"AU44_L", 1}}, false).first < -0.3f);
 }
 
-}  // namespace limn
+}  // namespace limn::head_correctives_test

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::head_dressed_test {
 namespace {
 
 constexpr std::uint16_t kShouldersJoint = 4;
@@ -213,4 +213,4 @@ TEST_CASE("dressed head: its triangles are some of the whole one, and no shape m
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::head_dressed_test

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limn {
+namespace limn::head_expressions_test {
 namespace {
 
 const HeadShape kShape = {};
@@ -426,4 +426,4 @@ TEST_CASE("head: its clip talk opens the mouth at a, closes it at m, and ends at
     CHECK(check_clip(*talk, 4, expression_names().size()).ok());
 }
 
-}  // namespace limn
+}  // namespace limn::head_expressions_test

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace limn {
+namespace limn::head_furrow_test {
 namespace {
 
 constexpr int kSize = 192;
@@ -91,4 +91,4 @@ TEST_CASE("head furrows: no normal is beyond the limit of wrinkle maps, and unit
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::head_furrow_test

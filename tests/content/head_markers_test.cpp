@@ -32,7 +32,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::head_markers_test {
 namespace {
 
 const HeadVertex& layout_vertex(std::uint32_t marker) {
@@ -333,4 +333,4 @@ TEST_CASE("head markers: a recording of other markers is refused with the neares
         == "take: the surface has no marker \"mouth9_90_X\" (did you mean mouth9_90_M?)");
 }
 
-}  // namespace limn
+}  // namespace limn::head_markers_test

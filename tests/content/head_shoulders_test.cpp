@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::head_shoulders_test {
 namespace {
 
 HeadShape bust(float sex = 0, float build = 0) {
@@ -334,4 +334,4 @@ TEST_CASE("shoulders: a shirt moves as the shoulders do, without shapes, its hal
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::head_shoulders_test

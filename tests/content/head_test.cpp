@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::head_test {
 namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
@@ -314,4 +314,4 @@ TEST_CASE("head: no number of a made mesh is NaN at the ends of all parameters")
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::head_test

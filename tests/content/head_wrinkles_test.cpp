@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limn {
+namespace limn::head_wrinkles_test {
 namespace {
 
 const MeshData& head() {
@@ -141,4 +141,4 @@ TEST_CASE("head expressions: at half its weight a unit moves half as far, and no
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::head_wrinkles_test

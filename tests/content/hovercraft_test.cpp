@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::hovercraft_test {
 
 using namespace test;
 
@@ -52,4 +52,4 @@ TEST_CASE("hovercraft: its own mirror image, with frames at right angles") {
     CHECK(mesh.colors.size() == mesh.positions.size());
 }
 
-}  // namespace limn
+}  // namespace limn::hovercraft_test

@@ -10,8 +10,7 @@
 #include <limits>
 #include <numeric>
 
-using namespace limn;
-
+namespace limn::image_compare_test {
 namespace {
 
 ColorImage flat(int width, int height, const Vec3& color) {
@@ -468,3 +467,5 @@ TEST_CASE("scanline: place and height of a highlight, and a kink, are found") {
     CHECK(other.roughness_b == test::near(0.1).epsilon(1e-3));
     CHECK(other.roughness_a < 0.05);
 }
+
+}  // namespace limn::image_compare_test

@@ -14,7 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-using namespace limn;
+namespace limn::image_test {
+
 using limn::test::TemporaryFolder;
 
 namespace {
@@ -202,3 +203,5 @@ TEST_CASE("atomic_file: killing the writer at any moment leaves whole files only
     }
     CHECK(files > 0);
 }
+
+}  // namespace limn::image_test

@@ -10,7 +10,7 @@
 
 #include <string>
 
-namespace limn {
+namespace limn::joined_test {
 
 using namespace test;
 
@@ -86,4 +86,4 @@ TEST_CASE("joined: a level names its parts; without any, it is empty") {
     CHECK(flat.error().message.find("scale") != std::string::npos);
 }
 
-}  // namespace limn
+}  // namespace limn::joined_test

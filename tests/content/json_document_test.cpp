@@ -7,8 +7,7 @@
 #include <fstream>
 #include <string>
 
-using namespace limn;
-
+namespace limn::json_document_test {
 namespace {
 
 JsonValue parse(std::string_view text) {
@@ -189,3 +188,5 @@ TEST_CASE("json: the nearest name is a likely typo, and nothing when none is nea
     const std::vector<std::string_view> as_near = {"seed", "shape", "speed"};
     CHECK(did_you_mean("sped", as_near) == " (did you mean speed?)");
 }
+
+}  // namespace limn::json_document_test

@@ -18,8 +18,7 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::level_bad_input_test {
 namespace {
 
 std::string error_of(std::string_view text, const LevelLimits& limits = {}) {
@@ -589,3 +588,5 @@ TEST_CASE("bad level: any cut of a good level, and any byte replaced, is read wi
     }
     CHECK(refused == static_cast<int>(good.size()));
 }
+
+}  // namespace limn::level_bad_input_test

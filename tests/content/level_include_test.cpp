@@ -9,8 +9,7 @@
 #include <fstream>
 #include <string>
 
-using namespace limn;
-
+namespace limn::level_include_test {
 namespace {
 
 struct Files {
@@ -69,3 +68,5 @@ TEST_CASE("include: errors name the file in which they are, and files that exist
     CHECK(files.error(R"({"include": "a"})", "{}").starts_with("t.level.json:1:13: "));
     CHECK(files.error(R"({"include": ["/dev/zero"]})", "{}").starts_with("t.level.json:1:14: "));
 }
+
+}  // namespace limn::level_include_test

@@ -20,8 +20,7 @@
 #include <utility>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::level_nodes_test {
 namespace {
 
 /// A lamp of two parts, and a joint without anything.
@@ -249,3 +248,5 @@ TEST_CASE("level nodes: other changes need the level loaded again") {
     REQUIRE_FALSE(other.ok());
     CHECK(has(other.error().message, "nodes of a glTF file are changed otherwise: load it again"));
 }
+
+}  // namespace limn::level_nodes_test

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace limn {
+namespace limn::level_show_test {
 namespace {
 
 JsonValue parse(std::string_view text) {
@@ -126,4 +126,4 @@ TEST_CASE("level_show: what is not a show is an error of one line") {
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::level_show_test

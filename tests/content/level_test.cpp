@@ -30,8 +30,7 @@
 #include <set>
 #include <string>
 
-using namespace limn;
-
+namespace limn::level_test {
 namespace {
 
 Level parse(std::string_view text) {
@@ -748,3 +747,5 @@ TEST_CASE("level: it binds keys to actions; actions and keys must exist") {
         error(R"({"bindings": {"steer_left": "J"}})").find("an array of keys")
         != std::string::npos);
 }
+
+}  // namespace limn::level_test

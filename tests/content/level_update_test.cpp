@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::level_update_test {
 namespace {
 
 /// A level with two sparks of an included file, one of them at another rate.
@@ -213,4 +213,4 @@ TEST_CASE("level update: events spawn what the files say now") {
     CHECK(events[0].actions[0].entity == level.fields.entities[1]);
 }
 
-}  // namespace limn
+}  // namespace limn::level_update_test

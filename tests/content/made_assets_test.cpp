@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-using namespace limn;
+namespace limn::made_assets_test {
 
 TEST_CASE("made assets: a mesh made from another is kept until that one changes") {
     MadeAssets made;
@@ -29,3 +29,5 @@ TEST_CASE("made assets: a mesh made from another is kept until that one changes"
     CHECK(changed.positions != first.positions);
     CHECK(made.size() == 2);
 }
+
+}  // namespace limn::made_assets_test

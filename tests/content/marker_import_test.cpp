@@ -16,7 +16,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::marker_import_test {
+
 using test::near;
 
 namespace {
@@ -196,3 +197,5 @@ TEST_CASE("marker import: a take that is no face is refused with one line") {
         })
         == "take: found no three markers of the face that span a triangle");
 }
+
+}  // namespace limn::marker_import_test

@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::marker_motion_test {
+
 using test::near;
 
 namespace {
@@ -187,3 +188,5 @@ TEST_CASE("markers: hidden at the start, at the end or always, they are still so
     fill_gaps(nothing, kRest);
     CHECK(nothing.positions[5] == kRest[5]);
 }
+
+}  // namespace limn::marker_motion_test

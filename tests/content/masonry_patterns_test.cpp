@@ -6,8 +6,7 @@
 #include <cmath>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::masonry_patterns_test {
 namespace {
 
 int channel(const ImageData& image, int x, int y, int c) {
@@ -140,3 +139,5 @@ TEST_CASE("masonry_patterns: stars are bright on dark and as many as asked for")
         CHECK(stars == 4);
     }
 }
+
+}  // namespace limn::masonry_patterns_test

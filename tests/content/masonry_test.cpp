@@ -6,7 +6,8 @@
 
 #include <string>
 
-using namespace limn;
+namespace limn::masonry_test {
+
 using namespace limn::test;
 
 namespace {
@@ -143,3 +144,5 @@ TEST_CASE("masonry: a vault is as thick everywhere, and lies on the arch over it
         }
     }
 }
+
+}  // namespace limn::masonry_test

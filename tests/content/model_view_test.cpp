@@ -27,7 +27,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::model_view_test {
+
 using test::near;
 
 namespace {
@@ -313,3 +314,5 @@ TEST_CASE("model view: formats that are not read are named, with what is") {
     REQUIRE_FALSE(level.ok());
     CHECK(level.error().message.find("found a level, expected a model") != std::string::npos);
 }
+
+}  // namespace limn::model_view_test

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::obj_subdivision_test {
 namespace {
 
 using limn::test::near;
@@ -192,4 +192,4 @@ TEST_CASE("obj subdivision: both sides of a seam keep their own texture coordina
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::obj_subdivision_test

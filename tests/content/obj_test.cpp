@@ -14,7 +14,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::obj_test {
+
 using limn::test::near;
 
 namespace {
@@ -248,3 +249,5 @@ TEST_CASE("obj: a real face has its quads, texture coordinates and materials") {
     CHECK(obj->materials.size() == 13);
     CHECK(obj->materials[1] == "M_Face");
 }
+
+}  // namespace limn::obj_test

@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limn {
+namespace limn::particle_warnings_test {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -162,4 +162,4 @@ TEST_CASE("bad emitter: births for which there was no room, with the limit to ra
         == R"(entity "smoke": 5 births were dropped; particle_emitter.capacity is 78)");
 }
 
-}  // namespace limn
+}  // namespace limn::particle_warnings_test

@@ -19,8 +19,7 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::patterns_test {
 namespace {
 
 /// What a level gets that names a kind and a size.
@@ -549,3 +548,5 @@ TEST_CASE("patterns: kinds are found by name, and a slip is answered with the ne
         CHECK(kind.parameters->fields.size() >= 3);
     }
 }
+
+}  // namespace limn::patterns_test

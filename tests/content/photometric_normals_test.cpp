@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn {
+namespace limn::photometric_normals_test {
 namespace {
 
 using test::near;
@@ -112,4 +112,4 @@ TEST_CASE("photometric normals: a pixel in shadow or that is not finite faces th
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::photometric_normals_test

@@ -10,7 +10,8 @@
 #include <cstddef>
 #include <vector>
 
-using namespace limn;
+namespace limn::plants_test {
+
 using namespace limn::test;
 
 namespace {
@@ -147,3 +148,5 @@ TEST_CASE("plants: as many as any level may ask for stay within two million") {
     CHECK(plants.size() == 100 * (1 + 16 + 256 + 4096));
     CHECK(plants.size() <= kMaxPlantParticles);
 }
+
+}  // namespace limn::plants_test

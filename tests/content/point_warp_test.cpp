@@ -5,8 +5,7 @@
 
 #include <vector>
 
-using namespace limn;
-
+namespace limn::point_warp_test {
 namespace {
 
 const std::vector<Vec3> kFrom = {{0, 0, 0}, {1, 0, 0},    {0, 1, 0},         {0, 0, 1},
@@ -53,3 +52,5 @@ TEST_CASE("point warp: points that coincide, or lie in a plane, are refused") {
     CHECK(message(twice) == degenerate);
     CHECK(message(kFrom) == "it is made");
 }
+
+}  // namespace limn::point_warp_test

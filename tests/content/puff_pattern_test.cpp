@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::puff_pattern_test {
 namespace {
 
 enum Side { Right, Above, Behind, Left, Below, Front };
@@ -120,4 +120,4 @@ TEST_CASE("puff pattern: what frays covers less in the last frame") {
     CHECK(mean_opacity(1) < 0.9 * mean_opacity(0));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::puff_pattern_test

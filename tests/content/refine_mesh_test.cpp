@@ -15,7 +15,8 @@
 #include <utility>
 #include <vector>
 
-using namespace limn;
+namespace limn::refine_mesh_test {
+
 using test::near;
 
 namespace {
@@ -161,3 +162,5 @@ TEST_CASE("refined: a missing mesh, no regions, a NaN, and edges too short to re
     CHECK(refined(plain, 0.008f, 5).positions.size() > 4 * plain.positions.size());
     CHECK(refined(make_sphere({.radius = 10}), 1e-5f, 5).positions.size() <= 1000000);
 }
+
+}  // namespace limn::refine_mesh_test

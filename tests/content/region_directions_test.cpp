@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::region_directions_test {
+
 using limn::test::near;
 
 namespace {
@@ -117,3 +118,5 @@ TEST_CASE("region directions: triangles without area count nothing, skin that co
     fit_region_directions(line);
     CHECK(std::abs(angle_at(line, 0.02f)) < 1e-3);
 }
+
+}  // namespace limn::region_directions_test

@@ -13,7 +13,8 @@
 #include <cmath>
 #include <vector>
 
-using namespace limn;
+namespace limn::retargeted_test {
+
 using test::near;
 
 namespace {
@@ -132,3 +133,5 @@ TEST_CASE("retargeted: what cannot be is logged, and the surface stays") {
     CHECK(made.positions == coarse().positions);
     CHECK(make_retargeted({.mesh = {0}, .from = {9}, .onto = {1}}, assets).positions.empty());
 }
+
+}  // namespace limn::retargeted_test

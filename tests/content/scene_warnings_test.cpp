@@ -24,8 +24,7 @@
 #include <utility>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::scene_warnings_test {
 namespace {
 
 std::vector<std::string> warnings_of(std::string_view text) {
@@ -443,3 +442,5 @@ TEST_CASE("scene warnings: wrinkles whose material has no map of them") {
             fmt::format("entity \"smooth\": {}", kText),
             fmt::format("entity \"gray\": {}", kText)});
 }
+
+}  // namespace limn::scene_warnings_test

@@ -8,7 +8,8 @@
 
 #include <string>
 
-using namespace limn;
+namespace limn::shapes_test {
+
 using namespace limn::test;
 
 namespace {
@@ -301,3 +302,5 @@ TEST_CASE("shapes: kinds are found by name, and a slip is answered with the near
         }
     }
 }
+
+}  // namespace limn::shapes_test

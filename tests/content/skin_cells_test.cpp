@@ -8,8 +8,7 @@
 #include <cmath>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::skin_cells_test {
 namespace {
 
 constexpr SkinCells kOne = {.cells = 9, .levels = 1, .seed = 3};
@@ -79,3 +78,5 @@ TEST_CASE("skin cells: the image tiles") {
     CHECK(
         make_skin_cells(16, kOne)[16 * 3 + 5] == skin_cell_height(Vec2(5.5f, 3.5f) / 16.0f, kOne));
 }
+
+}  // namespace limn::skin_cells_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-namespace limn {
+namespace limn::speech_mouth_test {
 namespace {
 
 SpeechTrack say(const char* text) {
@@ -225,4 +225,4 @@ TEST_CASE("face clip: speech takes the mouth from an expression, and leaves it t
     CHECK(mouth_left(mouth) == 0.0f);
 }
 
-}  // namespace limn
+}  // namespace limn::speech_mouth_test

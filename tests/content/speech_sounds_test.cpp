@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-namespace limn {
+namespace limn::speech_sounds_test {
 namespace {
 
 std::string names(const std::vector<Sound>& sounds) {
@@ -196,4 +196,4 @@ TEST_CASE("wave file: sound survives writing, and other files are refused in a l
     CHECK(audible_range({.rate = 1, .samples = {0, 5}}).end == 0);
 }
 
-}  // namespace limn
+}  // namespace limn::speech_sounds_test

@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-namespace limn {
+namespace limn::speech_units_test {
 namespace {
 
 constexpr float kRate = 60.0f;
@@ -361,4 +361,4 @@ TEST_CASE("speech library: recordings survive writing, and bad ones are refused 
         == "x.json:3:26: found the number 1e9, expected a number from -10 to 10");
 }
 
-}  // namespace limn
+}  // namespace limn::speech_units_test

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace limn {
+namespace limn::studio_pattern_test {
 namespace {
 
 constexpr int kSize = 256;
@@ -91,4 +91,4 @@ TEST_CASE("studio: a window has its panes, a soft box none; nothing shines from 
     }
 }
 
-}  // namespace limn
+}  // namespace limn::studio_pattern_test

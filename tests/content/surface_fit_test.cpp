@@ -11,7 +11,8 @@
 #include <cmath>
 #include <vector>
 
-using namespace limn;
+namespace limn::surface_fit_test {
+
 using test::near;
 
 namespace {
@@ -149,3 +150,5 @@ TEST_CASE("retarget: motion is scaled and turned as one face is by the other") {
         CHECK(glm::distance(warp_offset(warp_by(same), rest, offset, 1.5f), 1.5f * offset) < 1e-5f);
     }
 }
+
+}  // namespace limn::surface_fit_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::sweep_test {
 
 using namespace test;
 
@@ -152,4 +152,4 @@ TEST_CASE("sweep: levels name their paths, and a bad one is told of with its pla
         != std::string::npos);
 }
 
-}  // namespace limn
+}  // namespace limn::sweep_test

@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::tangents_test {
 namespace {
 
 const Vec3 kUnitTriangle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -322,3 +321,5 @@ TEST_CASE("tangents: a fan of 200,000 triangles about one point takes no quadrat
     generate_normals(fan, radians(30));  // the CTest time limit is the check
     CHECK(near(fan.normals[0], {0, 0, 1}, 1e-2f));
 }
+
+}  // namespace limn::tangents_test

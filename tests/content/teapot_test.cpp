@@ -4,7 +4,8 @@
 
 #include <doctest/doctest.h>
 
-using namespace limn;
+namespace limn::teapot_test {
+
 using namespace limn::test;
 
 namespace {
@@ -186,3 +187,5 @@ TEST_CASE("teapot: the image stands upright and goes on from patch to patch arou
     CHECK(patches[4].part == TeapotPart::Body);
     CHECK(patches[4].uv_at_start.y == patches[8].uv_at_end.y);
 }
+
+}  // namespace limn::teapot_test

@@ -7,7 +7,8 @@
 
 #include <doctest/doctest.h>
 
-using namespace limn;
+namespace limn::terrain_test {
+
 using namespace limn::test;
 
 TEST_CASE("terrain: a landscape is a proper mesh within its size and about its height") {
@@ -184,3 +185,5 @@ TEST_CASE("noise: the border of a cell is where two feature points are equally f
     }
     CHECK(least < 0.01f);
 }
+
+}  // namespace limn::terrain_test

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::utterance_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -163,4 +163,4 @@ TEST_CASE("utterance: espeak-ng itself says a text as long as its sounds are mad
     }
 }
 
-}  // namespace limn
+}  // namespace limn::utterance_test

@@ -11,7 +11,8 @@
 #include <cstddef>
 #include <vector>
 
-using namespace limn;
+namespace limn::wrinkle_map_test {
+
 using limn::test::near;
 
 namespace {
@@ -99,3 +100,5 @@ TEST_CASE("wrinkle map: slopes of a hundredth of a step of 8 bits keep their mea
     CHECK(up.x == near(0.0021).epsilon(0.1));
     CHECK(down.x == near(-0.0021).epsilon(0.1));
 }
+
+}  // namespace limn::wrinkle_map_test

@@ -18,7 +18,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn {
+namespace limn::wrinkle_model_test {
 namespace {
 
 using test::near;
@@ -280,4 +280,4 @@ TEST_CASE("strain folds: of a head they are smooth at rest and steep where it fr
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::wrinkle_model_test

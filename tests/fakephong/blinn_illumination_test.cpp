@@ -3,10 +3,11 @@
 #include "tests/near.h"
 
 #include <doctest/doctest.h>
+#include <glm/geometric.hpp>
 
 #include <cmath>
 
-namespace limn::fakephong {
+namespace limn::fakephong::blinn_illumination_test {
 namespace {
 
 using test::near;
@@ -244,4 +245,4 @@ TEST_CASE("fakephong: bad scenes are refused in one line") {
     CHECK(message(scene).find("along its up vector") != std::string::npos);
 }
 
-}  // namespace limn::fakephong
+}  // namespace limn::fakephong::blinn_illumination_test

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::fakephong {
+namespace limn::fakephong::fakephong_report_test {
 namespace {
 
 using test::near;
@@ -178,4 +178,4 @@ TEST_CASE("fakephong: a row of the table is that of all methods") {
     CHECK(swapped_pairs({1, 2, 2, 4, 5, 6}, rising) == 1);
 }
 
-}  // namespace limn::fakephong
+}  // namespace limn::fakephong::fakephong_report_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::fakephong {
+namespace limn::fakephong::forward_difference_test {
 namespace {
 
 using test::near;
@@ -193,4 +193,4 @@ TEST_CASE(
     CHECK(first_change(3) == near(0.25).epsilon(0.01));
 }
 
-}  // namespace limn::fakephong
+}  // namespace limn::fakephong::forward_difference_test

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::fakephong {
+namespace limn::fakephong::phong_raster_test {
 namespace {
 
 using test::near;
@@ -251,4 +251,4 @@ TEST_CASE("fakephong: a million triangles are drawn") {
     CHECK(color_correctness(phong.color, image.color, phong.mask) > 0.999);
 }
 
-}  // namespace limn::fakephong
+}  // namespace limn::fakephong::phong_raster_test

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::fakephong {
+namespace limn::fakephong::shading_method_test {
 namespace {
 
 using test::near;
@@ -353,4 +353,4 @@ TEST_CASE(
     CHECK(illuminate(behind, facet.corners[0]).highlight.x.value > 0);
 }
 
-}  // namespace limn::fakephong
+}  // namespace limn::fakephong::shading_method_test

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::racer_system_test {
 
 namespace {
 
@@ -199,4 +199,4 @@ TEST_CASE_FIXTURE(Race, "racer: a track that does not exist leaves it in place")
     CHECK(world.get<Transform>(entity).position == Vec3(0));
 }
 
-}  // namespace limn
+}  // namespace limn::racer_system_test

@@ -24,7 +24,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn {
+namespace limn::sailing_test {
 
 namespace {
 
@@ -431,4 +431,4 @@ TEST_CASE("sailing: any number of threads sails fifty boats to the same places, 
     CHECK(sail(1) == sail(3));
 }
 
-}  // namespace limn
+}  // namespace limn::sailing_test

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn {
+namespace limn::stones_test {
 
 namespace {
 
@@ -140,4 +140,4 @@ TEST_CASE("water stones: a throw hits what it aims at") {
     CHECK(std::isfinite(velocity_to_hit(from, from, 12).y));
 }
 
-}  // namespace limn
+}  // namespace limn::stones_test

@@ -16,7 +16,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn {
+namespace limn::walker_test {
 
 namespace {
 
@@ -194,4 +194,4 @@ TEST_CASE("walker: in a world it obeys while its eyes are looked out of, and pus
     CHECK(most > 0.002f);
 }
 
-}  // namespace limn
+}  // namespace limn::walker_test

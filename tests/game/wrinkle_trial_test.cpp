@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::wrinkle_trial_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60;
@@ -147,4 +147,4 @@ TEST_CASE("wrinkle trial: a bad file of answers is refused with its place") {
     CHECK(message("order,noticed,preferred\n").empty());
 }
 
-}  // namespace limn
+}  // namespace limn::wrinkle_trial_test

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+namespace limn::house_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -357,3 +358,5 @@ TEST_CASE("house: no clock, no global random numbers and no printing in simulati
         }
     }
 }
+
+}  // namespace limn::house_test

@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::image_interchange_test {
+
 using limn::test::TemporaryFolder;
 
 namespace {
@@ -120,3 +121,5 @@ TEST_CASE("image: PNG files of every kind and the other formats read as OpenImag
     CHECK(light->format == PixelFormat::Rgba32F);
     CHECK_FALSE(light->srgb);
 }
+
+}  // namespace limn::image_interchange_test

@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limn {
+namespace limn::face_folding_test {
 namespace {
 
 void no_progress(int /*done*/, int /*total*/) {}
@@ -171,4 +171,4 @@ TEST_CASE("face folding: a file of a face with other names is measured as the fa
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::face_folding_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <string>
 
-namespace limn {
+namespace limn::fakephong_file_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -97,4 +97,4 @@ TEST_CASE("fakephong file: a glTF of a million facets is measured by every metho
     }
 }
 
-}  // namespace limn
+}  // namespace limn::fakephong_file_test

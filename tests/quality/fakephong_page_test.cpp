@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::fakephong {
+namespace limn::fakephong::fakephong_page_test {
 namespace {
 
 /// One small scene, evaluated once.
@@ -97,4 +97,4 @@ TEST_CASE("fakephong page: what it says of a method are its numbers") {
     CHECK(verdict_of(blinn, {&result, 1}) == "nowhere: it costs what Phong shading costs");
 }
 
-}  // namespace limn::fakephong
+}  // namespace limn::fakephong::fakephong_page_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace limn {
+namespace limn::quality_test {
 
 using test::ProgramRun;
 using test::read_text;
@@ -341,4 +341,4 @@ TEST_CASE(
     CHECK(count_unbounded(rows) == 4 + 10);            // statistics, and how much a face folds
 }
 
-}  // namespace limn
+}  // namespace limn::quality_test

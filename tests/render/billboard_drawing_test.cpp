@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::billboard_drawing_test {
 namespace {
 
 const std::string kCode = "#include \"lib/billboard.glsl\"\n";
@@ -348,4 +348,4 @@ TEST_CASE_FIXTURE(
     CHECK(middle() > 0.9f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::billboard_drawing_test

@@ -1,7 +1,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
-namespace limn::test {
+namespace limn::test::blend_test {
 namespace {
 
 /// A pane that gives off `color` and hides `opacity` of what is behind it.
@@ -97,4 +97,4 @@ TEST_CASE_FIXTURE(PaneScene, "blend: an opaque blended pane is lit as an opaque 
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::blend_test

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace limn {
+namespace limn::buffer_texture_test {
 namespace {
 
 /// The texel count that a shader sees, and the sum of the first components.
@@ -63,4 +63,4 @@ TEST_CASE_FIXTURE(
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::buffer_texture_test

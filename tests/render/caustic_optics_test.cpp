@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::caustic_optics_test {
 namespace {
 
 constexpr float kIndex = 1.33f;
@@ -246,4 +246,4 @@ TEST_CASE_FIXTURE(RenderTest, "caustic optics: shaders have the same functions")
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::caustic_optics_test

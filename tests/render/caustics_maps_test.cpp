@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::caustics_maps_test {
 namespace {
 
 constexpr float kDepth = 10;  ///< of the sea [m]
@@ -166,4 +166,4 @@ TEST_CASE_FIXTURE(Floor, "caustics: a pool that is not seen has no map") {
     CHECK(is_made({6, 1, 0}, {12, 0, 0}));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::caustics_maps_test

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::caustics_mirror_test {
 namespace {
 
 constexpr float kHalf = 2;        ///< of the pool [m]
@@ -269,4 +269,4 @@ TEST_CASE_FIXTURE(
     CHECK(above({aside.x, 0.2f, aside.y}) > 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::caustics_mirror_test

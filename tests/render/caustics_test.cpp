@@ -23,7 +23,7 @@
 #include <cstring>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::caustics_test {
 namespace {
 
 constexpr float kHalf = 2;       ///< of the pool [m]
@@ -505,4 +505,4 @@ TEST_CASE_FIXTURE(Pool, "caustics: NaN and infinite settings give an image") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::caustics_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::cluster_test {
 namespace {
 
 class RandomLights {
@@ -283,4 +283,4 @@ TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each where it re
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::cluster_test

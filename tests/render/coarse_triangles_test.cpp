@@ -11,7 +11,7 @@
 #include <cmath>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::coarse_triangles_test {
 namespace {
 
 /// The least distance of `p` from any triangle, by a loop over all.
@@ -232,4 +232,4 @@ TEST_CASE_FIXTURE(ShadowTest, "coarse triangles: a hollow is not shadowed by tho
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::coarse_triangles_test

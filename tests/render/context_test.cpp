@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-namespace limn {
+namespace limn::context_test {
 namespace {
 
 /// Sets LIMN_GL_DEVICE for a scope.
@@ -208,4 +208,4 @@ TEST_CASE("context: the first version of a pass that fits is chosen") {
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::context_test

@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace limn::test {
+namespace limn::test::cube_map_test {
 namespace {
 
 std::vector<Vec3> random_directions(int count) {
@@ -112,4 +112,4 @@ TEST_CASE("cube_map: a face's camera is a rotation that sees each texel where it
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::cube_map_test

@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::culling_test {
 namespace {
 
 constexpr int kBoxes = 100 * kCullBlock;
@@ -147,4 +147,4 @@ TEST_CASE("culling: a transformed box holds every transformed corner, tightly if
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::culling_test

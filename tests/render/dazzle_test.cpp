@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::dazzle_test {
 namespace {
 
 const Dazzle kLamp = {
@@ -100,4 +100,4 @@ TEST_CASE_FIXTURE(DazzleScene, "dazzle: none, or nonsense, draws no pass and no 
     CHECK(corner().x == plain);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::dazzle_test

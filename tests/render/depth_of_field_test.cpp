@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::depth_of_field_test {
 namespace {
 
 constexpr float kNear = 0.1f;
@@ -579,4 +579,4 @@ TEST_CASE(
     CHECK(reversed_depth(static_cast<double>(kInfinity), 0.1) == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::depth_of_field_test

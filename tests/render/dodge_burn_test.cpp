@@ -10,7 +10,7 @@
 
 // The local operator: laws of the double-precision one, then the GPU's distance from it.
 
-namespace limn::test {
+namespace limn::test::dodge_burn_test {
 namespace {
 
 constexpr int kWidth = 160;
@@ -219,4 +219,4 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: a NaN pixel darkens nothing but itself") {
     CHECK(std::abs(got[index(140, 80)] - oracle::compress(0.4)) <= 0.51 / 255);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::dodge_burn_test

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-namespace limn::test {
+namespace limn::test::effect_list_test {
 namespace {
 
 /// Doubles the radiance of what the camera sees: an effect that the library does not know.
@@ -130,4 +130,4 @@ TEST_CASE_FIXTURE(TwoPasses, "image: a declared read is no hazard") {
     CHECK(graph.hazards().empty());
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::effect_list_test

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace limn::test {
+namespace limn::test::env_probe_render_test {
 namespace {
 
 const Material kMirror = {.base_color = {1, 1, 1, 1}, .metalness = 1, .roughness = 0};
@@ -245,4 +245,4 @@ TEST_CASE_FIXTURE(ProbeScene, "env_probe: it fades out smoothly, and the smaller
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::env_probe_render_test

@@ -12,7 +12,7 @@
 // What a mirror shows: the surroundings along the reflected ray (env.reflect), where a map says so
 // (env.control-map).
 
-namespace limn::test {
+namespace limn::test::env_reflect_test {
 namespace {
 
 using DVec3 = glm::dvec3;
@@ -287,4 +287,4 @@ TEST_CASE_FIXTURE(ControlScene, "env_control_map: with Fresnel's weight, without
     CHECK(glm::distance(rgb_at(all, 8, 8), kAround) < 2e-3f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::env_reflect_test

@@ -9,7 +9,7 @@
 
 #include <random>
 
-namespace limn::test {
+namespace limn::test::environment_test {
 namespace {
 
 const Environment kSkies[] = {
@@ -259,4 +259,4 @@ TEST_CASE_FIXTURE(
     CHECK(glm::distance(brightest, want) < 2.5f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::environment_test

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::fake_phong_test {
 namespace {
 
 bool is_all_finite(const gpu::FloatImage& image) {
@@ -479,4 +479,4 @@ TEST_CASE("highlight layers: a thousand exponents share those that there is room
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::fake_phong_test

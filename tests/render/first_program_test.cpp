@@ -14,7 +14,7 @@
 // flows from stage to stage - from the first pair of programs on (shade.pipeline-model,
 // shade.passthrough-cube, shade.parameters).
 
-namespace limn::test {
+namespace limn::test::first_program_test {
 namespace {
 
 using DVec3 = glm::dvec3;
@@ -351,4 +351,4 @@ TEST_CASE_FIXTURE(PairTest, "parameters: an interpolated normal is short, the re
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::first_program_test

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::fold_displacement_test {
 namespace {
 
 constexpr int kFolds = 10;
@@ -280,4 +280,4 @@ TEST_CASE_FIXTURE(FoldScene, "fold displacement: what only shades, or covers, mo
     CHECK_FALSE(folds({.method = WrinkleMethod::Isometric, .displacement = 1}));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::fold_displacement_test

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::fold_light_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -236,4 +236,4 @@ TEST_CASE_FIXTURE(FoldLightScene, "fold light: skin that emits light keeps it") 
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::fold_light_test

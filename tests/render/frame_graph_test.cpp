@@ -7,7 +7,7 @@
 #include <chrono>
 #include <memory>
 
-namespace limn {
+namespace limn::frame_graph_test {
 namespace {
 
 TextureSpec spec(std::string_view name, GLenum format = GL_RGBA8, int size = 8) {
@@ -469,4 +469,4 @@ TEST_CASE_FIXTURE(test::RenderTest, "frame graph: prints itself as a table and a
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::frame_graph_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::frame_insets_test {
 namespace {
 
 constexpr int kFrame = 48;  // pixels of a side
@@ -107,4 +107,4 @@ TEST_CASE("frame insets: a table finds those of an image anew only for other ass
     CHECK(table.find(image, {0}, kFrames, kFrames) != before);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::frame_insets_test

@@ -19,7 +19,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::furrow_maker_test {
 namespace {
 
 /// Largest differences of the maps of the GPU from those of the CPU.
@@ -151,4 +151,4 @@ TEST_CASE_FIXTURE(RenderTest, "furrow maker: images of a few pixels are grown as
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::furrow_maker_test

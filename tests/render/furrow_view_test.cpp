@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::furrow_view_test {
 namespace {
 
 constexpr int kSize = 128;
@@ -204,4 +204,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::furrow_view_test

@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace limn::test {
+namespace limn::test::gbuffer_test {
 namespace {
 
 Quat turn(const Vec3& axis, float degrees_about) {
@@ -550,4 +550,4 @@ TEST_CASE_FIXTURE(Scene, "velocity: between two steps it spans from frame to fra
     CHECK(depth.at(10, 32, 0) == test::near(1));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::gbuffer_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::glare_test {
 namespace {
 
 constexpr int kSide = 128;
@@ -129,4 +129,4 @@ TEST_CASE_FIXTURE(Scene, "glare: switched off, it adds no pass and changes no bi
     CHECK(radiance(view).pixels != without.pixels);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::glare_test

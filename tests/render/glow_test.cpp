@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-namespace limn::test {
+namespace limn::test::glow_test {
 namespace {
 
 using oracle::LightImage;
@@ -334,4 +334,4 @@ TEST_CASE_FIXTURE(Scene, "glow: a mask adds the lamp's light once more, twice as
     CHECK(added({4, 2, 1}, 0.5f) == test::near(0.5 * once).epsilon(1e-4));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::glow_test

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limn {
+namespace limn::glslang_test {
 namespace {
 
 /// A definition with a value, for stages whose own file mentions it.
@@ -189,4 +189,4 @@ TEST_CASE("glslang: every shader is valid with and without each definition") {
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::glslang_test

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::gpu_particle_sort_test {
 namespace {
 
 constexpr Vec3 kEye = {0.5f, -1, 40};
@@ -230,4 +230,4 @@ TEST_CASE("gpu particle sort: a steady camera is where it was expected, one that
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::gpu_particle_sort_test

@@ -27,7 +27,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::gpu_particle_test {
 namespace {
 
 struct GpuParticle {
@@ -115,7 +115,7 @@ struct Executors : Scene {
 };
 
 /// Largest distance between particles of the same number, as a share of how far they may have come.
-float largest_difference(const std::vector<GpuParticle>& gpu, const ParticlePool& cpu, float way) {
+float largest_distance(const std::vector<GpuParticle>& gpu, const ParticlePool& cpu, float way) {
     float largest = 0;
     for (std::size_t i = 0; i < gpu.size(); ++i) {
         const Vec3 place = {cpu.x[i], cpu.y[i], cpu.z[i]};
@@ -153,7 +153,7 @@ TEST_CASE("gpu particles: for ten seconds they are where the CPU has them") {
         const std::vector<GpuParticle> gpu = both.read();
         REQUIRE(gpu.size() == 4000);
         REQUIRE(both.pool().size() == 4000);
-        CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+        CHECK(largest_distance(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
     }
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("gpu particles: they stick where they hit, or die there, as on the CPU
         const std::vector<GpuParticle> gpu = both.read();
         const ParticlePool& cpu = both.pool();
         REQUIRE(gpu.size() == cpu.size());
-        CHECK(largest_difference(gpu, cpu, 1) < 1e-3f);
+        CHECK(largest_distance(gpu, cpu, 1) < 1e-3f);
         const auto resting = std::count_if(gpu.begin(), gpu.end(), [](const GpuParticle& one) {
             return Vec3(one.velocity_life) == Vec3(0);
         });
@@ -251,7 +251,7 @@ TEST_CASE("gpu particles: shells and velocities vary as on the CPU") {
     const std::vector<GpuParticle> gpu = both.read();
     REQUIRE(gpu.size() == both.pool().size());
     CHECK(gpu.size() > 500);
-    CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+    CHECK(largest_distance(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
 }
 
 TEST_CASE("gpu particles: the window of a linear population moves down and ends") {
@@ -311,7 +311,7 @@ TEST_CASE("gpu particles: forces, turns and integrators are those of the CPU") {
         const std::vector<GpuParticle> gpu = both.read();
         REQUIRE(gpu.size() == both.pool().size());
         CHECK(gpu.size() >= 1200);
-        CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+        CHECK(largest_distance(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
     }
 }
 
@@ -335,7 +335,7 @@ TEST_CASE("gpu particles: force fields push them as they push the CPU's") {
     const std::vector<GpuParticle> gpu = both.read();
     REQUIRE(gpu.size() == both.pool().size());
     CHECK(gpu.size() >= 1200);
-    CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+    CHECK(largest_distance(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
 }
 
 TEST_CASE("gpu particles: how often they are drawn changes nothing") {
@@ -404,7 +404,7 @@ TEST_CASE("gpu particles: across the end of the ring they go where the CPU's go"
             both.step();
             const std::vector<GpuParticle> gpu = both.read();
             REQUIRE(gpu.size() == both.pool().size());
-            CHECK(largest_difference(gpu, both.pool(), 6) <= 1e-4f);
+            CHECK(largest_distance(gpu, both.pool(), 6) <= 1e-4f);
         }
     }
 }
@@ -635,7 +635,7 @@ TEST_CASE("gpu particles: a world that was loaded anew owes nothing to the one b
     std::swap(first.pools, second.pools);
     const std::vector<GpuParticle> seen = second.read();
     REQUIRE(seen.size() == second.pool().size());
-    CHECK(largest_difference(seen, second.pool(), 3 * 0.5f) < 1e-4f);
+    CHECK(largest_distance(seen, second.pool(), 3 * 0.5f) < 1e-4f);
 }
 
 TEST_CASE("gpu particles: initial values are within their spread, their mean is the mean") {
@@ -674,4 +674,4 @@ TEST_CASE("gpu particles: initial values are within their spread, their mean is 
     CHECK(std::abs(product / count / (4.0 / 3)) < 0.01);  // of neighbors: no correlation
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::gpu_particle_test

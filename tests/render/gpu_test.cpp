@@ -12,7 +12,7 @@
 #include <numeric>
 #include <string>
 
-namespace limn {
+namespace limn::gpu_test {
 namespace {
 
 using gpu::Buffer;
@@ -586,4 +586,4 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: a sampler replaces the texture's own f
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::gpu_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::gradient_noise_test {
 namespace {
 
 /// Places within +-`reach` along each axis.
@@ -136,4 +136,4 @@ TEST_CASE("noise: a flame flickers within its amplitude, smoothly, and no two al
     CHECK(pulse_factor(one, 17.25) == pulse_factor(one, 17.25));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::gradient_noise_test

@@ -17,7 +17,7 @@
 // The shading model Hair: its lobes against a fiber in double precision, and what surfaces do with
 // them.
 
-namespace limn::test {
+namespace limn::test::hair_test {
 namespace {
 
 using oracle::DVec3;
@@ -367,4 +367,4 @@ TEST_CASE("hair: white hair in white light is white") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::hair_test

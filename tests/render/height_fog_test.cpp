@@ -11,7 +11,7 @@
 #include <cmath>
 #include <span>
 
-namespace limn::test {
+namespace limn::test::height_fog_test {
 namespace {
 
 constexpr Vec3 kEmission = {3, 2, 1};
@@ -206,4 +206,4 @@ TEST_CASE_FIXTURE(FogScene, "height fog: toward the sun it scatters what the pha
     CHECK(middle({0, 0, 0}, {0, 0, 1}).x == test::near(3 * phase(-1)).epsilon(1e-3));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::height_fog_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::inflate_test {
 namespace {
 
 /// Where the vertices go, by the function that draws them; normals are `stretch` long.
@@ -215,4 +215,4 @@ TEST_CASE_FIXTURE(
     CHECK(messages[0].find("ball is inflated") != std::string::npos);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::inflate_test

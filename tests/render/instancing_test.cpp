@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace limn::test {
+namespace limn::test::instancing_test {
 namespace {
 
 struct CrowdScene : Scene {
@@ -172,4 +172,4 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: an unknown material is magenta, none 
     CHECK(albedo.x == test::near(0.8f).epsilon(1e-3));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::instancing_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <set>
 
-namespace limn::test {
+namespace limn::test::lens_flare_test {
 namespace {
 
 // ---- a lens, surface by surface, in textbook signs: light that goes back has a negative index
@@ -552,4 +552,4 @@ TEST_CASE_FIXTURE(FlareScene, "lens flare: none without it, and no NaN whatever 
     CHECK(light() > 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::lens_flare_test

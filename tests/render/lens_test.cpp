@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::lens_test {
 namespace {
 
 /// Where the first pass whose name begins so is in the last frame; -1 if there is none.
@@ -329,4 +329,4 @@ TEST_CASE_FIXTURE(Scene, "lens: the shutter comes before the glow, and both befo
     CHECK(place_of("tone map") > place_of("glow"));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::lens_test

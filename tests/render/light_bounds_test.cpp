@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace limn {
+namespace limn::light_bounds_test {
 namespace {
 
 RenderView looking(const Vec3& eye, const Vec3& target, float near = 0.1f, Vec2 jitter = {0, 0}) {
@@ -194,4 +194,4 @@ TEST_CASE("caster_cull: no box that a spot's cone touches is dropped, those behi
         reaches_box({{0, 0, 0}, 5, {0, 0, -1}, 0.9f}, {{-0.2f, -0.2f, 2}, {0.2f, 0.2f, 2.4f}}));
 }
 
-}  // namespace limn
+}  // namespace limn::light_bounds_test

@@ -12,7 +12,7 @@
 #include <functional>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::light_method_test {
 namespace {
 
 constexpr LightMethod kMethods[] = {
@@ -586,4 +586,4 @@ TEST_CASE("visibility sets: draws of lights take neighbors of equal mesh togethe
     CHECK(draws.commands[4].base_instance == 1);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::light_method_test

@@ -12,7 +12,7 @@
 #include <array>
 #include <numbers>
 
-namespace limn::test {
+namespace limn::test::light_test {
 namespace {
 
 using oracle::DVec3;
@@ -620,4 +620,4 @@ TEST_CASE("light: a light in the plane itself adds nothing and breaks nothing") 
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::light_test

@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
-namespace limn::test {
+namespace limn::test::lighting_space_test {
 namespace {
 
 // shade.lighting-space: the same light in the object's, the world's and the camera's space. Limn
@@ -169,4 +169,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::lighting_space_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::material_blocks_test {
 namespace {
 
 /// Texel of a block of a kind, counted from the front of the vector.
@@ -122,4 +122,4 @@ TEST_CASE("material blocks: what is in a block does not depend on those before i
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::material_blocks_test

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::material_maps_test {
 namespace {
 
 /// Layer of a slot, as the shaders read it.
@@ -134,4 +134,4 @@ TEST_CASE_FIXTURE(Scene, "material maps: materials that differ in their images a
     CHECK(draw(view).statistics.draws == 2);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::material_maps_test

@@ -1,7 +1,7 @@
 #include "render/mesh_pool.h"
 #include "tests/render/scene_fixture.h"
 
-namespace limn::test {
+namespace limn::test::mesh_pool_test {
 namespace {
 
 MeshData make_quads(int count) {
@@ -141,4 +141,4 @@ TEST_CASE_FIXTURE(
     CHECK(draw(view).statistics.visible_instances == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::mesh_pool_test

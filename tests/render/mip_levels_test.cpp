@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::mip_levels_test {
 namespace {
 
 constexpr gpu::Profile kProfiles[] = {gpu::Profile::Software, gpu::Profile::Gpu};
@@ -97,4 +97,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::mip_levels_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::motion_blur_test {
 namespace {
 
 bool all_finite(const gpu::FloatImage& image) {
@@ -290,4 +290,4 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: surfaces lit while they are drawn smear
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::motion_blur_test

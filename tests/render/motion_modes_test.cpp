@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-namespace limn::test {
+namespace limn::test::motion_modes_test {
 namespace {
 
 constexpr int kSize = Shutter::kSize;
@@ -427,4 +427,4 @@ TEST_CASE_FIXTURE(OldShutter, "motion stretch: what stands before the layer stay
     CHECK(largest_difference(blurred, plain) > 0.2f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::motion_modes_test

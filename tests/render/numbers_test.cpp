@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace limn {
+namespace limn::numbers_test {
 namespace {
 
 using Limits = std::numeric_limits<float>;
@@ -62,4 +62,4 @@ TEST_CASE_FIXTURE(test::RenderTest, "numbers: radiance for half floats is clampe
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::numbers_test

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace limn;
-
+namespace limn::ocean_fft_test {
 namespace {
 
 constexpr double kTime = 12345.678;  // thousands of turns of the short waves
@@ -94,3 +93,5 @@ TEST_CASE_FIXTURE(test::RenderTest, "ocean_fft: all cascades are two dispatches"
     CHECK(run_fft(device(), state).cascades == 4);
     CHECK(device().stats().dispatches == 2);
 }
+
+}  // namespace limn::ocean_fft_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::optics_test {
 namespace {
 
 constexpr float kWater = 1.33f;
@@ -211,4 +211,4 @@ TEST_CASE_FIXTURE(RenderTest, "optics: shaders have the same functions") {
     CHECK(mirrored > 50);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::optics_test

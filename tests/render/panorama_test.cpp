@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace limn::test {
+namespace limn::test::panorama_test {
 namespace {
 
 constexpr float kHalfAngle = radians(45.0f);
@@ -80,4 +80,4 @@ TEST_CASE_FIXTURE(RenderTest, "panorama: the GPU's mappings are the CPU's") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::panorama_test

@@ -23,7 +23,7 @@
 #include <optional>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::particle_depth_test {
 namespace {
 
 constexpr float kDt = 1.0f / 60;
@@ -286,4 +286,4 @@ TEST_CASE_FIXTURE(SeenScene, "particle depth: no depth makes a NaN or a hang") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_depth_test

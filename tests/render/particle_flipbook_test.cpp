@@ -13,7 +13,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace limn::test {
+namespace limn::test::particle_flipbook_test {
 namespace {
 
 constexpr int kFrame = 64;         // pixels of a side, of the image drawn too
@@ -158,4 +158,4 @@ TEST_CASE_FIXTURE(
     CHECK(worst(1.5f) == near(static_cast<double>(disc)));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_flipbook_test

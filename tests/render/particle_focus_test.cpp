@@ -11,7 +11,7 @@
 
 // Particles through a lens, against the mean of views from all over it.
 
-namespace limn::test {
+namespace limn::test::particle_focus_test {
 namespace {
 
 constexpr int kSize = 96;        // of the image [px]
@@ -174,4 +174,4 @@ TEST_CASE_FIXTURE(FocusScene, "particle focus: what a surface hides changes no b
     CHECK(largest_difference(photograph(), before) == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_focus_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::particle_layer_test {
 namespace {
 
 /// Smoke that shines by itself, and bars in front of it.
@@ -268,4 +268,4 @@ TEST_CASE_FIXTURE(
     CHECK(frame_graph(shared_renderer()).was_run("particles.enlarge"));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_layer_test

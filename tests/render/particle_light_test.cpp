@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::particle_light_test {
 namespace {
 
 // Light on particles, evaluated at their corners or once for each.
@@ -177,4 +177,4 @@ TEST_CASE_FIXTURE(LitScene, "particle light: lit in the middle or not, each in i
     CHECK(std::min(image.at(48, 16, 0), image.at(48, 48, 0)) == near(0.1f).epsilon(1e-3));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_light_test

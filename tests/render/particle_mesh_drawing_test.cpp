@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::particle_mesh_drawing_test {
 namespace {
 
 /// Balls and squares above a floor, in a sun that casts their shadows.
@@ -113,4 +113,4 @@ TEST_CASE_FIXTURE(Debris, "particle meshes: thousands, and shadows only where th
     CHECK(after > before * 1.005);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_mesh_drawing_test

@@ -11,7 +11,7 @@
 
 // Particles among surfaces that are seen through: panes, media and water.
 
-namespace limn::test {
+namespace limn::test::particle_order_test {
 namespace {
 
 struct OrderScene : Scene {
@@ -295,4 +295,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_order_test

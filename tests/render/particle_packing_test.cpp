@@ -7,8 +7,7 @@
 #include <cmath>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::particle_packing_test {
 namespace {
 
 /// Some are not born yet, some have outlived their time, one has no life.
@@ -67,3 +66,5 @@ TEST_CASE("particle packing: an instance has the look above the share, and veloc
         CHECK(instance.motion().x == 2);
     }
 }
+
+}  // namespace limn::particle_packing_test

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::particle_pass_test {
 namespace {
 
 struct ParticleScene : Scene {
@@ -773,4 +773,4 @@ TEST_CASE_FIXTURE(
     CHECK(draws() == one);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_pass_test

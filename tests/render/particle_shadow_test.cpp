@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::particle_shadow_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -280,4 +280,4 @@ TEST_CASE_FIXTURE(ShadowScene, "particle shadow: what is broken casts none, and 
     CHECK(found.z == near(0.02).epsilon(0.05));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_shadow_test

@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::particle_share_test {
 namespace {
 
 /// A fountain of glowing discs, born and dead all the time, that the GPU moves.
@@ -165,4 +165,4 @@ TEST_CASE("particle share: 1/4 and 1/16 keep the light of the image within 5 and
     CHECK(all.light(1) == full);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_share_test

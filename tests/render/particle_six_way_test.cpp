@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::particle_six_way_test {
 namespace {
 
 /// Bytes of the six sides: right, above, behind; left, below, toward the camera.
@@ -137,4 +137,4 @@ TEST_CASE_FIXTURE(SixWayScene, "particle six-way: others beside it are drawn as 
     CHECK(glm::distance(alone, beside) < 1e-5f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_six_way_test

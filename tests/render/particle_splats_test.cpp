@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::particle_splats_test {
 namespace {
 
 constexpr int kSide = 33;               // of the image [px]
@@ -238,4 +238,4 @@ TEST_CASE("particle splats: the brightest is that of colors, their spread and em
     CHECK(brightest_of(make_look_record(look, {})) == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_splats_test

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::particle_velocity_test {
 namespace {
 
 constexpr int kSize = 96;
@@ -192,4 +192,4 @@ TEST_CASE_FIXTURE(
     CHECK(fastest(view(1, 0)) == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_velocity_test

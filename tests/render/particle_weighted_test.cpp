@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::particle_weighted_test {
 namespace {
 
 constexpr int kSize = 9;
@@ -154,4 +154,4 @@ TEST_CASE("particle weighted: weights range over the depths of a box, from the n
     CHECK(weight_range({Vec3(-INFINITY), Vec3(INFINITY)}, view) == Vec2(0, 0));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_weighted_test

@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace limn::test {
+namespace limn::test::perspective_view_test {
 namespace {
 
 using glm::dmat4;
@@ -303,4 +303,4 @@ TEST_CASE("perspective map: what would harden at contacts is soft") {
     CHECK(sanitize(asked).filter == ShadowFilter::Soft);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::perspective_view_test

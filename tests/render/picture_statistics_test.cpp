@@ -13,7 +13,7 @@
 
 // The statistics of images on the GPU against the double-precision oracle.
 
-namespace limn::test {
+namespace limn::test::picture_statistics_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -248,4 +248,4 @@ TEST_CASE("hdr: only cuts restart the frame clock") {
     CHECK(seconds_since_last(clock, 2, 7.05, here).value() == test::near(0.02));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::picture_statistics_test

@@ -1,7 +1,7 @@
 #include "tests/render/profile_renderer.h"
 #include "tests/render/scene_fixture.h"
 
-namespace limn {
+namespace limn::profile_test {
 namespace {
 
 using test::make_square;
@@ -33,4 +33,4 @@ TEST_CASE_FIXTURE(test::Scene, "profile: a strong lamp on smooth metal gives fin
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::profile_test

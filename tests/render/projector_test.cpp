@@ -5,7 +5,7 @@
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 
-namespace limn::test {
+namespace limn::test::projector_test {
 namespace {
 
 /// Four squares: red, green above; blue, white below.
@@ -207,4 +207,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::projector_test

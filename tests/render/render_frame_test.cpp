@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace limn::test {
+namespace limn::test::render_frame_test {
 
 TEST_CASE_FIXTURE(Scene, "render frame: an empty world is a black image of the asked size") {
     for (const IVec2& size : {IVec2(1, 1), IVec2(3, 200), IVec2(257, 65)}) {
@@ -209,4 +209,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::render_frame_test

@@ -11,7 +11,7 @@
 #include <functional>
 #include <optional>
 
-namespace limn::test {
+namespace limn::test::render_items_test {
 namespace {
 
 /// 3000 triangles, moved by update_transforms and not: blocks of 1024, 1024, 952 and the moving 2.
@@ -187,4 +187,4 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: a new world at the address of an old
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::render_items_test

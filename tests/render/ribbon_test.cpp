@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::ribbon_test {
 namespace {
 
 const std::string kRibbonCode =
@@ -414,4 +414,4 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: a beam is drawn between its ends, at the
     CHECK(largest_difference(first, image()) > 0.3f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::ribbon_test

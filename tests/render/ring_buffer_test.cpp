@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-namespace limn {
+namespace limn::ring_buffer_test {
 namespace {
 
 using gpu::RingBuffer;
@@ -122,4 +122,4 @@ TEST_CASE_FIXTURE(test::RenderTest, "ring buffer: outgrown buffers die when thei
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::ring_buffer_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::ripple_test {
 namespace {
 
 using glm::dvec2;
@@ -341,4 +341,4 @@ TEST_CASE_FIXTURE(Rippled, "ripple: rain is a function of time and seed") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::ripple_test

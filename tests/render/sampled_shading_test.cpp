@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace limn::test {
+namespace limn::test::sampled_shading_test {
 namespace {
 
 /// Each triangle in four, at midpoints with the normalized sum of the normals.
@@ -71,4 +71,4 @@ TEST_CASE_FIXTURE(
     compare_all(device().caps().software ? kStep : 2 * kStep);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::sampled_shading_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace limn::test {
+namespace limn::test::separable_blur_test {
 namespace {
 
 using oracle::LightImage;
@@ -132,4 +132,4 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: a uniform image stays so, at its 
     CHECK(largest_difference(blurred(even, kBinomialKernel), even) < 1e-6);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::separable_blur_test

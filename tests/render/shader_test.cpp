@@ -11,7 +11,7 @@
 #include <regex>
 #include <sstream>
 
-namespace limn {
+namespace limn::shader_test {
 namespace {
 
 using gpu::ShaderFiles;
@@ -355,4 +355,4 @@ TEST_CASE("shader: every shader of the folder finds its includes") {
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::shader_test

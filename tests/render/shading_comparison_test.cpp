@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::shading_comparison_test {
 namespace {
 
 constexpr int kWidth = 96;
@@ -238,4 +238,4 @@ TEST_CASE_FIXTURE(
     CHECK(above == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::shading_comparison_test

@@ -6,7 +6,7 @@
 // Where C++ and GLSL share a formula or a layout, both have the same values (shade.vector-ops,
 // shade.stdlib).
 
-namespace limn::test {
+namespace limn::test::shading_language_test {
 
 TEST_CASE_FIXTURE(RenderTest, "vector_ops: matrices of the CPU move points as they do on the GPU") {
     const Vec3 position = {3, -1, 2};
@@ -49,4 +49,4 @@ TEST_CASE_FIXTURE(RenderTest, "stdlib: lit is the cosine and its power, both 0 b
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::shading_language_test

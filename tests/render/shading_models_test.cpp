@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::shading_models_test {
 namespace {
 
 std::set<std::string> definitions_of(std::initializer_list<ShadingModel> models) {
@@ -247,4 +247,4 @@ TEST_CASE("shading models: the record is found however many materials there are"
     CHECK(lit_square(shiny, 70000).pixels == first.pixels);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::shading_models_test

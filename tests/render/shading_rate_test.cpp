@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace limn::test {
+namespace limn::test::shading_rate_test {
 namespace {
 
 constexpr int kSide = 64;
@@ -219,4 +219,4 @@ TEST_CASE_FIXTURE(
     CHECK(last < 1e-3f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::shading_rate_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace limn {
+namespace limn::shadow_atlas_test {
 namespace {
 
 bool overlap(const AtlasRect& a, const AtlasRect& b) {
@@ -66,4 +66,4 @@ TEST_CASE("shadow atlas: there is no room for a square larger than it") {
     CHECK_FALSE(atlas.allocate(1).has_value());
 }
 
-}  // namespace limn
+}  // namespace limn::shadow_atlas_test

@@ -11,7 +11,7 @@
 // What levels and programs get wrong about shadows, by every method: images stay finite, and what
 // is not wrong is drawn as if the rest were not there.
 
-namespace limn::test {
+namespace limn::test::shadow_bad_input_test {
 namespace {
 
 using oracle::DVec3;
@@ -215,4 +215,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::shadow_bad_input_test

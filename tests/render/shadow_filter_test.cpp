@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace limn::test {
+namespace limn::test::shadow_filter_test {
 namespace {
 
 /// What the filters of lib/shadow.glsl make of a map of 8 x 8 texels, of which 1 is lit and 0 not.
@@ -277,4 +277,4 @@ TEST_CASE_FIXTURE(
     CHECK(between < 2 * 64);  // of 4096: a pixel or two a row
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::shadow_filter_test

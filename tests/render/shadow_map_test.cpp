@@ -8,7 +8,7 @@
 #include <array>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::shadow_map_test {
 namespace {
 
 using oracle::DVec3;
@@ -761,4 +761,4 @@ TEST_CASE_FIXTURE(
     CHECK(shadows.records.size() == 6);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::shadow_map_test

@@ -17,7 +17,7 @@
 // counting them agrees with rays (shadow.volume-count, -closed-mesh, -vol-per-edge,
 // -vol-per-triangle, -vol-extrude, -silhouette, -extrusion-distance).
 
-namespace limn {
+namespace limn::shadow_mesh_test {
 namespace {
 
 using oracle::DTriangle;
@@ -475,4 +475,4 @@ TEST_CASE("extrusion: by radius the cap cuts into the light's sphere, by plane i
     CHECK(Vec3(extrude_corner(a, light, {kExtrudePlane, 10, 0, 0}, 12)) == a);
 }
 
-}  // namespace limn
+}  // namespace limn::shadow_mesh_test

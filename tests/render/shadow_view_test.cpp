@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <random>
 
-namespace limn {
+namespace limn::shadow_view_test {
 namespace {
 
 /// Of a point: texel x, texel y, depth, and q.
@@ -347,4 +347,4 @@ TEST_CASE("culling: a box counts if the light's ball touches it (shadow.caster-c
     CHECK(sphere_touches({100, 0, 0}, INFINITY, box));
 }
 
-}  // namespace limn
+}  // namespace limn::shadow_view_test

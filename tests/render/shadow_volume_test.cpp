@@ -15,7 +15,7 @@
 // Stencil volumes on the GPU against rays on the CPU (shadow.stencil-pass, -stencil-frame,
 // -vol-per-edge, -vol-per-triangle, -extrusion-distance, -closed-mesh, -density-view).
 
-namespace limn {
+namespace limn::shadow_volume_test {
 namespace {
 
 using oracle::DTriangle;
@@ -745,4 +745,4 @@ TEST_CASE_FIXTURE(
     CHECK(frame_graph(test::shared_renderer()).was_run("shadow volumes"));
 }
 
-}  // namespace limn
+}  // namespace limn::shadow_volume_test

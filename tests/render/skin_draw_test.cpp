@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::skin_draw_test {
 namespace {
 
 /// A bent tube before a wall, under a light with a shadow; or, in its place, the mesh that the
@@ -236,4 +236,4 @@ TEST_CASE_FIXTURE(
     world.destroy(entity);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::skin_draw_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::skin_gpu_test {
 namespace {
 
 struct SkinTest : SkinScene {
@@ -622,4 +622,4 @@ TEST_CASE("slot_allocator: what is given back is found again, and neighbors beco
     CHECK(slots.allocate(150) == 0u);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::skin_gpu_test

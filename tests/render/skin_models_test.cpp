@@ -18,7 +18,7 @@
 // Colors and reflection of skin (skin.blinn, skin.melanin-blood, skin.brdf-lafortune), against
 // double precision.
 
-namespace limn::test {
+namespace limn::test::skin_models_test {
 namespace {
 
 using oracle::DVec3;
@@ -295,4 +295,4 @@ TEST_CASE("detail: its slopes add to those of the normal map") {
     CHECK(glm::distance(found, glm::normalize(Vec3(0.25f, 1.0f / 3, 1))) < 0.01f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::skin_models_test

@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::skin_shade_test {
 namespace {
 
 /// A ball of skin, lit from somewhere.
@@ -121,4 +121,4 @@ TEST_CASE("skin shade: each point of a ball is as the oracle says, by any light 
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::skin_shade_test

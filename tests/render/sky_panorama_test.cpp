@@ -13,7 +13,7 @@
 #include <cstring>
 #include <random>
 
-namespace limn::test {
+namespace limn::test::sky_panorama_test {
 namespace {
 
 /// Smooth but for a sun: a disc of 6 degrees, 200 times as bright as the rest.
@@ -327,4 +327,4 @@ TEST_CASE_FIXTURE(
     CHECK(rgb_at(found, 2, 2) == rgb_at(whole, 2, 2));  // far from them
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::sky_panorama_test

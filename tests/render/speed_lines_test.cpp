@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::speed_lines_test {
 namespace {
 
 constexpr SpeedLines kLines = {.count = 500, .length_scale = 0.1f, .min_speed = 2};
@@ -100,4 +100,4 @@ TEST_CASE_FIXTURE(Scene, "speed lines: they trail in the image, behind what stan
     CHECK(light_at(0, 64) < 0.01f * free);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::speed_lines_test

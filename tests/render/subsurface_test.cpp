@@ -20,7 +20,7 @@
 // Light that spreads under a surface (render/passes/subsurface_pass.h), against the profile in
 // double precision.
 
-namespace limn::test {
+namespace limn::test::subsurface_test {
 namespace {
 
 using oracle::DVec3;
@@ -460,4 +460,4 @@ TEST_CASE("subsurface: nothing passes a body far thicker than its mean free path
     CHECK(behind_slab(1.5f, sun, from).x < 1e-3f * behind_slab(0.03f, sun, from).x);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::subsurface_test

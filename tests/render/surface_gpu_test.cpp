@@ -13,7 +13,7 @@
 
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::surface_gpu_test {
 namespace {
 
 /// A tube that follows a coarse one, which a lattice bends.
@@ -124,4 +124,4 @@ TEST_CASE_FIXTURE(
     CHECK(farthest(got.positions, got.before) > 0.02f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::surface_gpu_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::temporal_test {
 namespace {
 
 class Temporal : public Shutter {
@@ -242,4 +242,4 @@ TEST_CASE_FIXTURE(Temporal, "temporal: motion vectors know nothing of the jitter
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::temporal_test

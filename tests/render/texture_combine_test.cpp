@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace limn::test {
+namespace limn::test::texture_combine_test {
 namespace {
 
 constexpr int kSide = 16;
@@ -139,4 +139,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::texture_combine_test

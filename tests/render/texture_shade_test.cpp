@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::texture_shade_test {
 namespace {
 
 constexpr int kSide = 16;
@@ -157,4 +157,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::texture_shade_test

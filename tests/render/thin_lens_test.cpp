@@ -12,8 +12,7 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::thin_lens_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -290,3 +289,5 @@ TEST_CASE(
         }
     }
 }
+
+}  // namespace limn::thin_lens_test

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace limn::test {
+namespace limn::test::tone_map_test {
 namespace {
 
 using oracle::srgb_encode;
@@ -307,4 +307,4 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: an accumulated image is metered once, as what
     CHECK(std::abs(code() - 255 * 0.18 / adapted) <= 0.6);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::tone_map_test

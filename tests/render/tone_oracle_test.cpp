@@ -10,7 +10,7 @@
 // The printed numbers and laws of the spec entries hdr.*, of the double-precision formulas that the
 // GPU is held against in picture_statistics_test, tone_map_test and dodge_burn_test.
 
-namespace limn::oracle {
+namespace limn::oracle::tone_oracle_test {
 namespace {
 
 std::vector<double> log_ramp(double least, double stops, int count) {
@@ -161,4 +161,4 @@ TEST_CASE("hdr: the eye goes the same way however the time is cut into frames") 
     CHECK(1 - left == test::near(adaptation_blend(0.5f, 1.0f)).epsilon(1e-4));
 }
 
-}  // namespace limn::oracle
+}  // namespace limn::oracle::tone_oracle_test

@@ -2,7 +2,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
-namespace limn::test {
+namespace limn::test::transmission_test {
 namespace {
 
 /// Clear glass that scatters and, unless said otherwise, absorbs nothing.
@@ -242,4 +242,4 @@ TEST_CASE_FIXTURE(GlassScene, "transmission: of a ball with two sides the near o
     CHECK(largest_difference(radiance(front()), want) < 0.01f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::transmission_test

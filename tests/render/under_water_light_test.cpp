@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::under_water_light_test {
 namespace {
 
 constexpr float kDepth = 4;  ///< [m]
@@ -166,4 +166,4 @@ TEST_CASE_FIXTURE(Pool, "under water: lamps lose light on their way, and where t
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::under_water_light_test

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::velocity_test {
 namespace {
 
 constexpr int kSize = 96;
@@ -321,4 +321,4 @@ TEST_CASE_FIXTURE(
     CHECK(aov(view, "velocity").pixels == want.pixels);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::velocity_test

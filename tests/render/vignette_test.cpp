@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-namespace limn::test {
+namespace limn::test::vignette_test {
 namespace {
 
 /// An evenly bright sky.
@@ -60,4 +60,4 @@ TEST_CASE_FIXTURE(VignetteScene, "vignette: none, or nonsense, draws no pass and
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::vignette_test

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::warm_up_test {
 namespace {
 
 /// A lit square, and a renderer of its own.
@@ -146,4 +146,4 @@ TEST_CASE("warm-up: a light that its pulse turns black for a moment stays in the
     CHECK(list.records.size() == 1);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::warm_up_test

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn::test {
+namespace limn::test::water_detail_test {
 namespace {
 
 constexpr int kMapSize = 32;
@@ -276,4 +276,4 @@ TEST_CASE_FIXTURE(Tile, "water detail: who asks for none has no pass, and its ma
     CHECK(largest_difference(with({.normal_map = {77}, .layers = {{}}}), plain) == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::water_detail_test

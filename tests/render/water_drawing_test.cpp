@@ -26,7 +26,7 @@
 
 // Water at moments between steps, its ripples on the GPU, and light that it gives back.
 
-namespace limn::test {
+namespace limn::test::water_drawing_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60;
@@ -577,4 +577,4 @@ TEST_CASE_FIXTURE(Lake, "water: a hundred rippling pools are as many calls as on
     CHECK(counts[0].state_changes == counts[1].state_changes);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::water_drawing_test

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <utility>
 
-namespace limn::test {
+namespace limn::test::water_look_test {
 namespace {
 
 /// Of water so dark that it only mirrors.
@@ -589,4 +589,4 @@ TEST_CASE_FIXTURE(Look, "water look: attributes that are asked for are those of 
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::water_look_test

@@ -19,7 +19,7 @@
 #include <cmath>
 #include <map>
 
-namespace limn::test {
+namespace limn::test::water_test {
 namespace {
 
 class Pond : public Scene {
@@ -567,4 +567,4 @@ TEST_CASE_FIXTURE(Pond, "water veil: at the surface the line is where the water 
     CHECK(covered.at(32, 20, 0) < 0.5f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::water_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::wrinkle_comparison_test {
 namespace {
 
 constexpr int kWide = 256;
@@ -125,4 +125,4 @@ TEST_CASE_FIXTURE(ColumnScene, "wrinkle comparison: the name of each method is i
     CHECK(dots(by(WrinkleMethod::Bump), 0, kWide).count == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::wrinkle_comparison_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::wrinkle_light_test {
 namespace {
 
 /// Wrinkled skin under one light, around which is nothing.
@@ -174,4 +174,4 @@ TEST_CASE_FIXTURE(
     CHECK(std::ranges::max(smooth) - std::ranges::min(smooth) > 0.02f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::wrinkle_light_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::wrinkle_maps_test {
 namespace {
 
 using DVec2 = glm::dvec2;
@@ -366,4 +366,4 @@ TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: examples of normals that are adde
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::wrinkle_maps_test

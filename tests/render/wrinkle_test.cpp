@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::wrinkle_test {
 namespace {
 
 /// The factor on the slopes of the map that its normal was drawn with.
@@ -417,4 +417,4 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: across the fold only; along it no
     CHECK(drawn_factor(aov(view, "normal")) == 0);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::wrinkle_test

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::wrinkle_tier_test {
 namespace {
 
 struct TierScene : WrinkleScene {
@@ -110,4 +110,4 @@ TEST_CASE_FIXTURE(
     CHECK(oblique.x == near(-oblique.y).epsilon(2e-3));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::wrinkle_tier_test

@@ -10,8 +10,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace limn;
-
+namespace limn::autofocus_test {
 namespace {
 
 /// A camera at the origin that looks along -z, and what it is to be focused on.
@@ -104,3 +103,5 @@ TEST_CASE("autofocus: it jumps with what is teleported, and mends a focus that i
     scene.run(1.0f / 60.0f);
     CHECK(scene.focus() == test::near(7));
 }
+
+}  // namespace limn::autofocus_test

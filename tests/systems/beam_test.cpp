@@ -14,8 +14,7 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::beam_test {
 namespace {
 
 const Vec3 kStart = {1, 2, 3};
@@ -134,3 +133,5 @@ TEST_CASE("beam: it stops at the nearest collider, but goes through if it should
     beams.world.get<Beam>(beam) = {.length = 20, .stops = false};
     CHECK(beams.update(beam).end.z == test::near(-20));
 }
+
+}  // namespace limn::beam_test

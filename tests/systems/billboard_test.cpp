@@ -10,7 +10,7 @@
 
 #include <limits>
 
-namespace limn::test {
+namespace limn::test::billboard_test {
 
 TEST_CASE("billboard: one that does not loop dies after its last image, with its children") {
     register_all_components();
@@ -49,4 +49,4 @@ TEST_CASE("billboard: thirty frames a second show image 15 after half a second, 
     CHECK(billboard_life({.loop = false}, 30, 12).value() == near(0.4));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::billboard_test

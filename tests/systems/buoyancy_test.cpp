@@ -18,7 +18,7 @@
 #include <limits>
 #include <random>
 
-namespace limn {
+namespace limn::buoyancy_test {
 
 namespace {
 
@@ -616,4 +616,4 @@ TEST_CASE("buoyancy: a snapshot goes on as the world does") {
     }
 }
 
-}  // namespace limn
+}  // namespace limn::buoyancy_test

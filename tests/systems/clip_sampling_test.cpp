@@ -13,7 +13,8 @@
 #include <cstring>
 #include <vector>
 
-using namespace limn;
+namespace limn::clip_sampling_test {
+
 using namespace limn::test;
 
 namespace {
@@ -386,3 +387,5 @@ TEST_CASE("joints: angles are applied in the order of the channels of a file") {
     compute_joint_matrices(skeleton, pose, matrices);
     CHECK(apart(transform_vector(matrices[0], Vec3(0, 1, 0)), Vec3(0, 0, 1)) < 1e-6f);
 }
+
+}  // namespace limn::clip_sampling_test

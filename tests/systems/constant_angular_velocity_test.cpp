@@ -10,8 +10,7 @@
 #include <numeric>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::constant_angular_velocity_test {
 namespace {
 
 Quat about_z(float angle) {
@@ -84,3 +83,5 @@ TEST_CASE("even turns: keys that turn nothing are left out, a single one stays, 
     CHECK(distribute_frames({}, 5).empty());
     CHECK(distribute_frames(std::vector<Quat>(3, about_z(20)), 5) == std::vector<int>{3, 2});
 }
+
+}  // namespace limn::constant_angular_velocity_test

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::deformers_test {
 namespace {
 
 using test::near;
@@ -413,4 +413,4 @@ TEST_CASE(
     CHECK(world.get<DeformerState>(alone).previous.empty());
 }
 
-}  // namespace limn
+}  // namespace limn::deformers_test

@@ -9,7 +9,8 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
+namespace limn::driven_shapes_test {
+
 using test::near;
 
 namespace {
@@ -113,3 +114,5 @@ TEST_CASE("driven shapes: drivers count from the mesh's first weight, and short 
     Face beyond(MorphWeights{{0.5f}, {}}, 4);
     CHECK(beyond.weights() == std::vector<float>{0.5f});
 }
+
+}  // namespace limn::driven_shapes_test

@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::env_probe_test {
 namespace {
 
 /// How many faces are due in each frame of a probe that moves along x.
@@ -85,3 +84,5 @@ TEST_CASE("env_probe: in a world it gets its state before the first frame and fo
     CHECK(world.get<EnvProbeState>(probe).faces == 12);
     CHECK(world.get<EnvProbeState>(probe).capture_position == Vec3(3, 0, 0));
 }
+
+}  // namespace limn::env_probe_test

@@ -12,8 +12,7 @@
 #include <cstring>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::fft_kernels_test {
 namespace {
 
 using oracle::Complex;
@@ -267,3 +266,5 @@ TEST_CASE("fft: sizes are the powers of two from 16 to 4096") {
         CHECK(is_fft_size(size));
     }
 }
+
+}  // namespace limn::fft_kernels_test

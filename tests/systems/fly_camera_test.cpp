@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-using namespace limn;
-
+namespace limn::fly_camera_test {
 namespace {
 
 constexpr FlyCamera kFly = {.speed = 2.0f, .sensitivity = 0.01f};
@@ -87,3 +86,5 @@ TEST_CASE("fly_camera: without input nothing is written, and inactive cameras st
     CHECK(world.get<Transform>(active).position.z < 0);
     CHECK(world.get<Transform>(idle).position.z == 0);
 }
+
+}  // namespace limn::fly_camera_test

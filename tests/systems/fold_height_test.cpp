@@ -9,7 +9,8 @@
 #include <numbers>
 #include <vector>
 
-using namespace limn;
+namespace limn::fold_height_test {
+
 using limn::test::near;
 
 namespace {
@@ -207,3 +208,5 @@ TEST_CASE("fold height: what is missing, not finite or out of range moves nothin
         CHECK(std::abs(height.x) <= 10 * kHigh);
     }
 }
+
+}  // namespace limn::fold_height_test

@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::force_field_test {
 namespace {
 
 Vec3 place_of(const ParticlePool& pool, std::size_t i = 0) {
@@ -146,4 +146,4 @@ TEST_CASE("force fields: numbers that are not finite count as none") {
     CHECK(std::isfinite(glm::length(place_of(broken.pool()))));
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::force_field_test

@@ -13,8 +13,7 @@
 
 #include <cmath>
 
-using namespace limn;
-
+namespace limn::lens_control_test {
 namespace {
 
 /// Two cameras with lenses, one of them active and with an autofocus.
@@ -91,3 +90,5 @@ TEST_CASE("lens_control: two half steps are one, back is where it was, and the r
     CHECK(adjust_shutter(90, 1, 1e6f) == 360);
     CHECK(adjust_shutter(90, -1, 1e6f) == 0);
 }
+
+}  // namespace limn::lens_control_test

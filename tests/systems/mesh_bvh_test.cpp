@@ -13,7 +13,8 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
+namespace limn::mesh_bvh_test {
+
 using namespace limn::test;
 
 namespace {
@@ -411,3 +412,5 @@ TEST_CASE("mesh bvh: thousands of triangles in one place, or at ever smaller sca
     CHECK(first_hit(bvh, down).triangle == 0);
     CHECK(first_hit(bvh, {{0, -1, 0}, {1e-3f, 1, -1e-3f}}).triangle != kNoTriangle);
 }
+
+}  // namespace limn::mesh_bvh_test

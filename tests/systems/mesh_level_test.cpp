@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-using namespace limn;
+namespace limn::mesh_level_test {
 
 TEST_CASE("mesh_levels: they grow with size on screen, and do not flicker") {
     int last = 0;
@@ -56,3 +56,5 @@ TEST_CASE("mesh_levels: an entity has a finer mesh near the camera, at any size 
     CHECK(mesh_of(far) == 4);
     CHECK(mesh_of(large) == 5);
 }
+
+}  // namespace limn::mesh_level_test

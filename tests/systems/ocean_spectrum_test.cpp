@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace limn;
-
+namespace limn::ocean_spectrum_test {
 namespace {
 
 constexpr double kTurn = 6.283185307179586;
@@ -345,3 +344,5 @@ TEST_CASE("ocean_spectrum: without wind there is no energy, and nowhere NaN") {
         }
     }
 }
+
+}  // namespace limn::ocean_spectrum_test

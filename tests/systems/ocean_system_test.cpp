@@ -19,8 +19,7 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::ocean_system_test {
 namespace {
 
 constexpr double kTurn = oracle::kFullTurn;
@@ -593,3 +592,5 @@ TEST_CASE("ocean: a world steps it, and goes on with the same bits from a snapsh
         world.get<OceanState>(sea).cascades[0].previous_height
         == other.get<OceanState>(sea).cascades[0].previous_height);
 }
+
+}  // namespace limn::ocean_system_test

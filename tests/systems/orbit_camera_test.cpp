@@ -7,8 +7,7 @@
 
 #include <cmath>
 
-using namespace limn;
-
+namespace limn::orbit_camera_test {
 namespace {
 
 bool near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
@@ -198,3 +197,5 @@ TEST_CASE("orbit_camera: mouse and wheel turn and zoom the active camera only") 
     scene.step();
     CHECK(scene.world.get<OrbitCamera>(scene.camera).azimuth == before.azimuth);
 }
+
+}  // namespace limn::orbit_camera_test

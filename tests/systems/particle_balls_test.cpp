@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::particle_balls_test {
 namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
@@ -277,4 +277,4 @@ TEST_CASE("particle balls: poured into a bowl they come to rest in a heap, and h
     CHECK(speed < 0.05);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_balls_test

@@ -18,7 +18,8 @@
 #include <cstring>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_births_test {
+
 using namespace limn::test;
 
 TEST_CASE(
@@ -499,3 +500,5 @@ TEST_CASE("particles: births that are not finite are left out, their neighbors a
     CHECK(pool.look == expected);
     CHECK(pool.clock.born == 1000);
 }
+
+}  // namespace limn::particle_births_test

@@ -13,7 +13,8 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_collision_batch_test {
+
 using namespace limn::test;
 
 namespace {
@@ -409,3 +410,5 @@ TEST_CASE("particle collision: a batch stops what is not finite, other particles
         CHECK(swarm.vy[i] == (i == 5 ? 0.0f : 1.0f));
     }
 }
+
+}  // namespace limn::particle_collision_batch_test

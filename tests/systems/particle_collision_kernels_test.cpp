@@ -11,7 +11,8 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_collision_kernels_test {
+
 using namespace limn::test;
 
 namespace {
@@ -171,3 +172,5 @@ TEST_CASE("particle collision: kernels leave NaN alone") {
         CHECK(arrays.bits() == before);
     }
 }
+
+}  // namespace limn::particle_collision_kernels_test

@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_collision_shapes_test {
+
 using namespace limn::test;
 
 namespace {
@@ -316,3 +317,5 @@ TEST_CASE("particle collision: a tangent on the wall of a hollow leaves it at on
     CHECK(found->share == 0);
     CHECK(found->normal == Vec3(-1, 0, 0));
 }
+
+}  // namespace limn::particle_collision_shapes_test

@@ -12,7 +12,8 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_collision_test {
+
 using namespace limn::test;
 
 namespace {
@@ -432,3 +433,5 @@ TEST_CASE("particle collision: the skin pushes no particle through a second wall
         CHECK(end.y <= end.x * open);
     }
 }
+
+}  // namespace limn::particle_collision_test

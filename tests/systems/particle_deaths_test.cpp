@@ -11,7 +11,8 @@
 #include <functional>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_deaths_test {
+
 using namespace limn::test;
 
 namespace {
@@ -179,3 +180,5 @@ TEST_CASE("particle deaths: a mixed pool that is restored goes on with the same 
     CHECK(same_bits(scene.pool(), went_on));
     CHECK(state_hash(scene.world) == expected);
 }
+
+}  // namespace limn::particle_deaths_test

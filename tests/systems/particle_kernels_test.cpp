@@ -6,7 +6,8 @@
 
 #include <cmath>
 
-using namespace limn;
+namespace limn::particle_kernels_test {
+
 using namespace limn::test;
 
 TEST_CASE("particles: vectors give the bits of the plain loops, for any number") {
@@ -59,3 +60,5 @@ TEST_CASE("particles: wrapping by vectors gives the bits of the plain loop") {
         }
     }
 }
+
+}  // namespace limn::particle_kernels_test

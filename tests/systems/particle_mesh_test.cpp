@@ -14,7 +14,7 @@
 #include <set>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::particle_mesh_test {
 namespace {
 
 /// An emitter of meshes, moved step by step.
@@ -210,4 +210,4 @@ TEST_CASE("particle meshes: what sticks to a surface stops turning") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_mesh_test

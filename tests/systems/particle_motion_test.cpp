@@ -11,7 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace limn;
+namespace limn::particle_motion_test {
+
 using namespace limn::test;
 
 TEST_CASE("particles: free fall is exact whatever the step, unlike Euler's") {
@@ -304,3 +305,5 @@ TEST_CASE("particles: a box about the camera keeps them, evenly, wherever it goe
         }
     }
 }
+
+}  // namespace limn::particle_motion_test

@@ -18,7 +18,8 @@
 #include <cmath>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_obstacles_test {
+
 using namespace limn::test;
 
 namespace {
@@ -375,3 +376,5 @@ TEST_CASE("particle obstacles: no wave is above the bound on them") {
     CHECK(highest <= bound);
     CHECK(bound < 0.401f);
 }
+
+}  // namespace limn::particle_obstacles_test

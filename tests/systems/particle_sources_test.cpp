@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
-using namespace limn;
+namespace limn::particle_sources_test {
+
 using namespace limn::test;
 
 namespace {
@@ -112,3 +113,5 @@ TEST_CASE("particle source: no births of itself, of nothing, or over capacity, w
     scene.run(10);
     CHECK(scene.pool(1).size() == 150);
 }
+
+}  // namespace limn::particle_sources_test

@@ -19,7 +19,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn::test {
+namespace limn::test::particle_surface_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -628,4 +628,4 @@ TEST_CASE("explode: a second blast releases the same pieces again") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::particle_surface_test

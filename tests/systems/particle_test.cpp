@@ -14,7 +14,8 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
+namespace limn::particle_test {
+
 using namespace limn::test;
 
 TEST_CASE("particles: as many are alive as are born in a lifetime, and go when it is over") {
@@ -292,3 +293,5 @@ TEST_CASE("particles: an emitter without a place has none, one that lost its par
         }
     }
 }
+
+}  // namespace limn::particle_test

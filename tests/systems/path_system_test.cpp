@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace limn {
+namespace limn::path_system_test {
 
 namespace {
 
@@ -96,4 +96,4 @@ TEST_CASE_FIXTURE(Follow, "path system: a path that does not exist leaves its fo
     CHECK(world.get<PathFollower>(entity).distance == 0);
 }
 
-}  // namespace limn
+}  // namespace limn::path_system_test

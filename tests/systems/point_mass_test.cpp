@@ -15,7 +15,7 @@
 #include <limits>
 #include <utility>
 
-namespace limn::test {
+namespace limn::test::point_mass_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -340,4 +340,4 @@ TEST_CASE("point mass: without mass, or with NaN, it stays and stops") {
     }
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::point_mass_test

@@ -16,7 +16,8 @@
 #include <cmath>
 #include <limits>
 
-using namespace limn;
+namespace limn::pose_system_test {
+
 using namespace limn::test;
 
 namespace {
@@ -376,3 +377,5 @@ TEST_CASE("pose system: a world put back from a snapshot goes on bit by bit as i
         REQUIRE(state_hash(other.world) == state_hash(stage.world));
     }
 }
+
+}  // namespace limn::pose_system_test

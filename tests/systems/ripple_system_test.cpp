@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-using namespace limn;
+namespace limn::ripple_system_test {
 
 TEST_CASE("ripples: a ring ages by the step and is gone when it has ended") {
     World world;
@@ -49,3 +49,5 @@ TEST_CASE("ripples: they come and go with their age, and are nothing before and 
     CHECK(ripple_fade(RippleRing{.age = 1, .duration = 1}) == 0);
     CHECK(ripple_fade(RippleRing{.age = 1, .duration = 0}) == 0);
 }
+
+}  // namespace limn::ripple_system_test

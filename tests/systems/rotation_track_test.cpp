@@ -9,8 +9,7 @@
 #include <cmath>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::rotation_track_test {
 namespace {
 
 Quat yaw(float degrees) {
@@ -122,3 +121,5 @@ TEST_CASE("rotation_track: in a world it moves the entity, follows changes and s
         std::abs(glm::dot(std::as_const(world).get<Transform>(bare).rotation, yaw(33)))
         == test::near(1));
 }
+
+}  // namespace limn::rotation_track_test

@@ -15,8 +15,7 @@
 #include <string_view>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::script_system_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -312,3 +311,5 @@ TEST_CASE("script: a camera follows its path and its target, and rests when told
     world.run(update_camera_paths);  // then it looks where the first key does
     CHECK(std::isfinite(world.get<const Transform>(camera).rotation.w));
 }
+
+}  // namespace limn::script_system_test

@@ -8,8 +8,7 @@
 
 #include <cmath>
 
-using namespace limn;
-
+namespace limn::shoaling_test {
 namespace {
 
 constexpr ShoalingWaves kTank = {
@@ -95,3 +94,5 @@ TEST_CASE("shoaling: a mesh takes heights and normals of its entity, and is uplo
     CHECK(shaped.bounds.max.y <= 0.02f);
     CHECK(shaped.bounds.min.y >= -0.02f);
 }
+
+}  // namespace limn::shoaling_test

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <string>
 
-using namespace limn;
+namespace limn::skeleton_test {
+
 using namespace limn::test;
 
 namespace {
@@ -126,3 +127,5 @@ TEST_CASE("skeleton: a skin with a flat matrix or a joint that is not there is r
     CHECK(skin_error([](SkinData& s) { s.joint_from_mesh[1].row[1].w = NAN; }) == singular);
     CHECK(skin_error([](SkinData& s) { s.joint_from_mesh[1].row[1].y = INFINITY; }) == singular);
 }
+
+}  // namespace limn::skeleton_test

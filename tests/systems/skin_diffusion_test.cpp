@@ -14,7 +14,7 @@
 #include <numeric>
 #include <vector>
 
-namespace limn {
+namespace limn::skin_diffusion_test {
 namespace {
 
 using limn::test::near;
@@ -271,4 +271,4 @@ TEST_CASE("skin diffusion: strain that jumps between triangles becomes smooth") 
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::skin_diffusion_test

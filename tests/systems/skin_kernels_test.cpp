@@ -16,7 +16,8 @@
 #include <iterator>
 #include <string>
 
-using namespace limn;
+namespace limn::skin_kernels_test {
+
 using namespace limn::test;
 
 namespace {
@@ -556,3 +557,5 @@ TEST_CASE("skin: the largest influences are kept and sum to 1 again") {
         all.weights[0] + all.weights[1] + all.weights[2] + all.weights[3]
         == test::near(1).epsilon(1e-6));
 }
+
+}  // namespace limn::skin_kernels_test

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::skin_pull_test {
 namespace {
 
 using test::near;
@@ -311,4 +311,4 @@ TEST_CASE("skin pull: skin wrinkles where it is pushed together, and nowhere els
     CHECK(wrinkled > 500);
 }
 
-}  // namespace limn
+}  // namespace limn::skin_pull_test

@@ -14,7 +14,8 @@
 #include <string>
 #include <vector>
 
-using namespace limn;
+namespace limn::skin_strain_test {
+
 using limn::test::near;
 
 namespace {
@@ -406,3 +407,5 @@ TEST_CASE("skin_strain: real faces are compressed where anatomy says") {
         }
     }
 }
+
+}  // namespace limn::skin_strain_test

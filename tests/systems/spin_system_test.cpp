@@ -9,7 +9,7 @@
 #include <cstring>
 #include <vector>
 
-using namespace limn;
+namespace limn::spin_system_test {
 
 TEST_CASE("spin: a turn of 2 pi in 60 steps comes back to where it began") {
     World world;
@@ -87,3 +87,5 @@ TEST_CASE("spin: the kernel with vectors gives the bits of the plain one, whatev
         CHECK(std::memcmp(transform.data(), plain.data(), count * sizeof(Transform)) == 0);
     }
 }
+
+}  // namespace limn::spin_system_test

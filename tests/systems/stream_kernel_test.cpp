@@ -16,7 +16,7 @@
 // One kernel, many elements that know nothing of each other (shade.stream-kernel): neither the
 // order nor the grouping in which they are done can be seen in the result.
 
-namespace limn {
+namespace limn::stream_kernel_test {
 namespace {
 
 /// What sways, turns and is placed in the world.
@@ -140,4 +140,4 @@ TEST_CASE("stream_kernel: 1 to 16 threads place 20000 entities with the same bit
     set_thread_count(threads);
 }
 
-}  // namespace limn
+}  // namespace limn::stream_kernel_test

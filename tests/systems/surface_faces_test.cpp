@@ -17,7 +17,7 @@
 #include <limits>
 #include <vector>
 
-namespace limn {
+namespace limn::surface_faces_test {
 namespace {
 
 using test::near;
@@ -449,4 +449,4 @@ TEST_CASE("surface binding: without it, or without its surface, the mesh is its 
     CHECK(bound.world.find<Deformed>(bound.sheet) != nullptr);
 }
 
-}  // namespace limn
+}  // namespace limn::surface_faces_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-namespace limn {
+namespace limn::surface_markers_test {
 namespace {
 
 /// A face of 41 x 41 vertices that performs a take of 5 x 5 markers, each a joint and a vertex of
@@ -153,4 +153,4 @@ TEST_CASE("markers: what is between them moves as well, without a jump from vert
     CHECK(most < 0.012f);  // neighboring markers, ten vertices apart, differ by up to 0.08
 }
 
-}  // namespace limn
+}  // namespace limn::surface_markers_test

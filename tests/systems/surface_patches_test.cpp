@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::surface_patches_test {
 namespace {
 
 using test::near;
@@ -574,4 +574,4 @@ TEST_CASE("patches: markers that meet, cross or leave numbers behind give finite
     }
 }
 
-}  // namespace limn
+}  // namespace limn::surface_patches_test

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <vector>
 
-using namespace limn;
+namespace limn::sway_system_test {
 
 TEST_CASE("sway: sine and cosine are within 1e-7 of the library's, near zero and after days") {
     double worst = 0;
@@ -92,3 +92,5 @@ TEST_CASE("sway: the kernel with vectors gives the bits of the plain one, whatev
         }
     }
 }
+
+}  // namespace limn::sway_system_test

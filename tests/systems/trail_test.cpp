@@ -15,8 +15,7 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::trail_test {
 namespace {
 
 using Path = std::function<Vec3(float)>;
@@ -254,3 +253,5 @@ TEST_CASE("trail: each particle has its own, which outlives it by a life and tak
     }
     CHECK(world.get<const TrailState>(entity).strands.empty());
 }
+
+}  // namespace limn::trail_test

@@ -12,8 +12,7 @@
 #include <map>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::transform_system_test {
 namespace {
 
 Schedule make_schedule() {
@@ -398,3 +397,5 @@ TEST_CASE("transform: the bits do not depend on the number of threads") {
     CHECK(run(4) == one);
     set_thread_count(threads);
 }
+
+}  // namespace limn::transform_system_test

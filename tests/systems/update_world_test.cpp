@@ -13,8 +13,7 @@
 
 #include <vector>
 
-using namespace limn;
-
+namespace limn::update_world_test {
 namespace {
 
 /// Boxes that turn and sway, some of them on others, with two cameras.
@@ -116,3 +115,5 @@ TEST_CASE("update_world: a world put back from a snapshot goes on as it would ha
         REQUIRE(state_hash(other) == state_hash(world));
     }
 }
+
+}  // namespace limn::update_world_test

@@ -3,8 +3,7 @@
 
 #include <doctest/doctest.h>
 
-using namespace limn;
-
+namespace limn::water_dispersion_test {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
@@ -96,3 +95,5 @@ TEST_CASE("water_dispersion: nothing runs on land, and no time or place makes Na
     CHECK(phase_speed(1e6, 1e6) > 0);
     CHECK(group_speed(1e6, 1e6) == test::near(0.5 * phase_speed(1e6, 1e6)));
 }
+
+}  // namespace limn::water_dispersion_test

@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-namespace limn {
+namespace limn::water_noise_test {
 
 TEST_CASE("water noise: it is 0 at integer points, and within 1.04") {
     for (int i = 0; i < 1000; ++i) {
@@ -143,4 +143,4 @@ TEST_CASE("water noise: a world keeps its surfaces moving") {
     CHECK(world.get<HeightField>(pool).height != before);
 }
 
-}  // namespace limn
+}  // namespace limn::water_noise_test

@@ -12,7 +12,7 @@
 #include <limits>
 #include <random>
 
-namespace limn {
+namespace limn::water_query_test {
 
 namespace {
 
@@ -402,4 +402,4 @@ TEST_CASE("water query: a ray meets the water where both are") {
     CHECK(hit_water(sea.surface, {4, 5, -7}, {0, -1, 0}, 100));
 }
 
-}  // namespace limn
+}  // namespace limn::water_query_test

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn {
+namespace limn::water_refraction_test {
 
 namespace {
 
@@ -172,4 +172,4 @@ TEST_CASE("water refraction: on land there are no waves, and rays end") {
     CHECK(trace_wave_ray(grid, kPeriod, {-1, 5}, 0, 10, 1).empty());
 }
 
-}  // namespace limn
+}  // namespace limn::water_refraction_test

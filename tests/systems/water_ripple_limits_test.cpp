@@ -17,7 +17,7 @@
 
 // Ripples of settings that make no sense, of any step, and of many pools.
 
-namespace limn {
+namespace limn::water_ripple_limits_test {
 
 using namespace test;
 
@@ -248,4 +248,4 @@ TEST_CASE("water ripples: pools at work ask for no memory, however many there ar
     set_thread_count(2);
 }
 
-}  // namespace limn
+}  // namespace limn::water_ripple_limits_test

@@ -16,7 +16,7 @@
 #include <functional>
 #include <limits>
 
-namespace limn {
+namespace limn::water_ripple_walls_test {
 
 namespace {
 
@@ -650,4 +650,4 @@ TEST_CASE("ripple walls: one that is nowhere, flat or not finite is none; one ma
     CHECK(std::isfinite(ripple_volume(state)));
 }
 
-}  // namespace limn
+}  // namespace limn::water_ripple_walls_test

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn {
+namespace limn::water_ripples_test {
 
 using namespace test;
 
@@ -355,4 +355,4 @@ TEST_CASE("water ripples: heights, slopes and velocity are asked for anywhere") 
     CHECK(sample_ripples(state, {2.1f, 0}).height == 0);
 }
 
-}  // namespace limn
+}  // namespace limn::water_ripples_test

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn {
+namespace limn::water_soak_test {
 
 TEST_CASE("water soak: after an hour of rain a pool holds its water and what floats in it") {
     constexpr int kStepsAMinute = 60 * 60;
@@ -69,4 +69,4 @@ TEST_CASE("water soak: after an hour of rain a pool holds its water and what flo
     CHECK(world.get<Transform>(stone).position.y == test::near(-0.9).epsilon(0.01).scale(0));
 }
 
-}  // namespace limn
+}  // namespace limn::water_soak_test

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn {
+namespace limn::water_spray_test {
 
 namespace {
 
@@ -219,4 +219,4 @@ TEST_CASE("water spray: a world makes its drops anew each step") {
     CHECK(std::abs(static_cast<float>(of_wall) / (200 * 100) - 3.0f / 16) < 0.06f);
 }
 
-}  // namespace limn
+}  // namespace limn::water_spray_test

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limn {
+namespace limn::water_touch_test {
 
 namespace {
 
@@ -290,4 +290,4 @@ TEST_CASE("water touch: a body that is nowhere pushes nothing") {
     }
 }
 
-}  // namespace limn
+}  // namespace limn::water_touch_test

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn {
+namespace limn::water_wake_test {
 
 namespace {
 
@@ -147,4 +147,4 @@ TEST_CASE("water wake: on land and high in the air there is none") {
     CHECK(odd.rings() == 0);
 }
 
-}  // namespace limn
+}  // namespace limn::water_wake_test

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace limn {
+namespace limn::water_waves_test {
 
 namespace {
 
@@ -533,4 +533,4 @@ TEST_CASE("water waves: what is no wave is left out") {
     CHECK(height_of(table, {0, 0}) == 0);
 }
 
-}  // namespace limn
+}  // namespace limn::water_waves_test

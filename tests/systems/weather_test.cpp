@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn {
+namespace limn::weather_test {
 
 namespace {
 
@@ -129,4 +129,4 @@ TEST_CASE("weather: as the wind turns and grows the sea follows without a jump")
     CHECK(rms(bay.heights()) > 1.5 * calm_before);
 }
 
-}  // namespace limn
+}  // namespace limn::weather_test

@@ -13,8 +13,7 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
-
+namespace limn::wrinkle_batch_test {
 namespace {
 
 /// A curved sheet whose vertices, some of them on a seam, are not a multiple of four.
@@ -199,3 +198,5 @@ TEST_CASE("wrinkle batch: folds at rest count as shortening, each face by its ow
         CHECK(still.intensity[0] == test::near(wrinkle_intensity(0.64f, 1, 4)).epsilon(1e-4));
     }
 }
+
+}  // namespace limn::wrinkle_batch_test

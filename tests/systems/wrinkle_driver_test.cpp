@@ -11,7 +11,8 @@
 #include <iterator>
 #include <vector>
 
-using namespace limn;
+namespace limn::wrinkle_driver_test {
+
 using limn::test::near;
 
 namespace {
@@ -183,3 +184,5 @@ TEST_CASE("wrinkle driver: means of squares exceed squares of means by the varia
     average_compression(rests[0], std::vector<float>(4, 0.36f), vertices);
     CHECK(vertices[0] == near(0.36));
 }
+
+}  // namespace limn::wrinkle_driver_test

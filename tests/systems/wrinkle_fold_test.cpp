@@ -8,7 +8,8 @@
 #include <random>
 #include <vector>
 
-using namespace limn;
+namespace limn::wrinkle_fold_test {
+
 using limn::test::near;
 
 namespace {
@@ -106,3 +107,5 @@ TEST_CASE("wrinkle fold: a map's slopes are its normals', exactly flat at 128") 
     map.format = PixelFormat::Rgba32F;
     CHECK(wrinkle_slopes(map).empty());
 }
+
+}  // namespace limn::wrinkle_fold_test

@@ -11,7 +11,8 @@
 #include <random>
 #include <vector>
 
-using namespace limn;
+namespace limn::wrinkle_measure_test {
+
 using limn::test::near;
 
 namespace {
@@ -438,3 +439,5 @@ TEST_CASE(
             == near(wrinkle_intensity(std::sqrt(ratio), 1.1f, 4)).epsilon(1e-6).scale(1));
     }
 }
+
+}  // namespace limn::wrinkle_measure_test

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::wrinkle_response_test {
 namespace {
 
 using test::near;
@@ -238,4 +238,4 @@ TEST_CASE("wrinkle response: meshes without directions, uvs or images measure no
 }
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::wrinkle_response_test

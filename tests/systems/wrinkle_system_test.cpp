@@ -8,7 +8,8 @@
 #include <limits>
 #include <vector>
 
-using namespace limn;
+namespace limn::wrinkle_system_test {
+
 using limn::test::near;
 
 namespace {
@@ -168,3 +169,5 @@ TEST_CASE("wrinkle system: a radial driver is strongest at its center and none a
         before = share;
     }
 }
+
+}  // namespace limn::wrinkle_system_test

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-namespace limn::test {
+namespace limn::test::wrinkle_track_test {
 namespace {
 
 const WrinkleTrack kTrack = {
@@ -58,4 +58,4 @@ TEST_CASE("wrinkle track: a loop starts over after the last key, others stay the
     CHECK(world.get<WrinkleWeights>(still).lips == 0.25f);
 }
 
-}  // namespace limn::test
+}  // namespace limn::test::wrinkle_track_test
