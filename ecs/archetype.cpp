@@ -9,7 +9,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t round_up(std::size_t value, std::size_t step) {
+constexpr std::size_t round_up_to(std::size_t value, std::size_t step) {
     return (value + step - 1) / step * step;
 }
 
@@ -199,7 +199,7 @@ void Archetype::grow(std::uint32_t rows) {
                 return;
             }
         }
-        promote(static_cast<std::uint32_t>(round_up(rows, kRowPadding)));
+        promote(static_cast<std::uint32_t>(round_up_to(rows, kRowPadding)));
     }
     commit(rows);
 }
@@ -214,7 +214,7 @@ std::uint32_t Archetype::rows_in_block(std::size_t bytes) const {
     for (; rows > 0; rows -= kRowPadding) {
         std::size_t end = rows * sizeof(Entity);
         for (const Column& column : columns_) {
-            end = round_up(end, alignment(column)) + std::size_t{rows} * column.size;
+            end = round_up_to(end, alignment(column)) + std::size_t{rows} * column.size;
         }
         if (end <= bytes) {
             break;
@@ -229,7 +229,7 @@ void Archetype::move_to_block(std::size_t bytes) {
     move_bytes(block, reinterpret_cast<const std::byte*>(entities_), size_ * sizeof(Entity));
     std::size_t end = rows * sizeof(Entity);
     for (Column& column : columns_) {
-        const std::size_t start = round_up(end, alignment(column));
+        const std::size_t start = round_up_to(end, alignment(column));
         relocate_elements(column, block + start, column.data, size_);
         column.data = block + start;
         end = start + std::size_t{rows} * column.size;
@@ -263,7 +263,7 @@ void Archetype::promote(std::uint32_t rows) {
 
 void Archetype::commit(std::uint32_t rows) {
     LIMN_CHECK_NOTE(rows <= kMaxRows, "more rows than an archetype can hold");
-    const std::size_t padded = round_up(rows, kRowPadding);
+    const std::size_t padded = round_up_to(rows, kRowPadding);
     entity_range_.commit(padded * sizeof(Entity));
     for (Column& column : columns_) {
         column.range.commit(padded * column.size);
@@ -289,7 +289,7 @@ void Archetype::shrink() {
         }
         capacity_ = 0;
     } else if (is_promoted()) {
-        const std::size_t padded = round_up(size_, kRowPadding);
+        const std::size_t padded = round_up_to(size_, kRowPadding);
         entity_range_.shrink(padded * sizeof(Entity));
         for (Column& column : columns_) {
             column.range.shrink(padded * column.size);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxPlannedCommands = 1 << 14;
 
-std::size_t hash_of(const Archetype* source, std::span<const CommandKind> commands) {
+std::size_t hash_of_change(const Archetype* source, std::span<const CommandKind> commands) {
     constexpr std::size_t kOdd = 0x9e3779b97f4a7c15u;
     std::size_t hash = reinterpret_cast<std::size_t>(source);
     for (const CommandKind& kind : commands) {
@@ -108,14 +108,14 @@ ChangePlans::find_or_make(Archetype* source, std::span<const CommandKind> comman
     if (2 * (plans_.size() + 1) > slots_.size()) {
         slots_.assign(std::max<std::size_t>(16, 2 * slots_.size()), 0);
         for (std::uint32_t i = 0; i < plans_.size(); ++i) {
-            std::size_t slot = hash_of(plans_[i]->source, plans_[i]->commands);
+            std::size_t slot = hash_of_change(plans_[i]->source, plans_[i]->commands);
             while (slots_[slot % slots_.size()] != 0) {
                 ++slot;
             }
             slots_[slot % slots_.size()] = i + 1;
         }
     }
-    for (std::size_t slot = hash_of(source, commands);; ++slot) {
+    for (std::size_t slot = hash_of_change(source, commands);; ++slot) {
         std::uint32_t& entry = slots_[slot % slots_.size()];
         if (entry == 0) {
             plans_.push_back(make(source, commands));

@@ -16,7 +16,7 @@ namespace limn {
 namespace {
 
 template <typename T>
-T load(const void* from, int lane = 0) {
+T load_lane(const void* from, int lane = 0) {
     T value;
     std::memcpy(
         &value, static_cast<const char*>(from) + sizeof(T) * static_cast<std::size_t>(lane),
@@ -33,13 +33,13 @@ void store(void* to, T value, int lane = 0) {
 std::int64_t get_signed(const FieldInfo& field, const void* element) {
     switch (field.size) {
     case 1:
-        return load<std::int8_t>(element);
+        return load_lane<std::int8_t>(element);
     case 2:
-        return load<std::int16_t>(element);
+        return load_lane<std::int16_t>(element);
     case 4:
-        return load<std::int32_t>(element);
+        return load_lane<std::int32_t>(element);
     default:
-        return load<std::int64_t>(element);
+        return load_lane<std::int64_t>(element);
     }
 }
 
@@ -113,7 +113,7 @@ Status check_number(const FieldInfo& field, double value) {
 Status validate_element(const FieldInfo& field, const void* element) {
     switch (field.type) {
     case FieldType::Bool: {
-        const auto byte = load<std::uint8_t>(element);
+        const auto byte = load_lane<std::uint8_t>(element);
         if (byte > 1) {
             return fail("{}: found {}, expected true or false", field.name, byte);
         }
@@ -312,12 +312,12 @@ double get_number(const FieldInfo& field, const void* element, int lane) {
     case FieldType::UInt:
         return static_cast<double>(get_unsigned(field, element));
     case FieldType::Double:
-        return load<double>(element);
+        return load_lane<double>(element);
     case FieldType::IVec2:
     case FieldType::IVec3:
-        return load<std::int32_t>(element, lane);
+        return load_lane<std::int32_t>(element, lane);
     default:
-        return double{load<float>(element, lane)};
+        return double{load_lane<float>(element, lane)};
     }
 }
 
@@ -487,18 +487,18 @@ std::string type_text(const FieldInfo& field) {
 std::string value_text(const FieldInfo& field, const void* element) {
     switch (field.type) {
     case FieldType::Bool:
-        return load<std::uint8_t>(element) != 0 ? "true" : "false";
+        return load_lane<std::uint8_t>(element) != 0 ? "true" : "false";
     case FieldType::String:
         return format_text("\"{}\"", *static_cast<const std::string*>(element));
     case FieldType::Enum:
         return std::string(get_enum(field, element));
     case FieldType::Entity: {
-        const auto entity = load<Entity>(element);
+        const auto entity = load_lane<Entity>(element);
         return entity.is_null() ? "none"
                                 : format_text("entity {} v{}", entity.index, entity.generation);
     }
     case FieldType::Asset: {
-        const auto index = load<std::uint32_t>(element);
+        const auto index = load_lane<std::uint32_t>(element);
         return index == 0xffffffffu ? "none" : format_text("{} {}", field.asset, index);
     }
     case FieldType::Struct: {

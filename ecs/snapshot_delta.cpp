@@ -21,7 +21,7 @@ namespace limn {
 
 namespace {
 
-constexpr char kMagic[8] = {'L', 'I', 'M', 'N', 'D', 'E', 'L', 'T'};
+constexpr char kDeltaMagic[8] = {'L', 'I', 'M', 'N', 'D', 'E', 'L', 'T'};
 constexpr std::uint32_t kDeltaVersion = 1;
 constexpr std::size_t kDeltaHeaderSize = 24;
 constexpr std::uint64_t kOwnBytes = ~std::uint64_t{0};
@@ -145,7 +145,7 @@ delta_bytes(const SnapshotHeader& base, const SnapshotHeader& later, const Delta
     const std::size_t steps_size = writer.steps().size() * sizeof(DeltaStep);
     ByteWriter out;
     out.reserve(kDeltaHeaderSize + 40 + steps_size + writer.own_bytes().size());
-    out.bytes(kMagic, sizeof kMagic);
+    out.bytes(kDeltaMagic, sizeof kDeltaMagic);
     out.value(kDeltaVersion);
     out.value(std::uint32_t{0});
     out.value(std::uint64_t{0});  // checksum, patched at the end
@@ -175,8 +175,8 @@ struct Delta {
 /// Checks everything except the steps.
 Result<Delta> open_delta(std::span<const std::byte> bytes) {
     ByteReader in(bytes);
-    const std::span<const std::byte> magic = in.bytes(sizeof kMagic);
-    if (in.failed() || std::memcmp(magic.data(), kMagic, sizeof kMagic) != 0) {
+    const std::span<const std::byte> magic = in.bytes(sizeof kDeltaMagic);
+    if (in.failed() || std::memcmp(magic.data(), kDeltaMagic, sizeof kDeltaMagic) != 0) {
         return fail("not a delta: it does not begin with LIMNDELT");
     }
     const auto version = in.value<std::uint32_t>();

@@ -14,7 +14,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kPiecesPerTask = 4;
+constexpr std::size_t kRowsReadPerTask = 4;
 
 /// Contents of a section and location of its pieces.
 struct ReadSection {
@@ -415,7 +415,7 @@ class SnapshotReader {
             offsets.push_back(offset);
             offset += parts_.pieces[section.first_piece + i].size;
         }
-        parallel_for(count, kPiecesPerTask, [&](std::size_t begin, std::size_t end) {
+        parallel_for(count, kRowsReadPerTask, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const auto piece = static_cast<std::uint32_t>(i);
                 call(

@@ -18,7 +18,7 @@ namespace {
 constexpr int kMinFace = 16;  ///< [px]
 
 /// Unit axis `i` of a pose.
-Vec3 axis_of(const Affine& pose, int i) {
+Vec3 probe_axis(const Affine& pose, int i) {
     Vec3 fallback(0);
     fallback[i] = 1;
     return normalize_or({pose.row[0][i], pose.row[1][i], pose.row[2][i]}, fallback);
@@ -31,7 +31,7 @@ void fill_region(const EnvProbe& probe, const Affine& pose, ProbeSlot& slot) {
     const Vec3 half = room ? probe.box : Vec3(std::max(probe.radius, 1e-3f));
     const Vec3 offset = room ? probe.box_center : Vec3(0);
     for (int i = 0; i < 3; ++i) {
-        const Vec3 axis = axis_of(pose, i);
+        const Vec3 axis = probe_axis(pose, i);
         slot.record.probe_from_world[i] = Vec4(axis, -glm::dot(axis, origin) - offset[i]) / half[i];
     }
     slot.record.shape = {room ? 1.0f : 0.0f, 1.0f / std::max(probe.fade, 1e-3f), 0, 0};

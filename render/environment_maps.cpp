@@ -15,11 +15,11 @@
 namespace limn {
 namespace {
 
-constexpr int kMinFace = 16;  ///< [px]
+constexpr int kMinMapFace = 16;  ///< [px]
 
 int face_size(const PanoramaPass& pass, int panorama_width) {
     const auto quarter = static_cast<unsigned>(std::max(panorama_width / 4, 1));
-    return std::clamp(static_cast<int>(std::bit_ceil(quarter)), kMinFace, pass.max_face);
+    return std::clamp(static_cast<int>(std::bit_ceil(quarter)), kMinMapFace, pass.max_face);
 }
 
 constexpr int kMinLevel = 16;  ///< [px]; texels of smaller levels become visible, however blurred
@@ -27,7 +27,7 @@ constexpr int kSamples = 256;  ///< maximum per texel; level 0 is sharp and take
 constexpr int kIrradianceFace =
     32;  ///< [px] of the cube map level that irradiance is integrated from
 constexpr unsigned kCubeUnit = 5;
-constexpr unsigned kSumsBinding = 0;
+constexpr unsigned kMapSumsBinding = 0;
 
 /// All levels of one layer; `cube` is null for an analytic sky.
 void draw_levels(
@@ -170,7 +170,7 @@ void draw_cube_reflection(
             const gpu::Program& sum = *pass.irradiance_program;
             context.device().use(sum);
             context.device().bind_texture(kCubeUnit, cube);
-            context.bind_storage(kSumsBinding, sums);
+            context.bind_storage(kMapSumsBinding, sums);
             const auto shrink = static_cast<unsigned>(std::max(cube.width() / kIrradianceFace, 1));
             sum.set("level", static_cast<int>(std::bit_width(shrink)) - 1);
             sum.set("layer", layer);

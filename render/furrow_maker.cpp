@@ -19,7 +19,7 @@ constexpr float kRoundsPerSegment = 48;  // besides those over the pixels around
 constexpr int kMaxSegments = 1024;       // in a dispatch
 constexpr unsigned kTriangles = 0;
 constexpr unsigned kCover = 1;
-constexpr unsigned kCells = 2;
+constexpr unsigned kFurrowCells = 2;
 constexpr unsigned kHeights = 3;
 constexpr unsigned kProgress = 4;
 
@@ -97,7 +97,7 @@ FurrowTextures make_furrow_textures(
     maker.trace->set("budget", segment_budget(style));
     device.bind_storage(kTriangles, triangles);
     device.bind_storage(kCover, covered);
-    device.bind_storage(kCells, cells);
+    device.bind_storage(kFurrowCells, cells);
     device.bind_storage(kHeights, heights);
     device.bind_storage(kProgress, progress);
     const std::size_t starts = map.triangles.size() + pixels;

@@ -15,12 +15,12 @@ namespace limn {
 namespace {
 
 constexpr unsigned kEntriesBinding = 0;
-constexpr unsigned kInstancesBinding = 1;
+constexpr unsigned kSortedInstancesBinding = 1;
 constexpr unsigned kSortedBinding = 2;
-constexpr std::uint32_t kGroup = 512;   // invocations of a work group
-constexpr std::uint32_t kLocal = 1024;  // entries that a work group sorts by itself
+constexpr std::uint32_t kSortGroup = 512;  // invocations of a work group
+constexpr std::uint32_t kLocal = 1024;     // entries that a work group sorts by itself
 
-void make_buffers(std::uint32_t size, GpuParticleSort& sort) {
+void make_sort_buffers(std::uint32_t size, GpuParticleSort& sort) {
     for (gpu::Buffer& entries : sort.entries) {
         entries =
             gpu::Buffer("particle order", size * sizeof(std::uint64_t), gpu::BufferUse::GpuOnly);
@@ -50,7 +50,7 @@ void sort_all(gpu::Device& device, const ParticleSortPrograms& programs, std::ui
         programs.pass->set("run", run);
         for (std::uint32_t partner = run / 2; partner >= kLocal; partner /= 2) {
             programs.pass->set("partner", partner);
-            device.dispatch(size / 2 / kGroup);
+            device.dispatch(size / 2 / kSortGroup);
             device.storage_barrier();
         }
         sort_local(run, run);
@@ -64,7 +64,7 @@ void sort_some(
         const BitonicPass pass = bitonic_pass_at(number);
         programs.pass->set("run", pass.run);
         programs.pass->set("partner", pass.partner);
-        device.dispatch(plan.size / 2 / kGroup);
+        device.dispatch(plan.size / 2 / kSortGroup);
         device.storage_barrier();
     }
 }
@@ -93,7 +93,7 @@ std::uint32_t sort_size(std::uint32_t count) {
 
 void plan_particle_sort(const ParticleWindow& now, std::uint32_t passes, GpuParticleSort& sort) {
     if (sort.capacity < sort_size(now.count)) {
-        make_buffers(sort_size(now.count), sort);
+        make_sort_buffers(sort_size(now.count), sort);
     }
     const bool whole = passes == 0 || !sort.shown;
     if (whole) {
@@ -142,7 +142,7 @@ void run_particle_sort(
     const int sorted = ended ? 1 - sort.current : sort.current;
     device.storage_barrier();  // after the particles have moved
     device.bind_storage(kEntriesBinding, sort.entries[sorted]);
-    device.bind_storage(kInstancesBinding, instances);
+    device.bind_storage(kSortedInstancesBinding, instances);
     if (plan.read_keys) {
         device.use(*programs.keys);
         programs.keys->set("count", now.count);
@@ -150,7 +150,7 @@ void run_particle_sort(
         const ParticleSortView predicted = predict_sort_view(previous, view, plan.ahead);
         programs.keys->set("eye", predicted.eye);
         programs.keys->set("forward", predicted.forward);
-        device.dispatch(plan.size / kGroup);
+        device.dispatch(plan.size / kSortGroup);
         device.storage_barrier();
     }
     if (plan.first_pass == 0 && ended) {
@@ -165,7 +165,7 @@ void run_particle_sort(
     programs.gather->set("sorted_count", sort.shown->count);
     programs.gather->set("died", now.first - sort.shown->first);
     programs.gather->set("total", sort.count);
-    device.dispatch((sort.count + kGroup - 1) / kGroup);
+    device.dispatch((sort.count + kSortGroup - 1) / kSortGroup);
 }
 
 }  // namespace limn

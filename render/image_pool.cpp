@@ -36,7 +36,7 @@ std::size_t image_bytes(const ImageData& image) {
            * image_format(image).bytes;
 }
 
-bool is_valid(const ImageData& image, int limit) {
+bool is_valid_image(const ImageData& image, int limit) {
     return image.width > 0 && image.height > 0 && image.width <= limit && image.height <= limit
            && image.pixels.size() >= image_bytes(image);
 }
@@ -125,7 +125,7 @@ std::vector<gpu::TextureDesc> ImagePool::place(std::span<const ImageData> images
     for (std::size_t i = images_.size(); i < images.size(); ++i) {
         const ImageData& image = images[i];
         images_.emplace_back();
-        if (!is_valid(image, max_size)) {
+        if (!is_valid_image(image, max_size)) {
             log_error(
                 "image {}: found {}x{} pixels in {} bytes, expected 1 .. {} pixels per side and "
                 "complete data; shown magenta",

@@ -38,7 +38,7 @@ PixelBounds pixels_of(const RenderView& view, const Bounds& box) {
     return {IVec2(glm::floor(pixel(low))), IVec2(glm::ceil(pixel(high)))};
 }
 
-void grow(PixelBounds& bounds, const PixelBounds& more) {
+void grow_pixels(PixelBounds& bounds, const PixelBounds& more) {
     if (is_empty(bounds)) {
         bounds = more;
     } else if (!is_empty(more)) {
@@ -65,7 +65,8 @@ LobeBounds find_lobe_bounds(const RenderItems& items, const RenderView& view) {
             const std::uint32_t model =
                 materials.model_of(materials.record_of(block.surfaces[i].material));
             const std::uint32_t lobe = lobe_number(kShadingModels[model - 1].model);
-            grow(all[lobe], lobe == kBase ? all_pixels(view) : pixels_of(view, block.box(i)));
+            grow_pixels(
+                all[lobe], lobe == kBase ? all_pixels(view) : pixels_of(view, block.box(i)));
         }
     }
     return all;

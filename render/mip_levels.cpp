@@ -8,7 +8,7 @@ namespace {
 
 constexpr unsigned kSourceUnit = 0;
 constexpr unsigned kLevelImage = 0;
-constexpr int kGroup = 8;  ///< side of the work groups [px]
+constexpr int kMipGroup = 8;  ///< side of the work groups [px]
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void fill_mip_levels(gpu::Device& device, const MipLevels& levels, const gpu::Te
         }
         levels.program->set("source_level", level - 1);
         device.bind_image(kLevelImage, texture, GL_WRITE_ONLY, level);
-        device.dispatch_over(texture.width(level), texture.height(level), kGroup);
+        device.dispatch_over(texture.width(level), texture.height(level), kMipGroup);
     }
 }
 

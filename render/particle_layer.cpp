@@ -10,7 +10,7 @@ namespace limn {
 namespace {
 
 constexpr unsigned kLayerUnit = 0;
-constexpr unsigned kSceneDepthUnit = 4;
+constexpr unsigned kLayerSceneDepthUnit = 4;
 constexpr unsigned kLayerDepthUnit = 1;
 
 /// Pixels of the layer, with those that filters read.
@@ -39,7 +39,7 @@ ParticleLayer begin_particle_layer(
         window, create_target(graph, "particles.layer depth", GL_DEPTH_COMPONENT32F, size),
         create_target(graph, "particles.layer", view.frame->radiance_format, size)};
     graph.add_pass(
-        "particles.layer depth", {sampled(view.gbuffer.depth, kSceneDepthUnit)},
+        "particles.layer depth", {sampled(view.gbuffer.depth, kLayerSceneDepthUnit)},
         {discarded(layer.depth)}, [&programs, window](PassContext& context) {
             set_layer_scissor(context.device(), window);
             context.device().use(
@@ -56,7 +56,7 @@ void end_particle_layer(
     graph.add_pass(
         "particles.enlarge",
         {sampled(layer.radiance, kLayerUnit), sampled(layer.depth, kLayerDepthUnit),
-         sampled(view.gbuffer.depth, kSceneDepthUnit)},
+         sampled(view.gbuffer.depth, kLayerSceneDepthUnit)},
         {view.radiance}, [&programs, &view, window = layer.window](PassContext& context) {
             context.device().set_scissor(window.x, window.y, window.width, window.height);
             gpu::PipelineState state = gpu::kFullscreenState;

@@ -87,6 +87,8 @@ RenderView make_overview(const Bounds& all, const RenderView& view) {
          .previous_alpha = view.previous_alpha});
 }
 
+}  // namespace
+
 /// An effect of the list and its state.
 struct EffectSlot {
     const EffectEntry* entry = nullptr;
@@ -109,8 +111,6 @@ struct Accumulation {
     SampleKind kind = SampleKind::Played;
     std::vector<std::pair<std::string, gpu::Texture>> aovs;  ///< by name
 };
-
-}  // namespace
 
 class Renderer {
   public:

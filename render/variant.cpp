@@ -12,7 +12,7 @@ namespace limn {
 namespace {
 
 /// FNV-1a, then mixed so that sums of hashes do not meet.
-std::uint64_t hash_of(std::string_view name, int value) {
+std::uint64_t hash_of_definition(std::string_view name, int value) {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     for (const char c : name) {
         hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
@@ -39,7 +39,7 @@ void Variant::add(const char* name, int value) {
     }
     LIMN_CHECK(count_ < kMaxDefinitions);
     definitions_[count_++] = {name, value};
-    key_ += hash_of(name, value);
+    key_ += hash_of_definition(name, value);
 }
 
 void Variant::add(const Variant& other) {

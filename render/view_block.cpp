@@ -7,7 +7,7 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kViewBinding = 0;
+constexpr unsigned kViewBlockBinding = 0;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ layout::ViewBlock make_view_block(
 
 void bind_view(PassContext& context, const ViewData& view) {
     context.device().bind_uniforms(
-        kViewBinding, view.block.buffer, view.block.offset, view.block.size);
+        kViewBlockBinding, view.block.buffer, view.block.offset, view.block.size);
 }
 
 bool is_clipped(const ViewData& view) {

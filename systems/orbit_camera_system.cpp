@@ -15,7 +15,7 @@ constexpr float kMaxElevation = 1.55f;      // just short of the pole, where azi
 constexpr float kReferenceRate = 60.0f;     // frame rate to which OrbitCamera::follow refers [Hz]
 
 /// Unit vector along axis `i` of the target.
-Vec3 axis_of(const Affine& target, int i) {
+Vec3 target_axis(const Affine& target, int i) {
     Vec3 fallback(0);
     fallback[i] = 1;
     return normalize_or({target.row[0][i], target.row[1][i], target.row[2][i]}, fallback);
@@ -46,16 +46,16 @@ Vec3 orbit_position_z_up(const Affine& target, float azimuth, float elevation, f
     const OrbitDirection to = orbit_direction(azimuth, elevation);
     return origin_of(target)
            + distance
-                 * (axis_of(target, 0) * to.side + axis_of(target, 1) * to.ahead
-                    + axis_of(target, 2) * to.above);
+                 * (target_axis(target, 0) * to.side + target_axis(target, 1) * to.ahead
+                    + target_axis(target, 2) * to.above);
 }
 
 Vec3 orbit_position(const Affine& target, float azimuth, float elevation, float distance) {
     const OrbitDirection to = orbit_direction(azimuth, elevation);
     return origin_of(target)
            + distance
-                 * (axis_of(target, 0) * to.side + axis_of(target, 1) * to.above
-                    + axis_of(target, 2) * to.ahead);
+                 * (target_axis(target, 0) * to.side + target_axis(target, 1) * to.above
+                    + target_axis(target, 2) * to.ahead);
 }
 
 float lag_fraction(float follow, float dt) {
@@ -116,7 +116,7 @@ void update_orbit_cameras(
             jumps ? wanted : lag_position(transform.position, wanted, orbit.follow, time->step);
         const Vec3 back = transform.position - point;
         if (back != Vec3(0)) {
-            transform.rotation = glm::quat_cast(look_at_frame(back, axis_of(target, 1)));
+            transform.rotation = glm::quat_cast(look_at_frame(back, target_axis(target, 1)));
         }
         world.world = affine_from(transform.position, transform.rotation, transform.scale);
         if (jumps) {

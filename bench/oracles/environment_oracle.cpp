@@ -10,7 +10,7 @@
 namespace limn::oracle {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
+constexpr double kEnvironmentPi = std::numbers::pi;
 
 /// Tangent and bitangent: a right-handed frame with `n`.
 struct Frame {
@@ -30,10 +30,10 @@ glm::dvec3 irradiance(const RadianceFunction& radiance, const glm::dvec3& normal
     glm::dvec3 sum(0);
     double weights = 0;
     for (int i = 0; i < steps; ++i) {
-        const double theta = 0.5 * kPiD * (i + 0.5) / steps;
+        const double theta = 0.5 * kEnvironmentPi * (i + 0.5) / steps;
         const double weight = std::sin(theta) * std::cos(theta);
         for (int j = 0; j < 4 * steps; ++j) {
-            const double phi = 0.5 * kPiD * (j + 0.5) / steps;
+            const double phi = 0.5 * kEnvironmentPi * (j + 0.5) / steps;
             sum += weight
                    * radiance(
                        std::sin(theta) * (std::cos(phi) * frame.t + std::sin(phi) * frame.b)
@@ -54,7 +54,7 @@ glm::dvec3 prefiltered(
     double weights = 0;
     for (int i = 0; i < strata * strata; ++i) {
         const double u = (i / strata + uniform(random)) / strata;
-        const double phi = 2 * kPiD * (i % strata + uniform(random)) / strata;
+        const double phi = 2 * kEnvironmentPi * (i % strata + uniform(random)) / strata;
         // tan^2 of the half vector's angle has the distribution a^2 u / (1 - u).
         const double theta_h = std::atan(std::sqrt(a2 * u / (1 - u)));
         const double theta = 2 * theta_h;

@@ -14,7 +14,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kGlarePi = 3.14159265358979323846;
 
 double cross(const dvec2& a, const dvec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -60,13 +60,13 @@ void splat(LightImage& picture, const dvec2& place, const dvec3& light) {
 std::vector<double> diffraction_angles(int blades, double rotation) {
     std::vector<dvec2> corners;
     for (int i = 0; i < blades; ++i) {
-        const double angle = rotation + kPi * (2 * i + 1) / blades;
+        const double angle = rotation + kGlarePi * (2 * i + 1) / blades;
         corners.emplace_back(std::cos(angle), std::sin(angle));
     }
     constexpr int kAngles = 1440;
     std::vector<double> light(kAngles);
     for (int i = 0; i < kAngles; ++i) {
-        const double angle = 2 * kPi * i / kAngles;
+        const double angle = 2 * kGlarePi * i / kAngles;
         for (double frequency = 60; frequency < 120; frequency += 0.37) {
             const dvec2 k = frequency * dvec2(std::cos(angle), std::sin(angle));
             light[i] += std::norm(transform_of(corners, k));
@@ -78,7 +78,7 @@ std::vector<double> diffraction_angles(int blades, double rotation) {
         const double before = light[(i + kAngles - 1) % kAngles];
         const double after = light[(i + 1) % kAngles];
         if (light[i] > half && light[i] > before && light[i] >= after) {
-            angles.push_back(2 * kPi * i / kAngles);
+            angles.push_back(2 * kGlarePi * i / kAngles);
         }
     }
     return angles;
@@ -113,7 +113,7 @@ LightImage add_stars(const LightImage& picture, const Star& star, double width) 
             const dvec3 source = picture.at(x, y) * (1 - star.threshold / light) * star.strength
                                  / static_cast<double>(star.lines);
             for (int line = 0; line < star.lines; ++line) {
-                const double angle = star.rotation + kPi * line / star.lines;
+                const double angle = star.rotation + kGlarePi * line / star.lines;
                 const dvec2 along(std::cos(angle), -std::sin(angle));  // rows go down
                 for (std::size_t i = 0; i < densities.size(); ++i) {
                     const dvec2 way = (static_cast<double>(i) + 0.5) * kStep * along;

@@ -7,7 +7,7 @@
 namespace limn::oracle {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kGlowPi = 3.14159265358979323846;
 constexpr double kReach = 6;  // cut-off of a Gaussian, in standard deviations: 2e-9 of it is beyond
 
 int mirrored(int at, int size) {
@@ -161,7 +161,7 @@ double rotational_spread(const LightImage& picture, const glm::dvec2& center, do
     double sum = 0;
     double squares = 0;
     for (int i = 0; i < kAngles; ++i) {
-        const double angle = 2 * kPi * i / kAngles;
+        const double angle = 2 * kGlowPi * i / kAngles;
         const double value =
             green_at(picture, center + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
         sum += value;

@@ -11,7 +11,7 @@
 namespace limn::oracle {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
+constexpr double kHairPi = std::numbers::pi;
 constexpr double kIndex = 1.55;
 
 double dielectric(double cosine) {
@@ -26,7 +26,7 @@ double scaled_bessel(double x) {
     constexpr int kSteps = 1000;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) {
-        sum += std::exp(x * (std::cos(kPiD * (i + 0.5) / kSteps) - 1));
+        sum += std::exp(x * (std::cos(kHairPi * (i + 0.5) / kSteps) - 1));
     }
     return sum / kSteps;
 }
@@ -40,9 +40,9 @@ double longitudinal(double variance, double to_light, double to_viewer) {
 /// Of the logistic distribution, wrapped around once.
 double wrapped_logistic(double angle, double scale) {
     const auto cumulative = [&](double x) { return 1 / (1 + std::exp(-x / scale)); };
-    const double x = std::remainder(angle, 2 * kPiD);
+    const double x = std::remainder(angle, 2 * kHairPi);
     const double e = std::exp(-std::abs(x) / scale);
-    return e / (scale * square(1 + e)) / (cumulative(kPiD) - cumulative(-kPiD));
+    return e / (scale * square(1 + e)) / (cumulative(kHairPi) - cumulative(-kHairPi));
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ fiber_light(const HairFiber& fiber, double to_light, double to_viewer, double az
         / (5.969 - 0.215 * across + 2.532 * std::pow(across, 2) - 10.73 * std::pow(across, 3)
            + 5.574 * std::pow(across, 4) + 0.245 * std::pow(across, 5));
     const DVec3 absorption = root * root;
-    const double scale = std::sqrt(kPiD / 8)
+    const double scale = std::sqrt(kHairPi / 8)
                          * (0.265 * across + 1.194 * square(across) + 5.372 * std::pow(across, 22));
 
     const double sine = std::sin(to_viewer);
@@ -72,10 +72,10 @@ fiber_light(const HairFiber& fiber, double to_light, double to_viewer, double az
         const std::array<DVec3, 3> held = {
             DVec3(f), square(1 - f) * passed, square(1 - f) * f * passed * passed};
         for (int p = 0; p < 3; ++p) {
-            const double leaves = 2 * p * bent - 2 * in + p * kPiD;
+            const double leaves = 2 * p * bent - 2 * in + p * kHairPi;
             around[p] += held[p] * (wrapped_logistic(azimuth - leaves, scale) / steps);
         }
-        around[3] += held[2] * (f * passed / (1.0 - f * passed)) / (2 * kPiD * steps);
+        around[3] += held[2] * (f * passed / (1.0 - f * passed)) / (2 * kHairPi * steps);
     }
 
     const double r = fiber.roughness;

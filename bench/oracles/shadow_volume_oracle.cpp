@@ -9,7 +9,7 @@
 namespace limn::oracle {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kVolumePi = 3.14159265358979323846;
 
 /// Intersection of the line from + t (to - from) with the triangle: t, and whether it hits the
 /// front; {0, false, false} without an intersection.
@@ -79,7 +79,7 @@ int winding_number(std::span<const DTriangle> volume, const DVec3& point) {
                    glm::dot(a, glm::cross(b, c)),
                    la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
     }
-    return static_cast<int>(std::lround(sum / (4 * kPi)));
+    return static_cast<int>(std::lround(sum / (4 * kVolumePi)));
 }
 
 bool segment_hits(std::span<const DTriangle> mesh, const DVec3& from, const DVec3& to) {

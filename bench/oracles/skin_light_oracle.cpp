@@ -11,7 +11,7 @@
 namespace limn::oracle {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
+constexpr double kSkinPi = std::numbers::pi;
 
 }  // namespace
 
@@ -35,16 +35,16 @@ double lafortune_albedo(double diffuse, std::span<const Lobe> lobes, const DVec3
         const double z = (i + 0.5) / steps;
         const double radius = std::sqrt(1 - z * z);
         for (int j = 0; j < 2 * steps; ++j) {
-            const double turn = kPiD * (j + 0.5) / steps;
+            const double turn = kSkinPi * (j + 0.5) / steps;
             const DVec3 v(radius * std::cos(turn), radius * std::sin(turn), z);
             sum += lafortune(diffuse, lobes, u, v) * z;
         }
     }
-    return sum * (2 * kPiD / (2.0 * steps * steps)) / kPiD;
+    return sum * (2 * kSkinPi / (2.0 * steps * steps)) / kSkinPi;
 }
 
 double diffusion_profile(double r, double d) {
-    return (std::exp(-r / d) + std::exp(-r / (3 * d))) / (8 * kPiD * d * r);
+    return (std::exp(-r / d) + std::exp(-r / (3 * d))) / (8 * kSkinPi * d * r);
 }
 
 double diffused_share(double r, double d) {
@@ -68,7 +68,8 @@ double diffused_edge(double x, double d) {
     double lit = 0;
     for (int i = 0; i < kRings; ++i) {
         const double r = (i + 0.5) * step;
-        const double share = r <= std::abs(x) ? (x > 0 ? 1.0 : 0.0) : 1 - std::acos(x / r) / kPiD;
+        const double share =
+            r <= std::abs(x) ? (x > 0 ? 1.0 : 0.0) : 1 - std::acos(x / r) / kSkinPi;
         lit += share * (diffused_share(r + 0.5 * step, d) - diffused_share(r - 0.5 * step, d));
     }
     return lit;

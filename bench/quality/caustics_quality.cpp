@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::caustics_quality {
 namespace {
 
 constexpr float kHalf = 2;      ///< of the pool [m]
@@ -338,4 +338,4 @@ const RegisterQuality kRegistered(
     measure_caustics);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::caustics_quality

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <utility>
 
-namespace limn {
+namespace limn::dof_quality {
 namespace {
 
 constexpr int kWidth = 320;
@@ -272,4 +272,4 @@ Status measure_dof(HeadlessRenderer& headless, QualityReport& report) {
 const RegisterQuality kRegistered("dof", "the mean of 256 views across the lens", measure_dof);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::dof_quality

@@ -42,7 +42,7 @@
 // search that tries all, deformers on both processors beside their definitions, a head that goes
 // with its markers beside its own shapes, strain beside the polar decomposition.
 
-namespace limn {
+namespace limn::faces_quality {
 namespace {
 
 using glm::dvec3;
@@ -524,4 +524,4 @@ const RegisterQuality kRegistered(
     measure_faces);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::faces_quality

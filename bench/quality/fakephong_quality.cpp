@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace limn {
+namespace limn::fakephong_quality {
 namespace {
 
 using namespace fakephong;
@@ -110,4 +110,4 @@ const RegisterQuality kRegistered(
     measure_fakephong_file);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::fakephong_quality

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::glow_quality {
 namespace {
 
 using glm::dvec2;
@@ -400,4 +400,4 @@ const RegisterQuality
     kRegistered("glow", "a convolution in double precision, and energy conservation", measure_glow);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::glow_quality

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <vector>
 
-namespace limn {
+namespace limn::lights_quality {
 namespace {
 
 using oracle::DVec3;
@@ -240,4 +240,4 @@ const RegisterQuality kRegistered(
     measure_lights);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::lights_quality

@@ -15,7 +15,7 @@
 #include <functional>
 #include <utility>
 
-namespace limn {
+namespace limn::motion_blur_quality {
 namespace {
 
 constexpr int kWidth = 320;
@@ -350,4 +350,4 @@ const RegisterQuality
     kRegistered("motion-blur", "the mean of 128 frames within the exposure", measure_motion_blur);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::motion_blur_quality

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::particles_quality {
 namespace {
 
 using glm::dvec3;
@@ -434,4 +434,4 @@ const RegisterQuality kRegistered(
     measure_particles);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::particles_quality

@@ -13,7 +13,7 @@
 #include <functional>
 #include <utility>
 
-namespace limn {
+namespace limn::ripple_quality {
 namespace {
 
 using glm::dvec2;
@@ -231,4 +231,4 @@ Status measure_ripple(HeadlessRenderer& headless, QualityReport& report) {
 const RegisterQuality kRegistered("ripple", "analytic shifts in double precision", measure_ripple);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::ripple_quality

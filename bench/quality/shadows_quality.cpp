@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limn {
+namespace limn::shadows_quality {
 namespace {
 
 using oracle::DVec3;
@@ -379,4 +379,4 @@ const RegisterQuality kRegistered(
     measure_shadows);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::shadows_quality

@@ -16,7 +16,7 @@
 
 // Light within skin: spread on a plane that is partly lit, and shining through a slab.
 
-namespace limn {
+namespace limn::skin_quality {
 namespace {
 
 using glm::dvec3;
@@ -171,4 +171,4 @@ const RegisterQuality kRegistered(
     measure_skin);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::skin_quality

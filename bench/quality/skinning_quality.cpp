@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace limn {
+namespace limn::skinning_quality {
 namespace {
 
 constexpr int kWidth = 320;
@@ -296,4 +296,4 @@ const RegisterQuality
     kRegistered("skinning", "joints and morph targets in double precision", measure_skinning);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::skinning_quality

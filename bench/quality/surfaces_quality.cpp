@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace limn {
+namespace limn::surfaces_quality {
 namespace {
 
 using oracle::DVec3;
@@ -160,4 +160,4 @@ const RegisterQuality kRegistered(
     measure_surfaces);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::surfaces_quality

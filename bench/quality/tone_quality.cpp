@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-namespace limn {
+namespace limn::tone_quality {
 namespace {
 
 using glm::dvec3;
@@ -270,4 +270,4 @@ const RegisterQuality kRegistered(
     measure_tone);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::tone_quality

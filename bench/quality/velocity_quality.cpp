@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace limn {
+namespace limn::velocity_quality {
 namespace {
 
 constexpr int kWidth = 240;
@@ -266,4 +266,4 @@ const RegisterQuality kRegistered(
     measure_velocity);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::velocity_quality

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::water_quality {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -426,4 +426,4 @@ const RegisterQuality kRegistered(
     measure_water);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::water_quality

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace limn {
+namespace limn::wrinkles_quality {
 namespace {
 
 using glm::dvec3;
@@ -181,4 +181,4 @@ const RegisterQuality kRegistered(
     measure_wrinkles, measure_face_file);
 
 }  // namespace
-}  // namespace limn
+}  // namespace limn::wrinkles_quality

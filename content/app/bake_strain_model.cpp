@@ -75,7 +75,7 @@ LIMN_FIELDS(CapturedPoses) {
 
 namespace {
 
-constexpr int kGutter = 4;            ///< [texels]
+constexpr int kStrainGutter = 4;      ///< [texels]
 constexpr float kMinNormalZ = 0.05f;  ///< steeper ones are cut off
 
 /// Slopes of a normal map at size x size texels: the mean of what each covers.
@@ -186,7 +186,7 @@ Status bake_strain_model(const BakeOptions& options) {
     }
     const std::filesystem::path folder = std::filesystem::path(options.in).parent_path();
     const MeshData mesh = LIMN_TRY(load_face((folder / recipe.face).string(), recipe.uv_set));
-    const std::vector<SkinTexel> texels = find_skin_texels(mesh, recipe.size, kGutter);
+    const std::vector<SkinTexel> texels = find_skin_texels(mesh, recipe.size, kStrainGutter);
     std::vector<Vec2> rest(texels.size(), Vec2(0));
     if (!recipe.rest.empty()) {
         rest = LIMN_TRY(load_slopes((folder / recipe.rest).string(), recipe.size));

@@ -29,7 +29,7 @@ constexpr const char* kMethodNames[kLightMethods] = {
 constexpr auto kClustered = static_cast<std::size_t>(LightMethod::Clustered);
 constexpr auto kFullScreen = static_cast<std::size_t>(LightMethod::FullScreen);
 
-Summary frame_summary(const BenchReport& report) {
+Summary lights_frame_summary(const BenchReport& report) {
     for (const BenchSeries& series : report.series) {
         if (series.kind == BenchKind::Frame && series.name == "frame") {
             return summarize(series.samples);
@@ -43,7 +43,7 @@ bool was_measured(const LightsBenchPoint& point) {
 }
 
 /// Measures frames of the stage as it is now, after warm-up frames that compile shaders and upload.
-void measure_point(
+void measure_lights_point(
     Stage& stage, HeadlessRenderer& headless, const BenchOptions& options, BenchReport& report) {
     using Clock = std::chrono::steady_clock;
     const auto seconds_since = [](Clock::time_point begin) {
@@ -69,8 +69,8 @@ double cost_over_clustered(const LightsBench& bench, std::size_t method, std::si
     if (!was_measured(point) || !was_measured(clustered)) {
         return 0;
     }
-    return frame_summary(point.report).median
-           / std::max(frame_summary(clustered.report).median, 1e-6);
+    return lights_frame_summary(point.report).median
+           / std::max(lights_frame_summary(clustered.report).median, 1e-6);
 }
 
 }  // namespace
@@ -128,9 +128,9 @@ measure_lights(Stage& stage, HeadlessRenderer& headless, const BenchOptions& opt
                 point.left_out = fmt::format("a frame would take up to {:.0f} s", expected);
             } else {
                 enable_some_lights(stage.world, count);
-                measure_point(stage, headless, options, point.report);
+                measure_lights_point(stage, headless, options, point.report);
                 measured = count;
-                frame_ms = frame_summary(point.report).median;
+                frame_ms = lights_frame_summary(point.report).median;
             }
             progress.update(++done);
         }
@@ -157,7 +157,7 @@ std::string lights_bench_table(const LightsBench& bench) {
             const LightsBenchPoint& point = bench.points[method][i];
             if (was_measured(point)) {
                 fmt::format_to(
-                    out, " {:>11.2f} {:>6.1f}x", frame_summary(point.report).median,
+                    out, " {:>11.2f} {:>6.1f}x", lights_frame_summary(point.report).median,
                     cost_over_clustered(bench, method, i));
             } else {
                 fmt::format_to(out, " {:>19}", "-");
@@ -186,7 +186,7 @@ std::string lights_bench_json(const LightsBench& bench) {
                 points.push_back({{"lights", point.lights}, {"left_out", point.left_out}});
                 continue;
             }
-            const Summary frame = frame_summary(point.report);
+            const Summary frame = lights_frame_summary(point.report);
             nlohmann::ordered_json passes = nlohmann::ordered_json::array();
             for (const BenchSeries& series : point.report.series) {
                 if (series.kind == BenchKind::Pass && series.clock == BenchClock::Gpu) {
@@ -226,7 +226,7 @@ std::string lights_bench_csv(const LightsBench& bench) {
     for (std::size_t method = 0; method < kLightMethods; ++method) {
         for (const LightsBenchPoint& point : bench.points[method]) {
             if (was_measured(point)) {
-                const Summary frame = frame_summary(point.report);
+                const Summary frame = lights_frame_summary(point.report);
                 fmt::format_to(
                     std::back_inserter(text), "{},{},{},{:.6f},{:.6f},{:.6f}\n",
                     kMethodNames[method], point.lights, point.report.frames, frame.median,

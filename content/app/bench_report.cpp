@@ -10,7 +10,7 @@
 namespace limn {
 namespace {
 
-constexpr BenchKind kKinds[] = {BenchKind::Frame, BenchKind::System, BenchKind::Pass};
+constexpr BenchKind kReportKinds[] = {BenchKind::Frame, BenchKind::System, BenchKind::Pass};
 
 constexpr double kShownMs = 0.005;  // the table has systems that take this long
 
@@ -73,7 +73,7 @@ std::string bench_table(const BenchReport& report) {
         report.resident_mib, report.resident_mib - report.resident_begin_mib, report.gpu_mib,
         report.programs - report.compiled, report.compile_ms, report.compiled);
     fmt::format_to(out, "{:<34} {:>3} {:>11} {:>11} {:>11}\n", "[ms]", "", "median", "p95", "max");
-    for (const BenchKind kind : kKinds) {
+    for (const BenchKind kind : kReportKinds) {
         std::vector<Line> lines = lines_of(report, kind);
         std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
             return a.summary.median > b.summary.median;
@@ -119,7 +119,7 @@ std::string bench_json(const BenchReport& report) {
           {"programs", report.programs},
           {"compiled", report.compiled}}},
         {"compile_ms", report.compile_ms}};
-    for (const BenchKind kind : kKinds) {
+    for (const BenchKind kind : kReportKinds) {
         const char* key = kind == BenchKind::Frame    ? "frame"
                           : kind == BenchKind::System ? "systems"
                                                       : "passes";
@@ -139,7 +139,7 @@ std::string bench_json(const BenchReport& report) {
 
 std::string bench_csv(const BenchReport& report) {
     std::string text = "kind,name,clock,median_ms,p95_ms,max_ms\n";
-    for (const BenchKind kind : kKinds) {
+    for (const BenchKind kind : kReportKinds) {
         for (const Line& line : lines_of(report, kind)) {
             fmt::format_to(
                 std::back_inserter(text), "{},{},{},{:.6f},{:.6f},{:.6f}\n", kind_name(kind),

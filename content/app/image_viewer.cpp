@@ -19,7 +19,7 @@
 namespace limn {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using ViewerClock = std::chrono::steady_clock;
 
 constexpr double kPollInterval = 0.25;  // [s] longest wait for an event
 constexpr float kEvStep = 0.5f;         // of a key press
@@ -148,7 +148,7 @@ void ImageViewer::save() {
 }
 
 Status ImageViewer::run() {
-    Clock::time_point last = Clock::now();
+    ViewerClock::time_point last = ViewerClock::now();
     while (!window_->wants_to_close()) {
         window_->wait_events(kPollInterval);
         const WindowEvents& events = window_->poll();
@@ -162,7 +162,7 @@ Status ImageViewer::run() {
             continue;  // minimized
         }
         move_image(events);
-        const Clock::time_point now = Clock::now();
+        const ViewerClock::time_point now = ViewerClock::now();
         draw_frame(std::chrono::duration<float>(now - last).count());
         last = now;
         window_->swap();

@@ -79,7 +79,7 @@ std::vector<Entity> own_entities(const World& world, const LoadedScene& scene) {
     return own;
 }
 
-std::string name_of(const World& world, Entity entity) {
+std::string name_of_shape(const World& world, Entity entity) {
     const auto* const name = world.find<Name>(entity);
     return name != nullptr ? name->text : "(no name)";
 }
@@ -115,7 +115,7 @@ void print_cameras_and_lights(const World& world, std::span<const Entity> entiti
     std::vector<std::string> cameras;
     std::vector<std::string> lights;
     for (const Entity entity : entities) {
-        const std::string name = name_of(world, entity);
+        const std::string name = name_of_shape(world, entity);
         if (const auto* const camera = world.find<Camera>(entity)) {
             cameras.push_back(fmt::format("{:>6.1f} deg  {}", degrees(camera->fov_y), name));
         }
@@ -149,7 +149,7 @@ void print_particles(const World& world, std::span<const Entity> entities) {
             continue;
         }
         const bool gpu = runs_on_gpu(*emitter);
-        std::string name = name_of(world, entity);
+        std::string name = name_of_shape(world, entity);
         name = fmt::format("{}  {}", gpu ? "gpu" : "cpu", name.substr(0, name.find('[')));
         const auto [line, is_new] = lines.try_emplace(name, budgets.size());
         if (is_new) {
@@ -200,7 +200,7 @@ void print_hierarchy(World& world, std::span<const Entity> entities) {
     for (std::size_t i = 0; i < kMaxLines && !open.empty(); ++i) {
         const auto [entity, depth] = open.back();
         open.pop_back();
-        fmt::print("    {:{}}{}\n", "", 2 * depth, name_of(world, entity));
+        fmt::print("    {:{}}{}\n", "", 2 * depth, name_of_shape(world, entity));
         const std::span<const Entity> children = children_of(world, entity);
         for (auto child = children.rbegin(); child != children.rend(); ++child) {
             open.push_back({*child, depth + 1});

@@ -17,7 +17,7 @@ constexpr float kMaxElevation = radians(88.8f);  // OrbitCamera::elevation's ran
 constexpr float kEaseTime = 0.08f;               // [s] time constant: 63 % of a change of speed
 constexpr float kStill = 1e-3f;                  // fraction of full speed treated as 0
 constexpr float kSpeedStep = 1.2f;               // of one wheel step
-constexpr float kZoomStep = 0.88f;               // of one wheel step
+constexpr float kCameraZoomStep = 0.88f;         // of one wheel step
 constexpr float kZoomKeys = 8.0f;                // wheel steps a second of W and S
 constexpr float kMinSpeed = 0.1f;                // [m/s], so that walls do not hold the camera
 constexpr float kReachTime = 0.4f;               // [s] time constant of PlayerCamera::reach
@@ -120,7 +120,7 @@ void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target
     orbit.elevation =
         std::clamp(orbit.elevation + input.look.y * sensitivity, -kMaxElevation, kMaxElevation);
     orbit.distance =
-        std::clamp(orbit.distance * std::pow(kZoomStep, zoom), kMinDistance, kMaxDistance);
+        std::clamp(orbit.distance * std::pow(kCameraZoomStep, zoom), kMinDistance, kMaxDistance);
 
     camera.focus = lag_position(camera.focus, target, orbit.follow, dt);
     const Affine frame = affine_from(camera.focus, {1, 0, 0, 0}, Vec3(1));

@@ -50,7 +50,7 @@ void add_events(const Bindings* bindings, std::vector<KeyHelp>& lines) {
 }
 
 /// Those of the window that are of use now.
-void add_keys(
+void add_help_keys(
     std::span<const PlayerKey> keys, const HelpState& state, std::vector<KeyHelp>& lines) {
     std::string_view heading;
     const PlayerKey* last = nullptr;
@@ -123,7 +123,7 @@ player_help(const World& world, const HelpState& state, std::span<const PlayerKe
         }
     }
     add_events(bindings, lines);
-    add_keys(keys, state, lines);
+    add_help_keys(keys, state, lines);
     return lines;
 }
 

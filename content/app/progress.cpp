@@ -11,26 +11,26 @@ namespace limn {
 namespace {
 
 constexpr int kBarWidth = 24;  // characters
-constexpr std::chrono::milliseconds kRedraw{100};
-constexpr const char* kClearLine = "\r\033[K";
+constexpr std::chrono::milliseconds kProgressRedraw{100};
+constexpr const char* kClearProgressLine = "\r\033[K";
 
 }  // namespace
 
 Progress::Progress(std::string what, int total, bool shown)
     : what_(std::move(what)), total_(std::max(total, 1)),
       on_terminal_(shown && isatty(STDERR_FILENO) == 1), begin_(Clock::now()),
-      last_draw_(begin_ - kRedraw) {}
+      last_draw_(begin_ - kProgressRedraw) {}
 
 Progress::~Progress() {
     if (drawn_) {
-        std::fputs(kClearLine, stderr);
+        std::fputs(kClearProgressLine, stderr);
         std::fflush(stderr);
     }
 }
 
 void Progress::update(int done) {
     const Clock::time_point now = Clock::now();
-    if (!on_terminal_ || now - last_draw_ < kRedraw) {
+    if (!on_terminal_ || now - last_draw_ < kProgressRedraw) {
         return;
     }
     last_draw_ = now;
@@ -43,7 +43,7 @@ void Progress::update(int done) {
         left = fmt::format(" {:.0f} s left", elapsed / share * (1.0 - share));
     }
     const std::string line = fmt::format(
-        "{}{} {} of {} [{:#>{}}{:->{}}]{}", kClearLine, what_, done, total_, "", filled, "",
+        "{}{} {} of {} [{:#>{}}{:->{}}]{}", kClearProgressLine, what_, done, total_, "", filled, "",
         kBarWidth - filled, left);
     std::fputs(line.c_str(), stderr);
     std::fflush(stderr);

@@ -74,7 +74,7 @@ class WordFlow {
     bool is_first_ = true;
 };
 
-void numbers_text(const HudStyle& style, const ImVec4& color, const std::string& text) {
+void row_counts_text(const HudStyle& style, const ImVec4& color, const std::string& text) {
     ImGui::PushFont(style.numbers);
     ImGui::TextColored(color, "%s", text.c_str());
     ImGui::PopFont();
@@ -152,7 +152,7 @@ void draw_archetype(const HudStyle& style, const ArchetypeStats& archetype) {
         words.add("no components", kHudDim);
     }
     draw_chunks(style, archetype);
-    numbers_text(
+    row_counts_text(
         style, kHudText,
         fmt::format(
             "{} rows  {} {}", grouped(archetype.rows), archetype.chunks,
@@ -164,11 +164,11 @@ void draw_archetype(const HudStyle& style, const ArchetypeStats& archetype) {
             "{} B/row  {} {:.0f} %", archetype.row_bytes, bytes_text(archetype.committed),
             100.0 * archetype.fill()));
     for (const auto& [component, rows] : archetype.disabled) {
-        numbers_text(
+        row_counts_text(
             style, kToggleLook.color, fmt::format("{} disabled: {}", component, grouped(rows)));
     }
     if (archetype.rows_moved_in + archetype.rows_moved_out > 0) {
-        numbers_text(
+        row_counts_text(
             style, kHudDim,
             fmt::format(
                 "moved in {}, out {}", grouped(archetype.rows_moved_in),
@@ -229,7 +229,7 @@ void StoragePanel::draw(const HudStyle& style, const World& world, const Schedul
 }
 
 void StoragePanel::draw_summary(const HudStyle& style) const {
-    numbers_text(
+    row_counts_text(
         style, kHudAccent,
         fmt::format(
             "{} entities, {}", grouped(world_.entities), bytes_text(world_.memory.total())));

@@ -17,10 +17,10 @@ namespace {
 
 using Vec2d = glm::dvec2;
 
-constexpr int kRounds = 8;
-constexpr int kSolveSteps = 40;     ///< of conjugate gradients in a round, from the last result
-constexpr double kAnchor = 1e-7;    ///< holds what nothing else holds, by the stiffest vertex
-constexpr double kMinArea = 1e-12;  ///< of a triangle, by `size` squared
+constexpr int kChartRounds = 8;
+constexpr int kSolveSteps = 40;   ///< of conjugate gradients in a round, from the last result
+constexpr double kAnchor = 1e-7;  ///< holds what nothing else holds, by the stiffest vertex
+constexpr double kMinChartArea = 1e-12;  ///< of a triangle, by `size` squared
 
 /// A triangle in its own plane.
 struct FlatTriangle {
@@ -57,7 +57,7 @@ std::vector<FlatTriangle> flatten(
         const glm::dvec3 ab = glm::dvec3(mesh.positions[v[1]]) / double{size} - a;
         const glm::dvec3 ac = glm::dvec3(mesh.positions[v[2]]) / double{size} - a;
         const double area = glm::length(glm::cross(ab, ac));
-        if (!(area > kMinArea)) {
+        if (!(area > kMinChartArea)) {
             continue;
         }
         // As the axes of textures, v downwards: clockwise.
@@ -144,7 +144,7 @@ double product(std::span<const Vec2d> a, std::span<const Vec2d> b) {
 }
 
 /// Moves the chart to where the triangles, as they are turned now, pull it.
-void relax(
+void relax_chart(
     std::span<const FlatTriangle> triangles, std::span<const double> diagonal, double anchor,
     std::vector<Vec2d>& chart) {
     std::vector<Vec2d> residual = residual_of(triangles, chart);
@@ -201,8 +201,8 @@ std::vector<Vec2> make_even_chart(
         d = std::max(d, 0.0) + anchor;
     }
     std::vector<Vec2d> chart(mesh.uvs.begin(), mesh.uvs.end());
-    for (int round = 0; round < kRounds; ++round) {
-        relax(triangles, diagonal, anchor, chart);
+    for (int round = 0; round < kChartRounds; ++round) {
+        relax_chart(triangles, diagonal, anchor, chart);
     }
     for (const ChartJoin& join : joins) {
         chart[join.to] = chart[join.from] + Vec2d(join.step);

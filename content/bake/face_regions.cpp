@@ -15,11 +15,11 @@ namespace limn {
 
 namespace {
 
-constexpr float kSoft = 0.4f;        ///< width of most borders [cm]
-constexpr float kFacing = 0.15f;     ///< z of the normals of skin that is seen from the front
-constexpr float kFacingSoft = 0.1f;  ///< width of that border
-constexpr float kMiddle = 0.8f;      ///< |x| below which directions turn to the middle's [cm]
-constexpr float kInfinite = std::numeric_limits<float>::infinity();
+constexpr float kSoft = 0.4f;          ///< width of most borders [cm]
+constexpr float kFacing = 0.15f;       ///< z of the normals of skin that is seen from the front
+constexpr float kFacingSoft = 0.1f;    ///< width of that border
+constexpr float kRegionMiddle = 0.8f;  ///< |x| below which directions turn to the middle's [cm]
+constexpr float kInfiniteDistance = std::numeric_limits<float>::infinity();
 
 // Of the reference face [cm].
 constexpr Vec3 kCanthus = {4.459f, 3.432f, 8.603f};  ///< outer corner of the left eye
@@ -38,9 +38,9 @@ enum class Across : std::uint8_t {
 
 struct Rule {
     std::string_view name;
-    Vec2 x = {-kInfinite, kInfinite};  ///< range of |x| [cm]
-    Vec2 y = {-kInfinite, kInfinite};
-    float min_z = -kInfinite;
+    Vec2 x = {-kInfiniteDistance, kInfiniteDistance};  ///< range of |x| [cm]
+    Vec2 y = {-kInfiniteDistance, kInfiniteDistance};
+    float min_z = -kInfiniteDistance;
     float soft = kSoft;
     bool fold = false;  ///< within kFoldReach of the nasolabial fold
     bool front = true;  ///< only skin that is seen from the front
@@ -49,9 +49,9 @@ struct Rule {
 };
 
 constexpr std::array<Rule, 15> kRules = {{
-    {.name = "forehead", .x = {-kInfinite, 5}, .y = {6.8f, 10.5f}, .degrees = 83},
-    {.name = "glabella", .x = {-kInfinite, 1.4f}, .y = {4.4f, 6.8f}, .degrees = 20},
-    {.name = "nose_root", .x = {-kInfinite, 1}, .y = {2.4f, 4.4f}, .degrees = 94},
+    {.name = "forehead", .x = {-kInfiniteDistance, 5}, .y = {6.8f, 10.5f}, .degrees = 83},
+    {.name = "glabella", .x = {-kInfiniteDistance, 1.4f}, .y = {4.4f, 6.8f}, .degrees = 20},
+    {.name = "nose_root", .x = {-kInfiniteDistance, 1}, .y = {2.4f, 4.4f}, .degrees = 94},
     {.name = "nose_side", .x = {0.5f, 1.7f}, .y = {0.8f, 2.9f}, .degrees = 119},
     {.name = "upper_lid", .x = {2, 4.5f}, .y = {4.3f, 5.2f}, .degrees = 90},
     {.name = "lower_lid", .x = {2, 4.4f}, .y = {1.4f, 2.8f}, .degrees = 88},
@@ -64,7 +64,7 @@ constexpr std::array<Rule, 15> kRules = {{
     {.name = "cheek", .x = {3, 6}, .y = {-2, 1.2f}, .degrees = 57},
     {.name = "nasolabial", .fold = true, .degrees = 27},
     {.name = "upper_lip",
-     .x = {-kInfinite, 2},
+     .x = {-kInfiniteDistance, 2},
      .y = {-2.4f, -1.35f},
      .min_z = 9.5f,
      .soft = 0.6f,
@@ -72,11 +72,11 @@ constexpr std::array<Rule, 15> kRules = {{
     {.name = "mouth_corner", .x = {2.6f, 3.8f}, .y = {-5.2f, -2.8f}, .degrees = 167},
     {.name = "marionette", .x = {1.6f, 3.4f}, .y = {-5.9f, -3.9f}, .soft = 0.8f, .degrees = 50},
     {.name = "mentolabial",
-     .x = {-kInfinite, 2},
+     .x = {-kInfiniteDistance, 2},
      .y = {-5.75f, -4.55f},
      .soft = 0.6f,
      .across = Across::Mouth},
-    {.name = "chin", .x = {-kInfinite, 2}, .y = {-7.2f, -5.6f}, .across = Across::None},
+    {.name = "chin", .x = {-kInfiniteDistance, 2}, .y = {-7.2f, -5.6f}, .across = Across::None},
 }};
 
 /// 0 below, 1 above `edge`, smooth over `width` around it.
@@ -86,8 +86,8 @@ float soft_step(float edge, float width, float x) {
 
 /// 1 within `range`, 0 outside.
 float soft_range(const Vec2& range, float soft, float x) {
-    const float low = range.x == -kInfinite ? 1 : soft_step(range.x, soft, x);
-    const float high = range.y == kInfinite ? 1 : 1 - soft_step(range.y, soft, x);
+    const float low = range.x == -kInfiniteDistance ? 1 : soft_step(range.x, soft, x);
+    const float high = range.y == kInfiniteDistance ? 1 : 1 - soft_step(range.y, soft, x);
     return low * high;
 }
 
@@ -102,7 +102,7 @@ float distance_to_fold(const Vec2& p) {
 /// `p`: on the left side.
 float weight_at(const Rule& rule, const Vec3& p, float facing) {
     float weight = soft_range(rule.x, rule.soft, p.x) * soft_range(rule.y, rule.soft, p.y);
-    weight *= rule.min_z == -kInfinite ? 1 : soft_step(rule.min_z, kSoft, p.z);
+    weight *= rule.min_z == -kInfiniteDistance ? 1 : soft_step(rule.min_z, kSoft, p.z);
     weight *= rule.fold ? 1 - soft_step(kFoldReach, kSoft, distance_to_fold({p.x, p.y})) : 1;
     weight *= rule.front ? soft_step(kFacing, kFacingSoft, facing) : 1;
     return weight;
@@ -118,7 +118,7 @@ float angle_at(const Rule& rule, const Vec3& p) {
         return outwards.y < 0 ? angle + kPi : angle;
     }
     const float middle = std::round(angle / (0.5f * kPi)) * 0.5f * kPi;
-    return glm::mix(middle, angle, glm::smoothstep(0.0f, kMiddle, p.x));
+    return glm::mix(middle, angle, glm::smoothstep(0.0f, kRegionMiddle, p.x));
 }
 
 Vec3 across_at(const Rule& rule, const Vec3& reference, const Vec3& normal) {

@@ -27,14 +27,14 @@ struct Corner {
     Vec2 field[2] = {};   ///< in pixel directions: right and down
     Vec3 normal = {0, 0, 1};
 };
-using Corners = std::array<Corner, 3>;
+using MapCorners = std::array<Corner, 3>;
 
 Vec2 cross_gradient(const Vec2& ab, const Vec2& ac, float b, float c, float area) {
     return Vec2(b * ac.y - c * ab.y, c * ab.x - b * ac.x) / area;
 }
 
 /// Nothing where the triangle is degenerate.
-std::optional<FurrowTriangle> set_up(Corners corners) {
+std::optional<FurrowTriangle> set_up(MapCorners corners) {
     Vec2 ab = corners[1].place - corners[0].place;
     Vec2 ac = corners[2].place - corners[0].place;
     float area = ab.x * ac.y - ab.y * ac.x;
@@ -91,7 +91,7 @@ std::optional<Copies> copies_of(bool wrap, float from, float to, float length) {
 }
 
 /// Adds the triangle, and its copies that reach into a repeating image from beyond its borders.
-void add_triangle(FurrowMap& map, const Corners& corners) {
+void add_triangle(FurrowMap& map, const MapCorners& corners) {
     const std::optional<FurrowTriangle> triangle = set_up(corners);
     const Vec2 low = glm::min(corners[0].place, glm::min(corners[1].place, corners[2].place));
     const Vec2 high = glm::max(corners[0].place, glm::max(corners[1].place, corners[2].place));
@@ -145,7 +145,7 @@ void lay_by_uv(const MeshData& mesh, std::span<const FurrowVectors> field, Furro
         if (!(determinant > 0)) {
             continue;
         }
-        Corners corners;
+        MapCorners corners;
         for (int i = 0; i < 3; ++i) {
             corners[i].place = uv[i] * Vec2(map.size);
             for (int f = 0; f < 2; ++f) {
@@ -178,7 +178,7 @@ void lay_planar(const MeshData& mesh, std::span<const FurrowVectors> field, Furr
         if (!(face.z > 0)) {
             continue;  // seen from behind
         }
-        Corners corners;
+        MapCorners corners;
         for (int i = 0; i < 3; ++i) {
             const Vec3 p = (source.position[i] - middle) * scale;
             corners[i].place = 0.5f * Vec2(map.size) + Vec2(p.x, -p.y);
@@ -244,7 +244,7 @@ Status lay_cylinder(const MeshData& mesh, std::span<const FurrowVectors> field, 
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const Source source = source_of(mesh, field, t);
         const std::array<float, 3> angles = triangle_angles(source);
-        Corners corners;
+        MapCorners corners;
         for (int i = 0; i < 3; ++i) {
             corners[i].place = {
                 angles[i] / (2.0f * kPi) * static_cast<float>(map.size.x),

@@ -20,7 +20,7 @@
 namespace limn {
 namespace {
 
-constexpr int kGutter = 4;  // around the parts of an atlas [px]
+constexpr int kSkinGutter = 4;  // around the parts of an atlas [px]
 
 /// Why the images of `furrows` cannot be written, or nothing.
 std::string image_fault(const Furrows& furrows, const Assets& assets) {
@@ -103,7 +103,7 @@ void make_images(FurrowSkin& skin) {
     maps.normals =
         make_furrow_normals(skin.map, maps.growth, maps.height, grown_style(skin.source).bump);
     if (!skin.source.tiles) {
-        add_furrow_gutter(maps, kGutter);
+        add_furrow_gutter(maps, kSkinGutter);
     }
     const std::size_t pixels = maps.height.size();
     skin.normals = make_pixels(pixels, [&](std::size_t i, std::uint8_t* texel) {

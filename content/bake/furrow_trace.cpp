@@ -9,10 +9,10 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxMagnitude = 2.0f;
+constexpr float kMaxTracedMagnitude = 2.0f;
 constexpr float kEdgeTolerance = 1e-3f;  // of triangles that share an edge [px]
 constexpr float kStill = 1e-4f;          // magnitude that counts as none
-constexpr float kFar = 1e30f;            // beyond the end of every segment [px]
+constexpr float kFarFromTrace = 1e30f;   // beyond the end of every segment [px]
 
 float cross(const Vec2& a, const Vec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -30,7 +30,7 @@ bool covers(const FurrowTriangle& triangle, const Vec2& p) {
 }
 
 /// `i` within an image that repeats; rarely more than one step away.
-int wrapped(int i, int size) {
+int wrapped_angle(int i, int size) {
     while (i < 0) {
         i += size;
     }
@@ -50,10 +50,10 @@ struct Canvas {
     [[nodiscard]] int pixel(IVec2 at) const {
         const IVec2 size = map.size;
         if (map.wrap_s) {
-            at.x = wrapped(at.x, size.x);
+            at.x = wrapped_angle(at.x, size.x);
         }
         if (map.wrap_t) {
-            at.y = wrapped(at.y, size.y);
+            at.y = wrapped_angle(at.y, size.y);
         }
         const bool inside = at.x >= 0 && at.x < size.x && at.y >= 0 && at.y < size.y;
         return inside ? at.y * size.x + at.x : -1;
@@ -84,8 +84,8 @@ IVec2 cell_of(const Vec2& p) {
 
 /// Distance along `direction` to the first line between pixels across an axis, and between lines.
 struct Crossings {
-    float first = kFar;
-    float step = kFar;
+    float first = kFarFromTrace;
+    float step = kFarFromTrace;
 };
 
 Crossings crossings(float at, int cell, float direction) {
@@ -208,7 +208,7 @@ Vec2 within(const FurrowMap& map, Vec2 p) {
 
 FurrowShape furrow_shape(const FurrowStyle& style, float magnitude) {
     const FurrowFunctions& f = style.functions;
-    const float x = std::clamp(magnitude, 0.0f, kMaxMagnitude);
+    const float x = std::clamp(magnitude, 0.0f, kMaxTracedMagnitude);
     const auto line = [x](const Vec2& coefficients) { return coefficients.x + coefficients.y * x; };
     const float limit = line(f.limit);
     FurrowShape shape;

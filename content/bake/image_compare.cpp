@@ -78,7 +78,7 @@ double sum_of(const Kernel& kernel) {
     return std::accumulate(kernel.begin(), kernel.end(), 0.0);
 }
 
-Kernel scaled(const Kernel& kernel, double factor) {
+Kernel scaled_image(const Kernel& kernel, double factor) {
     Kernel out = kernel;
     for (float& weight : out) {
         weight = static_cast<float>(static_cast<double>(weight) * factor);
@@ -258,9 +258,10 @@ Plane filter_contrast(
         shares[i] = sensitivity.a[i] * std::sqrt(kPiD / sensitivity.b[i]);
         total += shares[i] * sum_of(kernels[i]) * sum_of(kernels[i]);
     }
-    Plane out = convolve(plane, scaled(kernels[0], shares[0] / total), kernels[0]);
+    Plane out = convolve(plane, scaled_image(kernels[0], shares[0] / total), kernels[0]);
     if (sensitivity.a[1] != 0) {
-        const Plane second = convolve(plane, scaled(kernels[1], shares[1] / total), kernels[1]);
+        const Plane second =
+            convolve(plane, scaled_image(kernels[1], shares[1] / total), kernels[1]);
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             out.values[i] += second.values[i];
         }
@@ -325,7 +326,7 @@ std::vector<float> find_features(const Plane& achromatic, bool edge, double pixe
     const int radius = static_cast<int>(std::ceil(3 * sd));
     const Kernel feature = feature_kernel(edge, sd, radius);
     const Kernel bell = gaussian(radius, 1.0 / (2 * sd * sd));
-    const Kernel across = scaled(bell, 1.0 / sum_of(bell));
+    const Kernel across = scaled_image(bell, 1.0 / sum_of(bell));
     const Plane x = convolve(achromatic, feature, across);
     const Plane y = convolve(achromatic, across, feature);
     std::vector<float> strength(x.values.size());

@@ -12,7 +12,7 @@
 namespace limn {
 namespace {
 
-using DVec3 = glm::dvec3;
+using MarkerDVec3 = glm::dvec3;
 using Matrix4 = std::array<std::array<double, 4>, 4>;
 
 constexpr std::size_t kNeighbors = 4;  ///< that a hidden marker goes with
@@ -66,25 +66,25 @@ std::array<double, 4> largest_eigenvector(Matrix4 m) {
     return {vectors[0][largest], vectors[1][largest], vectors[2][largest], vectors[3][largest]};
 }
 
-DVec3 mean_of(std::span<const Vec3> points) {
-    DVec3 sum(0);
+MarkerDVec3 mean_of(std::span<const Vec3> points) {
+    MarkerDVec3 sum(0);
     for (const Vec3& p : points) {
-        sum += DVec3(p);
+        sum += MarkerDVec3(p);
     }
     return sum / static_cast<double>(points.size());
 }
 
 /// Whether points lie in a line, or at one place.
-bool is_line(std::span<const Vec3> points, const DVec3& mean) {
-    DVec3 farthest(0);
+bool is_line(std::span<const Vec3> points, const MarkerDVec3& mean) {
+    MarkerDVec3 farthest(0);
     for (const Vec3& p : points) {
-        const DVec3 out = DVec3(p) - mean;
+        const MarkerDVec3 out = MarkerDVec3(p) - mean;
         farthest = glm::dot(out, out) > glm::dot(farthest, farthest) ? out : farthest;
     }
     const double size = glm::dot(farthest, farthest);
     double wide = 0;
     for (const Vec3& p : points) {
-        const DVec3 across = glm::cross(DVec3(p) - mean, farthest);
+        const MarkerDVec3 across = glm::cross(MarkerDVec3(p) - mean, farthest);
         wide = std::max(wide, glm::dot(across, across));
     }
     return !(wide > kMinSpread * size * size);
@@ -137,15 +137,15 @@ Result<Affine> fit_rigid(std::span<const Vec3> from, std::span<const Vec3> to) {
     if (!finite) {
         return fail("a marker on the head is missing");
     }
-    const DVec3 from_mean = mean_of(from);
-    const DVec3 to_mean = mean_of(to);
+    const MarkerDVec3 from_mean = mean_of(from);
+    const MarkerDVec3 to_mean = mean_of(to);
     if (is_line(from, from_mean) || is_line(to, to_mean)) {
         return fail("the markers on the head lie in a line");
     }
     std::array<std::array<double, 3>, 3> s{};  // sums of products of coordinates
     for (std::size_t i = 0; i < from.size(); ++i) {
-        const DVec3 a = DVec3(from[i]) - from_mean;
-        const DVec3 b = DVec3(to[i]) - to_mean;
+        const MarkerDVec3 a = MarkerDVec3(from[i]) - from_mean;
+        const MarkerDVec3 b = MarkerDVec3(to[i]) - to_mean;
         for (int j = 0; j < 3; ++j) {
             for (int k = 0; k < 3; ++k) {
                 s[static_cast<std::size_t>(j)][static_cast<std::size_t>(k)] += a[j] * b[k];
@@ -158,7 +158,7 @@ Result<Affine> fit_rigid(std::span<const Vec3> from, std::span<const Vec3> to) {
           {s[2][0] - s[0][2], s[0][1] + s[1][0], s[1][1] - s[0][0] - s[2][2], s[1][2] + s[2][1]},
           {s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], s[2][2] - s[0][0] - s[1][1]}}});
     const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q[0], q[1], q[2], q[3]));
-    const DVec3 shift = to_mean - turn * from_mean;
+    const MarkerDVec3 shift = to_mean - turn * from_mean;
     Affine fitted;
     for (int i = 0; i < 3; ++i) {
         fitted.row[i] = Vec4(glm::dvec4(turn[0][i], turn[1][i], turn[2][i], shift[i]));

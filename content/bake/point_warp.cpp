@@ -14,13 +14,13 @@ namespace limn {
 
 namespace {
 
-using DVec3 = glm::dvec3;
+using WarpDVec3 = glm::dvec3;
 
 /// A square matrix by rows, with three right-hand sides.
 struct LinearSystem {
     std::size_t size = 0;
     std::vector<double> matrix;  ///< element (row, column) at row * size + column
-    std::vector<DVec3> right;
+    std::vector<WarpDVec3> right;
 };
 
 /// Solves by elimination with partial pivoting; the solution replaces `right`. False where the
@@ -74,11 +74,12 @@ Result<PointWarp> make_point_warp(std::span<const Vec3> from, std::span<const Ve
     LinearSystem system;
     system.size = count + 4;
     system.matrix.assign(system.size * system.size, 0.0);
-    system.right.assign(system.size, DVec3(0));
+    system.right.assign(system.size, WarpDVec3(0));
     for (std::size_t i = 0; i < count; ++i) {
-        system.right[i] = DVec3(to[i]);
+        system.right[i] = WarpDVec3(to[i]);
         for (std::size_t j = 0; j < count; ++j) {
-            system.matrix[i * system.size + j] = glm::distance(DVec3(from[i]), DVec3(from[j]));
+            system.matrix[i * system.size + j] =
+                glm::distance(WarpDVec3(from[i]), WarpDVec3(from[j]));
         }
         for (int k = 0; k < 4; ++k) {
             const double value = k < 3 ? static_cast<double>(from[i][k]) : 1.0;

@@ -17,9 +17,9 @@ namespace limn {
 namespace {
 
 constexpr double kMaxTurn = 35 * kPi / 180.0;
-constexpr float kMiddle = 0.008f;        ///< |x| below which directions turn less [m]
-constexpr double kMinShortening = 0.01;  ///< mean of a region; less says no direction
-constexpr double kMinAgreement = 0.3;    ///< length of the mean direction, 1: all have the same
+constexpr float kDirectionMiddle = 0.008f;  ///< |x| below which directions turn less [m]
+constexpr double kMinShortening = 0.01;     ///< mean of a region; less says no direction
+constexpr double kMinAgreement = 0.3;       ///< length of the mean direction, 1: all have the same
 
 struct FoldedBy {
     std::string_view region;
@@ -133,7 +133,8 @@ void fit_region_directions(MeshData& mesh) {
         for (std::size_t v = 0; v < region.across.size(); ++v) {
             Vec3& across = region.across[v];
             const float x = mesh.positions[v].x;
-            const float share = std::copysign(glm::smoothstep(0.0f, kMiddle, std::abs(x)), x);
+            const float share =
+                std::copysign(glm::smoothstep(0.0f, kDirectionMiddle, std::abs(x)), x);
             const float angle = share * static_cast<float>(turn);
             across =
                 std::cos(angle) * across + std::sin(angle) * glm::cross(mesh.normals[v], across);

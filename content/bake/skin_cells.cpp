@@ -13,15 +13,15 @@
 namespace limn {
 namespace {
 
-int wrapped(int i, int size) {
+int wrapped_cell(int i, int size) {
     return (i % size + size) % size;
 }
 
 /// Where the site lies within its square of the grid, in its units.
 Vec2 jitter(const IVec2& cell, int cells, int level, int seed) {
     const auto index =
-        static_cast<std::uint64_t>(wrapped(cell.y, cells)) * static_cast<std::uint64_t>(cells)
-        + static_cast<std::uint64_t>(wrapped(cell.x, cells));
+        static_cast<std::uint64_t>(wrapped_cell(cell.y, cells)) * static_cast<std::uint64_t>(cells)
+        + static_cast<std::uint64_t>(wrapped_cell(cell.x, cells));
     Random random(
         static_cast<std::uint64_t>(seed), index, name_hash("skin_cells"),
         static_cast<std::uint64_t>(level));

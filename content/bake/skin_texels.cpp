@@ -16,7 +16,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kMinArea = 1e-14f;  ///< square of twice the area of a triangle [m^4]
+constexpr float kMinTexelArea = 1e-14f;  ///< square of twice the area of a triangle [m^4]
 
 float cross_of(const Vec2& a, const Vec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -56,7 +56,7 @@ void cover(const MeshData& mesh, int triangle, int size, std::vector<SkinTexel>&
 }
 
 /// One more ring of texels beyond those that are covered.
-void grow(int size, std::vector<SkinTexel>& texels) {
+void grow_texels(int size, std::vector<SkinTexel>& texels) {
     const std::vector<SkinTexel> old = texels;
     constexpr int kNear[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     for (int y = 0; y < size; ++y) {
@@ -134,7 +134,7 @@ std::vector<SkinTexel> find_skin_texels(const MeshData& mesh, int size, int gutt
         cover(mesh, static_cast<int>(t / 3), size, texels);
     }
     for (int ring = 0; ring < gutter; ++ring) {
-        grow(size, texels);
+        grow_texels(size, texels);
     }
     return texels;
 }
@@ -158,7 +158,7 @@ std::vector<Vec3> find_tangent_strain(const MeshData& mesh, std::span<const Vec3
         }
         const Vec3 cross = glm::cross(rest[1] - rest[0], rest[2] - rest[0]);
         const float area2 = glm::length(cross);
-        if (!(area2 * area2 > kMinArea) || !is_finite(now[0] + now[1] + now[2])) {
+        if (!(area2 * area2 > kMinTexelArea) || !is_finite(now[0] + now[1] + now[2])) {
             continue;
         }
         const Vec3 normal = cross / area2;

@@ -16,9 +16,9 @@ namespace limn {
 
 namespace {
 
-using DVec3 = glm::dvec3;
+using TangentDVec3 = glm::dvec3;
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNoTangent = 0xffffffffu;
 
 /// With more corners at one point all are smoothed together, to avoid quadratic run time.
 constexpr std::size_t kMaxCreaseCorners = 256;
@@ -64,17 +64,17 @@ class Welder {
 };
 
 /// Unit `v`, or zero.
-DVec3 direction(const DVec3& v) {
+TangentDVec3 direction(const TangentDVec3& v) {
     const double length = glm::length(v);
-    return length > 1e-150 ? v / length : DVec3(0);
+    return length > 1e-150 ? v / length : TangentDVec3(0);
 }
 
 /// Angle between the edges of a triangle that leave corner `k` [rad]; 0 where an edge has no
 /// length.
-double corner_angle(const DVec3 (&p)[3], int k) {
-    const DVec3 a = direction(p[(k + 1) % 3] - p[k]);
-    const DVec3 b = direction(p[(k + 2) % 3] - p[k]);
-    if (a == DVec3(0) || b == DVec3(0)) {
+double corner_angle(const TangentDVec3 (&p)[3], int k) {
+    const TangentDVec3 a = direction(p[(k + 1) % 3] - p[k]);
+    const TangentDVec3 b = direction(p[(k + 2) % 3] - p[k]);
+    if (a == TangentDVec3(0) || b == TangentDVec3(0)) {
         return 0.0;
     }
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));  // exact near 0 and pi too
@@ -122,9 +122,9 @@ std::uint32_t duplicate_vertex(MeshData& mesh, std::uint32_t v) {
     return copy;
 }
 
-void get_corners(const MeshData& mesh, std::size_t triangle, DVec3 (&p)[3]) {
+void get_corners(const MeshData& mesh, std::size_t triangle, TangentDVec3 (&p)[3]) {
     for (int k = 0; k < 3; ++k) {
-        p[k] = DVec3(mesh.positions[mesh.indices[3 * triangle + k]]);
+        p[k] = TangentDVec3(mesh.positions[mesh.indices[3 * triangle + k]]);
     }
 }
 
@@ -163,10 +163,10 @@ PointCorners find_point_corners(const MeshData& mesh) {
 /// One normal for each corner of each triangle.
 std::vector<Vec3> find_corner_normals(const MeshData& mesh, float crease_angle) {
     const std::size_t triangles = mesh.indices.size() / 3;
-    std::vector<DVec3> face_normals(triangles);
+    std::vector<TangentDVec3> face_normals(triangles);
     std::vector<double> angles(3 * triangles);
     for (std::size_t t = 0; t < triangles; ++t) {
-        DVec3 p[3];
+        TangentDVec3 p[3];
         get_corners(mesh, t, p);
         face_normals[t] = direction(glm::cross(p[1] - p[0], p[2] - p[0]));
         for (int k = 0; k < 3; ++k) {
@@ -183,15 +183,15 @@ std::vector<Vec3> find_corner_normals(const MeshData& mesh, float crease_angle) 
             around.first[point + 1] - around.first[point]);
         const bool all = crease_angle >= kPi || corners.size() > kMaxCreaseCorners;
         for (const std::uint32_t corner : corners) {
-            const DVec3& own = face_normals[corner / 3];
-            DVec3 sum(0);
+            const TangentDVec3& own = face_normals[corner / 3];
+            TangentDVec3 sum(0);
             for (const std::uint32_t other : corners) {
-                const DVec3& normal = face_normals[other / 3];
-                if (all || own == DVec3(0) || glm::dot(own, normal) >= min_cosine) {
+                const TangentDVec3& normal = face_normals[other / 3];
+                if (all || own == TangentDVec3(0) || glm::dot(own, normal) >= min_cosine) {
                     sum += angles[other] * normal;
                 }
             }
-            const Vec3 fallback = own == DVec3(0) ? Vec3(0, 1, 0) : Vec3(own);
+            const Vec3 fallback = own == TangentDVec3(0) ? Vec3(0, 1, 0) : Vec3(own);
             normals[corner] = normalize_or(Vec3(sum), fallback);
             if (all) {
                 for (const std::uint32_t other : corners) {
@@ -207,7 +207,7 @@ std::vector<Vec3> find_corner_normals(const MeshData& mesh, float crease_angle) 
 /// Splits vertices shared with mirrored triangles; returns the uv orientation sign of each vertex.
 std::vector<std::int8_t> split_mirrored(MeshData& mesh, const std::vector<TriangleFrame>& frames) {
     std::vector<std::int8_t> side(mesh.positions.size(), 0);
-    std::vector<std::uint32_t> twin(mesh.positions.size(), kNone);
+    std::vector<std::uint32_t> twin(mesh.positions.size(), kNoTangent);
     for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner) {
         const float determinant = frames[corner / 3].determinant;
         if (determinant == 0.0f) {
@@ -218,7 +218,7 @@ std::vector<std::int8_t> split_mirrored(MeshData& mesh, const std::vector<Triang
         if (side[vertex] == 0) {
             side[vertex] = own;
         } else if (side[vertex] != own) {
-            if (twin[vertex] == kNone) {
+            if (twin[vertex] == kNoTangent) {
                 twin[vertex] = duplicate_vertex(mesh, vertex);
                 side.push_back(own);
             }
@@ -242,9 +242,12 @@ find_triangle_frames(const MeshData& mesh, const std::vector<Vec2>& uvs) {
 
 /// Adds the contribution of the triangle with vertices `v` to the normals of its corners.
 void add_face(
-    const std::vector<Vec3>& positions, const std::uint32_t* v, DVec3 (&shares)[3], double sign) {
-    const DVec3 p[3] = {DVec3(positions[v[0]]), DVec3(positions[v[1]]), DVec3(positions[v[2]])};
-    const DVec3 normal = direction(glm::cross(p[1] - p[0], p[2] - p[0]));
+    const std::vector<Vec3>& positions, const std::uint32_t* v, TangentDVec3 (&shares)[3],
+    double sign) {
+    const TangentDVec3 p[3] = {
+        TangentDVec3(positions[v[0]]), TangentDVec3(positions[v[1]]),
+        TangentDVec3(positions[v[2]])};
+    const TangentDVec3 normal = direction(glm::cross(p[1] - p[0], p[2] - p[0]));
     for (int k = 0; k < 3; ++k) {
         shares[k] += sign * corner_angle(p, k) * normal;
     }
@@ -253,7 +256,7 @@ void add_face(
 /// Groups vertices of equal position and normal, whose faces are smoothed together.
 struct SmoothGroups {
     std::vector<std::uint32_t> group_of;
-    std::vector<DVec3> sums;  ///< of the face normals around each group
+    std::vector<TangentDVec3> sums;  ///< of the face normals around each group
 
     explicit SmoothGroups(const MeshData& mesh) {
         Welder<6> welder(mesh.positions.size());
@@ -262,9 +265,9 @@ struct SmoothGroups {
             const Vec3& n = mesh.normals[v];
             group_of.push_back(welder.number({p.x, p.y, p.z, n.x, n.y, n.z}));
         }
-        sums.assign(welder.size(), DVec3(0));
+        sums.assign(welder.size(), TangentDVec3(0));
         for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-            DVec3 shares[3] = {DVec3(0), DVec3(0), DVec3(0)};
+            TangentDVec3 shares[3] = {TangentDVec3(0), TangentDVec3(0), TangentDVec3(0)};
             add_face(mesh.positions, &mesh.indices[i], shares, 1.0);
             for (std::size_t k = 0; k < 3; ++k) {
                 sums[group_of[mesh.indices[i + k]]] += shares[k];
@@ -280,11 +283,11 @@ void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothG
         moved[morph.vertices[i]] += morph.positions[i];
         moves[morph.vertices[i]] = true;
     }
-    std::vector<DVec3> sums = groups.sums;
+    std::vector<TangentDVec3> sums = groups.sums;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const std::uint32_t* v = &mesh.indices[i];
         if (moves[v[0]] || moves[v[1]] || moves[v[2]]) {
-            DVec3 shares[3] = {DVec3(0), DVec3(0), DVec3(0)};
+            TangentDVec3 shares[3] = {TangentDVec3(0), TangentDVec3(0), TangentDVec3(0)};
             add_face(moved, v, shares, 1.0);
             add_face(mesh.positions, v, shares, -1.0);
             for (std::size_t k = 0; k < 3; ++k) {
@@ -318,8 +321,8 @@ void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothG
 }  // namespace
 
 TriangleFrame triangle_frame(const Vec3 (&p)[3], const Vec2 (&uv)[3]) {
-    const DVec3 e1 = DVec3(p[1]) - DVec3(p[0]);
-    const DVec3 e2 = DVec3(p[2]) - DVec3(p[0]);
+    const TangentDVec3 e1 = TangentDVec3(p[1]) - TangentDVec3(p[0]);
+    const TangentDVec3 e2 = TangentDVec3(p[2]) - TangentDVec3(p[0]);
     const glm::dvec2 d1 = glm::dvec2(uv[1]) - glm::dvec2(uv[0]);
     const glm::dvec2 d2 = glm::dvec2(uv[2]) - glm::dvec2(uv[0]);
     const double determinant = d1.x * d2.y - d2.x * d1.y;
@@ -342,7 +345,7 @@ void generate_normals(MeshData& mesh, float crease_angle) {
     // The copies of a vertex form a linked list, so that equal normals share a copy.
     mesh.normals.assign(mesh.positions.size(), Vec3(0, 1, 0));
     std::vector<bool> taken(mesh.positions.size(), false);
-    std::vector<std::uint32_t> next_copy(mesh.positions.size(), kNone);
+    std::vector<std::uint32_t> next_copy(mesh.positions.size(), kNoTangent);
     for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner) {
         std::uint32_t vertex = mesh.indices[corner];
         const Vec3& normal = corner_normals[corner];
@@ -351,14 +354,14 @@ void generate_normals(MeshData& mesh, float crease_angle) {
             mesh.normals[vertex] = normal;
             continue;
         }
-        while (mesh.normals[vertex] != normal && next_copy[vertex] != kNone) {
+        while (mesh.normals[vertex] != normal && next_copy[vertex] != kNoTangent) {
             vertex = next_copy[vertex];
         }
         if (mesh.normals[vertex] != normal) {
             const std::uint32_t copy = duplicate_vertex(mesh, vertex);
             mesh.normals[copy] = normal;
             taken.push_back(true);
-            next_copy.push_back(kNone);
+            next_copy.push_back(kNoTangent);
             next_copy[vertex] = copy;
             vertex = copy;
         }
@@ -387,31 +390,33 @@ void generate_tangents(MeshData& mesh, int uv_set) {
             {p.x, p.y, p.z, n.x, n.y, n.z, uvs[v].x, uvs[v].y, static_cast<float>(side[v])}));
     }
 
-    std::vector<DVec3> tangent_sum(welder.size(), DVec3(0));
-    std::vector<DVec3> bitangent_sum(welder.size(), DVec3(0));
+    std::vector<TangentDVec3> tangent_sum(welder.size(), TangentDVec3(0));
+    std::vector<TangentDVec3> bitangent_sum(welder.size(), TangentDVec3(0));
     for (std::size_t t = 0; t < frames.size(); ++t) {
         if (frames[t].determinant == 0.0f) {
             continue;
         }
-        DVec3 p[3];
+        TangentDVec3 p[3];
         get_corners(mesh, t, p);
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t vertex = mesh.indices[3 * t + k];
-            const DVec3 n(mesh.normals[vertex]);
-            const DVec3 tangent(frames[t].tangent);
+            const TangentDVec3 n(mesh.normals[vertex]);
+            const TangentDVec3 tangent(frames[t].tangent);
             const double angle = corner_angle(p, k);
             tangent_sum[group_of[vertex]] += angle * direction(tangent - n * glm::dot(n, tangent));
-            bitangent_sum[group_of[vertex]] -= angle * direction(DVec3(frames[t].bitangent));
+            bitangent_sum[group_of[vertex]] -= angle * direction(TangentDVec3(frames[t].bitangent));
         }
     }
 
     mesh.tangents.reserve(mesh.positions.size());
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const Vec3 n = mesh.normals[v];
-        const DVec3 sum = tangent_sum[group_of[v]];
+        const TangentDVec3 sum = tangent_sum[group_of[v]];
         const Vec3 tangent = normalize_or(
-            Vec3(direction(sum - DVec3(n) * glm::dot(DVec3(n), sum))), any_perpendicular(n));
-        const bool left = glm::dot(DVec3(glm::cross(n, tangent)), bitangent_sum[group_of[v]]) < 0;
+            Vec3(direction(sum - TangentDVec3(n) * glm::dot(TangentDVec3(n), sum))),
+            any_perpendicular(n));
+        const bool left =
+            glm::dot(TangentDVec3(glm::cross(n, tangent)), bitangent_sum[group_of[v]]) < 0;
         mesh.tangents.emplace_back(tangent, left ? -1.0f : 1.0f);
     }
 }

@@ -24,13 +24,13 @@ constexpr float kStallEnds = radians(30.0f);
 constexpr float kMaxRudder = radians(35.0f);
 constexpr float kBoomRate = 2.5f;           // largest angular speed of a boom [rad/s]; by eye
 constexpr float kBest = radians(17.0f);     // angle of attack to which sails are trimmed
-constexpr float kSheetRate = 0.5f;          // of automatic trimming [1/s]
+constexpr float kSailSheetRate = 0.5f;      // of automatic trimming [1/s]
 constexpr float kFoilSpan = 0.4f;           // depth at which a foil is fully submerged [m]; by eye
 constexpr float kNoGo = radians(48.0f);     // half angle of the no-go zone to windward
 constexpr float kLayLine = radians(30.0f);  // angle beyond which the boat tacks
 constexpr float kSteer = 2.2f;              // rudder per course error [1/rad]
 constexpr float kSteady = 1.6f;             // rudder per turn rate [s/rad]
-constexpr float kLookAhead = 3.0f;          // [boat lengths]
+constexpr float kSailLookAhead = 3.0f;      // [boat lengths]
 constexpr float kCourseStep = 0.5f;         // [m]
 constexpr int kMaxCourseSteps = 64;
 
@@ -222,14 +222,14 @@ void trim_sail(
         std::abs(apparent_wind_angle(boat, floating, motion, rotation, scale, wind));
     const float wanted = (blows - kBest - kMinBoomAngle) / (kMaxBoomAngle - kMinBoomAngle);
     const float change = std::clamp(wanted, 0.0f, 1.0f) - state.sheet;
-    state.sheet += std::clamp(change, -kSheetRate * step, kSheetRate * step);
+    state.sheet += std::clamp(change, -kSailSheetRate * step, kSailSheetRate * step);
 }
 
 void follow_course(
     const PathData& course, const WaterTouch& touch, const FloatingState& motion,
     const Transform& transform, const Vec3& wind, SailboatState& state) {
     const Vec2 here = {transform.position.x, transform.position.z};
-    const float reach = kLookAhead * 2 * std::abs(touch.half.z * transform.scale.z);
+    const float reach = kSailLookAhead * 2 * std::abs(touch.half.z * transform.scale.z);
     const auto goal = [&] {
         const Vec3 at = path_frame_at(course, state.distance).position;
         return Vec2(at.x, at.z);

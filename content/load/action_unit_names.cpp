@@ -15,14 +15,14 @@ struct Side {
     std::string_view suffix;
     std::string_view side;
 };
-constexpr Side kSides[] = {
+constexpr Side kUnitSides[] = {
     {"_L", "_L"},     {"_R", "_R"}, {"Left", "_L"}, {"Right", "_R"}, {"_left", "_L"},
     {"_right", "_R"}, {"_l", "_L"}, {"_r", "_R"},   {"left", "_L"},  {"right", "_R"},
 };
 
 /// "mouthSmile" and "_L".
 std::pair<std::string_view, std::string_view> split_side(std::string_view name) {
-    for (const Side& side : kSides) {
+    for (const Side& side : kUnitSides) {
         if (name.size() > side.suffix.size() && name.ends_with(side.suffix)) {
             return {name.substr(0, name.size() - side.suffix.size()), side.side};
         }

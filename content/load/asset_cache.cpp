@@ -55,9 +55,9 @@ class Writer {
 };
 
 /// Fills what it is called with from the same calls' bytes; `ok` ends where they are too few.
-class Reader {
+class CacheReader {
   public:
-    explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
+    explicit CacheReader(std::span<const std::byte> bytes) : left_(bytes) {}
 
     template <typename T>
     requires is_plain<T>
@@ -218,7 +218,7 @@ void write_asset(
 
 template <typename T>
 std::optional<T>
-read_asset(const std::string& folder, std::string_view key, void (*visit_asset)(Reader&, T&)) {
+read_asset(const std::string& folder, std::string_view key, void (*visit_asset)(CacheReader&, T&)) {
     if (folder.empty()) {
         return std::nullopt;
     }
@@ -232,7 +232,7 @@ read_asset(const std::string& folder, std::string_view key, void (*visit_asset)(
         return std::nullopt;
     }
     const std::span<const std::byte> all = std::as_bytes(std::span(*bytes));
-    Reader reader(all);
+    CacheReader reader(all);
     std::uint64_t hash = 0;
     std::string generators;
     std::string found;
@@ -273,11 +273,11 @@ AssetCache AssetCache::of_user() {
 }
 
 std::optional<PatternMaps> AssetCache::find_pattern(std::string_view key) const {
-    return read_asset<PatternMaps>(folder_, key, visit_maps<Reader, PatternMaps>);
+    return read_asset<PatternMaps>(folder_, key, visit_maps<CacheReader, PatternMaps>);
 }
 
 std::optional<MeshData> AssetCache::find_mesh(std::string_view key) const {
-    return read_asset<MeshData>(folder_, key, visit_mesh<Reader, MeshData>);
+    return read_asset<MeshData>(folder_, key, visit_mesh<CacheReader, MeshData>);
 }
 
 void AssetCache::keep(std::string_view key, const PatternMaps& maps) const {

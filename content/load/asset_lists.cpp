@@ -11,7 +11,7 @@ namespace limn {
 namespace {
 
 template <typename T>
-void append(std::vector<T>& target, std::vector<T>& source) {
+void append_all(std::vector<T>& target, std::vector<T>& source) {
     target.insert(
         target.end(), std::make_move_iterator(source.begin()),
         std::make_move_iterator(source.end()));
@@ -45,13 +45,13 @@ AssetOffsets append_assets(Assets& target, Assets& source) {
     for (Material& material : source.materials) {
         offset_asset_ids(component_info<Material>(), &material, offsets);
     }
-    append(target.images, source.images);
-    append(target.meshes, source.meshes);
-    append(target.materials, source.materials);
-    append(target.skeletons, source.skeletons);
-    append(target.skins, source.skins);
-    append(target.clips, source.clips);
-    append(target.paths, source.paths);
+    append_all(target.images, source.images);
+    append_all(target.meshes, source.meshes);
+    append_all(target.materials, source.materials);
+    append_all(target.skeletons, source.skeletons);
+    append_all(target.skins, source.skins);
+    append_all(target.clips, source.clips);
+    append_all(target.paths, source.paths);
     return offsets;
 }
 

@@ -15,13 +15,13 @@
 namespace limn {
 namespace {
 
-constexpr std::string_view kSpaces = " \t\r\v\f";
+constexpr std::string_view kBrdfSpaces = " \t\r\v\f";
 constexpr int kChannels = 3;
 
 /// Takes the next word off `line`; "" at its end.
 std::string_view take_word(std::string_view& line) {
-    line.remove_prefix(std::min(line.find_first_not_of(kSpaces), line.size()));
-    const std::string_view word = line.substr(0, line.find_first_of(kSpaces));
+    line.remove_prefix(std::min(line.find_first_not_of(kBrdfSpaces), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(kBrdfSpaces));
     line.remove_prefix(word.size());
     return word;
 }

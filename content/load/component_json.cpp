@@ -114,7 +114,7 @@ std::string expected_in_unit(FieldMeta meta, const WrittenUnit& unit) {
     return "a number " + range_text(meta);
 }
 
-struct Reader {
+struct ComponentReader {
     const NameResolver& names;
 
     Status read_fields(
@@ -591,7 +591,7 @@ Result<double> expect_number(
 Status read_component(
     const JsonValue& json, const ComponentInfo& info, void* object, const JsonPlace& place,
     const NameResolver& names) {
-    LIMN_TRY(Reader{names}.read_fields(json, info.fields, object, place));
+    LIMN_TRY(ComponentReader{names}.read_fields(json, info.fields, object, place));
     if (const std::string problem = constraint_error(info, object); !problem.empty()) {
         return fail("{}: {}: {}", place_text(place.file, json.at), place.path, problem);
     }
@@ -609,7 +609,7 @@ Result<AnyComponent> read_component(
 Status read_field(
     const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
     const NameResolver& names) {
-    return Reader{names}.read_shape(json, info, field, place);
+    return ComponentReader{names}.read_shape(json, info, field, place);
 }
 
 std::vector<std::string_view> written_units(std::string_view field_unit) {

@@ -221,7 +221,7 @@ std::vector<std::byte> encode(const ExrImage& image, ExrCompression compression)
 }
 
 /// The first line of a library's message.
-std::string one_line(std::string message) {
+std::string exr_line(std::string message) {
     message.resize(std::min(message.find('\n'), message.size()));
     return message;
 }
@@ -238,7 +238,7 @@ decode_exr(std::span<const std::byte> bytes, const std::string& place, const Exr
     try {
         return decode(bytes, place, limits);
     } catch (const std::exception& exception) {
-        return fail("{}: corrupt OpenEXR file: {}", place, one_line(exception.what()));
+        return fail("{}: corrupt OpenEXR file: {}", place, exr_line(exception.what()));
     }
 }
 
@@ -260,7 +260,7 @@ Status write_exr(const std::string& path, const ExrImage& image, ExrCompression 
     try {
         return write_file(path, encode(image, compression));
     } catch (const std::exception& exception) {
-        return fail("{}: cannot encode OpenEXR: {}", path, one_line(exception.what()));
+        return fail("{}: cannot encode OpenEXR: {}", path, exr_line(exception.what()));
     }
 }
 

@@ -64,7 +64,8 @@ std::vector<T> gather(std::span<const T> all, std::span<const std::uint32_t> sou
     return values;
 }
 
-SkinWeights gather_influences(const SkinWeights& all, std::span<const std::uint32_t> source) {
+SkinWeights
+gather_source_influences(const SkinWeights& all, std::span<const std::uint32_t> source) {
     SkinWeights skin;
     if (all.empty()) {
         return skin;
@@ -184,7 +185,7 @@ GltfScene make_face_scene(
             position *= scale;
         }
         update_bounds(mesh);
-        mesh.skin = gather_influences(skin, made.source);
+        mesh.skin = gather_source_influences(skin, made.source);
         if (part.color) {
             for (const std::uint32_t position : made.source) {
                 mesh.colors.push_back(part.color(position));

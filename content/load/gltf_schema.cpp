@@ -42,7 +42,7 @@ struct Rule {
 constexpr const char* kLights = "extensions.KHR_lights_punctual.lights";
 // Rounded up: files hold them as floats.
 constexpr double kHalfPi = 1.5707964;
-constexpr double kPi = 3.1415928;
+constexpr double kMaxYfov = 3.1415928;
 
 constexpr Rule index_of(const char* path, const char* target, bool required = false) {
     return {path, Shape::Index, required, 0, 0, 0, target};
@@ -164,7 +164,7 @@ constexpr Rule kRules[] = {
     text("cameras[].type", "perspective orthographic", kRequired),
     object("cameras[].orthographic"),
     object("cameras[].perspective"),
-    {"cameras[].perspective.yfov", Shape::Number, kRequired, 1e-6, kPi},
+    {"cameras[].perspective.yfov", Shape::Number, kRequired, 1e-6, kMaxYfov},
     {"cameras[].perspective.znear", Shape::Number, kRequired, 1e-9, kLargestNumber},
 
     array(kLights),

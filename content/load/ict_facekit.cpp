@@ -53,7 +53,7 @@ constexpr UnitOfShape kSidedUnits[] = {
 };
 
 /// "mouthSmile" and "_L".
-std::pair<std::string_view, std::string_view> split_side(std::string_view name) {
+std::pair<std::string_view, std::string_view> split_shape_side(std::string_view name) {
     const bool has_side = name.ends_with("_L") || name.ends_with("_R");
     const std::size_t end = has_side ? name.size() - 2 : name.size();
     return {name.substr(0, end), name.substr(end)};
@@ -225,7 +225,7 @@ std::string ict_action_unit(std::string_view shape) {
             return std::string(unit);
         }
     }
-    const auto [base, side] = split_side(shape);
+    const auto [base, side] = split_shape_side(shape);
     for (const auto& [name, unit] : kUnits) {
         if (name == base) {
             return std::string(unit) + std::string(side);
@@ -257,7 +257,7 @@ Result<GltfScene> import_ict_facekit(const std::string& folder, const ImportProg
         for (std::size_t i = 0; i < kVertices; ++i) {
             shape.offsets.push_back(obj.positions[i] - neutral.positions[i]);
         }
-        const auto [base, side] = split_side(name);
+        const auto [base, side] = split_shape_side(name);
         const std::string other =
             side.empty() ? name : std::string(base) + (side == "_L" ? "_R" : "_L");
         if (!files.contains(other)) {

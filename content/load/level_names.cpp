@@ -21,7 +21,7 @@ namespace limn {
 namespace {
 
 /// Names of one kind in one file; `first` is the number of names in the lists before it.
-struct NameList {
+struct LevelNameList {
     std::vector<std::string_view> names;
     std::uint32_t first = 0;
 
@@ -79,10 +79,10 @@ class DeferredNames {
     using SceneNumber = std::optional<std::size_t>;
 
     void list_names(std::string_view kind) {
-        std::vector<NameList>& lists = lists_[std::string(kind)];
+        std::vector<LevelNameList>& lists = lists_[std::string(kind)];
         lists.resize(level_.scenes.size() + 1);
         std::uint32_t count = 0;
-        const auto add = [&](NameList& list, std::vector<std::string_view> names) {
+        const auto add = [&](LevelNameList& list, std::vector<std::string_view> names) {
             list.first = count;
             count += static_cast<std::uint32_t>(names.size());
             list.names = std::move(names);
@@ -137,12 +137,12 @@ class DeferredNames {
 
     /// Those of the entity's own file, or else all.
     static std::vector<std::string_view>
-    known_names(const std::vector<NameList>& lists, SceneNumber own) {
+    known_names(const std::vector<LevelNameList>& lists, SceneNumber own) {
         if (own && !lists[*own + 1].names.empty()) {
             return lists[*own + 1].names;
         }
         std::vector<std::string_view> known;
-        for (const NameList& list : lists) {
+        for (const LevelNameList& list : lists) {
             known.insert(known.end(), list.names.begin(), list.names.end());
         }
         return known;
@@ -155,7 +155,7 @@ class DeferredNames {
     }
 
     static std::optional<std::uint32_t>
-    find(const std::vector<NameList>& lists, std::string_view name, SceneNumber own) {
+    find(const std::vector<LevelNameList>& lists, std::string_view name, SceneNumber own) {
         std::optional<std::uint32_t> found = own ? lists[*own + 1].find(name) : std::nullopt;
         for (std::size_t i = 0; i < lists.size() && !found; ++i) {
             found = lists[i].find(name);
@@ -165,8 +165,8 @@ class DeferredNames {
 
     Level& level_;
     ErrorList errors_{level_.file};
-    std::unordered_map<std::string, std::vector<NameList>> lists_;  ///< the level's own first
-    std::unordered_map<std::uint32_t, std::size_t> scene_of_;       ///< entity -> of `scenes`
+    std::unordered_map<std::string, std::vector<LevelNameList>> lists_;  ///< the level's own first
+    std::unordered_map<std::uint32_t, std::size_t> scene_of_;            ///< entity -> of `scenes`
 };
 
 }  // namespace

@@ -26,11 +26,11 @@ using Members = std::vector<JsonMember>;
 
 constexpr const char* kColorName = "name of a color";  // a definition
 
-JsonMember member(std::string key, JsonValue value) {
+JsonMember schema_member(std::string key, JsonValue value) {
     return {std::move(key), {}, std::move(value)};
 }
 
-JsonValue text(std::string_view words) {
+JsonValue schema_text(std::string_view words) {
     return json_of(words);
 }
 
@@ -50,7 +50,7 @@ JsonValue count(std::size_t n) {
 
 /// {"type": name, ...}
 JsonValue of_type(std::string_view type, Members more = {}) {
-    JsonValue schema = json_object({member("type", text(type))});
+    JsonValue schema = json_object({schema_member("type", schema_text(type))});
     for (JsonMember& m : more) {
         schema.members.push_back(std::move(m));
     }
@@ -58,61 +58,61 @@ JsonValue of_type(std::string_view type, Members more = {}) {
 }
 
 JsonValue reference(const std::string& definition) {
-    return json_object({member("$ref", text("#/$defs/" + definition))});
+    return json_object({schema_member("$ref", schema_text("#/$defs/" + definition))});
 }
 
 JsonValue any_of(std::vector<JsonValue> schemas) {
-    return json_object({member("anyOf", json_array(std::move(schemas)))});
+    return json_object({schema_member("anyOf", json_array(std::move(schemas)))});
 }
 
 JsonValue array_of(JsonValue items) {
-    return of_type("array", {member("items", std::move(items))});
+    return of_type("array", {schema_member("items", std::move(items))});
 }
 
 JsonValue array_of(JsonValue items, std::size_t min, std::size_t max) {
     JsonValue schema = array_of(std::move(items));
-    schema.members.push_back(member("minItems", count(min)));
-    schema.members.push_back(member("maxItems", count(max)));
+    schema.members.push_back(schema_member("minItems", count(min)));
+    schema.members.push_back(schema_member("maxItems", count(max)));
     return schema;
 }
 
 JsonValue one_of_words(const std::vector<std::string_view>& words) {
     JsonValue values = json_array();
     for (const std::string_view word : words) {
-        values.items.push_back(text(word));
+        values.items.push_back(schema_text(word));
     }
-    return json_object({member("enum", std::move(values))});
+    return json_object({schema_member("enum", std::move(values))});
 }
 
 JsonValue constant(std::string_view word) {
-    return json_object({member("const", text(word))});
+    return json_object({schema_member("const", schema_text(word))});
 }
 
 /// The schema with what an editor shows of it.
 JsonValue described(JsonValue schema, std::string_view words) {
-    schema.members.push_back(member("description", text(words)));
+    schema.members.push_back(schema_member("description", schema_text(words)));
     return schema;
 }
 
 JsonValue described(JsonValue schema, std::string_view words, JsonValue by_default) {
-    schema.members.push_back(member("default", std::move(by_default)));
+    schema.members.push_back(schema_member("default", std::move(by_default)));
     return described(std::move(schema), words);
 }
 
 /// An object with these properties and no others.
 JsonValue closed_object(Members properties, std::vector<JsonValue> required = {}) {
     JsonValue schema = of_type(
-        "object", {member("properties", json_object(std::move(properties))),
-                   member("additionalProperties", json_of(false))});
+        "object", {schema_member("properties", json_object(std::move(properties))),
+                   schema_member("additionalProperties", json_of(false))});
     if (!required.empty()) {
-        schema.members.push_back(member("required", json_array(std::move(required))));
+        schema.members.push_back(schema_member("required", json_array(std::move(required))));
     }
     return schema;
 }
 
 /// An object whose keys are names.
 JsonValue map_of(JsonValue values) {
-    return of_type("object", {member("additionalProperties", std::move(values))});
+    return of_type("object", {schema_member("additionalProperties", std::move(values))});
 }
 
 JsonValue schema_of_number(const FieldInfo& field) {
@@ -120,17 +120,19 @@ JsonValue schema_of_number(const FieldInfo& field) {
                           || field.type == FieldType::IVec2 || field.type == FieldType::IVec3;
     JsonValue schema = of_type(is_whole ? "integer" : "number");
     if (std::isfinite(field.meta.min)) {
-        schema.members.push_back(member("minimum", limit(field.meta.min)));
+        schema.members.push_back(schema_member("minimum", limit(field.meta.min)));
     } else if (field.type == FieldType::UInt) {
-        schema.members.push_back(member("minimum", number(0)));
+        schema.members.push_back(schema_member("minimum", number(0)));
     }
     if (std::isfinite(field.meta.max)) {
-        schema.members.push_back(member("maximum", limit(field.meta.max)));
+        schema.members.push_back(schema_member("maximum", limit(field.meta.max)));
     }
     const std::vector<std::string_view> units = written_units(field.meta.unit);
     if (!is_whole && !units.empty()) {
         const std::string pattern = fmt::format("^-?[0-9.]+ ?({})$", fmt::join(units, "|"));
-        return any_of({std::move(schema), of_type("string", {member("pattern", text(pattern))})});
+        return any_of(
+            {std::move(schema),
+             of_type("string", {schema_member("pattern", schema_text(pattern))})});
     }
     return schema;
 }
@@ -155,7 +157,8 @@ JsonValue schema_of_element(const FieldInfo& field, const void* defaults) {
         return one_of_words(field.values);
     case FieldType::Entity:
     case FieldType::Asset:
-        return json_object({member("type", json_array({text("string"), text("null")}))});
+        return json_object(
+            {schema_member("type", json_array({schema_text("string"), schema_text("null")}))});
     case FieldType::Struct:
         return schema_of_fields(field.fields, defaults);
     case FieldType::Quat: {
@@ -176,7 +179,7 @@ JsonValue schema_of_element(const FieldInfo& field, const void* defaults) {
         const char* const form =
             lanes == 4 ? "^#([0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" : "^#[0-9a-fA-F]{6}$";
         return any_of(
-            {std::move(numbers), of_type("string", {member("pattern", text(form))}),
+            {std::move(numbers), of_type("string", {schema_member("pattern", schema_text(form))}),
              reference(kColorName)});
     }
     return numbers;
@@ -193,7 +196,7 @@ JsonValue schema_of_field(const FieldInfo& field, const void* defaults) {
         schema = array_of(std::move(schema));
     }
     if (value != nullptr && !(is_struct && field.shape == FieldShape::One)) {
-        schema.members.push_back(member("default", write_field(field, value, {})));
+        schema.members.push_back(schema_member("default", write_field(field, value, {})));
     }
     std::string description = field.meta.doc;
     if (*field.meta.unit != '\0') {
@@ -208,7 +211,7 @@ JsonValue schema_of_field(const FieldInfo& field, const void* defaults) {
 Members properties_of(const std::vector<FieldInfo>& fields, const void* defaults) {
     Members properties;
     for (const FieldInfo& field : fields) {
-        properties.push_back(member(field.name, schema_of_field(field, defaults)));
+        properties.push_back(schema_member(field.name, schema_of_field(field, defaults)));
     }
     return properties;
 }
@@ -227,13 +230,13 @@ template <typename Kinds>
 std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds) {
     std::vector<JsonValue> schemas;
     for (const auto& kind : kinds) {
-        Members properties = {member("make", constant(kind.name))};
+        Members properties = {schema_member("make", constant(kind.name))};
         for (JsonMember& field :
              properties_of(kind.parameters->fields, kind.parameters->defaults)) {
             properties.push_back(std::move(field));
         }
-        JsonValue schema = closed_object(std::move(properties), {text("make")});
-        schema.members.push_back(member("description", text(kind.doc)));
+        JsonValue schema = closed_object(std::move(properties), {schema_text("make")});
+        schema.members.push_back(schema_member("description", schema_text(kind.doc)));
         schemas.push_back(std::move(schema));
     }
     return schemas;
@@ -242,26 +245,27 @@ std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds) {
 JsonValue schema_of_images() {
     std::vector<JsonValue> schemas = schemas_of_kinds(pattern_kinds());
     schemas.push_back(closed_object(
-        {member("file", described(of_type("string"), "a PNG, JPEG, EXR, HDR ... beside the level")),
-         member(
+        {schema_member(
+             "file", described(of_type("string"), "a PNG, JPEG, EXR, HDR ... beside the level")),
+         schema_member(
              "srgb", described(
                          of_type("boolean"), "whether it holds colors; false for normals and masks",
                          json_of(true)))},
-        {text("file")}));
+        {schema_text("file")}));
     return map_of(any_of(std::move(schemas)));
 }
 
 JsonValue schema_of_materials() {
     Members properties = {
-        member("like", described(of_type("string"), "an earlier material, to start from")),
-        member(
+        schema_member("like", described(of_type("string"), "an earlier material, to start from")),
+        schema_member(
             "pattern",
             described(of_type("string"), "a generated image: base color, normals, roughness")),
-        member(
+        schema_member(
             "brdf",
             described(
                 of_type("string"), "a file of fitted reflectance beside the level: lafortune")),
-        member(
+        schema_member(
             "tiling",
             described(array_of(of_type("number"), 2, 2), "repetitions of all maps along u and v"))};
     for (JsonMember& field : properties_of<Material>()) {
@@ -273,27 +277,29 @@ JsonValue schema_of_materials() {
 JsonValue schema_of_repeat() {
     Members properties = properties_of<RepeatGrid>();
     JsonValue variation = closed_object(
-        {member(
+        {schema_member(
              "by", described(
                        one_of_words({"random", "x", "y", "z", "radius", "angle", "index"}),
-                       "what of a copy decides", text("random"))),
-         member("from", described(json_object(), "value of the first copy, or smallest value")),
-         member("to", described(json_object(), "value of the last copy, or largest value")),
-         member(
+                       "what of a copy decides", schema_text("random"))),
+         schema_member(
+             "from", described(json_object(), "value of the first copy, or smallest value")),
+         schema_member("to", described(json_object(), "value of the last copy, or largest value")),
+         schema_member(
              "pick", described(
-                         of_type("array", {member("minItems", count(1))}),
+                         of_type("array", {schema_member("minItems", count(1))}),
                          "one of these values for each copy, instead of from and to")),
-         member(
-             "noise",
-             described(
-                 of_type("number", {member("minimum", number(0)), member("maximum", number(1))}),
-                 "width of a random number that is added to the place between from and to",
-                 number(0))),
-         member(
+         schema_member(
+             "noise", described(
+                          of_type(
+                              "number", {schema_member("minimum", number(0)),
+                                         schema_member("maximum", number(1))}),
+                          "width of a random number that is added to the place between from and to",
+                          number(0))),
+         schema_member(
              "times", described(
-                          of_type("number", {member("exclusiveMinimum", number(0))}),
+                          of_type("number", {schema_member("exclusiveMinimum", number(0))}),
                           "repetitions of the whole range", number(1)))});
-    properties.push_back(member(
+    properties.push_back(schema_member(
         "vary", described(
                     map_of(std::move(variation)),
                     "fields that differ from copy to copy, by component.field: \"sway.phase\"")));
@@ -308,7 +314,7 @@ JsonValue schema_of_components(Members more, bool may_be_null) {
             continue;  // the keys "name" and "children" cover the first two
         }
         JsonValue schema = reference(info->name);
-        more.push_back(member(
+        more.push_back(schema_member(
             info->name,
             may_be_null ? any_of({std::move(schema), of_type("null")}) : std::move(schema)));
     }
@@ -317,27 +323,27 @@ JsonValue schema_of_components(Members more, bool may_be_null) {
 
 JsonValue schema_of_node() {
     return schema_of_components(
-        {member(
+        {schema_member(
              "name", described(
-                         of_type("string", {member("pattern", text("^[^.]+$"))}),
+                         of_type("string", {schema_member("pattern", schema_text("^[^.]+$"))}),
                          "by which events, targets and --set find it; without dots, unique among "
                          "siblings")),
-         member(
+         schema_member(
              "prefab",
              described(
                  of_type("string"), "a node of \"prefabs\", whose fields this one overrides")),
-         member(
+         schema_member(
              "gltf", described(of_type("string"), "a .gltf or .glb beside the level, placed here")),
-         member(
+         schema_member(
              "nodes",
              described(
                  map_of(reference("components")), "changes of the nodes of \"gltf\", or of "
                                                   "children, by name; null removes a component")),
-         member(
+         schema_member(
              "repeat", described(
                            any_of({reference("repeat of a node"), of_type("null")}),
                            "copies of it in a grid or a ring")),
-         member(
+         schema_member(
              "children",
              described(
                  array_of(reference("node")), "nodes that move along, placed relative to it"))},
@@ -350,7 +356,7 @@ JsonValue schema_of_resources() {
         if (is_internal(*info)) {
             continue;
         }
-        properties.push_back(member(info->name, reference(info->name)));
+        properties.push_back(schema_member(info->name, reference(info->name)));
     }
     return closed_object(std::move(properties));
 }
@@ -358,38 +364,39 @@ JsonValue schema_of_resources() {
 JsonValue schema_of_event() {
     const auto time = [](std::string_view words) { return described(schema_of_time(1e6), words); };
     return closed_object(
-        {member("at", time("since the start of the level [s]")),
-         member(
+        {schema_member("at", time("since the start of the level [s]")),
+         schema_member(
              "key",
              described(one_of_words(key_names()), "when this key is pressed, instead of a time")),
-         member("released", described(one_of_words(key_names()), "when this key is released")),
-         member(
+         schema_member(
+             "released", described(one_of_words(key_names()), "when this key is released")),
+         schema_member(
              "text", described(of_type("string"), "what the key does, for the help of the window")),
-         member("every", time("period of repetitions [s]; without, it occurs once")),
-         member(
+         schema_member("every", time("period of repetitions [s]; without, it occurs once")),
+         schema_member(
              "times", described(
-                          of_type("integer", {member("minimum", number(1))}),
+                          of_type("integer", {schema_member("minimum", number(1))}),
                           "how often it occurs, with \"every\"; without, for ever")),
-         member(
+         schema_member(
              "set", described(
                         map_of(schema_of_components({}, false)),
                         "new values of fields, by entity, component and field")),
-         member(
+         schema_member(
              "set_resources",
              described(schema_of_resources(), "new values of fields, by resource and field")),
-         member(
+         schema_member(
              "impulse", described(
                             map_of(map_of(of_type("object"))),
                             "what is added to fields, by entity, component and field")),
-         member(
+         schema_member(
              "impulse_resources",
              described(
                  map_of(of_type("object")), "what is added to fields, by resource and field")),
-         member(
+         schema_member(
              "spawn", described(
                           array_of(reference("node")),
                           "nodes that appear, of prefabs or with the level's meshes")),
-         member(
+         schema_member(
              "destroy", described(
                             array_of(of_type("string")),
                             "entities that vanish, with their children, by name"))},
@@ -398,29 +405,34 @@ JsonValue schema_of_event() {
 
 JsonValue schema_of_show() {
     return closed_object(
-        {member("technique", described(of_type("string"), "its id, for --show")),
-         member("text", described(of_type("string"), "a sentence: what to look at")),
-         member("set", described(of_type("object"), "JSON merge patch of the level, on")),
-         member("off", described(of_type("object"), "JSON merge patch of the level, without it")),
-         member("time", described(schema_of_time(3600), "when it is seen best [s]")),
-         member(
+        {schema_member("technique", described(of_type("string"), "its id, for --show")),
+         schema_member("text", described(of_type("string"), "a sentence: what to look at")),
+         schema_member("set", described(of_type("object"), "JSON merge patch of the level, on")),
+         schema_member(
+             "off", described(of_type("object"), "JSON merge patch of the level, without it")),
+         schema_member("time", described(schema_of_time(3600), "when it is seen best [s]")),
+         schema_member(
              "camera", described(
                            any_of({of_type("string"), closed_object(properties_of<ShowCamera>())}),
                            "an entity by name, or where the camera stands")),
-         member(
+         schema_member(
              "equal",
              described(of_type("boolean"), "with and without must look the same", json_of(false)))},
-        {text("technique"), text("text")});
+        {schema_text("technique"), schema_text("text")});
 }
 
 JsonValue definitions() {
     Members all = {
-        member("node", schema_of_node()), member("repeat of a node", schema_of_repeat()),
-        member("components", schema_of_components({}, true)), member("event", schema_of_event()),
-        member(kColorName, described(one_of_words(color_names()), "a color of CSS, in sRGB"))};
+        schema_member("node", schema_of_node()),
+        schema_member("repeat of a node", schema_of_repeat()),
+        schema_member("components", schema_of_components({}, true)),
+        schema_member("event", schema_of_event()),
+        schema_member(
+            kColorName, described(one_of_words(color_names()), "a color of CSS, in sRGB"))};
     for (const std::vector<const ComponentInfo*>& infos : {all_components(), all_resources()}) {
         for (const ComponentInfo* const info : infos) {
-            all.push_back(member(info->name, schema_of_fields(info->fields, info->defaults)));
+            all.push_back(
+                schema_member(info->name, schema_of_fields(info->fields, info->defaults)));
         }
     }
     return json_object(std::move(all));
@@ -430,41 +442,46 @@ JsonValue definitions() {
 
 JsonValue level_schema() {
     JsonValue schema = closed_object(
-        {member("$schema", described(of_type("string"), "for editors: where this schema lies")),
-         member("title", described(of_type("string"), "shown in the window and by limn levels")),
-         member("description", described(of_type("string"), "what it is, in a few sentences")),
-         member(
+        {schema_member(
+             "$schema", described(of_type("string"), "for editors: where this schema lies")),
+         schema_member(
+             "title", described(of_type("string"), "shown in the window and by limn levels")),
+         schema_member(
+             "description", described(of_type("string"), "what it is, in a few sentences")),
+         schema_member(
              "resources",
              described(schema_of_resources(), "what the level has one of: sky, exposure, weather")),
-         member(
+         schema_member(
              "include",
              described(
                  array_of(of_type("string")), "files whose prefabs, images, materials and meshes "
                                               "can be used, as fire.effect.json")),
-         member("images", described(schema_of_images(), "files and generated patterns, by name")),
-         member("materials", described(schema_of_materials(), "by name, in order of use")),
-         member(
+         schema_member(
+             "images", described(schema_of_images(), "files and generated patterns, by name")),
+         schema_member("materials", described(schema_of_materials(), "by name, in order of use")),
+         schema_member(
              "paths", described(
                           map_of(closed_object(properties_of<PathShape>())),
                           "curves for path_follower, racer and sweeps, by name")),
-         member(
+         schema_member(
              "meshes",
              described(
                  map_of(any_of(schemas_of_kinds(mesh_kinds()))), "generated shapes, by name")),
-         member(
+         schema_member(
              "prefabs", described(map_of(reference("node")), "nodes to use many times, by name")),
-         member("entities", described(array_of(reference("node")), "what is there from the start")),
-         member("events", described(array_of(reference("event")), "what happens later")),
-         member("shows", described(array_of(schema_of_show()), "the techniques it shows")),
-         member(
+         schema_member(
+             "entities", described(array_of(reference("node")), "what is there from the start")),
+         schema_member("events", described(array_of(reference("event")), "what happens later")),
+         schema_member("shows", described(array_of(schema_of_show()), "the techniques it shows")),
+         schema_member(
              "bindings",
              described(
                  map_of(array_of(one_of_words(key_names()))), "keys of actions, by action"))});
     schema.members.insert(
         schema.members.begin(),
-        {member("$schema", text("https://json-schema.org/draft/2020-12/schema")),
-         member("title", text("A level of Limn"))});
-    schema.members.push_back(member("$defs", definitions()));
+        {schema_member("$schema", schema_text("https://json-schema.org/draft/2020-12/schema")),
+         schema_member("title", schema_text("A level of Limn"))});
+    schema.members.push_back(schema_member("$defs", definitions()));
     return schema;
 }
 

@@ -17,8 +17,9 @@
 namespace limn {
 namespace {
 
-constexpr double kMaxTime = 3600;  // [s]
-constexpr std::string_view kKeys[] = {"technique", "text", "set", "off", "time", "camera", "equal"};
+constexpr double kMaxShowTime = 3600;  // [s]
+constexpr std::string_view kShowKeys[] = {"technique", "text",   "set",  "off",
+                                          "time",      "camera", "equal"};
 
 Status
 read_text(const JsonValue& json, const char* key, const JsonPlace& place, std::string& text) {
@@ -45,7 +46,7 @@ Status read_camera(const JsonValue& json, const JsonPlace& place, LevelShow& sho
 }
 
 Result<LevelShow> read_show(const JsonValue& json, const JsonPlace& place) {
-    LIMN_TRY(expect_keys(json, place, kKeys, "a show (an object)"));
+    LIMN_TRY(expect_keys(json, place, kShowKeys, "a show (an object)"));
     LevelShow show;
     LIMN_TRY(read_text(json, "technique", place, show.technique));
     LIMN_TRY(read_text(json, "text", place, show.text));
@@ -55,7 +56,7 @@ Result<LevelShow> read_show(const JsonValue& json, const JsonPlace& place) {
         return unexpected(json, place, "\"set\", \"off\" or both");
     }
     if (const JsonValue* const time = json.find("time")) {
-        show.time = LIMN_TRY(expect_number(*time, 0, kMaxTime, place_in(place, "time"), "s"));
+        show.time = LIMN_TRY(expect_number(*time, 0, kMaxShowTime, place_in(place, "time"), "s"));
     }
     if (const JsonValue* const camera = json.find("camera")) {
         LIMN_TRY(read_camera(*camera, place_in(place, "camera"), show));

@@ -24,9 +24,9 @@ namespace limn {
 
 namespace {
 
-constexpr float kScale = 0.1f;  // the files are in decimeters
-constexpr std::size_t kVertices = 19158;
-constexpr float kLimbus = 0.57f;           ///< of the radius of an eye
+constexpr float kMakehumanScale = 0.1f;  // the files are in decimeters
+constexpr std::size_t kMakehumanVertices = 19158;
+constexpr float kMakehumanLimbus = 0.57f;  ///< of the radius of an eye
 constexpr std::size_t kEyeVertices = 256;  ///< of the outer shell of an eye; an inner one follows
 
 struct UnitOfTarget {
@@ -35,7 +35,7 @@ struct UnitOfTarget {
 };
 
 /// By what the targets move, after Ekman and Friesen 1978.
-constexpr UnitOfTarget kUnits[] = {
+constexpr UnitOfTarget kMakehumanUnits[] = {
     {"eye-left-closure", "AU43_L"},
     {"eye-right-closure", "AU43_R"},
     {"eye-left-opened-up", "AU5_L"},
@@ -102,7 +102,8 @@ Result<std::string> read_text(const std::filesystem::path& path) {
 }
 
 /// The .target files of a folder by name; none where it does not exist.
-std::map<std::string, std::filesystem::path> find_targets(const std::filesystem::path& folder) {
+std::map<std::string, std::filesystem::path>
+find_makehuman_targets(const std::filesystem::path& folder) {
     std::map<std::string, std::filesystem::path> found;
     std::error_code error;
     for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -117,9 +118,9 @@ std::map<std::string, std::filesystem::path> find_targets(const std::filesystem:
 /// Displacement of every vertex [dm].
 Result<std::vector<Vec3>> read_target(const std::filesystem::path& path) {
     const std::string text = LIMN_TRY(read_text(path));
-    std::vector<Vec3> offsets(kVertices, Vec3(0));
+    std::vector<Vec3> offsets(kMakehumanVertices, Vec3(0));
     for (const MakehumanOffset& moved :
-         LIMN_TRY(parse_makehuman_target(text, path.string(), kVertices))) {
+         LIMN_TRY(parse_makehuman_target(text, path.string(), kMakehumanVertices))) {
         offsets[moved.vertex] += moved.offset;
     }
     return offsets;
@@ -260,7 +261,7 @@ SkinWeights normalized(std::span<const Influences> influences) {
 }
 
 /// Makes the parts of the only node of `scene` a skin on the rig, as the glTF loader has it.
-void add_rig(GltfScene& scene, const Rig& rig) {
+void add_makehuman_rig(GltfScene& scene, const Rig& rig) {
     GltfNode body = scene.nodes[0];
     body.name += ".skin";
     body.skin = 0;
@@ -284,13 +285,13 @@ void add_rig(GltfScene& scene, const Rig& rig) {
         GltfNode node;
         node.name = rig.names[i];
         node.parent = parent < 0 ? -1 : parent + 1;
-        node.transform.position = kScale * (rig.heads[i] - above);
+        node.transform.position = kMakehumanScale * (rig.heads[i] - above);
         add_joint(node.name, parent + 1, node.transform.position);
         scene.nodes.push_back(std::move(node));
         scene.joints.push_back(static_cast<std::int32_t>(i) + 1);
         skin.joints.push_back(static_cast<std::uint16_t>(i + 1));
         skin.joint_from_mesh.push_back(
-            affine_from(-kScale * rig.heads[i], Quat(1, 0, 0, 0), Vec3(1)));
+            affine_from(-kMakehumanScale * rig.heads[i], Quat(1, 0, 0, 0), Vec3(1)));
     }
     scene.skins.push_back(std::move(skin));
     scene.nodes.push_back(std::move(body));
@@ -305,10 +306,10 @@ class MakehumanImporter {
     Result<GltfScene> read() {
         const std::string base = (folder_ / "base.obj").string();
         obj_ = LIMN_TRY(load_obj(base));
-        if (obj_.positions.size() != kVertices) {
+        if (obj_.positions.size() != kMakehumanVertices) {
             return fail(
                 "{}: found {} vertices, expected the {} of the base mesh hm08", base,
-                obj_.positions.size(), kVertices);
+                obj_.positions.size(), kMakehumanVertices);
         }
         LIMN_TRY(read_shapes());
         LIMN_TRY(find_reference());
@@ -316,18 +317,18 @@ class MakehumanImporter {
         LIMN_TRY(read_eyes());
         subdivide_face();
         const SkinWeights skin = rig_ ? normalized(rig_->influences) : SkinWeights{};
-        GltfScene scene =
-            make_face_scene("person", obj_, kScale, make_parts(), shapes_, reference_, skin);
+        GltfScene scene = make_face_scene(
+            "person", obj_, kMakehumanScale, make_parts(), shapes_, reference_, skin);
         if (rig_) {
-            add_rig(scene, *rig_);
+            add_makehuman_rig(scene, *rig_);
         }
         return scene;
     }
 
   private:
     Status read_shapes() {
-        const auto expressions = find_targets(folder_ / "targets" / "expression");
-        const auto macros = find_targets(folder_ / "targets" / "macrodetails");
+        const auto expressions = find_makehuman_targets(folder_ / "targets" / "expression");
+        const auto macros = find_makehuman_targets(folder_ / "targets" / "macrodetails");
         if (expressions.empty()) {
             return fail(
                 "{}: found no targets, expected files such as mouth-open.target",
@@ -353,11 +354,11 @@ class MakehumanImporter {
     /// Moves the base mesh to the mean of the young builds, and makes all relative to that; stands
     /// it on y = 0.
     void apply_mean(std::vector<FaceShape>& builds) {
-        std::vector<Vec3> mean(kVertices, Vec3(0));
+        std::vector<Vec3> mean(kMakehumanVertices, Vec3(0));
         const auto is_young = [](const FaceShape& build) { return build.name.ends_with("young"); };
         const auto count = std::count_if(builds.begin(), builds.end(), is_young);
         for (const FaceShape& build : builds) {
-            for (std::size_t i = 0; i < kVertices && is_young(build); ++i) {
+            for (std::size_t i = 0; i < kMakehumanVertices && is_young(build); ++i) {
                 mean[i] += build.offsets[i] / static_cast<float>(count);
             }
         }
@@ -368,11 +369,11 @@ class MakehumanImporter {
                 ground = std::min(ground, obj_.positions[p].y + mean[p].y);
             }
         }
-        for (std::size_t i = 0; i < kVertices; ++i) {
+        for (std::size_t i = 0; i < kMakehumanVertices; ++i) {
             obj_.positions[i] += mean[i] - Vec3(0, std::isfinite(ground) ? ground : 0.0f, 0);
         }
         for (FaceShape& build : builds) {
-            for (std::size_t i = 0; i < kVertices; ++i) {
+            for (std::size_t i = 0; i < kMakehumanVertices; ++i) {
                 build.offsets[i] -= mean[i];
             }
         }
@@ -391,7 +392,7 @@ class MakehumanImporter {
             }
         }
         const PointWarp warp = LIMN_TRY(make_point_warp(from, to));
-        reference_.assign(kVertices, Vec3(std::numeric_limits<float>::quiet_NaN()));
+        reference_.assign(kMakehumanVertices, Vec3(std::numeric_limits<float>::quiet_NaN()));
         for (const ObjFace& face : obj_.faces) {
             for (std::uint32_t k = 0; k < face.count && obj_.groups[face.group] == "body"; ++k) {
                 const std::uint32_t p = obj_.corners[face.first + k].position;
@@ -426,7 +427,8 @@ class MakehumanImporter {
         }
         const std::string file = (folder / "eyes-high-poly.mhclo").string();
         const std::string text = LIMN_TRY(read_text(file));
-        const MakehumanProxy proxy = LIMN_TRY(parse_makehuman_proxy(text, file, kVertices));
+        const MakehumanProxy proxy =
+            LIMN_TRY(parse_makehuman_proxy(text, file, kMakehumanVertices));
         const std::string mesh_file = (folder / "eyes-high-poly.obj").string();
         const ObjFile eyes = LIMN_TRY(load_obj(mesh_file));
         if (eyes.positions.size() != proxy.fits.size()) {
@@ -435,7 +437,7 @@ class MakehumanImporter {
                 proxy.fits.size(), file);
         }
         const std::vector<Vec3> fitted =
-            fit_proxy(proxy, std::span(obj_.positions).first(kVertices));
+            fit_proxy(proxy, std::span(obj_.positions).first(kMakehumanVertices));
         append_faces(eyes);
         eye_vertices_ = std::max<std::size_t>(eyes.positions.size() / 2, 1);
         obj_.positions.insert(obj_.positions.end(), fitted.begin(), fitted.end());
@@ -459,7 +461,7 @@ class MakehumanImporter {
         for (std::size_t side = 0; side < 2; ++side) {
             const std::size_t first = side * eye_vertices_;
             const std::size_t count = std::min(kEyeVertices, eyes.positions.size() - first);
-            eyes_[side] = find_eye_ball(std::span(fitted).subspan(first, count), kLimbus);
+            eyes_[side] = find_eye_ball(std::span(fitted).subspan(first, count), kMakehumanLimbus);
         }
         return Done{};
     }
@@ -507,7 +509,7 @@ class MakehumanImporter {
             obj_.faces.push_back(face);
             for (const ObjCorner& corner : corners) {
                 obj_.corners.push_back(
-                    {.position = corner.position + static_cast<std::uint32_t>(kVertices),
+                    {.position = corner.position + static_cast<std::uint32_t>(kMakehumanVertices),
                      .uv = corner.uv < 0 ? -1 : corner.uv + uvs});
             }
         }
@@ -530,7 +532,7 @@ class MakehumanImporter {
             return "";
         }
         const std::span<const ObjCorner> corners(&obj_.corners[face.first], face.count);
-        if ((corners[0].position - kVertices) % eye_vertices_ >= kEyeVertices) {
+        if ((corners[0].position - kMakehumanVertices) % eye_vertices_ >= kEyeVertices) {
             return "iris";
         }
         const bool on_cornea = std::all_of(corners.begin(), corners.end(), [&](const ObjCorner& c) {
@@ -575,7 +577,7 @@ class MakehumanImporter {
 }  // namespace
 
 std::string makehuman_action_unit(std::string_view target) {
-    for (const auto& [name, unit] : kUnits) {
+    for (const auto& [name, unit] : kMakehumanUnits) {
         if (name == target) {
             return std::string(unit);
         }

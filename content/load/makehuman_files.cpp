@@ -12,7 +12,7 @@ namespace limn {
 namespace {
 
 constexpr double kLargest = 1000;  ///< [dm]
-constexpr std::string_view kSpaces = " \t\r\v\f";
+constexpr std::string_view kMakehumanSpaces = " \t\r\v\f";
 
 /// Words of the lines of a text that are neither empty nor comments.
 class WordReader {
@@ -36,7 +36,7 @@ class WordReader {
 
     std::string_view word() {
         skip_spaces();
-        const std::string_view found = rest_.substr(0, rest_.find_first_of(kSpaces));
+        const std::string_view found = rest_.substr(0, rest_.find_first_of(kMakehumanSpaces));
         rest_.remove_prefix(found.size());
         return found;
     }
@@ -81,7 +81,7 @@ class WordReader {
 
   private:
     void skip_spaces() {
-        rest_.remove_prefix(std::min(rest_.find_first_not_of(kSpaces), rest_.size()));
+        rest_.remove_prefix(std::min(rest_.find_first_not_of(kMakehumanSpaces), rest_.size()));
     }
 
     std::string_view text_;

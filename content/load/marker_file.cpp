@@ -15,8 +15,8 @@
 namespace limn {
 namespace {
 
-constexpr float kLargest = 1e6f;          ///< coordinate [m]
-constexpr std::size_t kFirstColumns = 2;  ///< frame and time
+constexpr float kLargestMarkerFile = 1e6f;  ///< coordinate [m]
+constexpr std::size_t kFirstColumns = 2;    ///< frame and time
 
 /// Lines of a text, as cells between tabs without spaces around.
 class TabReader {
@@ -144,7 +144,8 @@ class TrcParser {
                     column < cells_.size() ? cells_[column] : std::string_view{};
                 seen = seen && !cell.empty();
                 if (!cell.empty()
-                    && (!read_number(cell, p[k]) || std::abs(p[k]) * meters_ > kLargest)) {
+                    && (!read_number(cell, p[k])
+                        || std::abs(p[k]) * meters_ > kLargestMarkerFile)) {
                     return fail(
                         "{}: found {} at the marker {}, expected a number", here(), in_quotes(cell),
                         in_quotes(motion_.names[m]));

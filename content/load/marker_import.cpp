@@ -43,7 +43,7 @@ std::vector<DVec2> unroll(std::span<const Vec3> positions) {
     return flat;
 }
 
-bool is_head(const std::string& name) {
+bool is_head_marker(const std::string& name) {
     std::string start = name.substr(0, 4);
     std::transform(start.begin(), start.end(), start.begin(), [](char c) {
         return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -109,7 +109,7 @@ Result<Take> make_take(const std::string& name, MarkerMotion motion) {
                 "{}: the first frame, the face at rest, lacks the marker {}", name,
                 in_quotes(motion.names[m]));
         }
-        if (is_head(motion.names[m])) {
+        if (is_head_marker(motion.names[m])) {
             head.push_back(m);
         }
     }

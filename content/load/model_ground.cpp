@@ -24,7 +24,7 @@ namespace {
 
 constexpr float kGroundRadius = 6.0f;  // of the subject's
 constexpr float kFadeRadius = 12.0f;   // of the subject's, of a ground of the file; by eye
-constexpr float kFlat = 0.02f;         // height of a ground, of its width
+constexpr float kFlatGround = 0.02f;   // height of a ground, of its width
 constexpr float kEdgeLength = 0.35f;   // of the distance from the subject's middle
 constexpr std::size_t kMaxCorners = 300'000;
 
@@ -182,7 +182,7 @@ void fade_grounds(World& world, std::span<const Entity> scenery, ModelView& view
         const MeshData& mesh = assets.meshes[instance.mesh.index];
         const Affine matrix = matrices.of(entity);
         const Vec3 half = half_extent(transform_bounds(matrix, mesh.bounds));
-        if (half.y > kFlat * std::max(half.x, half.z)
+        if (half.y > kFlatGround * std::max(half.x, half.z)
             || std::max(half.x, half.z) < kFadeRadius * radius || radius <= 0
             || world.has<Deformed>(entity) || instance.material.index >= assets.materials.size()
             || assets.materials[instance.material.index].alpha_mode != AlphaMode::Opaque

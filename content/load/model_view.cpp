@@ -200,7 +200,7 @@ void add_sun(World& world, const Quat& camera, float radius, ModelView& view) {
 }
 
 /// The framing camera, on a turning pivot if it has a turntable.
-void add_camera(World& world, double turntable, ModelView& view) {
+void add_model_camera(World& world, double turntable, ModelView& view) {
     Camera camera{.fov_y = kFovY};
     const float size = is_empty(view.subject) ? 1.0f : glm::length(half_extent(view.subject));
     camera.near = std::clamp(0.005f * size, 1e-4f, 100.0f);
@@ -321,7 +321,7 @@ ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
     const float radius = is_empty(view.subject) ? 1.0f : glm::length(half_extent(view.subject));
     const LightMeter meter(world, view.subject);
     const float lux = meter.total();
-    add_camera(world, turntable, view);
+    add_model_camera(world, turntable, view);
     if (backdrop.panorama) {
         add_panorama(world, *std::move(backdrop.panorama));
     } else {

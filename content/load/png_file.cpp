@@ -110,7 +110,7 @@ bool write_rows(PngState& state, int channels, int bits) {
     return true;
 }
 
-void fill_rows(PngState& state, std::uint8_t* pixels, std::size_t row_size) {
+void fill_png_rows(PngState& state, std::uint8_t* pixels, std::size_t row_size) {
     state.rows.resize(static_cast<std::size_t>(state.height));
     for (std::size_t y = 0; y < state.rows.size(); ++y) {
         state.rows[y] = pixels + y * row_size;
@@ -129,7 +129,7 @@ encode(int width, int height, int channels, std::span<const T> values) {
     state.info = state.png != nullptr ? png_create_info_struct(state.png) : nullptr;
     // libpng takes rows that are not const and does not write to them.
     auto* const bytes = reinterpret_cast<std::uint8_t*>(const_cast<T*>(values.data()));
-    fill_rows(state, bytes, row * sizeof(T));
+    fill_png_rows(state, bytes, row * sizeof(T));
     const bool written = state.info != nullptr && write_rows(state, channels, 8 * sizeof(T));
     png_destroy_write_struct(&state.png, &state.info);
     if (!written) {
@@ -158,7 +158,7 @@ Status read_png(PngState& state, const std::string& place, const ImageLimits& li
     }
     const std::size_t row = static_cast<std::size_t>(state.width) * 4;
     state.pixels.resize(row * static_cast<std::size_t>(state.height));
-    fill_rows(state, state.pixels.data(), row);
+    fill_png_rows(state, state.pixels.data(), row);
     if (!read_rows(state)) {
         return fail("{}: corrupt PNG image: {}", place, state.error);
     }

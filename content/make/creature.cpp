@@ -20,7 +20,7 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kMaxInfluences = 4;
-constexpr float kMinWeight = 0.01f;
+constexpr float kMinCreatureWeight = 0.01f;
 
 /// Symmetric about x = 0.
 ImplicitGrid body_grid(const CreatureShape& shape) {
@@ -90,7 +90,7 @@ void append_influences(SkinWeights& skin, const Weights& shares) {
         return shares[a] > shares[b];
     });
     std::size_t kept = 1;
-    while (kept < kMaxInfluences && shares[order[kept]] > kMinWeight) {
+    while (kept < kMaxInfluences && shares[order[kept]] > kMinCreatureWeight) {
         ++kept;
     }
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));
@@ -160,7 +160,7 @@ struct Eye {
 };
 
 Eye make_eye(float side) {
-    constexpr float kRadius = 0.0155f;
+    constexpr float kEyeRadius = 0.0155f;
     constexpr float kDepth = 0.0092f;  // of its center below the face
     const Vec3 from = creature_joint(CreatureJoint::Head) + Vec3(0, 0.03f, 0.03f);
     const Vec3 direction = glm::normalize(Vec3(side * 0.78f, 0.16f, 0.72f));
@@ -169,7 +169,7 @@ Eye make_eye(float side) {
         way += 0.0005f;
     }
     Eye eye;
-    eye.radius = kRadius;
+    eye.radius = kEyeRadius;
     eye.forward = glm::normalize(Vec3(side * 0.66f, 0.05f, 0.75f));
     eye.center = from + (way - kDepth) * direction;
     eye.right = glm::normalize(glm::cross(eye.forward, Vec3(0, 1, 0)));

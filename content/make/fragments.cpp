@@ -19,20 +19,21 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNoFragment = 0xffffffffu;
 constexpr int kRounds = 4;  // of moving the middles of the groups
 
 /// A triangle with an area.
-struct Face {
+struct FragmentFace {
     std::array<std::uint32_t, 3> corner;  ///< vertices
     std::array<std::uint32_t, 3> point;   ///< the same, but one for each position
-    std::array<std::uint32_t, 3> beside = {kNone, kNone, kNone};  ///< faces across the edges
+    std::array<std::uint32_t, 3> beside = {
+        kNoFragment, kNoFragment, kNoFragment};  ///< faces across the edges
     Vec3 middle;
     float area;
 };
 
 struct Shell {
-    std::vector<Face> faces;
+    std::vector<FragmentFace> faces;
     std::vector<Vec3> normals;  ///< of points, mean of the faces around by area
 };
 
@@ -41,7 +42,7 @@ Shell find_faces(const MeshData& mesh) {
     std::map<std::tuple<float, float, float>, std::uint32_t> points;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::uint32_t, int>> edges;
     for (std::size_t i = 0; i + 3 <= mesh.indices.size(); i += 3) {
-        Face face{};
+        FragmentFace face{};
         Vec3 p[3];
         for (std::size_t k = 0; k < 3; ++k) {
             face.corner[k] = mesh.indices[i + k];
@@ -83,9 +84,9 @@ Shell find_faces(const MeshData& mesh) {
 /// seeds first, so that they are compact and connected. Of a part of the mesh without a seed, the
 /// nearest.
 std::vector<std::uint32_t> group_faces(
-    const std::vector<Face>& faces, std::span<const std::uint32_t> seeds, float roughness,
+    const std::vector<FragmentFace>& faces, std::span<const std::uint32_t> seeds, float roughness,
     std::uint32_t seed) {
-    std::vector<std::uint32_t> group(faces.size(), kNone);
+    std::vector<std::uint32_t> group(faces.size(), kNoFragment);
     using Stop = std::tuple<float, std::uint32_t, std::uint32_t>;  // distance, face, group
     std::priority_queue<Stop, std::vector<Stop>, std::greater<>> open;
     for (std::uint32_t k = 0; k < seeds.size(); ++k) {
@@ -94,12 +95,12 @@ std::vector<std::uint32_t> group_faces(
     while (!open.empty()) {
         const auto [distance, f, k] = open.top();
         open.pop();
-        if (group[f] != kNone) {
+        if (group[f] != kNoFragment) {
             continue;
         }
         group[f] = k;
         for (const std::uint32_t next : faces[f].beside) {
-            if (next == kNone || group[next] != kNone) {
+            if (next == kNoFragment || group[next] != kNoFragment) {
                 continue;
             }
             Random random(seed, next, name_hash("fragment edges"), k);
@@ -109,7 +110,7 @@ std::vector<std::uint32_t> group_faces(
         }
     }
     for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (group[f] == kNone) {
+        if (group[f] == kNoFragment) {
             const auto nearest =
                 std::min_element(seeds.begin(), seeds.end(), [&](std::uint32_t a, std::uint32_t b) {
                     return glm::distance(faces[a].middle, faces[f].middle)
@@ -123,7 +124,8 @@ std::vector<std::uint32_t> group_faces(
 
 /// Mean of the middles in each group, by area.
 std::vector<Vec3> find_centers(
-    const std::vector<Face>& faces, const std::vector<std::uint32_t>& group, std::size_t count) {
+    const std::vector<FragmentFace>& faces, const std::vector<std::uint32_t>& group,
+    std::size_t count) {
     std::vector<Vec4> sums(count, Vec4(0));
     for (std::size_t f = 0; f < faces.size(); ++f) {
         sums[group[f]] += Vec4(faces[f].middle, 1) * faces[f].area;
@@ -137,7 +139,7 @@ std::vector<Vec3> find_centers(
 
 /// Evenly spread by area: Lloyd's algorithm from faces by chance.
 std::vector<std::uint32_t>
-spread_seeds(const std::vector<Face>& faces, const FragmentsShape& shape) {
+spread_seeds(const std::vector<FragmentFace>& faces, const FragmentsShape& shape) {
     const std::size_t count =
         std::min(static_cast<std::size_t>(std::max(shape.count, 1)), faces.size());
     std::vector<std::pair<float, std::uint32_t>> order;
@@ -177,7 +179,7 @@ class PieceBuilder {
         for (const bool inside : {false, true}) {
             corners_.clear();
             for (const std::uint32_t f : members) {
-                const Face& face = shell_.faces[f];
+                const FragmentFace& face = shell_.faces[f];
                 const std::uint32_t a = corner(face, 0, inside);
                 const std::uint32_t b = corner(face, inside ? 2 : 1, inside);
                 const std::uint32_t c = corner(face, inside ? 1 : 2, inside);
@@ -190,7 +192,7 @@ class PieceBuilder {
         for (const std::uint32_t f : members) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t beside = shell_.faces[f].beside[k];
-                if (beside == kNone || group[beside] != group[f]) {
+                if (beside == kNoFragment || group[beside] != group[f]) {
                     add_wall(shell_.faces[f], k);
                 }
             }
@@ -198,7 +200,7 @@ class PieceBuilder {
     }
 
   private:
-    [[nodiscard]] Vec3 below(const Face& face, std::size_t k) const {
+    [[nodiscard]] Vec3 below(const FragmentFace& face, std::size_t k) const {
         return whole_.positions[face.corner[k]] - shell_.normals[face.point[k]] * thickness_;
     }
     std::uint32_t
@@ -210,7 +212,7 @@ class PieceBuilder {
         grow(mesh_.bounds, position);
         return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
     }
-    std::uint32_t corner(const Face& face, std::size_t k, bool inside) {
+    std::uint32_t corner(const FragmentFace& face, std::size_t k, bool inside) {
         const std::uint32_t vertex = face.corner[k];
         const auto [found, is_new] = corners_.try_emplace(vertex, 0);
         if (is_new) {
@@ -223,7 +225,7 @@ class PieceBuilder {
         }
         return found->second;
     }
-    void add_wall(const Face& face, std::size_t k) {
+    void add_wall(const FragmentFace& face, std::size_t k) {
         const std::size_t next = (k + 1) % 3;
         const Vec3 a = whole_.positions[face.corner[k]];
         const Vec3 b = whole_.positions[face.corner[next]];

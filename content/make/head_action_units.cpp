@@ -242,7 +242,7 @@ float lip_share(Lips lips, float upper) {
     return lips == Lips::Both ? 1 : lips == Lips::Upper ? upper : 1 - upper;
 }
 
-Vec3 mirrored(const Vec3& v) {
+Vec3 mirrored_unit(const Vec3& v) {
     return {-v.x, v.y, v.z};
 }
 
@@ -254,7 +254,7 @@ Vec3 pull_offset(const MusclePull& pull, const HeadPoint& point) {
     };
     Vec3 offset = share(pull.center) * pull.motion;
     if (pull.center.x > 0) {
-        offset += share(mirrored(pull.center)) * mirrored(pull.motion);
+        offset += share(mirrored_unit(pull.center)) * mirrored_unit(pull.motion);
     }
     return kPerMm * lip_share(pull.lips, point.upper_lip) * offset;
 }
@@ -381,7 +381,8 @@ Vec3 action_offset(const ActionUnit& unit, const HeadPoint& point, const HeadSha
         }
         p = roll_lip(unit, point, p);
         const bool right = p.x < 0;
-        p = right ? mirrored(turn_lid(unit, point, mirrored(p))) : turn_lid(unit, point, p);
+        p = right ? mirrored_unit(turn_lid(unit, point, mirrored_unit(p)))
+                  : turn_lid(unit, point, p);
     }
     p = turn_about_x(p, {0, kJawAxis.x, kJawAxis.y}, -point.jaw * radians(unit.jaw));
     p += kPerMm * point.jaw * unit.jaw_shift;

@@ -17,9 +17,9 @@ namespace limn {
 
 namespace {
 
-constexpr float kMeters = 0.01f;     ///< per centimeter
-constexpr float kMinOffset = 2e-5f;  ///< [cm]: a fifth of a micrometer is no movement
-enum class Side : std::uint8_t { Both, Left, Right };
+constexpr float kExpressionMeters = 0.01f;  ///< per centimeter
+constexpr float kMinOffset = 2e-5f;         ///< [cm]: a fifth of a micrometer is no movement
+enum class FaceSide : std::uint8_t { Both, Left, Right };
 
 /// One of the three.
 struct Expression {
@@ -27,27 +27,27 @@ struct Expression {
     const ActionUnit* unit = nullptr;
     const HeadViseme* viseme = nullptr;
     const HeadCorrective* corrective = nullptr;
-    Side side = Side::Both;
+    FaceSide side = FaceSide::Both;
 };
 
 /// Names of `unit` on `side`.
-std::string sided_name(std::string_view unit, Side side) {
-    const char* const end = side == Side::Left ? "_L" : side == Side::Right ? "_R" : "";
+std::string sided_name(std::string_view unit, FaceSide side) {
+    const char* const end = side == FaceSide::Left ? "_L" : side == FaceSide::Right ? "_R" : "";
     return std::string(unit) + end;
 }
 
 /// "AU43_L", in the list.
-std::string driver_name(std::string_view unit, Side side) {
-    return sided_name(unit, action_unit(unit).sided ? side : Side::Both);
+std::string driver_name(std::string_view unit, FaceSide side) {
+    return sided_name(unit, action_unit(unit).sided ? side : FaceSide::Both);
 }
 
-std::string name_of(const HeadCorrective& corrective, Side side) {
+std::string name_of(const HeadCorrective& corrective, FaceSide side) {
     return driver_name(corrective.unit, side) + "_"
            + (corrective.other.empty() ? "half" : driver_name(corrective.other, side));
 }
 
-std::span<const Side> sides_of(const ActionUnit& unit) {
-    static constexpr Side kSides[] = {Side::Both, Side::Left, Side::Right};
+std::span<const FaceSide> sides_of(const ActionUnit& unit) {
+    static constexpr FaceSide kSides[] = {FaceSide::Both, FaceSide::Left, FaceSide::Right};
     return unit.sided ? std::span(kSides).subspan(1) : std::span(kSides).first(1);
 }
 
@@ -55,15 +55,15 @@ const std::vector<Expression>& expressions() {
     static const std::vector<Expression> list = [] {
         std::vector<Expression> made;
         for (const ActionUnit& unit : action_units()) {
-            for (const Side side : sides_of(unit)) {
+            for (const FaceSide side : sides_of(unit)) {
                 made.push_back({sided_name(unit.name, side), &unit, nullptr, nullptr, side});
             }
         }
         for (const HeadViseme& viseme : head_visemes()) {
-            made.push_back({std::string(viseme.name), nullptr, &viseme, nullptr, Side::Both});
+            made.push_back({std::string(viseme.name), nullptr, &viseme, nullptr, FaceSide::Both});
         }
         for (const HeadCorrective& corrective : head_correctives()) {
-            for (const Side side : sides_of(action_unit(corrective.unit))) {
+            for (const FaceSide side : sides_of(action_unit(corrective.unit))) {
                 made.push_back({name_of(corrective, side), nullptr, nullptr, &corrective, side});
             }
         }
@@ -77,9 +77,9 @@ Vec3 offset_of(const Expression& expression, const HeadPoint& point, const HeadS
         return viseme_offset(*expression.viseme, point, shape);
     }
     const float left = left_share(point.rest.x);
-    const float share = expression.side == Side::Both   ? 1
-                        : expression.side == Side::Left ? left
-                                                        : 1 - left;
+    const float share = expression.side == FaceSide::Both   ? 1
+                        : expression.side == FaceSide::Left ? left
+                                                            : 1 - left;
     if (share <= 0) {
         return Vec3(0);
     }
@@ -116,7 +116,7 @@ make_expressions(std::span<const HeadPoint> points, const HeadShape& shape) {
                 const Vec3 offset = offset_of(expression, points[v], shape);
                 if (glm::dot(offset, offset) > square(kMinOffset)) {
                     target.vertices.push_back(v);
-                    target.positions.push_back(kMeters * offset);
+                    target.positions.push_back(kExpressionMeters * offset);
                 }
             }
         }

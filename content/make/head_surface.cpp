@@ -52,7 +52,7 @@ constexpr std::array<Solid, 7> kFeatures = {{
     {{0, -6.25f, 9.31f}, {0.65f, -6.15f, 8.9f}, {1.11f, 1.04f, 1.21f}, {0.98f, 0.96f, 0.98f}, 1.2f},
 }};
 
-constexpr std::array<Stroke, 32> kStrokes = {{
+constexpr std::array<Stroke, 32> kSurfaceStrokes = {{
     // Brow ridge, glabella, temple, frontal eminence.
     {{1.07f, 5.26f, 9.77f}, {3.49f, 5.9f, 9.85f}, {5.46f, 4.62f, 8.08f}, 1.11f, 0.48f, 0.12f},
     {{0, 5.21f, 10.06f}, {0.4f, 5.3f, 10.11f}, {0.83f, 5.17f, 10.09f}, 0.87f, -0.21f, 0.1f},
@@ -178,7 +178,7 @@ constexpr std::array<Stroke, 32> kStrokes = {{
 }};
 
 const std::vector<StrokePath>& head_paths() {
-    static const std::vector<StrokePath> paths = make_stroke_paths(kStrokes);
+    static const std::vector<StrokePath> paths = make_stroke_paths(kSurfaceStrokes);
     return paths;
 }
 
@@ -201,7 +201,7 @@ float head_distance(const Vec3& point, const HeadShape& shape, float detail) {
     if (detail == 0) {
         return base;
     }
-    distance = join(distance, kFeatures, p) - relief(kStrokes, head_paths(), p, shape);
+    distance = join(distance, kFeatures, p) - relief(kSurfaceStrokes, head_paths(), p, shape);
     if (shape.shoulders) {
         distance -= shoulder_relief(p, shape);
     }

@@ -4,7 +4,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kPerMm = 0.1f;  ///< centimeters
+constexpr float kVisemePerMm = 0.1f;  ///< centimeters
 
 constexpr HeadViseme kVisemes[] = {
     {.name = "viseme_sil"},
@@ -63,8 +63,8 @@ std::span<const HeadViseme> head_visemes() {
 }
 
 Vec3 viseme_offset(const HeadViseme& viseme, const HeadPoint& point, const HeadShape& shape) {
-    Vec3 offset = kPerMm * square(point.tongue) * viseme.tongue_tip;
-    offset.y += kPerMm * viseme.tongue_back * 4 * point.tongue * (1 - point.tongue);
+    Vec3 offset = kVisemePerMm * square(point.tongue) * viseme.tongue_tip;
+    offset.y += kVisemePerMm * viseme.tongue_back * 4 * point.tongue * (1 - point.tongue);
     for (const UnitWeight& part : viseme.units) {
         if (part.weight > 0) {
             offset += part.weight * action_offset(action_unit(part.unit), point, shape);

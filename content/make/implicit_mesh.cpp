@@ -15,7 +15,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNoVertex = 0xffffffffu;
 constexpr int kBlock = 6;  ///< samples along the side of a block that may be skipped
 
 /// Samples of the function at the corners of the cells.
@@ -147,7 +147,7 @@ void add_faces(
 }
 
 /// Projects `p` onto the surface along the gradient.
-Vec3 project(const SignedDistance& distance, Vec3 p, float cell) {
+Vec3 project_to_surface(const SignedDistance& distance, Vec3 p, float cell) {
     for (int i = 0; i < 2; ++i) {
         const float step = 0.1f * cell;
         const Vec3 slope(
@@ -180,8 +180,8 @@ void relax(const SignedDistance& distance, const ImplicitGrid& grid, ImplicitMes
             for (std::size_t v = begin; v < end; ++v) {
                 const Vec3 middle =
                     neighbors[v] > 0.0f ? sums[v] / neighbors[v] : mesh.positions[v];
-                mesh.positions[v] =
-                    project(distance, glm::mix(mesh.positions[v], middle, 0.5f), grid.cell);
+                mesh.positions[v] = project_to_surface(
+                    distance, glm::mix(mesh.positions[v], middle, 0.5f), grid.cell);
             }
         });
     }
@@ -205,7 +205,7 @@ ImplicitMesh mesh_surface(const SignedDistance& distance, const ImplicitGrid& gr
     std::vector<std::uint32_t> vertex_of(
         static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y)
             * static_cast<std::size_t>(count.z),
-        kNone);
+        kNoVertex);
     for (int z = 0; z + 1 < count.z; ++z) {
         for (int y = 0; y + 1 < count.y; ++y) {
             for (int x = 0; x + 1 < count.x; ++x) {

@@ -19,7 +19,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kMaxVertices = 1000000;
+constexpr std::size_t kMaxRefinedVertices = 1000000;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr float kMaxBulge = 0.2f;  ///< of a middle, of the edge's length
 
@@ -103,7 +103,7 @@ void append_middles(std::vector<T>& values, std::size_t old, const std::vector<E
     }
 }
 
-void append_influences(SkinWeights& skin, const std::vector<Ends>& made) {
+void append_refined_influences(SkinWeights& skin, const std::vector<Ends>& made) {
     if (skin.empty()) {
         return;
     }
@@ -164,7 +164,7 @@ void append_attributes(MeshData& mesh, std::size_t old, const std::vector<Ends>&
     append_middles(mesh.uvs, old, made, mean);
     append_middles(mesh.uvs1, old, made, mean);
     append_middles(mesh.colors, old, made, mean);
-    append_influences(mesh.skin, made);
+    append_refined_influences(mesh.skin, made);
     for (MorphTarget& morph : mesh.morphs) {
         append_offsets(morph, old, made);
     }
@@ -240,7 +240,7 @@ bool halve_edges(MeshData& mesh, float edge, std::vector<char>& foldable) {
             corners[k] = middle_vertex(v[k], v[(k + 1) % 3]);
         }
     }
-    if (made.empty() || old + made.size() > kMaxVertices) {
+    if (made.empty() || old + made.size() > kMaxRefinedVertices) {
         return false;
     }
     append_attributes(mesh, old, made);

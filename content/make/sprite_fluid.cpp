@@ -10,7 +10,7 @@ constexpr int kPressureSweeps = 40;
 constexpr float kRelaxation = 1.7f;  // of the sweeps
 
 /// Values outside are those at the edge.
-float sample(const FluidGrid& fluid, const std::vector<float>& field, float x, float y) {
+float sample_fluid(const FluidGrid& fluid, const std::vector<float>& field, float x, float y) {
     const float top = static_cast<float>(fluid.side - 1);
     x = std::clamp(x, 0.0f, top);
     y = std::clamp(y, 0.0f, top);
@@ -44,13 +44,13 @@ void advect(FluidGrid& fluid, float dt) {
         const float half_x = static_cast<float>(x) - 0.5f * reach * before.u[i];
         const float half_y = static_cast<float>(y) - 0.5f * reach * before.v[i];
         const float from_x =
-            static_cast<float>(x) - reach * sample(before, before.u, half_x, half_y);
+            static_cast<float>(x) - reach * sample_fluid(before, before.u, half_x, half_y);
         const float from_y =
-            static_cast<float>(y) - reach * sample(before, before.v, half_x, half_y);
-        fluid.u[i] = sample(before, before.u, from_x, from_y);
-        fluid.v[i] = sample(before, before.v, from_x, from_y);
-        fluid.heat[i] = sample(before, before.heat, from_x, from_y);
-        fluid.soot[i] = sample(before, before.soot, from_x, from_y);
+            static_cast<float>(y) - reach * sample_fluid(before, before.v, half_x, half_y);
+        fluid.u[i] = sample_fluid(before, before.u, from_x, from_y);
+        fluid.v[i] = sample_fluid(before, before.v, from_x, from_y);
+        fluid.heat[i] = sample_fluid(before, before.heat, from_x, from_y);
+        fluid.soot[i] = sample_fluid(before, before.soot, from_x, from_y);
     });
 }
 
@@ -80,7 +80,7 @@ float divergence(const FluidGrid& fluid, std::size_t i) {
 }
 
 /// Makes the divergence that of the expansion, by pressure: 0 at the open edges.
-void project(FluidGrid& fluid, const FluidStep& step) {
+void project_velocity(FluidGrid& fluid, const FluidStep& step) {
     const int side = fluid.side;
     const auto row = static_cast<std::size_t>(side);
     const float cell = 1.0f / static_cast<float>(side);
@@ -163,7 +163,7 @@ void step_fluid(FluidGrid& fluid, const FluidStep& step) {
     }
     advect(fluid, step.dt);
     set_edges(fluid, step.has_floor);
-    project(fluid, step);
+    project_velocity(fluid, step);
     set_edges(fluid, step.has_floor);
 }
 

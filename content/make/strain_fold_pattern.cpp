@@ -20,7 +20,7 @@ namespace limn {
 
 namespace {
 
-constexpr int kGutter = 4;      ///< [texels]
+constexpr int kFoldGutter = 4;  ///< [texels]
 constexpr float kFlat = 1e-6f;  ///< square of a slope that counts as flat
 constexpr float kMinNormalZ = 0.05f;
 constexpr float kMaxFolding = 0.5f;  ///< of the length of skin
@@ -87,7 +87,7 @@ struct Foldable {
     std::vector<Vec2> across;
 };
 
-Foldable find_foldable(const MeshData& mesh) {
+Foldable find_foldable_texels(const MeshData& mesh) {
     const std::size_t vertices = mesh.positions.size();
     Foldable found = {std::vector<float>(vertices, 0.0f), std::vector<Vec2>(vertices, Vec2(0))};
     std::vector<float> strongest(vertices, 0.0f);
@@ -127,8 +127,8 @@ PatternMaps make_strain_folds(const StrainFoldsPattern& pattern) {
     const std::vector<Vec2> slopes = slopes_of(maps.normal);
     const float factor = unit_factor(slopes);
     const MeshData mesh = make_head({.age = pattern.age});
-    const Foldable foldable = find_foldable(mesh);
-    const std::vector<SkinTexel> texels = find_skin_texels(mesh, size, kGutter);
+    const Foldable foldable = find_foldable_texels(mesh);
+    const std::vector<SkinTexel> texels = find_skin_texels(mesh, size, kFoldGutter);
 
     std::vector<WrinklePose> poses;
     for (const Pose& pose : kPoses) {

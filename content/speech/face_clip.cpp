@@ -13,7 +13,7 @@ namespace {
 constexpr float kFullGaze = 40.0f;  ///< degrees of an eye shape at weight 1
 
 /// A shape by its name or its action unit, with the weight at which it shows the channel fully.
-struct Candidate {
+struct ClipCandidate {
     FaceChannel channel;
     std::string_view shape;
     float gain;
@@ -22,23 +22,23 @@ struct Candidate {
 /// Of each channel the first that a face has. Gains make full action units, which are stronger than
 /// speech, as large as the mouth moves in speech (MouthAxis).
 constexpr std::array kCandidates{
-    Candidate{FaceChannel::JawOpen, "AU27", 0.34f},  // 42 mm
-    Candidate{FaceChannel::JawOpen, "AU26", 0.9f},   // 15 mm
-    Candidate{FaceChannel::MouthWide, "AU20", 0.45f},
-    Candidate{FaceChannel::MouthWide, "AU12", 0.3f},
-    Candidate{FaceChannel::MouthNarrow, "AU18", 0.4f},
-    Candidate{FaceChannel::LipsForward, "AU22", 0.55f},
-    Candidate{FaceChannel::LipsForward, "AU18", 0.5f},
-    Candidate{FaceChannel::LipsPressed, "AU24", 0.25f},
-    Candidate{FaceChannel::LipsPressed, "AU23", 0.25f},
-    Candidate{FaceChannel::LipToTeeth, "mouthRollLower", 0.5f},
-    Candidate{FaceChannel::LipToTeeth, "AU32", 0.6f},
-    Candidate{FaceChannel::LidsShut, "AU45", 1.0f},
-    Candidate{FaceChannel::LidsShut, "AU43", 1.0f},
-    Candidate{FaceChannel::LookLeft, "AU61", 1.0f},
-    Candidate{FaceChannel::LookRight, "AU62", 1.0f},
-    Candidate{FaceChannel::LookUp, "AU63", 1.0f},
-    Candidate{FaceChannel::LookDown, "AU64", 1.0f},
+    ClipCandidate{FaceChannel::JawOpen, "AU27", 0.34f},  // 42 mm
+    ClipCandidate{FaceChannel::JawOpen, "AU26", 0.9f},   // 15 mm
+    ClipCandidate{FaceChannel::MouthWide, "AU20", 0.45f},
+    ClipCandidate{FaceChannel::MouthWide, "AU12", 0.3f},
+    ClipCandidate{FaceChannel::MouthNarrow, "AU18", 0.4f},
+    ClipCandidate{FaceChannel::LipsForward, "AU22", 0.55f},
+    ClipCandidate{FaceChannel::LipsForward, "AU18", 0.5f},
+    ClipCandidate{FaceChannel::LipsPressed, "AU24", 0.25f},
+    ClipCandidate{FaceChannel::LipsPressed, "AU23", 0.25f},
+    ClipCandidate{FaceChannel::LipToTeeth, "mouthRollLower", 0.5f},
+    ClipCandidate{FaceChannel::LipToTeeth, "AU32", 0.6f},
+    ClipCandidate{FaceChannel::LidsShut, "AU45", 1.0f},
+    ClipCandidate{FaceChannel::LidsShut, "AU43", 1.0f},
+    ClipCandidate{FaceChannel::LookLeft, "AU61", 1.0f},
+    ClipCandidate{FaceChannel::LookRight, "AU62", 1.0f},
+    ClipCandidate{FaceChannel::LookUp, "AU63", 1.0f},
+    ClipCandidate{FaceChannel::LookDown, "AU64", 1.0f},
 };
 
 float strength_of(FaceChannel channel, const MouthPose& mouth, const EyePose& eyes) {
@@ -84,7 +84,7 @@ bool is_shape(const GltfShape& shape, std::string_view name) {
 
 std::vector<FaceLink> link_shapes(std::span<const GltfShape> shapes) {
     std::vector<FaceLink> links;
-    for (const Candidate& candidate : kCandidates) {
+    for (const ClipCandidate& candidate : kCandidates) {
         const bool is_known = std::ranges::any_of(links, [&](const FaceLink& link) {
             return link.channel == candidate.channel
                    && !is_shape(shapes[link.shape], candidate.shape);

@@ -125,7 +125,7 @@ void append_word(std::string_view word, std::vector<Sound>& sounds) {
     }
 }
 
-constexpr std::array<std::string_view, 20> kUnits{
+constexpr std::array<std::string_view, 20> kNumberWords{
     "zero",     "one",     "two",     "three",     "four",     "five",    "six",
     "seven",    "eight",   "nine",    "ten",       "eleven",   "twelve",  "thirteen",
     "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"};
@@ -142,7 +142,7 @@ void append_number(std::uint32_t number, std::vector<Sound>& sounds) {
         }
     }
     if (number >= 100) {
-        append_word(kUnits[number / 100], sounds);
+        append_word(kNumberWords[number / 100], sounds);
         append_word("hundred", sounds);
         number %= 100;
         if (number == 0) {
@@ -156,7 +156,7 @@ void append_number(std::uint32_t number, std::vector<Sound>& sounds) {
             return;
         }
     }
-    append_word(kUnits[number], sounds);
+    append_word(kNumberWords[number], sounds);
 }
 
 /// Of digits only: as a number, or digit by digit if it is long or begins with 0.

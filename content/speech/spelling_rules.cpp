@@ -9,7 +9,7 @@ namespace limn {
 
 namespace {
 
-constexpr SpellingRule kRules[] = {
+constexpr SpellingRule kSpellingRules[] = {
     {" ", "a", " ", "ax"},
     {" ", "are", " ", "aa r"},
     {" ", "a", "gain", "ax"},
@@ -415,8 +415,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 78> kWords{{
 
 std::span<const SpellingRule> spelling_rules(char letter) {
     const auto of_letter = [letter](const SpellingRule& rule) { return rule.letters[0] == letter; };
-    const auto* const first = std::ranges::find_if(kRules, of_letter);
-    const auto* const last = std::find_if_not(first, std::end(kRules), of_letter);
+    const auto* const first = std::ranges::find_if(kSpellingRules, of_letter);
+    const auto* const last = std::find_if_not(first, std::end(kSpellingRules), of_letter);
     return {first, last};
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kHeader = 12;      ///< "RIFF", size, "WAVE"
 constexpr std::size_t kChunkHeader = 8;  ///< name, size
 constexpr std::size_t kFormat = 16;      ///< bytes of a PCM format
-constexpr std::uint32_t kMaxRate = 768000;
+constexpr std::uint32_t kMaxSampleRate = 768000;
 constexpr int kAudible = 327;
 
 template <typename T>
@@ -28,12 +28,12 @@ std::string_view name_at(std::span<const std::byte> bytes, std::size_t at) {
 }
 
 template <typename T>
-void append(std::vector<std::byte>& bytes, T value) {
+void append_bytes(std::vector<std::byte>& bytes, T value) {
     const auto raw = std::as_bytes(std::span(&value, 1));
     bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
 
-void append(std::vector<std::byte>& bytes, std::string_view text) {
+void append_bytes(std::vector<std::byte>& bytes, std::string_view text) {
     const auto raw = std::as_bytes(std::span(text));
     bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
@@ -57,7 +57,7 @@ Result<Recording> parse_wave(std::span<const std::byte> bytes, const std::string
             const auto bits = read<std::uint16_t>(bytes, begin + 14);
             wave.rate = read<std::uint32_t>(bytes, begin + 4);
             if (format != 1 || channels != 1 || bits != 16 || wave.rate == 0
-                || wave.rate > kMaxRate) {
+                || wave.rate > kMaxSampleRate) {
                 return fail(
                     "{}: found format {} with {} channels, {} bits, {} samples per second, "
                     "expected PCM with 1 channel and 16 bits",
@@ -81,18 +81,19 @@ Result<Recording> parse_wave(std::span<const std::byte> bytes, const std::string
 std::vector<std::byte> write_wave(const Recording& wave) {
     const auto size = static_cast<std::uint32_t>(wave.samples.size() * sizeof(std::int16_t));
     std::vector<std::byte> bytes;
-    append(bytes, std::string_view("RIFF"));
-    append(bytes, static_cast<std::uint32_t>(4 + kChunkHeader + kFormat + kChunkHeader + size));
-    append(bytes, std::string_view("WAVEfmt "));
-    append(bytes, static_cast<std::uint32_t>(kFormat));
-    append(bytes, std::uint16_t{1});
-    append(bytes, std::uint16_t{1});
-    append(bytes, wave.rate);
-    append(bytes, static_cast<std::uint32_t>(wave.rate * sizeof(std::int16_t)));
-    append(bytes, static_cast<std::uint16_t>(sizeof(std::int16_t)));
-    append(bytes, std::uint16_t{16});
-    append(bytes, std::string_view("data"));
-    append(bytes, size);
+    append_bytes(bytes, std::string_view("RIFF"));
+    append_bytes(
+        bytes, static_cast<std::uint32_t>(4 + kChunkHeader + kFormat + kChunkHeader + size));
+    append_bytes(bytes, std::string_view("WAVEfmt "));
+    append_bytes(bytes, static_cast<std::uint32_t>(kFormat));
+    append_bytes(bytes, std::uint16_t{1});
+    append_bytes(bytes, std::uint16_t{1});
+    append_bytes(bytes, wave.rate);
+    append_bytes(bytes, static_cast<std::uint32_t>(wave.rate * sizeof(std::int16_t)));
+    append_bytes(bytes, static_cast<std::uint16_t>(sizeof(std::int16_t)));
+    append_bytes(bytes, std::uint16_t{16});
+    append_bytes(bytes, std::string_view("data"));
+    append_bytes(bytes, size);
     const auto samples = std::as_bytes(std::span(wave.samples));
     bytes.insert(bytes.end(), samples.begin(), samples.end());
     return bytes;

@@ -9,7 +9,7 @@
 namespace limn {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string dot_string(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') {
@@ -87,13 +87,13 @@ std::string FrameGraph::to_dot() const {
         const Impl::Pass& pass = graph.passes[i];
         const bool dropped = graph.executed && !pass.runs;
         text += fmt::format(
-            "    {} [shape=box, label={}{}];\n", pass_node(i), quoted(graph.names[pass.name]),
+            "    {} [shape=box, label={}{}];\n", pass_node(i), dot_string(graph.names[pass.name]),
             dropped ? ", style=dashed" : "");
     }
     for (std::size_t i = 0; i < graph.resources.size(); ++i) {
         const Impl::Resource& r = graph.resources[i];
         text += fmt::format(
-            "    {} [shape=ellipse, label={}{}];\n", resource_node(i), quoted(graph.name_of(r)),
+            "    {} [shape=ellipse, label={}{}];\n", resource_node(i), dot_string(graph.name_of(r)),
             r.imported() ? ", style=bold" : "");
     }
     for (std::size_t i = 0; i < graph.passes.size(); ++i) {

@@ -10,8 +10,8 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kBehindUnit = 22;
-constexpr unsigned kBehindDepthUnit = 23;
+constexpr unsigned kBlendBehindUnit = 22;
+constexpr unsigned kBlendBehindDepthUnit = 23;
 
 bool has_any(std::span<const DrawRun> runs, SurfaceFeature feature) {
     return std::any_of(runs.begin(), runs.end(), [feature](const DrawRun& run) {
@@ -20,7 +20,7 @@ bool has_any(std::span<const DrawRun> runs, SurfaceFeature feature) {
 }
 
 /// A copy of the image so far, with mip levels.
-TextureId copy_behind(FrameGraph& graph, const MipLevels& levels, TextureId radiance) {
+TextureId copy_behind_surfaces(FrameGraph& graph, const MipLevels& levels, TextureId radiance) {
     TextureSpec spec = graph.spec(radiance);
     spec.name = "behind clear media";
     spec.levels = gpu::full_level_count(spec.width, spec.height);
@@ -71,8 +71,9 @@ void BlendEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     std::vector<Use> reads =
         mesh_reads(graph, *view.frame, lighting_reads(view, {depth_tested(view.gbuffer.depth)}));
     if (has_any(runs, kTransmission)) {
-        reads.push_back(sampled(copy_behind(graph, levels, view.radiance), kBehindUnit));
-        reads.push_back(sampled(view.gbuffer.depth, kBehindDepthUnit));
+        reads.push_back(
+            sampled(copy_behind_surfaces(graph, levels, view.radiance), kBlendBehindUnit));
+        reads.push_back(sampled(view.gbuffer.depth, kBlendBehindDepthUnit));
     }
     const Use writes[] = {view.radiance};
     const bool clipped = is_clipped(view);

@@ -13,22 +13,22 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kJobsUnit = 20;
+constexpr unsigned kCausticJobsUnit = 20;
 constexpr unsigned kRaysBinding = 0;
 constexpr unsigned kLightBinding = 1;
 constexpr unsigned kMapsImage = 0;
-constexpr unsigned kGroup = 64;  ///< texels per work group
+constexpr unsigned kCausticGroup = 64;  ///< texels per work group
 constexpr unsigned kWaterLightsUnit = 20;
 constexpr unsigned kCausticMapsUnit = 21;
 
-gpu::Texture make_atlas(const IVec2& size) {
+gpu::Texture make_caustic_atlas(const IVec2& size) {
     return {"caustic maps", {.format = GL_R32F, .width = size.x, .height = size.y}};
 }
 
 void use_with_jobs(gpu::Device& device, const CausticList& list, const gpu::Program& program) {
     device.use(program);
     program.set("groups", list.groups);
-    list.job_texture.bind(device, kJobsUnit);
+    list.job_texture.bind(device, kCausticJobsUnit);
 }
 
 /// Sums into a transient buffer, then writes the maps.
@@ -53,7 +53,7 @@ void sum_on_gpu(
         device.use(*pass.map);
         context.bind_storage(kLightBinding, light);
         context.bind_image(kMapsImage, made, GL_WRITE_ONLY);
-        device.dispatch((width + kGroup - 1) / kGroup, height);
+        device.dispatch((width + kCausticGroup - 1) / kCausticGroup, height);
     });
 }
 
@@ -104,7 +104,7 @@ Result<CausticsEffect> CausticsEffect::create(gpu::Device& device, const RenderS
         .on_cpu = device.caps().profile == gpu::Profile::Software,
         .splat = LIMN_TRY(device.shaders().load({.compute = "caustics_splat.comp"})),
         .map = LIMN_TRY(device.shaders().load({.compute = "caustics_map.comp"}))};
-    effect.maps = make_atlas({1, 1});
+    effect.maps = make_caustic_atlas({1, 1});
     return effect;
 }
 
@@ -125,7 +125,7 @@ bool CausticsEffect::prepare(const FrameData& frame, ViewData& view) {
     }
     list.job_texture.upload(*frame.ring, list.jobs);
     if (maps.width() != list.atlas.x || maps.height() != list.atlas.y) {
-        maps = make_atlas(list.atlas);
+        maps = make_caustic_atlas(list.atlas);
     }
     return true;
 }

@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kSceneDepthUnit = 0;
+constexpr unsigned kFogSceneDepthUnit = 0;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void FogEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     gpu::PipelineState state = gpu::kFullscreenState;
     state.blend = gpu::kBlendPremultiplied;
     add_fullscreen_pass(
-        graph, "fog", {sampled(view.gbuffer.depth, kSceneDepthUnit)}, {view.radiance}, program,
+        graph, "fog", {sampled(view.gbuffer.depth, kFogSceneDepthUnit)}, {view.radiance}, program,
         state, [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
 }
 

@@ -10,14 +10,15 @@
 namespace limn {
 namespace {
 
-constexpr int kMaxSteps = 12;
+constexpr int kMaxGlareSteps = 12;
 
 /// Adds the streak along `direction`, to both sides, to `star`.
 void draw_line(
     FrameGraph& graph, const GlarePass& pass, TextureId source, const Use& star,
     const Vec2& direction, float half_length) {
     // Tents of half-lengths unit * 2, 4 ... 2^steps; the light of each is half that of the last.
-    const int steps = std::clamp(static_cast<int>(std::ceil(std::log2(half_length))), 1, kMaxSteps);
+    const int steps =
+        std::clamp(static_cast<int>(std::ceil(std::log2(half_length))), 1, kMaxGlareSteps);
     const float unit = half_length / std::exp2(static_cast<float>(steps));
     const float whole = 2.0f - std::exp2(1.0f - static_cast<float>(steps));
     TextureId sum = source;

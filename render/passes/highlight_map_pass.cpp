@@ -21,9 +21,9 @@ namespace limn {
 namespace {
 
 constexpr unsigned kLayersUnit = 7;
-constexpr unsigned kLightsUnit = 9;
-constexpr unsigned kMapsImage = 0;
-constexpr unsigned kGroup = 8;
+constexpr unsigned kHighlightLightsUnit = 9;
+constexpr unsigned kHighlightMapsImage = 0;
+constexpr unsigned kHighlightGroup = 8;
 
 /// Whether a rate of the frame reads the map; methods that are compared will be switched.
 bool is_in_use(const FrameData& frame, HighlightMap map) {
@@ -158,14 +158,14 @@ HighlightMaps::Map HighlightMapEffect::draw_map(
             const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
             context.device().use(program);
             maps.layer_records.bind(context.device(), kLayersUnit);
-            context.bind_image(kMapsImage, texture, GL_WRITE_ONLY);
+            context.bind_image(kHighlightMapsImage, texture, GL_WRITE_ONLY);
             if (by_view) {
                 bind_view(context, view);
-                lights.bind(context.device(), kLightsUnit);
+                lights.bind(context.device(), kHighlightLightsUnit);
                 program.set("light_count", static_cast<int>(environment.source.lights.size()));
             }
             context.device().dispatch(
-                kHighlightMapSize / kGroup, kHighlightMapSize / kGroup,
+                kHighlightMapSize / kHighlightGroup, kHighlightMapSize / kHighlightGroup,
                 static_cast<unsigned>(count));
         });
     return published;

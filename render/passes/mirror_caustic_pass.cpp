@@ -15,7 +15,7 @@
 namespace limn {
 namespace {
 
-bool is_finite(const MirrorCaustic& m) {
+bool is_finite_mirror(const MirrorCaustic& m) {
     const float sum = m.normal.x + m.normal.y + m.normal.z + m.offset + m.color.x + m.color.y
                       + m.color.z + m.strength + m.plane_exponent + m.surface_exponent
                       + m.max_distance + m.max_height;
@@ -66,7 +66,7 @@ void MirrorCausticEffect::collect(FrameData& frame) {
             Optional<const PreviousWorldTransform>>()
         .each([&](const MirrorCaustic& settings, const MeshInstance& surface,
                   const WorldTransform& now, const PreviousWorldTransform* before) {
-            if (is_finite(settings) && settings.strength > 0) {
+            if (is_finite_mirror(settings) && settings.strength > 0) {
                 const Affine place = before != nullptr
                                          ? mix_affine(before->world, now.world, frame.camera.alpha)
                                          : now.world;

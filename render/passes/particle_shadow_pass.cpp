@@ -16,17 +16,17 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kImagesUnit = 0;
-constexpr unsigned kMotionsUnit = 1;
-constexpr unsigned kParticlesUnit = 2;
-constexpr unsigned kLooksUnit = 3;
+constexpr unsigned kShadowImagesUnit = 0;
+constexpr unsigned kShadowMotionsUnit = 1;
+constexpr unsigned kShadowParticlesUnit = 2;
+constexpr unsigned kShadowLooksUnit = 3;
 constexpr unsigned kMapsUnit = 30;
 constexpr unsigned kRecordUnit = 31;
-constexpr int kSide = 128;           // of the maps [texels]
+constexpr int kShadowSide = 128;     // of the maps [texels]
 constexpr int kLayers = 3;           // two of coefficients, one of tints
 constexpr float kMinExtent = 1e-3f;  // of what the maps cover [m]
-constexpr float kBorder =
-    2.0f / kSide;  // that stays empty, so that nothing is smeared beyond the map
+constexpr float kShadowBorder =
+    2.0f / kShadowSide;  // that stays empty, so that nothing is smeared beyond the map
 constexpr unsigned kRangesBinding = 0;
 constexpr unsigned kRecordBinding = 1;
 constexpr int kInSunlight = 1;  // values of PARTICLE_SHADOWS
@@ -89,8 +89,8 @@ view_from_sun(std::uint32_t record, const Vec3& axis, std::span<const ShadowBall
     }
     view.ranges = {s, t, depth};
     if (!balls.empty()) {
-        grow(s, 0.5f * (s.low + s.high), (0.5f + kBorder) * extent(s));
-        grow(t, 0.5f * (t.low + t.high), (0.5f + kBorder) * extent(t));
+        grow(s, 0.5f * (s.low + s.high), (0.5f + kShadowBorder) * extent(s));
+        grow(t, 0.5f * (t.low + t.high), (0.5f + kShadowBorder) * extent(t));
         view.record[0] = row_along(view.right, s);
         view.record[1] = row_along(view.up, t);
         view.record[2] = row_along(axis, depth);
@@ -141,8 +141,8 @@ ParticleShadowEffect::create(gpu::Device& device, const RenderSettings&) {
             {.compute = "particle_shadow_fit.comp", .defines = {{"RECORD"}}})),
         gpu::Texture(
             "particle opacity", {.format = GL_RGBA16F,
-                                 .width = kSide,
-                                 .height = kSide,
+                                 .width = kShadowSide,
+                                 .height = kShadowSide,
                                  .depth = kLayers,
                                  .target = GL_TEXTURE_2D_ARRAY}),
         gpu::Buffer("particle shadow ranges", kRanges, gpu::BufferUse::Dynamic),
@@ -236,20 +236,20 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
             device.bind_storage(kRangesBinding, ranges);
         };
         begin(*find_ranges);
-        sprites.look_texels->bind(device, kLooksUnit);
+        sprites.look_texels->bind(device, kShadowLooksUnit);
         for (const GpuShadowCaster& caster : gpu_casters) {
             constexpr std::uint32_t kMaxGroups = 16;  // whose invocations take several in turn
             const std::uint32_t groups = std::min(
                 (caster.pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup,
                 kMaxGroups);
-            caster.pool->texels.bind(device, kParticlesUnit);
+            caster.pool->texels.bind(device, kShadowParticlesUnit);
             find_ranges->set("count", caster.pool->count);
             find_ranges->set("stride", groups * layout::kParticleGroup);
             device.dispatch(groups);
         }
         device.storage_barrier();
         begin(*write_record);
-        write_record->set("border", kBorder);
+        write_record->set("border", kShadowBorder);
         write_record->set("min_extent", kMinExtent);
         record.bind(device, kRecordUnit);
         device.bind_storage(kRecordBinding, fitted_record);
@@ -294,16 +294,16 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
     program->set("light_right", view.right);
     program->set("light_up", view.up);
     (gpu_casters.empty() ? record : fitted).bind(device, kRecordUnit);
-    sprites.look_texels->bind(device, kLooksUnit);
+    sprites.look_texels->bind(device, kShadowLooksUnit);
     const auto bind_images = [&](const ParticleArrays& arrays) {
         if (sprites.features.images) {
-            device.bind_texture(kImagesUnit, images.array(arrays.images));
+            device.bind_texture(kShadowImagesUnit, images.array(arrays.images));
         }
         if (sprites.features.motions) {
-            device.bind_texture(kMotionsUnit, images.array(arrays.motions));
+            device.bind_texture(kShadowMotionsUnit, images.array(arrays.motions));
         }
     };
-    texels.bind(device, kParticlesUnit);
+    texels.bind(device, kShadowParticlesUnit);
     for (const ParticleRun& run : runs) {
         program->set("first", run.first);
         bind_images(run.arrays);
@@ -312,7 +312,7 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
     program->set("first", 0);
     for (const GpuShadowCaster& caster : gpu_casters) {
         bind_images(caster.arrays);
-        caster.pool->texels.bind(device, kParticlesUnit);
+        caster.pool->texels.bind(device, kShadowParticlesUnit);
         device.draw_quads(static_cast<int>(caster.pool->count));
     }
 }

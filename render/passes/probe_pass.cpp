@@ -13,7 +13,7 @@ namespace {
 
 constexpr unsigned kProbesBinding = 6;
 constexpr int kWarmUpResolution = 16;  ///< of faces that nobody sees [px]
-constexpr int kSamples = 64;           ///< per texel of a probe's reflection map
+constexpr int kProbeSamples = 64;      ///< per texel of a probe's reflection map
 
 /// The probes as lit passes read them in a view.
 struct ProbeBlockSlice {
@@ -104,7 +104,7 @@ void ProbeEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
         draw_cube_levels(graph, slot.cube);
         draw_cube_reflection(
             graph, *environment.reflection, environment.block_slice, slot.cube,
-            probe_layer(static_cast<std::size_t>(drawn.slot)), kSamples);
+            probe_layer(static_cast<std::size_t>(drawn.slot)), kProbeSamples);
     }
 }
 

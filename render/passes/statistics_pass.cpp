@@ -14,8 +14,8 @@ namespace {
 
 constexpr unsigned kPartsBinding = 0;
 constexpr unsigned kHistogramBinding = 1;
-constexpr unsigned kMeasureBinding = 2;
-constexpr unsigned kDepthUnit = 1;
+constexpr unsigned kStatisticsBinding = 2;
+constexpr unsigned kStatisticsDepthUnit = 1;
 
 }  // namespace
 
@@ -60,7 +60,7 @@ BufferId measure_image(
 
     std::vector<Use> reads = {sampled(radiance, 0)};
     if (request.depth.valid()) {
-        reads.push_back(sampled(request.depth, kDepthUnit));
+        reads.push_back(sampled(request.depth, kStatisticsDepthUnit));
     }
     const std::array<Use, 2> writes = {parts, histogram};
     graph.add_pass(
@@ -89,7 +89,7 @@ BufferId measure_image(
             program.set("clipped_share", request.clipped_share);
             context.bind_storage(kPartsBinding, parts);
             context.bind_storage(kHistogramBinding, histogram);
-            context.bind_storage(kMeasureBinding, measure);
+            context.bind_storage(kStatisticsBinding, measure);
             context.device().dispatch(1);
         });
     return measure;

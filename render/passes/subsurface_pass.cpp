@@ -19,8 +19,8 @@ namespace {
 constexpr unsigned kScatteredUnit = 0;
 constexpr unsigned kDistancesUnit = 1;
 constexpr unsigned kWrittenImage = 0;
-constexpr int kGroup = 8;  ///< side of the work groups [px]
-constexpr std::uint32_t kLobe = lobe_number(ShadingModel::Subsurface);
+constexpr int kSubsurfaceGroup = 8;  ///< side of the work groups [px]
+constexpr std::uint32_t kSubsurfaceLobe = lobe_number(ShadingModel::Subsurface);
 
 IVec2 size_of(const PixelBounds& bounds) {
     return glm::max(bounds.high - bounds.low, IVec2(0));
@@ -29,7 +29,7 @@ IVec2 size_of(const PixelBounds& bounds) {
 /// Of the programs that add what leaves surfaces.
 Variant diffusion_variant() {
     Variant variant("MATERIAL_RECORDS");
-    variant.add("SHADING_LOBE", static_cast<int>(kLobe));
+    variant.add("SHADING_LOBE", static_cast<int>(kSubsurfaceLobe));
     return variant;
 }
 
@@ -50,7 +50,7 @@ measure_distances(FrameGraph& graph, const SubsurfaceEffect& effect, const ViewD
             context.device().use(*effect.moments);
             bind_view(context, view);
             context.bind_image(kWrittenImage, distances, GL_WRITE_ONLY);
-            context.device().dispatch_over(view.size().x, view.size().y, kGroup);
+            context.device().dispatch_over(view.size().x, view.size().y, kSubsurfaceGroup);
         });
     return distances;
 }
@@ -72,7 +72,7 @@ void compute_within(
     program.set("low", bounds.low);
     program.set("high", bounds.high);
     context.bind_image(kWrittenImage, radiance, GL_READ_WRITE);
-    context.device().dispatch_over(size.x, size.y, kGroup);
+    context.device().dispatch_over(size.x, size.y, kSubsurfaceGroup);
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ bool SubsurfaceEffect::prepare(const FrameData&, ViewData& view) {
 }
 
 void SubsurfaceEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    const PixelBounds& bounds = view.data.get<LobeBounds>()[kLobe];
+    const PixelBounds& bounds = view.data.get<LobeBounds>()[kSubsurfaceLobe];
     Variant variant = diffusion_variant();
     variant.add_if(in_compute && frame.radiance_format == GL_RGBA32F, "FULL_FLOATS");
     const gpu::Program* const program = programs.get(variant);

@@ -8,8 +8,8 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kRadianceUnit = 0;
-constexpr unsigned kSceneDepthUnit = 5;
+constexpr unsigned kVeilRadianceUnit = 0;
+constexpr unsigned kVeilSceneDepthUnit = 5;
 
 }  // namespace
 
@@ -28,8 +28,8 @@ void WaterVeilEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
     }
     const TextureId veiled = create_radiance(graph, view, "radiance under water");
     const std::vector<Use> reads = lighting_reads(
-        view,
-        {sampled(view.radiance, kRadianceUnit), sampled(view.gbuffer.depth, kSceneDepthUnit)});
+        view, {sampled(view.radiance, kVeilRadianceUnit),
+               sampled(view.gbuffer.depth, kVeilSceneDepthUnit)});
     const Use writes[] = {cleared(veiled)};
     graph.add_pass(
         "water veil", std::span(reads), writes,

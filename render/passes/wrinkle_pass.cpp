@@ -20,10 +20,10 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kJobsUnit = 0;
-constexpr unsigned kGroupsUnit = 1;
-constexpr unsigned kRestUnit = 2;
-constexpr unsigned kPositionsBinding = 0;
+constexpr unsigned kWrinkleJobsUnit = 0;
+constexpr unsigned kWrinkleGroupsUnit = 1;
+constexpr unsigned kWrinkleRestUnit = 2;
+constexpr unsigned kWrinklePositionsBinding = 0;
 constexpr unsigned kWrinklesBinding = 1;
 constexpr unsigned kFoldHeightsBinding = 2;
 constexpr std::uint32_t kInitialTexels = 1 << 14;
@@ -192,7 +192,7 @@ TierShares tier_shares(const WrinkleSurface& surface, float distance, bool tange
 }
 
 /// From the camera to the middle of an instance [m].
-float distance_to(const FrameData& frame, Entity entity, const DeformedInstance& shape) {
+float distance_to_shape(const FrameData& frame, Entity entity, const DeformedInstance& shape) {
     const auto* const place = frame.world->find<WorldTransform>(entity);
     const Vec3 middle = 0.5f * (shape.bounds.min + shape.bounds.max);
     const Vec3 at = place != nullptr ? transform_point(place->world, middle) : middle;
@@ -259,7 +259,7 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         const auto& state = *frame.world->find<WrinkleState>(entity);
         const auto& surface = *frame.world->find<WrinkleSurface>(entity);
         const TierShares shares = tier_shares(
-            surface, distance_to(frame, entity, shape),
+            surface, distance_to_shape(frame, entity, shape),
             frame.meshes->meshes()[shape.mesh.index].tangents);
         layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), shares, shape);
         displaced = displaced || job.heights != 0;
@@ -299,14 +299,14 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         [this, &vertices, aligned, end, group_count, displaced](PassContext& context) {
             gpu::Device& device = context.device();
             device.use(*program);
-            jobs.bind(device, kJobsUnit);
-            groups.bind(device, kGroupsUnit);
-            rest.bind(device, kRestUnit);
+            jobs.bind(device, kWrinkleJobsUnit);
+            groups.bind(device, kWrinkleGroupsUnit);
+            rest.bind(device, kWrinkleRestUnit);
             const auto bind = [&](unsigned binding, const gpu::Buffer& buffer, std::size_t stride) {
                 device.bind_storage(
                     binding, buffer.id(), aligned * stride, (end - aligned) * stride);
             };
-            bind(kPositionsBinding, vertices.positions(), sizeof(Vec3));
+            bind(kWrinklePositionsBinding, vertices.positions(), sizeof(Vec3));
             bind(kWrinklesBinding, vertices.wrinkles(), stream_stride(VertexStream::Wrinkle));
             // Without displaced skin none are written.
             const VertexStream last = displaced ? VertexStream::FoldHeight : VertexStream::Wrinkle;

@@ -18,10 +18,10 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 
-constexpr double kParallel = 1e-7;  ///< w of a light below which it is directional
-constexpr double kMinCosine = 0.5;  ///< between the light's axis and a receiver
-constexpr double kSpare = 0.01;     ///< spare fraction of the depth range, at the far end
-constexpr int kShifts = 8;          ///< of the virtual camera to try, each 4 times the previous
+constexpr double kParallel = 1e-7;      ///< w of a light below which it is directional
+constexpr double kMinViewCosine = 0.5;  ///< between the light's axis and a receiver
+constexpr double kSpare = 0.01;         ///< spare fraction of the depth range, at the far end
+constexpr int kShifts = 8;              ///< of the virtual camera to try, each 4 times the previous
 
 /// Axes of a view along `forward`, with the camera's depth axis vertical in the map.
 struct ViewAxes {
@@ -101,7 +101,7 @@ fit_position(const dvec3& place, bool inverted, std::span<const dvec3> points, d
     for (const dvec3& p : points) {
         const dvec3 from = p - place;
         const double along = glm::dot(axes.forward, from);
-        if (!(along > kMinCosine * glm::length(from))) {
+        if (!(along > kMinViewCosine * glm::length(from))) {
             return std::nullopt;
         }
         s.grow(glm::dot(axes.right, from) / along);

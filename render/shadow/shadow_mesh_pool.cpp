@@ -10,8 +10,8 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kInitialVertices = 1 << 14;
-constexpr std::uint32_t kInitialIndices = 1 << 16;
+constexpr std::uint32_t kInitialShadowVertices = 1 << 14;
+constexpr std::uint32_t kInitialShadowIndices = 1 << 16;
 
 constexpr gpu::VertexAttribute kVolumeAttributes[] = {
     {.location = 0, .stream = kVolumeCornerStream, .components = 4},
@@ -80,7 +80,7 @@ VolumeRange ShadowMeshPool::upload(const VolumeGeometry& geometry) {
     range.vertex_count = static_cast<std::uint32_t>(geometry.vertices.size());
     const std::size_t old_vertices = vertex_slots_.capacity();
     const std::uint32_t first =
-        vertex_slots_.allocate_or_grow(range.vertex_count, kInitialVertices);
+        vertex_slots_.allocate_or_grow(range.vertex_count, kInitialShadowVertices);
     if (vertex_slots_.capacity() > old_vertices) {
         corners_ = gpu::grown_buffer(
             "volume corners", corners_, old_vertices * sizeof(VolumeVertex),
@@ -88,7 +88,7 @@ VolumeRange ShadowMeshPool::upload(const VolumeGeometry& geometry) {
         vertices_.set_vertices(kVolumeCornerStream, corners_, 0, sizeof(VolumeVertex));
     }
     const std::size_t old_indices = index_slots_.capacity();
-    range.first_index = index_slots_.allocate_or_grow(range.index_count, kInitialIndices);
+    range.first_index = index_slots_.allocate_or_grow(range.index_count, kInitialShadowIndices);
     if (index_slots_.capacity() > old_indices) {
         indices_ = gpu::grown_buffer(
             "volume indices", indices_, 4 * old_indices, std::size_t{4} * index_slots_.capacity());

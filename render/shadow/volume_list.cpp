@@ -19,16 +19,16 @@ constexpr std::uint32_t kZFail = 2;
 constexpr std::uint32_t kMirrored = 1;
 
 /// Enlarges a finite light range slightly, so that rounding at the rim gives no false shadow.
-constexpr float kRim = 1.001f;
+constexpr float kVolumeRim = 1.001f;
 
-LightReach reach_of(const ShadowedLight& light) {
+LightReach volume_range(const ShadowedLight& light) {
     if (light.kind == LightKind::Directional) {
         return {{0, 0, 0}, INFINITY};
     }
-    LightReach reach = {light.position, light.radius * kRim};
+    LightReach reach = {light.position, light.radius * kVolumeRim};
     if (light.kind == LightKind::Spot) {
         reach.axis = light.axis;
-        reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi)) / kRim;
+        reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi)) / kVolumeRim;
     }
     return reach;
 }
@@ -219,7 +219,7 @@ void VolumeCollector::find_candidates(const World& world, const LightList& light
             candidate.settings = *settings;
         }
         candidate.light = homogeneous(light);
-        candidate.reach = reach_of(light);
+        candidate.reach = volume_range(light);
     }
 }
 

@@ -8,17 +8,18 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kInitialVertices = 1 << 12;
+constexpr std::uint32_t kInitialDeformedVertices = 1 << 12;
 
 }  // namespace
 
 DeformedVertices::DeformedVertices() : streams_("deformed meshes") {
-    slots_.grow(kInitialVertices);
-    streams_.reserve(kInitialVertices);
+    slots_.grow(kInitialDeformedVertices);
+    streams_.reserve(kInitialDeformedVertices);
 }
 
 std::uint32_t DeformedVertices::allocate(const MeshPool& meshes, const MeshRange& mesh) {
-    const std::uint32_t first = slots_.allocate_or_grow(mesh.vertex_count, kInitialVertices);
+    const std::uint32_t first =
+        slots_.allocate_or_grow(mesh.vertex_count, kInitialDeformedVertices);
     streams_.reserve(slots_.capacity());
     streams_.copy(
         meshes.streams(), static_cast<std::uint32_t>(mesh.base_vertex), first, mesh.vertex_count);

@@ -10,12 +10,12 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kInitialTexels = 1 << 14;
+constexpr std::uint32_t kInitialRestTexels = 1 << 14;
 constexpr std::size_t kTexelBytes = 16;
 
 using Texels = std::vector<layout::uvec4>;
 
-layout::uint bits(float x) {
+layout::uint bits_of(float x) {
     return std::bit_cast<layout::uint>(std::isfinite(x) ? x : 0.0f);
 }
 
@@ -58,8 +58,8 @@ influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std:
             // An odd last influence is paired with weight 0.
             const bool alone = i + 1 == end;
             texels.push_back(
-                {skin.joints[i], bits(skin.weights[i]), skin.joints[alone ? i : i + 1],
-                 alone ? 0 : bits(skin.weights[i + 1])});
+                {skin.joints[i], bits_of(skin.weights[i]), skin.joints[alone ? i : i + 1],
+                 alone ? 0 : bits_of(skin.weights[i + 1])});
         }
     }
     first.push_back(texels.size());
@@ -78,7 +78,7 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
             const Vec3 p = target.positions[offset.entry];
             const Vec3 n = at(target.normals, offset.entry);
             const Vec3 t = at(target.tangents, offset.entry);
-            texels.push_back({bits(p.x), bits(p.y), bits(p.z), offset.target});
+            texels.push_back({bits_of(p.x), bits_of(p.y), bits_of(p.z), offset.target});
             texels.push_back({pack_snorm(n.x, n.y), pack_snorm(n.z, t.x), pack_snorm(t.y, t.z), 0});
         }
     }
@@ -89,11 +89,13 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
 Texels place_texels(std::span<const SurfacePlace> places) {
     Texels texels;
     for (const SurfacePlace& at : places) {
-        texels.push_back({at.patch, bits(at.u), bits(at.v), bits(at.offset.x)});
+        texels.push_back({at.patch, bits_of(at.u), bits_of(at.v), bits_of(at.offset.x)});
         texels.push_back(
-            {bits(at.offset.y), bits(at.offset.z), bits(at.normal.x), bits(at.normal.y)});
+            {bits_of(at.offset.y), bits_of(at.offset.z), bits_of(at.normal.x),
+             bits_of(at.normal.y)});
         texels.push_back(
-            {bits(at.normal.z), bits(at.tangent.x), bits(at.tangent.y), bits(at.tangent.z)});
+            {bits_of(at.normal.z), bits_of(at.tangent.x), bits_of(at.tangent.y),
+             bits_of(at.tangent.z)});
     }
     return texels;
 }
@@ -147,9 +149,10 @@ RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfacePlace> pl
         const Vec3 t3 = normalize_or(Vec3(t), any_perpendicular(n));
         const auto influence = static_cast<layout::uint>(influences_at + first_influence[v]);
         const auto offset = static_cast<layout::uint>(offsets_at + first_offset[v]);
-        texels.push_back({bits(p.x), bits(p.y), bits(p.z), influence});
-        texels.push_back({bits(n.x), bits(n.y), bits(n.z), offset});
-        texels.push_back({bits(t3.x), bits(t3.y), bits(t3.z), bits(t.w < 0 ? -1.0f : 1.0f)});
+        texels.push_back({bits_of(p.x), bits_of(p.y), bits_of(p.z), influence});
+        texels.push_back({bits_of(n.x), bits_of(n.y), bits_of(n.z), offset});
+        texels.push_back(
+            {bits_of(t3.x), bits_of(t3.y), bits_of(t3.z), bits_of(t.w < 0 ? -1.0f : 1.0f)});
     }
     texels.insert(texels.end(), placed.begin(), placed.end());
     texels.insert(texels.end(), influences.begin(), influences.end());
@@ -157,7 +160,7 @@ RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfacePlace> pl
 
     made.texel_count = static_cast<std::uint32_t>(texels.size());
     const std::uint32_t old = slots_.capacity();
-    made.first_texel = slots_.allocate_or_grow(made.texel_count, kInitialTexels);
+    made.first_texel = slots_.allocate_or_grow(made.texel_count, kInitialRestTexels);
     if (slots_.capacity() > old) {
         buffer_ = gpu::grown_buffer(
             "meshes at rest", buffer_, old * kTexelBytes, slots_.capacity() * kTexelBytes);

@@ -49,7 +49,7 @@ int brightest_sun(const LightList& lights) {
     return found;
 }
 
-float distance_to(const layout::WaterRecord& body, const Vec3& camera) {
+float distance_to_water(const layout::WaterRecord& body, const Vec3& camera) {
     const Vec3 at = frame_of(body).local(camera);
     const Vec2 half(body.shape.y, body.shape.z);
     Vec3 out(0, at.y, 0);
@@ -362,7 +362,7 @@ std::vector<ChosenWater> choose_waters(
             && (waters.caustics[i]->mirror_reach > 0
                 || may_be_visible(waters.bodies[i], frustum))) {
             ChosenWater choice = {i, sanitize(*waters.caustics[i])};
-            adapt(choice.caustics, waters.bodies[i], distance_to(waters.bodies[i], camera));
+            adapt(choice.caustics, waters.bodies[i], distance_to_water(waters.bodies[i], camera));
             texels += size_of(choice.caustics);
             chosen.push_back(choice);
         }
@@ -457,7 +457,8 @@ void collect_caustics(
     std::vector<std::size_t> order(waters.bodies.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return distance_to(waters.bodies[a], camera) < distance_to(waters.bodies[b], camera);
+        return distance_to_water(waters.bodies[a], camera)
+               < distance_to_water(waters.bodies[b], camera);
     });
     const int sun = brightest_sun(lights);
     const std::vector<ChosenWater> chosen =

@@ -19,7 +19,7 @@ constexpr float kMaxRays = 48;               ///< maximum rays along a side of a
 constexpr float kRaysPerTexel = 2;           ///< rays along a texel
 constexpr float kMaxRaysMirrored = 12;       ///< the same above the water
 constexpr float kRaysPerTexelMirrored = 1;
-constexpr int kBorder = 8;  ///< texels around a map for rays that land outside
+constexpr int kSplatBorder = 8;  ///< texels around a map for rays that land outside
 
 /// A map with a border, so that rays need no bounds test.
 struct Sheet {
@@ -50,8 +50,8 @@ void add_pair(std::uint32_t* texels, float left, float right) {
 
 void add(const Sheet& sheet, float x, float y, float amount) {
     // NaN lands in the corner, too.
-    const float u = std::min(std::max(0.0f, x + (kBorder - 0.5f)), sheet.limit);
-    const float v = std::min(std::max(0.0f, y + (kBorder - 0.5f)), sheet.limit);
+    const float u = std::min(std::max(0.0f, x + (kSplatBorder - 0.5f)), sheet.limit);
+    const float v = std::min(std::max(0.0f, y + (kSplatBorder - 0.5f)), sheet.limit);
     const int column = static_cast<int>(u);
     const int row = static_cast<int>(v);
     const float s = u - static_cast<float>(column);
@@ -109,7 +109,7 @@ int stripes_of(const layout::CausticRecord& record) {
     return std::clamp(static_cast<int>(record.grid.x) / kStripe, 1, kMaxStripes);
 }
 std::size_t sheet_size(const layout::CausticRecord& record) {
-    const auto stride = static_cast<std::size_t>(side_of(record) + 2 * kBorder);
+    const auto stride = static_cast<std::size_t>(side_of(record) + 2 * kSplatBorder);
     return stride * stride;
 }
 
@@ -117,7 +117,7 @@ void sum_stripe(
     const layout::CausticRecord& record, std::span<const Vec4> rays, const Stripe& stripe,
     std::uint32_t* texels) {
     const int cells = static_cast<int>(record.grid.x);
-    const int stride = side_of(record) + 2 * kBorder;
+    const int stride = side_of(record) + 2 * kSplatBorder;
     const Sheet sheet = {texels, stride, static_cast<float>(stride) - 1.01f};
     std::fill_n(texels, sheet_size(record), 0u);
     const bool mirrored = record.grid.w == layout::kCausticsMirrored;
@@ -139,7 +139,8 @@ void write_row(
     const int side = side_of(record);
     const int stripes = stripes_of(record);
     const std::size_t apart = sheet_size(record);
-    const std::uint32_t* const from = parts + (row + kBorder) * (side + 2 * kBorder) + kBorder;
+    const std::uint32_t* const from =
+        parts + (row + kSplatBorder) * (side + 2 * kSplatBorder) + kSplatBorder;
     for (int x = 0; x < side; ++x) {
         std::uint32_t sum = 0;
         for (int stripe = 0; stripe < stripes; ++stripe) {

@@ -57,7 +57,7 @@ void fill(int size, std::vector<T>& texels, Texel&& texel) {
 
 /// Downsamples a square of even side by 2 x 2 averaging, in place.
 template <typename T>
-void halve(int size, std::vector<T>& texels) {
+void halve_map(int size, std::vector<T>& texels) {
     const auto side = static_cast<std::size_t>(size);
     const std::size_t half = side / 2;
     for (std::size_t z = 0; z < half; ++z) {
@@ -78,7 +78,7 @@ void upload_levels(
     gpu::Texture& texture, int size, int layer, GLenum format, std::vector<T>& texels) {
     texture.upload<T>(texels, format, GL_FLOAT, 0, layer);
     for (int level = 1; size > 1; ++level, size /= 2) {
-        halve(size, texels);
+        halve_map(size, texels);
         texture.upload<T>(texels, format, GL_FLOAT, level, layer);
     }
 }
@@ -121,7 +121,7 @@ void fill_shift(const OceanCascade& c, int size, float share, std::vector<Vec4>&
     });
 }
 
-Vec3 reach_of(const OceanCascade& c) {
+Vec3 wave_range(const OceanCascade& c) {
     const auto max_abs = [](const std::vector<float>& plane) {
         float largest = 0;
         for (const float v : plane) {
@@ -202,7 +202,7 @@ void OceanTextures::update(std::span<const OceanSource> seas, bool with_previous
                 return Vec2(planes[4].at(x, z), cover != nullptr ? cover[at] : 0.0f);
             });
             upload_levels(foam_, size_, layer, GL_RG, pairs_);
-            places_[i].reach += reach_of(c);
+            places_[i].reach += wave_range(c);
             places_[i].variance[p] = slope_variance(c);
         }
     }

@@ -19,7 +19,7 @@ double angle_between(const Quat& a, const Quat& b) {
 }
 
 /// Angle of each interval as a fraction of the total; equal fractions if the total is 0.
-std::vector<double> shares_of(std::span<const Quat> keys) {
+std::vector<double> turn_fractions(std::span<const Quat> keys) {
     std::vector<double> shares;
     for (std::size_t i = 1; i < keys.size(); ++i) {
         shares.push_back(angle_between(keys[i - 1], keys[i]));
@@ -42,7 +42,7 @@ TimedRotations make_constant_speed(std::span<const Quat> keys, float duration) {
     }
     align_rotations(turns.rotations);
     double gone = 0;
-    for (const double share : shares_of(turns.rotations)) {
+    for (const double share : turn_fractions(turns.rotations)) {
         turns.times.push_back(static_cast<float>(gone * static_cast<double>(duration)));
         gone += share;
     }
@@ -53,7 +53,7 @@ TimedRotations make_constant_speed(std::span<const Quat> keys, float duration) {
 }
 
 std::vector<int> distribute_frames(std::span<const Quat> keys, int frames) {
-    const std::vector<double> shares = shares_of(keys);
+    const std::vector<double> shares = turn_fractions(keys);
     std::vector<int> counts;
     std::vector<std::size_t> order(shares.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

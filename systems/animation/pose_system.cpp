@@ -11,7 +11,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kGrain = 16;  ///< characters per task; each takes some microseconds
+constexpr std::size_t kPoseGrain = 16;  ///< characters per task; each takes some microseconds
 
 bool is_below(const std::vector<std::uint16_t>& numbers, std::size_t count) {
     return std::all_of(
@@ -162,7 +162,7 @@ void update_poses(
                           std::span<const MorphPlayer> morph_players,
                           std::span<MorphWeights> morphs, std::span<Pose> poses) {
         const std::span<const Entity> entities = chunk.entities();
-        parallel_for(poses.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        parallel_for(poses.size(), kPoseGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const SkeletonData* const skeleton =
                     find_asset(assets->skeletons, skeletons[i].skeleton.index);

@@ -12,15 +12,17 @@ namespace limn {
 namespace skin {
 namespace {
 
-float dot3(const Vec3& a, const Vec3& b) {
+float dot_product(const Vec3& a, const Vec3& b) {
     return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
-Vec3 cross(const Vec3& a, const Vec3& b) {
+Vec3 cross_product(const Vec3& a, const Vec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 Vec3 turn(const Affine& m, const Vec3& v) {
-    return {dot3(Vec3(m.row[0]), v), dot3(Vec3(m.row[1]), v), dot3(Vec3(m.row[2]), v)};
+    return {
+        dot_product(Vec3(m.row[0]), v), dot_product(Vec3(m.row[1]), v),
+        dot_product(Vec3(m.row[2]), v)};
 }
 
 /// Matrix of a dual quaternion, which need not be normalized; `real` must not be 0.
@@ -91,18 +93,20 @@ Vec3 turn_normal(
     const Vec3 x(mean.row[0]);
     const Vec3 y(mean.row[1]);
     const Vec3 z(mean.row[2]);
-    const Vec3 a = cross(y, z);
-    const Vec3 n = {dot3(a, rest), dot3(cross(z, x), rest), dot3(cross(x, y), rest)};
-    const float length2 = dot3(n, n);
-    const float size = (dot3(x, x) + dot3(y, y)) + dot3(z, z);
+    const Vec3 a = cross_product(y, z);
+    const Vec3 n = {
+        dot_product(a, rest), dot_product(cross_product(z, x), rest),
+        dot_product(cross_product(x, y), rest)};
+    const float length2 = dot_product(n, n);
+    const float size = (dot_product(x, x) + dot_product(y, y)) + dot_product(z, z);
     return length2 > kFlat * (size * size)
-               ? n * std::copysign(1.0f / std::sqrt(length2), dot3(x, a))
+               ? n * std::copysign(1.0f / std::sqrt(length2), dot_product(x, a))
                : turn_by_strongest(skin, palette, rest, v);
 }
 
 Vec4 turn_tangent(const Affine& mean, const Vec4& rest) {
     const Vec3 t = turn(mean, Vec3(rest));
-    const float length2 = dot3(t, t);
+    const float length2 = dot_product(t, t);
     return length2 > kNoLength ? Vec4(t * (1.0f / std::sqrt(length2)), rest.w) : rest;
 }
 

@@ -13,7 +13,7 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kGrain = 64;  ///< points per task
+constexpr std::size_t kFaceGrain = 64;  ///< points per task
 /// Area of a face over the square of its longest edge below which it has no frame.
 constexpr float kMinShape = 1e-6f;
 
@@ -169,7 +169,7 @@ SkinWeights bind_to_faces(
     const std::vector<FaceBall> balls = make_balls(positions, corners);
     const float unit = mean_edge(balls);
     std::vector<Influences> all(points.size());
-    parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(points.size(), kFaceGrain, [&](std::size_t begin, std::size_t end) {
         std::vector<Near> nearest;
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3 normal = normals.empty() ? Vec3(0) : normals[i];

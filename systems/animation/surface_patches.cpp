@@ -18,14 +18,14 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kGrain = 64;       ///< points per task
+constexpr std::size_t kPatchGrain = 64;  ///< points per task
 constexpr std::size_t kCandidates = 24;  ///< patches that are tried for a point
 constexpr std::size_t kNeighbors = 8;    ///< likewise with a chart
 constexpr int kSamples = 8;              ///< per edge of a patch, for the start of Newton's method
 constexpr int kSteps = 20;               ///< of Newton's method
 constexpr float kInside = 1e-4f;         ///< by which (u, v) may leave the triangle
-constexpr float kMinShape = 1e-6f;       ///< area of a triangle over its longest edge squared
-constexpr float kMinNormal = 1e-20f;     ///< squared length of a sum of normals that has none
+constexpr float kMinPatchShape = 1e-6f;  ///< area of a triangle over its longest edge squared
+constexpr float kMinPatchNormal = 1e-20f;  ///< squared length of a sum of normals that has none
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -69,7 +69,7 @@ bool solve_place(std::span<const Vec4> patch, const Vec3& p, float size, Vec3& p
     return false;
 }
 
-bool is_inside(const Vec3& place) {
+bool is_inside_chart(const Vec3& place) {
     return place.x >= -kInside && place.y >= -kInside && place.x + place.y <= 1.0f + kInside;
 }
 
@@ -227,7 +227,7 @@ class PatchBinder {
             at.z = glm::dot(
                 p - evaluate_patch(patch(f), at.x, at.y).position,
                 evaluate_patch(patch(f), at.x, at.y).normal);
-            if (solve_place(patch(f), p, size_of(f), at) && is_inside(at)
+            if (solve_place(patch(f), p, size_of(f), at) && is_inside_chart(at)
                 && std::abs(at.z) < nearest) {
                 nearest = std::abs(at.z);
                 place.patch = f;
@@ -314,7 +314,7 @@ Result<PatchFaces> make_patch_faces(
         const Vec3 ab = positions[face[1]] - positions[face[0]];
         const Vec3 ac = positions[face[2]] - positions[face[0]];
         const float longest = std::max({glm::length(ab), glm::length(ac), glm::length(ac - ab)});
-        if (!(glm::length(glm::cross(ab, ac)) > kMinShape * square(longest))) {
+        if (!(glm::length(glm::cross(ab, ac)) > kMinPatchShape * square(longest))) {
             return fail("triangle {} has no area", i / 3);
         }
         for (std::size_t k = 0; k < 3; ++k) {
@@ -416,7 +416,7 @@ PatchPoint evaluate_patch(std::span<const Vec4> patch, float u, float v) {
     at.position = mix({r100, r010, r001});
     at.by_u = 3.0f * (r100 - r001);
     at.by_v = 3.0f * (r010 - r001);
-    if (!(length2 > kMinNormal)) {
+    if (!(length2 > kMinPatchNormal)) {
         at.normal = normalize_or(glm::cross(at.by_u, at.by_v), Vec3(0, 0, 1));
         return at;
     }
@@ -437,7 +437,7 @@ std::vector<SurfacePlace> bind_to_patches(
     LIMN_CHECK(chart.corners.empty() || chart.corners.size() == corners.size());
     const PatchBinder binder(positions, corners, reach, chart.corners);
     std::vector<SurfacePlace> places(points.size());
-    parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(points.size(), kPatchGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3 tangent = Vec3(tangents[i]);
             places[i] = chart.corners.empty()

@@ -17,16 +17,16 @@ namespace limn {
 
 namespace {
 
-constexpr double kAnchor = 1e-4;       ///< pull of all heights to 0, relative to one edge
-constexpr int kMaxSamples = 64;        ///< of the map along an edge
-constexpr int kMaxIterations = 2000;   ///< of conjugate gradients
-constexpr double kPrecision = 1e-6;    ///< of the residual
-constexpr float kSameNormal = 0.9f;    ///< cosine
-constexpr float kMinHeight = 1e-6f;    ///< [m]; less is nothing
-constexpr float kNoneCarried = 0.45f;  ///< energy of slopes that edges of half a wave keep
-constexpr float kAllCarried = 0.8f;    ///< and of a quarter
-constexpr float kFarthest = 1e8f;      ///< place on the map [texels]
-constexpr int kCarryRings = 2;         ///< of neighbors that share what they carry
+constexpr double kAnchor = 1e-4;         ///< pull of all heights to 0, relative to one edge
+constexpr int kMaxSamples = 64;          ///< of the map along an edge
+constexpr int kMaxIterations = 2000;     ///< of conjugate gradients
+constexpr double kPrecision = 1e-6;      ///< of the residual
+constexpr float kSameNormal = 0.9f;      ///< cosine
+constexpr float kMinFoldHeight = 1e-6f;  ///< [m]; less is nothing
+constexpr float kNoneCarried = 0.45f;    ///< energy of slopes that edges of half a wave keep
+constexpr float kAllCarried = 0.8f;      ///< and of a quarter
+constexpr float kFarthest = 1e8f;        ///< place on the map [texels]
+constexpr int kCarryRings = 2;           ///< of neighbors that share what they carry
 
 /// Slopes of both layers, as a texture unit reads them.
 class SlopeMap {
@@ -281,7 +281,7 @@ fold_heights(const MeshData& mesh, const ImageData& map, const TextureSlot& slot
         heights[v] = heights[welded[v]];
         highest = std::max({highest, std::abs(heights[v].x), std::abs(heights[v].y)});
     }
-    return highest > kMinHeight ? heights : std::vector<Vec2>{};
+    return highest > kMinFoldHeight ? heights : std::vector<Vec2>{};
 }
 
 }  // namespace limn

@@ -13,7 +13,7 @@ namespace limn {
 
 namespace {
 
-constexpr double kMinShare = 0.0025;  ///< less of both vertices' values is not moved
+constexpr double kMinDiffusionWeight = 0.0025;  ///< less of both vertices' values is not moved
 constexpr double kMaxStep = 2.0 / 3;  ///< moved away in one step; of equal triangles, S >= 0 then
 
 /// Neighbors of each vertex, in order.
@@ -57,9 +57,9 @@ std::vector<float> find_areas(
 }
 
 /// Sums of shares by vertex.
-class Row {
+class DiffusionRow {
   public:
-    explicit Row(std::size_t vertices) : sums_(vertices, 0.0) {}
+    explicit DiffusionRow(std::size_t vertices) : sums_(vertices, 0.0) {}
 
     void add(std::uint32_t vertex, double share) {
         if (sums_[vertex] == 0) {
@@ -104,7 +104,7 @@ SkinDiffusion make_skin_diffusion(
     const int steps = static_cast<int>(std::ceil(square_edges / kMaxStep));
     const double step = steps > 0 ? square_edges / steps : 0.0;
 
-    Row row(positions.size());
+    DiffusionRow row(positions.size());
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
         diffusion.first.push_back(static_cast<std::uint32_t>(diffusion.shares.size()));
         std::vector<std::pair<std::uint32_t, double>> shares = {{welded[v], 1.0}};
@@ -124,7 +124,7 @@ SkinDiffusion make_skin_diffusion(
         const double own_area = double{area[welded[v]]};
         for (const auto& [vertex, share] : shares) {
             const double back = share * own_area / std::max(double{area[vertex]}, 1e-300);
-            row.add(std::max(share, back) < kMinShare ? welded[v] : vertex, share);
+            row.add(std::max(share, back) < kMinDiffusionWeight ? welded[v] : vertex, share);
         }
         for (const auto& [vertex, share] : row.take()) {
             diffusion.shares.emplace_back(vertex, static_cast<float>(share));
@@ -137,7 +137,7 @@ SkinDiffusion make_skin_diffusion(
 DiffusedCorners
 diffuse_corners(const SkinDiffusion& diffusion, const WrinkleRest& rest, std::uint32_t group) {
     DiffusedCorners diffused;
-    Row groups(rest.corners.size() / group);
+    DiffusionRow groups(rest.corners.size() / group);
     for (std::size_t v = 0; v + 1 < rest.first.size(); ++v) {
         diffused.first.push_back(static_cast<std::uint32_t>(diffused.around.size()));
         for (std::uint32_t i = diffusion.first[v]; i < diffusion.first[v + 1]; ++i) {

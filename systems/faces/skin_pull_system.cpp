@@ -122,7 +122,7 @@ bool has_triangle(const MeshSource& source, std::uint32_t triangle) {
     return source.data != nullptr && 3 * std::size_t{triangle} + 2 < source.data->indices.size();
 }
 
-void add_pull(std::vector<SkinPull>& pulls, const SkinPull& pull) {
+void add_skin_pull(std::vector<SkinPull>& pulls, const SkinPull& pull) {
     if (pulls.size() == kMaxSkinPulls) {
         pulls.erase(pulls.begin());
     }
@@ -215,7 +215,7 @@ void update_skin_pulls(
                    const MeshInstance& instance, const Deformed& deformed,
                    const WorldTransform& place) {
         if (taken && taken->entity == entity) {
-            add_pull(state.pulls, taken->pull);
+            add_skin_pull(state.pulls, taken->pull);
         }
         for (SkinPull& pull : state.pulls) {
             const MeshSource source = source_of(entity, instance, deformed);

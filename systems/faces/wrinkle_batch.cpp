@@ -281,19 +281,19 @@ HWY_EXPORT(measure_batch);
 namespace {
 
 /// Memory that grows.
-struct Rows {
+struct FoldRows {
     hwy::AlignedFreeUniquePtr<float[]> data;
     std::size_t size = 0;
 };
 
 /// Memory of a batch.
 struct BatchMemory {
-    Rows positions;
-    Rows triangles;
-    std::array<Rows, 3> compression;
+    FoldRows positions;
+    FoldRows triangles;
+    std::array<FoldRows, 3> compression;
 };
 
-float* make_rows(Rows& rows, std::size_t count) {
+float* make_rows(FoldRows& rows, std::size_t count) {
     if (rows.size < wrinkle::kFaces * count) {
         rows.size = wrinkle::kFaces * count;
         rows.data = hwy::AllocateAligned<float>(rows.size);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kFlat = 1e-6f;        ///< square of a slope that counts as flat
 constexpr float kMinNormalZ = 0.05f;  ///< steeper ones are cut off
-constexpr std::size_t kBins = 256;
+constexpr std::size_t kFoldBins = 256;
 
 /// Slopes by size: few numbers for many texels.
 struct SlopeBin {
@@ -23,12 +23,12 @@ std::vector<SlopeBin> sort_into_bins(std::span<const Vec2> slopes) {
     for (const Vec2& slope : slopes) {
         largest = std::max(largest, glm::dot(slope, slope));
     }
-    std::vector<SlopeBin> bins(kBins);
+    std::vector<SlopeBin> bins(kFoldBins);
     double count = 0;
     for (const Vec2& slope : slopes) {
         const float square = glm::dot(slope, slope);
         if (square > kFlat) {
-            const auto bin = static_cast<std::size_t>(square / largest * (kBins - 1));
+            const auto bin = static_cast<std::size_t>(square / largest * (kFoldBins - 1));
             bins[bin].square += double{square};
             bins[bin].share += 1;
             count += 1;

@@ -54,7 +54,7 @@ Vec2 in_edges(const RestTriangle& triangle, const Vec3& direction) {
            / triangle.twice_area;
 }
 
-float angle_between(const Vec3& a, const Vec3& b) {
+float angle_of_edges(const Vec3& a, const Vec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
@@ -64,8 +64,8 @@ std::array<float, 3> corner_weights(const RestTriangle& triangle, WrinkleWeight 
     case WrinkleWeight::Angle: {
         const Vec3 e3 = triangle.e2 - triangle.e1;
         return {
-            angle_between(triangle.e1, triangle.e2), angle_between(-triangle.e1, e3),
-            angle_between(-triangle.e2, -e3)};
+            angle_of_edges(triangle.e1, triangle.e2), angle_of_edges(-triangle.e1, e3),
+            angle_of_edges(-triangle.e2, -e3)};
     }
     case WrinkleWeight::Area:
         return {triangle.twice_area, triangle.twice_area, triangle.twice_area};

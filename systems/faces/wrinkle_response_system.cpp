@@ -16,7 +16,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kMinShare = 1e-4f;  ///< of the area of the mesh that a region must have
+constexpr float kMinResponseWeight = 1e-4f;  ///< of the area of the mesh that a region must have
 constexpr std::size_t kRegions = kWrinkleRegions.size();
 
 /// The texel of an 8-bit mask at `uv`, which repeats; 0 of other images.
@@ -124,7 +124,7 @@ make_response_rest(const WrinkleMaps& maps, const MeshInstance& instance, const 
         whole += areas[v];
     }
     for (float& total : rest.total) {
-        total = total > kMinShare * whole ? total : 0.0f;
+        total = total > kMinResponseWeight * whole ? total : 0.0f;
     }
     return rest;
 }

@@ -21,7 +21,7 @@ namespace limn {
 
 namespace {
 
-const MeshData* mesh_of(const MeshInstance& instance, const Assets& assets) {
+const MeshData* mesh_of_instance(const MeshInstance& instance, const Assets& assets) {
     const std::uint32_t index = instance.mesh.index;
     return index < assets.meshes.size() ? &assets.meshes[index] : nullptr;
 }
@@ -180,7 +180,7 @@ float radial_share(const Vec3& position, const Vec3& center, float radius) {
 
 std::uint64_t
 wrinkle_source(const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets) {
-    const MeshData* const mesh = mesh_of(instance, assets);
+    const MeshData* const mesh = mesh_of_instance(instance, assets);
     if (mesh == nullptr) {
         return 0;
     }
@@ -227,7 +227,7 @@ WrinkleState make_wrinkle_state(
     if (state.source == 0) {
         return state;
     }
-    const MeshData& mesh = *mesh_of(instance, assets);
+    const MeshData& mesh = *mesh_of_instance(instance, assets);
     const std::size_t vertices = mesh.positions.size();
     FoldField field = merge_regions(mesh, surface.regions, false);
     state.rests = make_rests(surface, mesh, field, state.frames);

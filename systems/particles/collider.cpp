@@ -74,13 +74,13 @@ struct BoxPlace {
     Dvec3 center;
 };
 
-BoxPlace place_of(const BoxCollider& box) {
+BoxPlace box_pose(const BoxCollider& box) {
     const Mat4 m = to_mat4(box.world_from_box);
     return {glm::dmat3(Mat3(m)), Dvec3(m[3])};
 }
 
 std::optional<Touch> touch(const BoxCollider& box, const Way& way) {
-    const BoxPlace place = place_of(box);
+    const BoxPlace place = box_pose(box);
     const Dvec3 from = (way.from - place.center) * place.axes;  // by the transpose
     const Dvec3 delta = way.delta * place.axes;
     double enter = -std::numeric_limits<double>::infinity();
@@ -278,7 +278,7 @@ std::optional<Exit> find_exit(const SphereCollider& sphere, const Dvec3& p, doub
 }
 
 std::optional<Exit> find_exit(const BoxCollider& box, const Dvec3& p, double radius) {
-    const BoxPlace place = place_of(box);
+    const BoxPlace place = box_pose(box);
     const Dvec3 local = (p - place.center) * place.axes;
     double depth = std::numeric_limits<double>::infinity();
     int nearest = 1;

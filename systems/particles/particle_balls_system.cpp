@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kMaxNear = 64;  // of one ball that are tested, so that a crowd ends
 constexpr float kReach = 1.1f;          // of the radius: whom a push may bring together
 constexpr int kPasses = 12;             // over all pairs: as far as a push goes in a step
-constexpr float kRestSpeed = 0.2f;      // slower toward each other there is no rebound [m/s]
+constexpr float kBallRestSpeed = 0.2f;  // slower toward each other there is no rebound [m/s]
 constexpr int kCellBits = 21;           // of each axis in a key
 constexpr std::int64_t kLastCell = (std::int64_t{1} << kCellBits) - 2;
 
@@ -27,7 +27,7 @@ struct Keyed {
     std::uint32_t index;
 };
 
-Vec3 place_of(const ParticlePool& pool, std::size_t i) {
+Vec3 ball_center(const ParticlePool& pool, std::size_t i) {
     return {pool.x[i], pool.y[i], pool.z[i]};
 }
 
@@ -36,7 +36,7 @@ constexpr std::uint64_t key_of(std::uint64_t x, std::uint64_t y, std::uint64_t z
 }
 
 /// 1 .. kLastCell, so that neighbors do not carry into another axis.
-std::uint64_t cell_of(float at, float lowest, float width) {
+std::uint64_t ball_cell(float at, float lowest, float width) {
     const double cells = (static_cast<double>(at) - static_cast<double>(lowest)) / width;
     return static_cast<std::uint64_t>(
         std::clamp(cells, 0.0, static_cast<double>(kLastCell - 1)) + 1);
@@ -52,8 +52,8 @@ std::vector<Keyed> sort_by_cell(const ParticlePool& pool, float width) {
     for (std::uint32_t i = 0; i < sorted.size(); ++i) {
         sorted[i] = {
             key_of(
-                cell_of(pool.x[i], low.x, width), cell_of(pool.y[i], low.y, width),
-                cell_of(pool.z[i], low.z, width)),
+                ball_cell(pool.x[i], low.x, width), ball_cell(pool.y[i], low.y, width),
+                ball_cell(pool.z[i], low.z, width)),
             i};
     }
     std::sort(sorted.begin(), sorted.end(), [](const Keyed& a, const Keyed& b) {
@@ -179,13 +179,13 @@ void find_ball_pairs(const ParticlePool& pool, float radius, std::vector<BallPai
     std::array<std::size_t, std::size(kRows)> begins{};
     for (std::size_t i = 0; i < count; ++i) {
         const Keyed& one = sorted[i];
-        const Vec3 place = place_of(pool, one.index);
+        const Vec3 place = ball_center(pool, one.index);
         std::uint32_t tested = 0;
         const auto test_from = [&](std::size_t first, std::uint64_t last_key) {
             for (std::size_t j = first; j < count && sorted[j].key <= last_key && tested < kMaxNear;
                  ++j) {
                 ++tested;
-                const Vec3 offset = place_of(pool, sorted[j].index) - place;
+                const Vec3 offset = ball_center(pool, sorted[j].index) - place;
                 if (glm::dot(offset, offset) < width * width) {
                     pairs.push_back({one.index, sorted[j].index});
                 }
@@ -232,7 +232,7 @@ void collide_balls(
             glm::dot(velocity_of(pool, pair.a) - velocity_of(pool, pair.b), places.axis_of(pair)));
     }
     for (std::uint32_t i = 0; i < pool.size(); ++i) {
-        const Vec3 push = places.at(i) - place_of(pool, i);
+        const Vec3 push = places.at(i) - ball_center(pool, i);
         accelerate(pool, i, push / dt);
         pool.x[i] += push.x;
         pool.y[i] += push.y;
@@ -248,7 +248,7 @@ void collide_balls(
         const Vec3 axis = places.axis_of(pair);
         const float parting = glm::dot(velocity_of(pool, pair.b) - velocity_of(pool, pair.a), axis);
         const float wanted =
-            approach[i] > kRestSpeed ? bounce * approach[i] : std::max(-approach[i], 0.0f);
+            approach[i] > kBallRestSpeed ? bounce * approach[i] : std::max(-approach[i], 0.0f);
         const Shares shares = shares_of(pool, pair);
         accelerate(pool, pair.a, ((parting - wanted) * shares.a) * axis);
         accelerate(pool, pair.b, ((wanted - parting) * shares.b) * axis);

@@ -13,7 +13,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kBlock = 512;  // particles that are tested before some of them move
+constexpr std::size_t kCollisionBlock = 512;  // particles that are tested before some of them move
 
 /// What a particle may meet; `reach` is empty where nothing is known.
 struct Obstacles {
@@ -34,7 +34,7 @@ struct NumberedContact {
     std::uint32_t collider;
 };
 
-bool is_far(
+bool is_far_from_obstacle(
     const Obstacles& obstacles, std::size_t i, const Vec3& from, const Vec3& to, float radius,
     float skin) {
     return !obstacles.reach.empty() && !may_touch(obstacles.reach[i], from, to, radius, skin);
@@ -45,7 +45,7 @@ std::optional<NumberedContact>
 nearest_contact(const Obstacles& obstacles, const Vec3& from, const Vec3& to, float radius) {
     std::optional<NumberedContact> nearest;
     for (std::size_t i = 0; i < obstacles.colliders.size(); ++i) {
-        if (is_far(obstacles, i, from, to, radius, 0)) {
+        if (is_far_from_obstacle(obstacles, i, from, to, radius, 0)) {
             continue;
         }
         const std::optional<Contact> contact =
@@ -80,7 +80,7 @@ CollisionResult follow(
 
     // Inside, or so near that rounding decides: out, which is no bounce.
     for (std::size_t i = 0; i < obstacles.colliders.size(); ++i) {
-        if (is_far(obstacles, i, now.position, now.position, step.radius, skin)) {
+        if (is_far_from_obstacle(obstacles, i, now.position, now.position, step.radius, skin)) {
             continue;
         }
         const auto out =
@@ -217,9 +217,9 @@ void collide_particles(
         .one_radius = options.radius,
         .skin = options.skin};
     const Obstacles obstacles = {set.colliders, set.reach};
-    std::array<std::uint32_t, kBlock + kReachRoom> near;
-    for (std::size_t first = 0; first < p.x.size(); first += kBlock) {
-        const std::size_t count = std::min(kBlock, p.x.size() - first);
+    std::array<std::uint32_t, kCollisionBlock + kReachRoom> near;
+    for (std::size_t first = 0; first < p.x.size(); first += kCollisionBlock) {
+        const std::size_t count = std::min(kCollisionBlock, p.x.size() - first);
         begin_marks(p, first, count);
         const std::size_t near_count = find_near(ways, first, count, set.reach, near.data());
         for (const std::uint32_t i : std::span(near).first(near_count)) {

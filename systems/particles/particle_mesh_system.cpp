@@ -11,9 +11,9 @@
 namespace limn {
 namespace {
 
-constexpr float kMinScale = 1e-4f;  // so that normals have a direction
-constexpr float kRestSpeed = 1.0f;  // at which colliding particles begin to spin less [m/s]
-constexpr float kMinSpeed = 1e-4f;  // that has a direction [m/s]
+constexpr float kMinScale = 1e-4f;      // so that normals have a direction
+constexpr float kMeshRestSpeed = 1.0f;  // at which colliding particles begin to spin less [m/s]
+constexpr float kMinSpeed = 1e-4f;      // that has a direction [m/s]
 
 /// As in particle.vert: 0 .. 1, a number for each index.
 float random_share(std::uint32_t bits, std::uint32_t index) {
@@ -55,7 +55,7 @@ Affine about(const Affine& world, const Vec3& position, const Quat& turn, float 
     return affine_from(position, turn, Vec3(scale)) * moved_to(world, Vec3(0));
 }
 
-MeshId mesh_of(const ParticleMesh& mesh, const MeshData* whole, std::uint32_t key) {
+MeshId mesh_of_particles(const ParticleMesh& mesh, const MeshData* whole, std::uint32_t key) {
     if (whole != nullptr) {
         const std::uint32_t piece = key & kPieceMask;
         return piece < whole->pieces.size() ? whole->pieces[piece].mesh : MeshId{};
@@ -85,11 +85,11 @@ MeshParticle step_instance(
     const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
     const float speed = glm::length(velocity);
     const bool stuck = i < pool.stuck.size() && pool.stuck[i] != 0;
-    const float free = stuck ? 0.0f : step.collides ? std::min(speed / kRestSpeed, 1.0f) : 1.0f;
+    const float free = stuck ? 0.0f : step.collides ? std::min(speed / kMeshRestSpeed, 1.0f) : 1.0f;
     const float spin = give_or_take(mesh.spin, mesh.spin_spread, key, kSpin);
     MeshParticle moved;
     moved.key = key;
-    moved.mesh = mesh_of(mesh, step.whole, key);
+    moved.mesh = mesh_of_particles(mesh, step.whole, key);
     const bool as_emitter = mesh.facing == ParticleMeshFacing::Emitter;
     const float begin = as_emitter ? 0.0f : 2 * kPi * random_share(key, kAngle);
     moved.angle = old != nullptr ? old->angle + free * spin * dt : begin + spin * pool.age[i];

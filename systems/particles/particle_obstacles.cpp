@@ -53,7 +53,7 @@ struct Axes {
     Vec3 unit[3];
     Vec3 length;
 };
-Axes axes_of(const Affine& world) {
+Axes obstacle_axes(const Affine& world) {
     Axes axes{};
     for (int axis = 0; axis < 3; ++axis) {
         Vec3 unit(0);
@@ -74,7 +74,7 @@ BoxCollider make_box(const Axes& axes, const Vec3& center, const Vec3& size) {
 }
 
 /// None of a field that is turned, scaled or not there yet.
-bool is_upright(const Affine& world) {
+bool is_upright_obstacle(const Affine& world) {
     constexpr float kTolerance = 1e-4f;
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
@@ -117,7 +117,7 @@ void find_particle_obstacles(
                        const Deformed* deformed, const DeformerState* deformers,
                        const SurfaceBindingState* binding, const HeightField* field) {
         const Vec3 center = transform_point(transform.world, Vec3(0));
-        const Axes axes = axes_of(transform.world);
+        const Axes axes = obstacle_axes(transform.world);
         switch (collider.shape) {
         case ColliderShape::Plane:
             found.emplace_back(PlaneCollider{axes.unit[1], glm::dot(axes.unit[1], center)});
@@ -139,7 +139,7 @@ void find_particle_obstacles(
             }
             break;
         case ColliderShape::HeightField:
-            if (field != nullptr && field->points >= 2 && is_upright(transform.world)) {
+            if (field != nullptr && field->points >= 2 && is_upright_obstacle(transform.world)) {
                 found.emplace_back(make_field(*field, center));
             }
             break;

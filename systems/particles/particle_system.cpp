@@ -26,7 +26,7 @@ constexpr std::uint32_t kNone = 0xffffffff;
 constexpr std::uint32_t kJobParticles = 4096;  // at least, of one job: small emitters share jobs
 
 /// An emitter in this step.
-struct Work {
+struct ParticleWork {
     Entity entity;
     const ParticleEmitter* emitter = nullptr;
     const SprayDrops* drops = nullptr;
@@ -52,11 +52,11 @@ struct Block {
     std::vector<ParticleHit> hits = {};
 };
 
-std::uint64_t subject_of(const Work& work) {
+std::uint64_t subject_of(const ParticleWork& work) {
     return subject_of(*work.emitter, work.entity);
 }
 
-const SurfaceSource* surface_of(const Work& work) {
+const SurfaceSource* surface_of(const ParticleWork& work) {
     return work.surface.surface != nullptr ? &work.surface : nullptr;
 }
 
@@ -69,7 +69,7 @@ void remove_dead(const OrderedBy& order, ParticlePool& pool, std::size_t first) 
 }
 
 /// The steps before the first one, at the places of that.
-void prewarm(const Work& work, std::uint64_t seed) {
+void prewarm(const ParticleWork& work, std::uint64_t seed) {
     const ParticleEmitter& emitter = *work.emitter;
     ParticlePool& pool = *work.pool;
     const float dt = work.motion.step.dt;
@@ -88,7 +88,7 @@ void prewarm(const Work& work, std::uint64_t seed) {
     }
 }
 
-void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
+void emit(const ParticleWork& work, std::uint64_t seed, const FrameTime& time) {
     const ParticleEmitter& emitter = *work.emitter;
     ParticlePool& pool = *work.pool;
     if (work.source != nullptr) {
@@ -183,7 +183,7 @@ void step_alone(const Alone& alone, Motions& motions, const StepInputs& inputs) 
         pool.clock.time += static_cast<double>(inputs.dt);
         pool.fresh = 0;
     } else {
-        Work work{.entity = alone.entity, .place = place_of(*alone.now, *alone.previous)};
+        ParticleWork work{.entity = alone.entity, .place = place_of(*alone.now, *alone.previous)};
         work.emitter = alone.emitter;
         work.motion = motion;
         work.scale = seen_share(*alone.emitter, alone.now->world, inputs.eye);
@@ -223,21 +223,22 @@ bool is_among(const std::vector<Entity>& sorted, Entity entity) {
 }
 
 /// Those whose particles are born where others are.
-std::vector<Work*> find_children(std::vector<Work>& works) {
-    std::vector<Work*> children;
-    for (Work& work : works) {
+std::vector<ParticleWork*> find_children(std::vector<ParticleWork>& works) {
+    std::vector<ParticleWork*> children;
+    for (ParticleWork& work : works) {
         if (work.source != nullptr) {
             children.push_back(&work);
         }
     }
-    for (Work* child : children) {
-        Work& work = *child;
+    for (ParticleWork* child : children) {
+        ParticleWork& work = *child;
         if (work.source->emitter == work.entity) {
             continue;
         }
-        const auto parent = std::find_if(works.begin(), works.end(), [&](const Work& other) {
-            return other.entity == work.source->emitter;
-        });
+        const auto parent =
+            std::find_if(works.begin(), works.end(), [&](const ParticleWork& other) {
+                return other.entity == work.source->emitter;
+            });
         work.parent =
             parent != works.end() ? static_cast<std::uint32_t>(parent - works.begin()) : kNone;
     }
@@ -260,7 +261,8 @@ std::vector<std::size_t> split_into_jobs(const std::vector<Block>& blocks) {
 
 /// Births by the particles of the work's parent, which have moved and not lost their dead yet.
 void find_spawns_of(
-    Work& work, const std::vector<Work>& works, std::uint64_t seed, const FrameTime& time) {
+    ParticleWork& work, const std::vector<ParticleWork>& works, std::uint64_t seed,
+    const FrameTime& time) {
     if (work.parent == kNone || !work.emitter->active) {
         return;
     }
@@ -314,7 +316,7 @@ void update_particles(
     const std::vector<Entity> followed = find_followed(trails, parents);
     std::vector<Alone> alone;
     alone.reserve(emitters.count());
-    std::vector<Work> works;
+    std::vector<ParticleWork> works;
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const SprayDrops* drops, const ParticleSource* source,
@@ -337,7 +339,7 @@ void update_particles(
         }
         const EmitterPlace place = place_of(now, previous);
         static const ParticleMotion kStill;
-        Work work{.entity = entity, .place = place};
+        ParticleWork work{.entity = entity, .place = place};
         work.motion =
             find_motion(motion != nullptr ? *motion : kStill, now.world, wind, forces, dt, *time);
         work.scale = seen_share(emitter, now.world, eye);
@@ -388,7 +390,7 @@ void update_particles(
     parallel_for(ends.size(), 1, [&](std::size_t job, std::size_t) {
         for (std::size_t i = job == 0 ? 0 : ends[job - 1]; i < ends[job]; ++i) {
             Block& block = blocks[i];
-            const Work& work = works[block.work];
+            const ParticleWork& work = works[block.work];
             if (work.collision != nullptr && !around.is_empty()) {
                 block.dead = move_colliding_particles(
                     work.motion, *work.collision, around, *work.pool, block.first, block.count,
@@ -406,7 +408,7 @@ void update_particles(
     }
 
     // Children's births wait until the dead are gone: their parents may be children too.
-    const std::vector<Work*> children = find_children(works);
+    const std::vector<ParticleWork*> children = find_children(works);
     parallel_for(children.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             find_spawns_of(*children[i], works, seed->seed, *time);
@@ -422,13 +424,13 @@ void update_particles(
     }
     parallel_for(firsts.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Work& work = works[firsts[i].work];
+            const ParticleWork& work = works[firsts[i].work];
             remove_dead(work.order, *work.pool, firsts[i].first);
         }
     });
     parallel_for(children.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Work& work = *children[i];
+            const ParticleWork& work = *children[i];
             add_spawns(
                 *work.emitter, work.place.now, work.spawns, seed->seed, subject_of(work),
                 *work.pool);

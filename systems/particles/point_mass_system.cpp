@@ -14,8 +14,8 @@
 namespace limn {
 namespace {
 
-constexpr float kGravity = 9.81f;  // [m/s^2]
-constexpr float kMinSpeed = 0.5f;  // at which a body still aims [m/s]
+constexpr float kPointGravity = 9.81f;  // [m/s^2]
+constexpr float kMinPointSpeed = 0.5f;  // at which a body still aims [m/s]
 
 float positive_or_zero(float value) {
     return std::max(finite_or(value, 0), 0.0f);
@@ -30,7 +30,7 @@ PointMassForces find_forces_on(
     const PointMass& body, const Quat& turn, const AirDrag* drag, const VariableMass* fuel,
     float dt) {
     PointMassForces found;
-    found.acceleration.y = -kGravity * finite_or(body.gravity, 1);
+    found.acceleration.y = -kPointGravity * finite_or(body.gravity, 1);
     if (drag != nullptr) {
         const float area = kPi * square(finite_or(drag->radius, 0));
         found.drag =
@@ -48,13 +48,13 @@ PointMassForces find_forces_on(
 
 /// Turns local -z along the flight, by the shortest way.
 Quat aimed(const Quat& turn, const Vec3& velocity) {
-    if (!(glm::length(velocity) > kMinSpeed)) {
+    if (!(glm::length(velocity) > kMinPointSpeed)) {
         return turn;
     }
     return glm::normalize(Quat(turn * Vec3(0, 0, -1), glm::normalize(velocity)) * turn);
 }
 
-CollisionOptions options_of(const ParticleCollision& collision) {
+CollisionOptions point_options(const ParticleCollision& collision) {
     return {
         .radius = positive_or_zero(collision.radius),
         .action = collision.action == CollisionAction::Kill    ? ContactAction::Kill
@@ -113,7 +113,7 @@ void update_point_masses(
             const CollisionResult moved = move_with_collisions(
                 transform.position, mean, dt, solid,
                 {.bounce = collision->bounce, .friction = collision->friction},
-                options_of(*collision));
+                point_options(*collision));
             place = moved.position;
             if (moved.contacts > 0) {
                 next.velocity = moved.velocity;

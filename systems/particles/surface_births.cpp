@@ -14,7 +14,7 @@ namespace limn {
 namespace {
 
 /// Triangle `i` of the table's vertices, moved by `world`; false if it is none.
-bool find_triangle(
+bool find_source_triangle(
     const MeshData& mesh, const std::vector<Vec3>& positions, std::size_t i, const Affine& world,
     std::array<Vec3, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -43,7 +43,8 @@ Quat with_up(const Vec3& up) {
 }
 
 /// `local` is the place in the source's space; where it is at `at`, and how fast it moves.
-SurfacePoint follow(const SurfaceSource& source, const Vec3& local, const Affine& world, float dt) {
+SurfacePoint
+follow_source(const SurfaceSource& source, const Vec3& local, const Affine& world, float dt) {
     SurfacePoint point;
     point.position = transform_point(world, local);
     const Vec3 moved =
@@ -65,9 +66,9 @@ SurfacePoint mesh_point(
     const auto corner = [&](std::size_t k) { return table.positions[mesh.indices[3 * i + k]]; };
     const Vec3 local =
         corner(0) * (1 - root) + corner(1) * (root * (1 - side)) + corner(2) * (root * side);
-    SurfacePoint point = follow(source, local, world, dt);
+    SurfacePoint point = follow_source(source, local, world, dt);
     std::array<Vec3, 3> corners{};
-    find_triangle(mesh, table.positions, i, world, corners);
+    find_source_triangle(mesh, table.positions, i, world, corners);
     const Vec3 front = is_mirrored(world) ? -cross_of(corners) : cross_of(corners);
     const Vec3 normal = normalize_or(front, Vec3(0, 1, 0));
     point.turn = with_up(normal);
@@ -80,7 +81,7 @@ path_point(const SurfaceSource& source, const Affine& world, float dt, Random& r
     const double distance =
         static_cast<double>(source.path->length()) * static_cast<double>(random.uniform());
     const PathFrame frame = path_frame_at(*source.path, distance);
-    SurfacePoint point = follow(source, frame.position, world, dt);
+    SurfacePoint point = follow_source(source, frame.position, world, dt);
     const Vec3 up = normalize_or(transform_vector(world, frame.up), Vec3(0, 1, 0));
     const Vec3 ahead = transform_vector(world, frame.ahead);
     const Vec3 right = normalize_or(glm::cross(up, ahead), any_perpendicular(up));
@@ -94,7 +95,7 @@ SurfacePoint piece_point(
     Random& random) {
     const std::vector<MeshPiece>& pieces = source.mesh.data->pieces;
     const auto piece = static_cast<std::size_t>(number % pieces.size());
-    SurfacePoint point = follow(source, pieces[piece].center, world, dt);
+    SurfacePoint point = follow_source(source, pieces[piece].center, world, dt);
     const Vec3 away = point.position - transform_point(world, source.surface->blast);
     point.turn = with_up(normalize_or(away, random.direction()));
     point.piece = static_cast<std::uint32_t>(piece);
@@ -106,7 +107,7 @@ std::optional<SurfacePoint> volume_point(
     Random& random) {
     const std::optional<Vec3> local =
         draw_in_volume(table.volume, table.positions, source.mesh.data->indices, random);
-    return local ? std::optional(follow(source, *local, world, dt)) : std::nullopt;
+    return local ? std::optional(follow_source(source, *local, world, dt)) : std::nullopt;
 }
 
 /// Sums of the areas; false if there is none.
@@ -116,7 +117,7 @@ bool sum_areas(const SurfaceSource& source, SurfaceTable& table) {
     double sum = 0;
     std::array<Vec3, 3> corners{};
     for (std::size_t i = 0; i < table.areas.size(); ++i) {
-        if (find_triangle(mesh, table.positions, i, source.place.now, corners)) {
+        if (find_source_triangle(mesh, table.positions, i, source.place.now, corners)) {
             const float area = 0.5f * glm::length(cross_of(corners));
             sum += std::isfinite(area) ? static_cast<double>(area) : 0.0;
         }

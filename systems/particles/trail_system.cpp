@@ -11,7 +11,7 @@ namespace {
 constexpr float kMaxStepPoints = 2000;  // that one step may leave; more are a jump
 constexpr float kSharpTurn = 0.5f;      // cosine of the angle beyond which a path is straightened
 
-bool is_finite(const TrailPoint& point) {
+bool is_finite_point(const TrailPoint& point) {
     const Vec3 sum = point.position + point.span;
     return std::isfinite(sum.x + sum.y + sum.z);
 }
@@ -60,14 +60,14 @@ void walk(
     }
 }
 
-TrailPoint place_of(const Affine& world, const Trail& trail) {
+TrailPoint trail_position(const Affine& world, const Trail& trail) {
     return {transform_point(world, Vec3(0)), 0, transform_vector(world, trail.span)};
 }
 
 void follow_entity(
     TrailState& state, const Trail& trail, const Affine& now, const Affine& previous, float dt) {
-    const TrailPoint to = place_of(now, trail);
-    TrailPoint from = place_of(previous, trail);
+    const TrailPoint to = trail_position(now, trail);
+    TrailPoint from = trail_position(previous, trail);
     from.age = dt;
     TrailStrand* strand = state.strands.empty() ? nullptr : &state.strands.back();
     if (strand != nullptr && strand->live && trail.active
@@ -78,8 +78,8 @@ void follow_entity(
     } else if (strand != nullptr) {
         strand->live = false;  // a Teleport, or no longer active
     }
-    if (trail.active && is_finite(to)) {
-        TrailStrand& fresh = add_strand(state, is_finite(from) ? from : to);
+    if (trail.active && is_finite_point(to)) {
+        TrailStrand& fresh = add_strand(state, is_finite_point(from) ? from : to);
         if (!extend_strand(state, fresh, trail, to, dt)) {
             add_strand(state, to);
         }
@@ -150,7 +150,7 @@ bool extend_strand(
     const float spacing = trail_spacing(trail);
     const Vec3 way = to.position - from.position;
     const float length = glm::length(way);
-    if (!is_finite(to) || !(length <= std::min(trail.jump, kMaxStepPoints * spacing))) {
+    if (!is_finite_point(to) || !(length <= std::min(trail.jump, kMaxStepPoints * spacing))) {
         strand.live = false;
         return false;
     }

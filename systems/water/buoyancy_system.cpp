@@ -10,7 +10,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kGrain = 4;  ///< bodies per task
+constexpr std::size_t kBodyGrain = 4;  ///< bodies per task
 
 struct Body {
     const WaterTouch* touch = nullptr;
@@ -43,7 +43,7 @@ void update_floating_bodies(
         return;
     }
     const std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
-    parallel_for(afloat.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(afloat.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Body& body = afloat[i];
             body.splash = step_floating_body(

@@ -18,7 +18,7 @@ constexpr auto kWeight = static_cast<float>(kGravity);  ///< [m/s^2]
 constexpr float kCalm = 1.5f;        ///< depth at which wave motion has decayed to 1/e [m]; by eye
 constexpr float kMaxSlope = 1.0f;    ///< limit of the water's slope that acts on a body
 constexpr float kPhaseStep = 0.25f;  ///< largest phase of a bobbing oscillation per substep [rad]
-constexpr int kMaxSubsteps = 8;
+constexpr int kMaxBodySubsteps = 8;
 constexpr float kSpinDrag =
     0.375f;  ///< rotational drag of a cube, relative to its coefficient along an axis
 constexpr float kFriction = 0.5f;  ///< coefficient on the bottom and along walls
@@ -82,7 +82,7 @@ Hull make_hull(const WaterTouch& touch, const Floating& floating, const Vec3& sc
 }
 
 /// Position and orientation of a hull.
-struct Place {
+struct BodyPlace {
     Vec3 center = {0, 0, 0};  ///< center of mass [m]
     Quat rotation = {1, 0, 0, 0};
 
@@ -120,7 +120,7 @@ constexpr std::array<float, 3> kGauss = {-0.7745966692f, 0, 0.7745966692f};
 constexpr std::array<float, 3> kGaussShare = {5.0f / 18, 8.0f / 18, 5.0f / 18};
 
 /// The hull cut into columns along its most upright axis; a ball is not cut.
-struct Columns {
+struct BodyColumns {
     std::size_t count = 0;
     int axis = 1;
     std::array<Vec3, kColumns> middle{};  ///< in local axes, relative to the center of mass [m]
@@ -129,8 +129,8 @@ struct Columns {
     float gap = 0;  ///< distance between columns [m]
 };
 
-Columns cut_columns(const Hull& hull, const Quat& rotation) {
-    Columns columns;
+BodyColumns cut_columns(const Hull& hull, const Quat& rotation) {
+    BodyColumns columns;
     if (hull.shape == TouchShape::Ball) {
         columns.count = 1;
         columns.middle[0] = hull.middle;
@@ -192,7 +192,7 @@ LocalWater sample_about_ball(const WaterSurface& surface, const Vec3& center, fl
 }
 
 void sample_columns(
-    const Hull& hull, const Place& place, const WaterSurface& water, Columns& columns) {
+    const Hull& hull, const BodyPlace& place, const WaterSurface& water, BodyColumns& columns) {
     WaterSurface surface = water;
     surface.min_wavelength = 2 * columns.gap;  // shorter waves average out
     for (std::size_t i = 0; i < columns.count; ++i) {
@@ -225,7 +225,7 @@ void add_part(const LocalWater& water, float volume, const Vec3& arm, float over
     lift.water_velocity += volume * calm * water.velocity;
 }
 
-void lift_ball(const Hull& hull, const Place& place, const LocalWater& water, Lift& lift) {
+void lift_ball(const Hull& hull, const BodyPlace& place, const LocalWater& water, Lift& lift) {
     const float r = hull.half.x;
     const Vec3 arm = place.rotation * hull.middle;
     const Vec3 middle = place.center + arm;
@@ -239,7 +239,7 @@ void lift_ball(const Hull& hull, const Place& place, const LocalWater& water, Li
     }
 }
 
-Lift lift_hull(const Hull& hull, const Place& place, const Columns& columns) {
+Lift lift_hull(const Hull& hull, const BodyPlace& place, const BodyColumns& columns) {
     Lift lift;
     if (hull.shape == TouchShape::Ball) {
         if (columns.water[0].is_water) {
@@ -328,7 +328,7 @@ void resist(
 }
 
 /// A half space: points satisfy normal.p >= offset.
-struct Wall {
+struct BodyWall {
     Vec3 normal = {0, 1, 0};
     float offset = 0;
 };
@@ -336,7 +336,7 @@ struct Wall {
 /// The bottom and the edges that confine the hull.
 struct Walls {
     std::size_t count = 0;
-    std::array<Wall, 5> list{};
+    std::array<BodyWall, 5> list{};
     void add(const Vec3& normal, const Vec3& point) {
         list[count++] = {normal, glm::dot(normal, point)};
     }
@@ -388,7 +388,7 @@ struct Contact {
 /// Resolves contacts with a wall, with friction, and removes penetration. Sequential impulses over
 /// several passes; accumulated impulses are clamped, so that excess can be taken back.
 void resolve_contacts(
-    const Hull& hull, const Wall& wall, float step, Place& place, Motion& motion) {
+    const Hull& hull, const BodyWall& wall, float step, BodyPlace& place, Motion& motion) {
     std::array<Vec3, 8> arms;
     const std::size_t corners = corners_of(hull, place.rotation, wall.normal, arms);
     const float height = glm::dot(wall.normal, place.center) - wall.offset;
@@ -465,7 +465,8 @@ Substeps substeps_of(const Hull& hull, float step) {
     const float omega = std::sqrt(kWaterDensity * kWeight * face / hull.mass);
     const float wanted = std::ceil(omega * step / kPhaseStep);
     Substeps substeps;
-    substeps.count = static_cast<int>(std::clamp(wanted, 1.0f, static_cast<float>(kMaxSubsteps)));
+    substeps.count =
+        static_cast<int>(std::clamp(wanted, 1.0f, static_cast<float>(kMaxBodySubsteps)));
     const float phase = omega * step / static_cast<float>(substeps.count);
     substeps.heavier = std::max(1.0f, square(phase / (2 * kPhaseStep)));
     return substeps;
@@ -476,8 +477,9 @@ Substeps substeps_of(const Hull& hull, float step) {
 Displaced
 displaced_water(const WaterTouch& touch, const Transform& transform, const WaterSurface& surface) {
     const Hull hull = make_hull(touch, {}, transform.scale);
-    const Place place = {transform.position - transform.rotation * hull.origin, transform.rotation};
-    Columns columns = cut_columns(hull, place.rotation);
+    const BodyPlace place = {
+        transform.position - transform.rotation * hull.origin, transform.rotation};
+    BodyColumns columns = cut_columns(hull, place.rotation);
     sample_columns(hull, place, surface, columns);
     const Lift lift = lift_hull(hull, place, columns);
     return {
@@ -504,7 +506,7 @@ std::optional<Splash> step_floating_body(
     float step, FloatingState& state, Transform& transform) {
     const Hull hull = make_hull(touch, floating, transform.scale);
     const Quat rotation = normalize_or_identity(transform.rotation);
-    Place place = {transform.position - rotation * hull.origin, rotation};
+    BodyPlace place = {transform.position - rotation * hull.origin, rotation};
     if (!(hull.volume > 1e-12f && hull.volume < 1e12f) || !is_finite(place.center) || !(step > 0)
         || !std::isfinite(hull.mass) || transform.position.y < kMinHeight) {
         return std::nullopt;
@@ -516,7 +518,7 @@ std::optional<Splash> step_floating_body(
     const Vec3 middle = place.world(hull.middle);
     const float reach = glm::length(hull.half);
     const Nearest nearest = nearest_water(surfaces, middle, reach);
-    Columns columns = cut_columns(hull, place.rotation);
+    BodyColumns columns = cut_columns(hull, place.rotation);
     const float fall = step * glm::length(motion.velocity);
     if (nearest.found && middle.y - nearest.point.position.y < 2 * reach + fall) {
         sample_columns(hull, place, surfaces[nearest.index], columns);

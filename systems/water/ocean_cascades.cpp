@@ -16,7 +16,7 @@ namespace limn {
 
 namespace {
 
-constexpr double kTurn = 6.283185307179586;  ///< 2 pi
+constexpr double kFullTurn = 6.283185307179586;  ///< 2 pi
 
 float limit(float value, float low, float high) {
     return value > low ? std::min(value, high) : low;
@@ -28,7 +28,7 @@ int waves_across(int place, int size) {
     return place < size / 2 ? place : place - size;
 }
 
-int place_of(int waves, int size) {
+int wave_index(int waves, int size) {
     return (waves + size) % size;
 }
 
@@ -46,14 +46,14 @@ double looped(double omega, float period) {
     if (!(period > 0)) {
         return omega;
     }
-    const double least = kTurn / period;
+    const double least = kFullTurn / period;
     return least * std::round(omega / least);
 }
 
 void draw_spectrum(
     const Ocean& ocean, const OceanEnergy& sea, std::size_t index, OceanCascade& cascade) {
     const int size = cascade.size;
-    const double step = kTurn / cascade.patch;  // dkx = dkz
+    const double step = kFullTurn / cascade.patch;  // dkx = dkz
     const auto has_wave = [&](int n, int m) {
         const double k = step * std::hypot(n, m);
         return n > -size / 2 && m > -size / 2 && k > 0 && k >= cascade.band_low
@@ -76,7 +76,7 @@ void draw_spectrum(
                     looped(wave_frequency(step * std::hypot(n, m), sea.depth), ocean.loop_period));
                 cascade.ahead_re[at] = static_cast<float>(h0.real());
                 cascade.ahead_im[at] = static_cast<float>(h0.imag());
-                const int against = place_of(-n, size) * size + place_of(-m, size);
+                const int against = wave_index(-n, size) * size + wave_index(-m, size);
                 cascade.behind_re[against] = static_cast<float>(h0.real());
                 cascade.behind_im[against] = static_cast<float>(-h0.imag());
             }
@@ -90,7 +90,7 @@ OceanCascade make_flat_cascade(int size, double patch) {
     cascade.patch = static_cast<float>(patch);
     for (int i = 0; i < size; ++i) {
         cascade.axis.push_back(
-            static_cast<float>(kTurn / patch * static_cast<double>(waves_across(i, size))));
+            static_cast<float>(kFullTurn / patch * static_cast<double>(waves_across(i, size))));
     }
     const std::size_t points = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
     for (std::vector<float>* plane :
@@ -141,7 +141,7 @@ std::vector<OceanCascade> make_ocean_cascades(const Ocean& ocean) {
     for (int i = 0; i < ocean.cascades; ++i) {
         OceanCascade& cascade = cascades.emplace_back(make_flat_cascade(ocean.resolution, patch));
         patch /= kOceanPatchRatio;
-        const double next_edge = kTurn / patch * waves_at_band_edge(ocean.resolution);
+        const double next_edge = kFullTurn / patch * waves_at_band_edge(ocean.resolution);
         cascade.band_low = edge;
         cascade.band_high = i + 1 < ocean.cascades ? static_cast<float>(next_edge) : INFINITY;
         edge = cascade.band_high;

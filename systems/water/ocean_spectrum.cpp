@@ -21,7 +21,7 @@ constexpr double kTurn = 6.283185307179586;  ///< 2 pi
 // over which they vary smoothly, except at the kinks of beta.
 constexpr double kMinLog = -3.0;
 constexpr double kMaxLog = 5.0;
-constexpr int kSamples = 512;
+constexpr int kSpectrumSamples = 512;
 
 double sech(double x) {
     return 1.0 / std::cosh(x);
@@ -50,7 +50,7 @@ double integrate_shape(const OceanEnergy& sea, double f_over_peak) {
 }
 
 double log_of_sample(int i) {
-    return kMinLog + (kMaxLog - kMinLog) * i / (kSamples - 1);
+    return kMinLog + (kMaxLog - kMinLog) * i / (kSpectrumSamples - 1);
 }
 
 bool has_closed_form(OceanSpreading spreading) {
@@ -59,8 +59,8 @@ bool has_closed_form(OceanSpreading spreading) {
 
 double spread_scale(const OceanEnergy& sea, double f_over_peak) {
     const double at = (std::log(f_over_peak) - kMinLog) / (kMaxLog - kMinLog);
-    const double x = std::clamp(at, 0.0, 1.0) * (kSamples - 1);
-    const int i = std::min(static_cast<int>(x), kSamples - 2);
+    const double x = std::clamp(at, 0.0, 1.0) * (kSpectrumSamples - 1);
+    const int i = std::min(static_cast<int>(x), kSpectrumSamples - 2);
     return sea.spread_scale[i] + (x - i) * (sea.spread_scale[i + 1] - sea.spread_scale[i]);
 }
 
@@ -164,8 +164,8 @@ OceanEnergy make_ocean_energy(const Ocean& ocean) {
     }
     }
     if (!has_closed_form(sea.spreading)) {
-        sea.spread_scale.resize(kSamples);
-        for (int i = 0; i < kSamples; ++i) {
+        sea.spread_scale.resize(kSpectrumSamples);
+        for (int i = 0; i < kSpectrumSamples; ++i) {
             sea.spread_scale[i] = 1.0 / integrate_shape(sea, std::exp(log_of_sample(i)));
         }
     }

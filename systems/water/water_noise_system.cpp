@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kMaxPoints = 1024;
 constexpr std::uint32_t kMaxOctaves = 16;
-constexpr std::size_t kRowGrain = 8;
+constexpr std::size_t kNoiseRowGrain = 8;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void fill_noise_field(const NoiseSurface& noise, double time, HeightField& field
     field.size = noise.size;
     field.height.resize(side * side);
     field.normal.resize(side * side);
-    parallel_for(outer, kRowGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(outer, kNoiseRowGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t z = begin; z < end; ++z) {
             for (std::size_t x = 0; x < outer; ++x) {
                 const Vec2 at = cell * (Vec2(x, z) - 1.0f) - 0.5f * noise.size;

@@ -19,9 +19,9 @@ constexpr int kMaxEvaluations = 32;
 constexpr float kMiss = 1e-4f;           ///< tolerance [m]
 constexpr float kRoundedMiss = 2.5e-7f;  ///< tolerance relative to the distance from the origin
 constexpr float kMinShare =
-    1.0f / 64;                      ///< smallest fraction of a Newton step tried by backtracking
-constexpr float kCusp = 0.01f;      ///< Jacobian below which the surface counts as a cusp
-constexpr std::size_t kGrain = 64;  ///< points per task
+    1.0f / 64;                  ///< smallest fraction of a Newton step tried by backtracking
+constexpr float kCusp = 0.01f;  ///< Jacobian below which the surface counts as a cusp
+constexpr std::size_t kQueryGrain = 64;  ///< points per task
 
 WavePoint evaluate_cascade(const OceanCascade& cascade, float step, const Vec2& rest) {
     const auto size = static_cast<float>(cascade.size);
@@ -161,7 +161,7 @@ WaterPoint sample_water(const WaterSurface& surface, const Vec2& at) {
 void sample_waters(
     const WaterSurface& surface, std::span<const Vec2> at, std::span<WaterPoint> points) {
     LIMN_CHECK(at.size() == points.size());
-    parallel_for(at.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(at.size(), kQueryGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             points[i] = sample_water(surface, at[i]);
         }

@@ -13,13 +13,13 @@ namespace limn {
 
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
+constexpr double kHalfPlaneTurn = 6.283185307179586;
 constexpr float kMaxAlongRow = 0.999f;  ///< largest component of k along a row, relative to k
 constexpr int kMaxSubsteps = 32;        ///< between rows
 
 float number_of(float period, float depth) {
     const double deep = static_cast<double>(std::max(depth, kMinWaveDepth));
-    return static_cast<float>(wave_number(kTurn / static_cast<double>(period), deep));
+    return static_cast<float>(wave_number(kHalfPlaneTurn / static_cast<double>(period), deep));
 }
 
 /// The grid in marching order: rows starting at the side where the train enters.

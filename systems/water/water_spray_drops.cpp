@@ -9,8 +9,8 @@ namespace limn {
 
 namespace {
 
-constexpr float kNearCrest = 0.3f;     ///< largest phase offset from the crest [rad]
-constexpr float kMaxDrops = 10000.0f;  ///< per wave and step
+constexpr float kNearCrest = 0.3f;          ///< largest phase offset from the crest [rad]
+constexpr float kMaxSprayDrops = 10000.0f;  ///< per wave and step
 
 /// Phase of a line at a rest position; leaned(): with forward lean, p - lean max(0, sin p).
 float phase_at(const WaveLine& line, const Vec2& rest) {
@@ -29,7 +29,7 @@ float unleaned(const WaveLine& line, float wanted) {
 }
 
 /// Wrapped to -pi .. pi.
-float wrapped(float phase) {
+float wrapped_phase(float phase) {
     return phase - 2 * kPi * std::round(phase / (2 * kPi));
 }
 
@@ -53,7 +53,8 @@ float draw_speed(float mean, float spread, Random& random) {
 
 /// Random count with the mean `expected`.
 int draw_count(float expected, Random& random) {
-    return expected > 0 ? static_cast<int>(std::min(expected, kMaxDrops) + random.uniform()) : 0;
+    return expected > 0 ? static_cast<int>(std::min(expected, kMaxSprayDrops) + random.uniform())
+                        : 0;
 }
 
 /// Extents of the area that emits [m].
@@ -99,7 +100,7 @@ void spray_crests(
             const float speed = draw_speed(orbital_speed(line), source.spread, random);
             Vec2 rest = Vec2(x, z) * size;
             const float crest = unleaned(line, 0.5f * kPi + near);
-            rest += line.k * (wrapped(crest - phase_at(line, rest)) / k2);
+            rest += line.k * (wrapped_phase(crest - phase_at(line, rest)) / k2);
             if (std::abs(rest.x) > 0.5f * size.x || std::abs(rest.y) > 0.5f * size.y) {
                 continue;
             }
@@ -160,7 +161,8 @@ void spray_impact(
     if (strongest == nullptr || !top.is_water) {
         return;
     }
-    const float phase = wrapped(leaned(*strongest, phase_at(*strongest, top.rest)) - 0.5f * kPi);
+    const float phase =
+        wrapped_phase(leaned(*strongest, phase_at(*strongest, top.rest)) - 0.5f * kPi);
     const Vec3 along = surface.frame.direction_to_world(direction_of(*strongest));
     const Vec3 back = along - 2 * glm::dot(along, normal) * normal;
     const int count = draw_count(obstacle.rate * impact_share(phase) * step, random);

@@ -9,7 +9,8 @@ namespace limn {
 
 namespace {
 
-constexpr float kReach = 3.0f;  ///< largest height of the surface above or below an obstacle [m]
+constexpr float kSprayReach =
+    3.0f;  ///< largest height of the surface above or below an obstacle [m]
 
 }  // namespace
 
@@ -47,7 +48,7 @@ void update_spray(
         const Vec3 normal =
             normalize_or(transform_vector(place.world, obstacle.normal), Vec3(0, 1, 0));
         for (const WaterSurface& surface : surfaces) {
-            if (std::abs(surface.frame.origin.y - point.y) < kReach) {
+            if (std::abs(surface.frame.origin.y - point.y) < kSprayReach) {
                 spray_impact(surface, obstacle, point, normal, time->step, random, drops.drops);
             }
         }

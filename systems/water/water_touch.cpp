@@ -13,7 +13,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kBulgeReach = 1.5f;  ///< of the bulge, relative to the body's half extents
+constexpr float kTouchBulgeReach = 1.5f;  ///< of the bulge, relative to the body's half extents
 constexpr float kUnitBall = 4.0f / 3.0f * kPi;
 constexpr float kMinHalfExtent = 1e-4f;  ///< half extent of a part [m]
 
@@ -139,7 +139,7 @@ WaterBulge bulge_of(
         place_shape(touching.shape, touching.half, touching.offset, touching.world, frame);
     WaterBulge bulge;
     bulge.center = {shape.center.x, shape.center.z};
-    bulge.radius = kBulgeReach * Vec2(shape.reach.x, shape.reach.z);
+    bulge.radius = kTouchBulgeReach * Vec2(shape.reach.x, shape.reach.z);
     // Also rejects positions that are not finite.
     const bool over = std::abs(bulge.center.x) <= 0.5f * extent.x
                       && std::abs(bulge.center.y) <= 0.5f * extent.y

@@ -15,13 +15,13 @@ namespace {
 
 constexpr float kAbove = 3.0f;          ///< largest distance above or below the rest surface [m]
 constexpr float kJump = 100.0f;         ///< speed above which motion counts as a teleport [m/s]
-constexpr float kMinSpeed = 0.2f;       ///< below which there is no wake [m/s]
+constexpr float kMinWakeSpeed = 0.2f;   ///< below which there is no wake [m/s]
 constexpr float kLifetime = 3.0f;       ///< of a ring, in time constants of its decay
 constexpr std::size_t kMaxRings = 256;  ///< per body of water
 constexpr int kMaxRingsPerStep = 16;
 
 /// Adds a ring of this age at `at` in the world.
-void add_ring(
+void add_wake_ring(
     const WakeEmitter& wake, const Vec2& at, float speed, float age,
     Query<const Water, const WorldTransform, WaterWaves> waters, float height) {
     waters.each([&](const Water& water, const WorldTransform& place, WaterWaves& waves) {
@@ -65,7 +65,7 @@ void emit_wakes(
             state.last_ring = now;
             return;
         }
-        if (speed < kMinSpeed) {
+        if (speed < kMinWakeSpeed) {
             return;
         }
         // One ring per `spacing` traveled, with the time since then as its age.
@@ -73,7 +73,7 @@ void emit_wakes(
              ++i) {
             state.last_ring += glm::normalize(now - state.last_ring) * wake.spacing;
             const float age = glm::distance(now, state.last_ring) / speed;
-            add_ring(wake, state.last_ring, speed, age, waters, world.row[1].w);
+            add_wake_ring(wake, state.last_ring, speed, age, waters, world.row[1].w);
         }
     });
 }

@@ -13,7 +13,7 @@ namespace limn {
 
 namespace {
 
-constexpr double kTurn = 6.28318530717958647692;
+constexpr double kWaveTurn = 6.28318530717958647692;
 constexpr std::uint32_t kMaxWaves = 256;  ///< of a group
 constexpr float kMaxLean = 0.99f;
 
@@ -25,7 +25,7 @@ double depth_of(const Water& water) {
 
 /// Wrapped to -pi .. pi.
 float wrapped(double angle) {
-    return static_cast<float>(angle - std::round(angle / kTurn) * kTurn);
+    return static_cast<float>(angle - std::round(angle / kWaveTurn) * kWaveTurn);
 }
 
 bool is_wave(float amplitude, float length, float other) {
@@ -36,7 +36,7 @@ void add_line(const WaterWave& wave, double depth, double time, WaveTable& table
     if (!is_wave(wave.amplitude, wave.length, wave.direction + wave.phase + wave.sharpness)) {
         return;
     }
-    const double k = kTurn / static_cast<double>(wave.length);
+    const double k = kWaveTurn / static_cast<double>(wave.length);
     const double frequency = wave_frequency(k, depth);
     const Vec2 along = {std::cos(wave.direction), std::sin(wave.direction)};
     WaveLine line;
@@ -53,7 +53,7 @@ void add_ring(const RadialWave& wave, double depth, double time, WaveTable& tabl
     if (!is_wave(wave.amplitude, wave.length, wave.center.x + wave.center.y + wave.phase)) {
         return;
     }
-    const double k = kTurn / static_cast<double>(wave.length);
+    const double k = kWaveTurn / static_cast<double>(wave.length);
     const double frequency = wave_frequency(k, depth) * (wave.inward ? 1 : -1);
     table.rings.push_back(
         {.center = wave.center,
@@ -71,7 +71,7 @@ void add_packet(const WavePacket& packet, double depth, WaveTable& table) {
         || !is_wave(packet.amplitude, packet.length, packet.center.x + packet.center.y)) {
         return;
     }
-    const double k = kTurn / static_cast<double>(packet.length);
+    const double k = kWaveTurn / static_cast<double>(packet.length);
     const double frequency = wave_frequency(k, depth);
     const double front = frequency / k * static_cast<double>(packet.age);
     const double train = static_cast<double>(packet.length) * std::max(packet.waves, 1u);
