@@ -4,6 +4,7 @@
 #include "systems/motion_kernels.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 namespace limn {
@@ -18,7 +19,34 @@ enum class Work : std::uint8_t {
 };
 
 /// Flags of an entity slot in this step.
-enum : std::uint8_t { kMoved = 1, kJumped = 2 };
+enum : std::uint8_t { kMoved = 1 };
+
+/// The jumps of one step: what was requested, then also what hangs on it.
+class JumpTimes {
+  public:
+    /// The earliest counts.
+    void add(Entity entity, float at) {
+        const auto [found, added] = times_.try_emplace(entity, at);
+        found->second = std::min(found->second, at);
+    }
+    [[nodiscard]] bool empty() const { return times_.empty(); }
+    void add_descendants(std::span<const HierarchyNode> nodes) {
+        for (const HierarchyNode& node : nodes) {  // parents first
+            if (const auto found = times_.find(node.parent); found != times_.end()) {
+                add(node.entity, found->second);
+            }
+        }
+    }
+    template <typename Visit>
+    void each(Visit&& visit) const {
+        for (const auto& [entity, at] : times_) {
+            visit(entity, at);
+        }
+    }
+
+  private:
+    std::map<Entity, float> times_;
+};
 
 /// Flags by Entity::index; 0 if absent.
 class SlotFlags {
@@ -40,6 +68,7 @@ class SlotFlags {
 /// Components of a hierarchy node.
 struct NodeBody {
     const Transform* local = nullptr;  ///< null: unchanged in this step
+    const Affine* joint = nullptr;     ///< instead of `local`; null: not attached to a joint
     Affine* world = nullptr;
     Affine* previous = nullptr;
 };
@@ -63,15 +92,31 @@ void settle(std::span<const WorldTransform> world, std::span<PreviousWorldTransf
 }
 
 /// Updates the current and previous world matrix of one entity.
-void step_body(const NodeBody& body, const Affine& world, bool jumped) {
+void step_body(const NodeBody& body, const Affine& world) {
     const bool fresh = body.previous->row[0] == Vec4(0);
-    *body.previous = jumped || fresh ? world : *body.world;
+    *body.previous = fresh ? world : *body.world;
     *body.world = world;
 }
 
 Affine local_matrix(const Transform& local) {
     return affine_from(local.position, local.rotation, local.scale);
 }
+
+/// The joints that entities are attached to. Their matrices may be sheared, which a Transform
+/// cannot represent.
+struct AttachedJoints {
+    const Query<const JointAttachment>& attachments;
+    const Query<const Pose>& poses;
+
+    /// Null if the character has no such joint.
+    [[nodiscard]] const Affine* of(Entity entity) const {
+        const auto& attachment = *attachments.find<const JointAttachment>(entity);
+        const auto* const pose = poses.find<const Pose>(attachment.character);
+        return pose != nullptr && attachment.joint < pose->joints.size()
+                   ? &pose->joints[attachment.joint]
+                   : nullptr;
+    }
+};
 
 /// Maps entity slots to hierarchy nodes.
 class NodeNumbers {
@@ -114,20 +159,23 @@ bool has_new_orphan(
 }
 
 /// One chunk of children: collects the components of those that change, and updates those whose
-/// parent was destroyed. Returns whether anything changes.
+/// parent was destroyed. `joints`: null if they are not attached to any. Returns whether anything
+/// changes.
 bool collect_children(
     std::span<const Entity> entities, const NodeNumbers& numbers, const SlotFlags& flags,
-    bool compute, std::span<const Transform> local, std::span<WorldTransform> world,
-    std::span<PreviousWorldTransform> previous, std::vector<NodeBody>& node_bodies) {
+    bool compute, const AttachedJoints* joints, std::span<const Transform> local,
+    std::span<WorldTransform> world, std::span<PreviousWorldTransform> previous,
+    std::vector<NodeBody>& node_bodies) {
     const bool moves = compute || std::any_of(entities.begin(), entities.end(), [&](Entity entity) {
                            return (flags.get(entity) & kMoved) != 0;
                        });
     for (std::size_t i = 0; moves && i < entities.size(); ++i) {
-        const NodeBody body = {&local[i], &world[i].world, &previous[i].world};
+        const Affine* const joint = joints != nullptr ? joints->of(entities[i]) : nullptr;
+        const NodeBody body = {&local[i], joint, &world[i].world, &previous[i].world};
         const std::uint32_t node = numbers.of(entities[i]);
         const bool moved = (flags.get(entities[i]) & kMoved) != 0;
         if (node == NodeNumbers::kNone && compute) {
-            step_body(body, local_matrix(local[i]), false);
+            step_body(body, local_matrix(local[i]));
         } else if (node != NodeNumbers::kNone && moved) {
             node_bodies[node] = body;
         } else {
@@ -135,6 +183,28 @@ bool collect_children(
         }
     }
     return moves;
+}
+
+/// The jumps of this step, with descendants; forgets those of the previous one.
+JumpTimes take_jumps(
+    const Query<const Transform, With<Teleport>>& teleports, StepJumps* jumps,
+    std::span<const HierarchyNode> nodes, Commands& commands) {
+    JumpTimes times;
+    teleports.each([&](Entity entity, const Transform&) {
+        times.add(entity, 0.0f);
+        commands.remove<Teleport>(entity);
+    });
+    if (jumps != nullptr) {
+        for (const JumpRequest& request : jumps->requests) {
+            times.add(request.entity, request.at);
+        }
+        jumps->requests.clear();
+        jumps->transforms.clear();
+    }
+    if (!times.empty()) {
+        times.add_descendants(nodes);
+    }
+    return times;
 }
 
 }  // namespace
@@ -151,10 +221,12 @@ void update_transforms(
     TransformVersions versions,
     Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
     Query<const WorldTransform> worlds, Query<const Transform, With<Teleport>> teleports,
+    Query<const JointAttachment> attachments, Query<const Pose> poses, OptionalRes<StepJumps> jumps,
     HierarchyRef hierarchy, Commands commands) {
     const std::span<const HierarchyNode> nodes = hierarchy->nodes();
     const NodeNumbers numbers(nodes);
     SlotFlags flags;
+    const JumpTimes jump_times = take_jumps(teleports, jumps.get(), nodes, commands);
 
     // The work for each chunk and, if there is a hierarchy, which entities move.
     std::vector<Work> work(versions.chunk_count(), Work::None);
@@ -175,10 +247,6 @@ void update_transforms(
             }
         }
     });
-    teleports.each([&](Entity entity, const Transform&) {
-        flags.set(entity, kMoved | kJumped);
-        commands.remove<Teleport>(entity);
-    });
     if (!any) {
         return;
     }
@@ -187,6 +255,7 @@ void update_transforms(
     }
 
     // Roots; collects the children that change.
+    const AttachedJoints joints{attachments, poses};
     std::vector<NodeBody> node_bodies(nodes.size());
     bodies.par_chunks([&](ChunkView chunk, std::span<const Transform> local,
                           std::span<WorldTransform> world,
@@ -194,8 +263,9 @@ void update_transforms(
         const Work wanted = work[chunk.index()];
         if (chunk.has<Parent>()) {
             if (collect_children(
-                    chunk.entities(), numbers, flags, wanted == Work::Compute, local, world,
-                    previous, node_bodies)) {
+                    chunk.entities(), numbers, flags, wanted == Work::Compute,
+                    chunk.has<JointAttachment>() ? &joints : nullptr, local, world, previous,
+                    node_bodies)) {
                 return;
             }
         } else if (wanted == Work::Compute) {
@@ -221,7 +291,8 @@ void update_transforms(
                     continue;
                 }
                 const HierarchyNode& node = level[i];
-                const Affine local = local_matrix(*body.local);
+                const Affine local =
+                    body.joint != nullptr ? *body.joint : local_matrix(*body.local);
                 const Affine* above = node.parent_node != HierarchyNode::kRoot
                                           ? node_bodies[node.parent_node].world
                                           : nullptr;
@@ -229,20 +300,22 @@ void update_transforms(
                     const auto* parent = worlds.find<const WorldTransform>(node.parent);
                     above = parent != nullptr ? &parent->world : nullptr;
                 }
-                step_body(
-                    body, above != nullptr ? *above * local : local,
-                    (flags.get(node.entity) & kJumped) != 0);
+                step_body(body, above != nullptr ? *above * local : local);
             }
         });
     }
 
-    // Teleported roots have no velocity.
-    teleports.each([&](Entity entity, const Transform&) {
-        const auto* world = bodies.find<WorldTransform>(entity);
-        auto* previous = bodies.find<PreviousWorldTransform>(entity);
-        if (world != nullptr && previous != nullptr) {
-            previous->world = world->world;
+    // What jumped has no velocity.
+    jump_times.each([&](Entity entity, float at) {
+        const auto* const world = worlds.find<const WorldTransform>(entity);
+        auto* const previous = bodies.find<PreviousWorldTransform>(entity);
+        if (world == nullptr || previous == nullptr) {
+            return;
         }
+        if (jumps) {
+            jumps->transforms.push_back({entity, at, previous->world});
+        }
+        previous->world = world->world;
     });
 }
 
