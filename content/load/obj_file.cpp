@@ -6,6 +6,9 @@
 #include "content/load/triangulate_polygon.h"
 #include "ecs/base/text.h"
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -36,6 +39,8 @@ class ObjNameList {
     std::vector<std::string>& names_;
     std::unordered_map<std::string, std::uint32_t> numbers_;
 };
+
+constexpr double kFarFromOrigin = 10'000;  // [file's unit], where floats have steps of 1 mm
 
 class ObjReader {
   public:
@@ -110,8 +115,8 @@ class ObjReader {
         return fail("{}: found more {}, expected at most {}", line_.position(), what, limit);
     }
 
-    Result<Vec3> three_numbers(std::string_view what) {
-        Vec3 value;
+    Result<glm::dvec3> three_numbers(std::string_view what) {
+        glm::dvec3 value;
         for (int i = 0; i < 3; ++i) {
             value[i] = LIMN_TRY(line_.number(what));
         }
@@ -122,8 +127,14 @@ class ObjReader {
     Status read_position() {
         const std::size_t index = result_.positions.size();
         LIMN_TRY(check_room(index, limits_.max_vertices, "v"));
-        const Result<Vec3> position = three_numbers("v");
-        result_.positions.push_back(position ? *position : Vec3(0));
+        const Result<glm::dvec3> position = three_numbers("v");
+        if (position && !has_origin_) {
+            has_origin_ = true;
+            const bool is_far = glm::length(*position) > kFarFromOrigin;
+            result_.origin = is_far ? Vec3(*position) : Vec3(0);
+        }
+        result_.positions.push_back(
+            position ? Vec3(*position - glm::dvec3(result_.origin)) : Vec3(0));
         if (position) {
             read_color(index);
         } else {
@@ -137,13 +148,13 @@ class ObjReader {
         std::array<float, 5> numbers;
         std::size_t count = 0;
         while (count < numbers.size() && line_.has_word()) {
-            const Result<float> number = line_.number("v");
+            const Result<double> number = line_.number("v");
             if (!number) {
                 leave_out(
                     number.error().message, format_text("the color of vertex {}", vertex + 1));
                 return;
             }
-            numbers[count++] = *number;
+            numbers[count++] = static_cast<float>(*number);
         }
         colors_.add(vertex, std::span(numbers).first(count));
     }
@@ -153,7 +164,7 @@ class ObjReader {
         LIMN_TRY(check_room(result_.uvs.size(), limits_.max_vertices, "vt"));
         Vec2 uv(0);
         for (int i = 0; i < 2 && (i == 0 || line_.has_word()); ++i) {
-            const Result<float> number = line_.number("vt");
+            const Result<double> number = line_.number("vt");
             if (!number) {
                 uv = Vec2(0);
                 leave_out(
@@ -161,7 +172,7 @@ class ObjReader {
                     format_text("texture coordinate {}", result_.uvs.size() + 1));
                 break;
             }
-            uv[i] = *number;
+            uv[i] = static_cast<float>(*number);
         }
         result_.uvs.push_back(uv);
         return Done{};
@@ -169,11 +180,11 @@ class ObjReader {
 
     Status read_normal() {
         LIMN_TRY(check_room(result_.normals.size(), limits_.max_vertices, "vn"));
-        const Result<Vec3> normal = three_numbers("vn");
+        const Result<glm::dvec3> normal = three_numbers("vn");
         if (!normal) {
             leave_out(normal.error().message, format_text("normal {}", result_.normals.size() + 1));
         }
-        result_.normals.push_back(normal ? *normal : Vec3(0));
+        result_.normals.push_back(normal ? Vec3(*normal) : Vec3(0));
         return Done{};
     }
 
@@ -351,6 +362,7 @@ class ObjReader {
     ObjNameList materials_{result_.materials};
     ObjColors colors_;
     ObjWarnings errors_{result_.errors};
+    bool has_origin_ = false;
     std::vector<std::string> ignored_;
     std::vector<std::uint32_t> face_lines_;     ///< line of each face
     std::vector<std::uint32_t> bad_positions_;  ///< sorted
@@ -377,6 +389,11 @@ Result<ObjFile> load_intact_obj(const std::string& path) {
     ObjFile obj = LIMN_TRY(load_obj(path));
     if (!obj.errors.empty()) {
         return Error{obj.errors.front()};
+    }
+    if (obj.origin != Vec3(0)) {
+        return fail(
+            "{}: found its first vertex far from the origin, expected it within {}", path,
+            kFarFromOrigin);
     }
     return obj;
 }

@@ -15,9 +15,11 @@ namespace limn {
 // polygons, and the names of their objects, groups and materials. Positive indices may refer to
 // vertices further down. A bad line costs what it says and leaves one line of text: "head.obj:12:
 // found X, expected Y; the face is left out". A face loses its texture coordinates or normals where
-// one of those is bad. Ignored with a warning: points, lines and free-form surfaces. Smoothing
-// groups are ignored. After Wavefront Technologies, "Object Files", Advanced Visualizer Manual,
-// appendix B1, 1995, and for colors P. Bourke, "OBJ with vertex colours".
+// one of those is bad. Maps and scans stand millions
+// of meters from their origin, where floats have steps of half a meter: there, positions are
+// relative to the first one. Ignored with a warning: points, lines and free-form surfaces.
+// Smoothing groups are ignored. After Wavefront Technologies, "Object Files", Advanced Visualizer
+// Manual, appendix B1, 1995, and for colors P. Bourke, "OBJ with vertex colours".
 
 /// Indices into the lists of an ObjFile; -1: none.
 struct ObjCorner {
@@ -36,6 +38,7 @@ struct ObjFace {
 };
 
 struct ObjFile {
+    Vec3 origin = {0, 0, 0};      ///< of `positions` in the file
     std::vector<Vec3> positions;  ///< in the file's unit; (0, 0, 0) for a bad one, without faces
     std::vector<Vec3> colors;     ///< one for each position, linear RGB 0 .. 1, or empty
     std::vector<Vec2> uvs;        ///< (0, 0) is the bottom left of the image

@@ -33,7 +33,7 @@ std::string_view first_word(std::string_view text) {
     return word.substr(0, comment);
 }
 
-std::optional<float> parse_obj_number(std::string_view word) {
+std::optional<double> parse_obj_number(std::string_view word) {
     double value = 0;
     const char* const begin = word.data() + (word.starts_with('+') ? 1 : 0);
     const char* const end = word.data() + word.size();
@@ -42,7 +42,7 @@ std::optional<float> parse_obj_number(std::string_view word) {
         || !(std::abs(value) <= kLargestObjNumber)) {
         return std::nullopt;
     }
-    return static_cast<float>(value);
+    return value;
 }
 
 }  // namespace
@@ -82,9 +82,9 @@ std::string_view ObjLines::word() {
     return found;
 }
 
-Result<float> ObjLines::number(std::string_view what) {
+Result<double> ObjLines::number(std::string_view what) {
     const std::string_view found = word();
-    if (const std::optional<float> value = parse_obj_number(found)) {
+    if (const std::optional<double> value = parse_obj_number(found)) {
         return *value;
     }
     return fail(

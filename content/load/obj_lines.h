@@ -26,7 +26,7 @@ class ObjLines {
     std::string_view word();
 
     /// The next word as a number: finite, and small enough for cross products of edges.
-    Result<float> number(std::string_view what);
+    Result<double> number(std::string_view what);
 
     /// The next word, which stays.
     [[nodiscard]] std::string_view peek() const;

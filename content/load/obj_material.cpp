@@ -127,7 +127,7 @@ class ObjMaterialReader {
     }
 
     Result<float> read_value(std::string_view keyword, float max) {
-        const float value = LIMN_TRY(line_.number(keyword));
+        const auto value = static_cast<float>(LIMN_TRY(line_.number(keyword)));
         if (value < 0) {
             return fail(
                 "{}: {}: found {}, expected 0 to {}", line_.position(), keyword, value, max);
@@ -197,14 +197,16 @@ class ObjMaterialReader {
             line_.word();
             Vec3 value = option == "-s" ? Vec3(1) : Vec3(0);
             for (int i = 0; i < 3 && line_.is_number_next(); ++i) {
-                value[i] = *line_.number(option);
+                value[i] = static_cast<float>(*line_.number(option));
             }
             (option == "-s" ? map.scale : option == "-o" ? map.offset : turbulence_) = Vec2(value);
             return true;
         }
         if (option == "-bm") {
             line_.word();
-            keep(line_.number(map.position + ": -bm"), map.strength);
+            if (line_.is_number_next()) {
+                map.strength = static_cast<float>(*line_.number(option));
+            }
             return true;
         }
         if (option == "-clamp") {

@@ -42,8 +42,15 @@ std::string find_any_case(const std::filesystem::path& folder, const std::string
     return "";
 }
 
+/// Some programs put names in quotes.
+std::string_view without_quotes(std::string_view name) {
+    const bool has_quotes = name.size() > 2 && name.starts_with('"') && name.ends_with('"');
+    return has_quotes ? name.substr(1, name.size() - 2) : name;
+}
+
 /// What a name may stand for, as URIs.
 std::vector<std::string> obj_uris_of(std::string_view name) {
+    name = without_quotes(name);
     std::string slashes(name);
     std::replace(slashes.begin(), slashes.end(), '\\', '/');
     const std::string last = without_obj_folders(slashes);
@@ -90,7 +97,8 @@ Result<ObjFetched> fetch_obj_file(
     }
     for (const std::string& in : subfolders) {
         const std::string found = find_any_case(
-            std::filesystem::path(folder) / in, without_obj_folders(std::string(name)));
+            std::filesystem::path(folder) / in,
+            without_obj_folders(std::string(without_quotes(name))));
         if (!found.empty()) {
             if (Result<ObjFetched> file = fetch(in, escape_percent(found))) {
                 return file;

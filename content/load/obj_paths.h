@@ -12,7 +12,8 @@ namespace limn {
 
 // The files that an OBJ or its material libraries name, which are never opened outside of the
 // folder of the OBJ. Names were written on other machines: in this order, a file is looked for as
-// named, with / for \, with %20 as a space, without its folders, and in any case of its letters.
+// named, without quotes, with / for \, with %20 as a space, without its folders, and in any case of
+// its letters.
 
 struct ObjFetched {
     std::string path;  ///< relative to the folder of the OBJ

@@ -82,6 +82,7 @@ void build_obj_nodes(const ObjFile& obj, GltfScene& scene) {
             || face.group != previous->group) {
             scene.nodes.emplace_back();
             scene.nodes.back().name = node_name(obj, face);
+            scene.nodes.back().transform.position = obj.origin;
         }
         previous = &face;
         MeshData mesh = make_obj_mesh(obj, faces).mesh;

@@ -164,6 +164,7 @@ TEST_CASE("obj material: a library is found by any name that programs write for 
              {"my house.mtl", "my%20house.mtl"},
              {"100%.mtl", "100%.mtl"},
              {"a%20b.mtl", "a%20b.mtl"},
+             {"my house.mtl", "\"my house.mtl\""},
              {"a#b.mtl", "a#b.mtl"},
              {"a #1.mtl", "a #1.mtl"},
              {"a.mtl", "a.mtl # by hand"},
