@@ -1,6 +1,7 @@
 #include "render/render_view.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/name.h"
 #include "ecs/world.h"
 
@@ -141,9 +142,14 @@ LensView lens_view(const World& world, Entity camera) {
 RenderView make_render_view(const World& world, Entity camera, const ViewRequest& request) {
     const Affine& current = world.get<WorldTransform>(camera).world;
     const auto* previous = world.find<PreviousWorldTransform>(camera);
-    RenderView view = make_render_view(
-        world.get<Camera>(camera), current, previous != nullptr ? previous->world : current,
-        request);
+    Camera lens = world.get<Camera>(camera);
+    if (const auto* const framing = world.find<FramingState>(camera)) {
+        LIMN_CHECK(request.width > 0 && request.height > 0);
+        lens = fit_camera(
+            lens, *framing, static_cast<float>(request.width) / static_cast<float>(request.height));
+    }
+    RenderView view =
+        make_render_view(lens, current, previous != nullptr ? previous->world : current, request);
     view.lens = lens_view(world, camera);
     view.entity = camera;
     return view;

@@ -13,6 +13,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/gltf_source.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
@@ -89,8 +90,9 @@ Entity add_camera(World& world, const Bounds& bounds) {
     Camera camera{.fov_y = radians(35.0f)};
     const float size = is_empty(bounds) ? 1.0f : glm::length(half_extent(bounds));
     camera.near = std::clamp(0.005f * size, 1e-4f, 0.1f);
+    const Framing framing = frame_bounds(bounds, camera.fov_y, 16.0f / 9.0f);
     return world.create(
-        Name{"framing camera"}, frame_bounds(bounds, camera.fov_y, 16.0f / 9.0f), camera);
+        Name{"framing camera"}, framing.camera, camera, FramingState{framing.aspect});
 }
 
 /// Adds the resources that every scene needs.
