@@ -52,6 +52,8 @@ class ObjReader {
             LIMN_TRY(read_statement(line_.word()));
         }
         resolve_faces();
+        resolve_strokes(result_.points, 1);
+        resolve_strokes(result_.lines, 2);
         result_.colors = colors_.decode(result_.positions.size());
         errors_.finish(file_);
         return std::move(result_);
@@ -73,6 +75,9 @@ class ObjReader {
         }
         if (keyword == "f" || keyword == "fo") {
             return read_face();
+        }
+        if (keyword == "l" || keyword == "p") {
+            return read_strokes(keyword == "l");
         }
         if (keyword == "o") {
             return read_name(objects_, state_.object);
@@ -228,6 +233,40 @@ class ObjReader {
         return Done{};
     }
 
+    Status read_strokes(bool are_lines) {
+        ObjStrokes& strokes = are_lines ? result_.lines : result_.points;
+        std::vector<std::uint32_t> found;
+        for (std::string_view word = line_.word(); !word.empty(); word = line_.word()) {
+            LIMN_TRY(check_room(
+                strokes.indices.size() + 2 * found.size(), limits_.max_corners,
+                "corners of lines"));
+            const Result<ObjCorner> corner = corner_of(word);
+            if (!corner) {
+                leave_out(corner.error().message, are_lines ? "the line" : "the point");
+                return Done{};
+            }
+            found.push_back(corner->position);
+        }
+        if (found.size() < (are_lines ? 2u : 1u)) {
+            leave_out(
+                format_text(
+                    "{}: found {} corners, expected at least {}", line_.position(), found.size(),
+                    are_lines ? 2 : 1),
+                are_lines ? "the line" : "the point");
+            return Done{};
+        }
+        if (strokes.indices.empty()) {
+            strokes.material = state_.material;
+        }
+        for (std::size_t i = 0; i + (are_lines ? 1 : 0) < found.size(); ++i) {
+            strokes.indices.push_back(found[i]);
+            if (are_lines) {
+                strokes.indices.push_back(found[i + 1]);
+            }
+        }
+        return Done{};
+    }
+
     /// "7", "7/8", "7/8/9" or "7//9". Those beyond their lists are found at the end.
     Result<ObjCorner> corner_of(std::string_view word) const {
         ObjCorner corner;
@@ -290,6 +329,31 @@ class ObjReader {
             }
         }
         result_.faces.resize(kept);
+    }
+
+    /// Drops those, of `size` indices each, that have a bad one.
+    void resolve_strokes(ObjStrokes& strokes, std::size_t size) {
+        std::vector<std::uint32_t>& indices = strokes.indices;
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < indices.size(); i += size) {
+            if (is_position(indices[i]) && is_position(indices[i + size - 1])) {
+                indices[kept] = indices[i];
+                indices[kept + size - 1] = indices[i + size - 1];
+                kept += size;
+            }
+        }
+        if (kept < indices.size()) {
+            errors_.add(format_text(
+                "{}: found {} {} with an index that is not of the {} vertices; they are left out",
+                file_, (indices.size() - kept) / size, size == 2 ? "lines" : "points",
+                result_.positions.size()));
+        }
+        indices.resize(kept);
+    }
+
+    [[nodiscard]] bool is_position(std::uint32_t index) const {
+        return index < result_.positions.size()
+               && !std::binary_search(bad_positions_.begin(), bad_positions_.end(), index);
     }
 
     bool check_positions(const ObjFace& face, std::uint32_t line) {

@@ -12,14 +12,14 @@
 namespace limn {
 
 // Reads untrusted Wavefront OBJ files: vertices with colors, texture coordinates, normals,
-// polygons, and the names of their objects, groups and materials. Positive indices may refer to
-// vertices further down. A bad line costs what it says and leaves one line of text: "head.obj:12:
-// found X, expected Y; the face is left out". A face loses its texture coordinates or normals where
-// one of those is bad. Maps and scans stand millions
-// of meters from their origin, where floats have steps of half a meter: there, positions are
-// relative to the first one. Ignored with a warning: points, lines and free-form surfaces.
-// Smoothing groups are ignored. After Wavefront Technologies, "Object Files", Advanced Visualizer
-// Manual, appendix B1, 1995, and for colors P. Bourke, "OBJ with vertex colours".
+// polygons, lines and points, and the names of their objects, groups and materials. Positive
+// indices may refer to vertices further down. A bad line costs what it says and leaves one line of
+// text: "head.obj:12: found X, expected Y; the face is left out". A face loses its texture
+// coordinates or normals where one of those is bad. Maps and scans stand millions of meters from
+// their origin, where floats have steps of half a meter: there, positions are relative to the first
+// one. Ignored with a warning: free-form surfaces. Smoothing groups are ignored.
+// After Wavefront Technologies, "Object Files", Advanced Visualizer Manual, appendix B1, 1995, and
+// for colors P. Bourke, "OBJ with vertex colours".
 
 /// Indices into the lists of an ObjFile; -1: none.
 struct ObjCorner {
@@ -37,6 +37,12 @@ struct ObjFace {
     std::uint32_t material = 0;  ///< index into `materials`
 };
 
+/// Points, or lines with two indices each, into the positions of an ObjFile.
+struct ObjStrokes {
+    std::vector<std::uint32_t> indices;
+    std::uint32_t material = 0;  ///< index into `materials`, of the first one
+};
+
 struct ObjFile {
     Vec3 origin = {0, 0, 0};      ///< of `positions` in the file
     std::vector<Vec3> positions;  ///< in the file's unit; (0, 0, 0) for a bad one, without faces
@@ -45,6 +51,8 @@ struct ObjFile {
     std::vector<Vec3> normals;    ///< as in the file, any length; (0, 0, 0): bad, or none
     std::vector<ObjCorner> corners;
     std::vector<ObjFace> faces;
+    ObjStrokes points;
+    ObjStrokes lines;
     std::vector<std::string> objects = {""};    ///< [0] for faces before the first `o`
     std::vector<std::string> groups = {""};     ///< likewise; of several, joined by a space
     std::vector<std::string> materials = {""};  ///< likewise

@@ -1,6 +1,7 @@
 #include "content/load/obj_scene.h"
 
 #include "content/bake/tangents.h"
+#include "content/load/gltf_strokes.h"
 #include "content/load/obj_libraries.h"
 #include "content/load/triangulate_polygon.h"
 #include "ecs/base/text.h"
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -143,18 +145,69 @@ ObjMesh make_obj_mesh(const ObjFile& obj, std::span<const std::uint32_t> faces) 
     return result;
 }
 
+namespace {
+
+/// Points or lines as a node of their own.
+void add_obj_strokes(
+    const ObjFile& obj, const ObjStrokes& source, std::int32_t mode, GltfScene& scene) {
+    const Strokes strokes = make_strokes(obj.positions, source.indices, mode);
+    if (strokes.indices.empty()) {
+        return;
+    }
+    const char* const name = mode == kGltfPoints ? "points" : "lines";
+    if (strokes.found > kMaxStrokes) {
+        scene.warnings.push_back(format_text(
+            "{}: found {} {}, of which {} are drawn", scene.name, strokes.found, name,
+            kMaxStrokes));
+    }
+    MeshData mesh;
+    mesh.name = name;
+    for (std::size_t i = 0; i < strokes.sources.size(); ++i) {
+        const std::uint32_t vertex = strokes.sources[i];
+        mesh.positions.push_back(obj.positions[vertex] + strokes.offsets[i]);
+        mesh.tangents.emplace_back(any_perpendicular(strokes.normals[i]), 1);
+        if (!obj.colors.empty()) {
+            mesh.colors.emplace_back(obj.colors[vertex], 1);
+        }
+    }
+    mesh.normals = strokes.normals;
+    mesh.uvs.assign(mesh.positions.size(), Vec2(0));
+    mesh.indices = strokes.indices;
+    update_bounds(mesh);
+    scene.nodes.emplace_back();
+    scene.nodes.back().name = name;
+    scene.nodes.back().transform.position = obj.origin;
+    scene.nodes.back().parts.push_back(
+        {static_cast<std::uint32_t>(scene.meshes.size()), source.material});
+    scene.meshes.push_back(std::move(mesh));
+}
+
+/// A cloud of points, as scanners write it, has vertices and nothing else.
+void make_point_cloud(ObjFile& obj) {
+    if (obj.errors.empty() && obj.faces.empty() && obj.lines.indices.empty()
+        && obj.points.indices.empty()) {
+        obj.points.indices.resize(obj.positions.size());
+        std::iota(obj.points.indices.begin(), obj.points.indices.end(), 0u);
+    }
+}
+
+}  // namespace
+
 Result<GltfScene>
 load_obj_scene(const std::string& path, const ObjLimits& limits, const LoadOptions& options) {
-    const ObjFile obj = LIMN_TRY(load_obj(path, limits));
+    ObjFile obj = LIMN_TRY(load_obj(path, limits));
+    make_point_cloud(obj);
     GltfScene scene;
     scene.name = std::filesystem::path(path).stem().string();
     scene.warnings = obj.errors;
     scene.warnings.insert(scene.warnings.end(), obj.warnings.begin(), obj.warnings.end());
     build_obj_materials(obj, path, limits, scene);
     build_obj_nodes(obj, scene);
+    add_obj_strokes(obj, obj.points, kGltfPoints, scene);
+    add_obj_strokes(obj, obj.lines, kGltfLines, scene);
     LIMN_TRY(report_load_warnings(path, scene.warnings, options));
-    if (obj.faces.empty()) {
-        return fail("{}: found no faces, expected at least one", path);
+    if (scene.meshes.empty()) {
+        return fail("{}: found no faces, lines or points, expected at least one", path);
     }
     return scene;
 }

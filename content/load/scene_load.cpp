@@ -139,7 +139,11 @@ Result<LoadedScene>
 load_model_scene(World& world, const std::string& path, const SceneOptions& options) {
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
     const bool is_obj = ends_with_any(path, {".obj"});
-    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path) : load_gltf(path));
+    const LoadOptions& load = options.model.load;
+    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path));
+    if (load.strict) {
+        LIMN_TRY(report_load_warnings(path, model.warnings, load));
+    }
     LoadedScene scene;
     scene.name = model.name;
     scene.path = path;
@@ -216,8 +220,10 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
         }
         return load_model_scene(world, scene, options);
     }
-    if (options.model.backdrop != ModelViewOptions{}.backdrop || options.model.turntable > 0) {
-        return fail("{}: found a level, expected a model with --backdrop and --turntable", scene);
+    if (options.model.backdrop != ModelViewOptions{}.backdrop || options.model.turntable > 0
+        || options.model.load.strict) {
+        return fail(
+            "{}: found a level, expected a model with --backdrop, --turntable and --strict", scene);
     }
     const bool is_path = ends_with_any(scene, {".json"}) || scene.find('/') != std::string::npos;
     const Result<std::string> path = is_path ? scene : find_level(scene);

@@ -441,6 +441,10 @@ TEST_CASE("model view: formats that are not read are named, with what is") {
         load_scene(world, "gallery", {.model = {.backdrop = "sky", .turntable = 0}});
     REQUIRE_FALSE(level.ok());
     CHECK(level.error().message.find("found a level, expected a model") != std::string::npos);
+    const Result<LoadedScene> strict =
+        load_scene(world, "gallery", {.model = {.load = {.strict = true}}});
+    REQUIRE_FALSE(strict.ok());
+    CHECK(strict.error().message.find("--strict") != std::string::npos);
 }
 
 }  // namespace limn::model_view_test

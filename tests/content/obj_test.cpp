@@ -76,11 +76,12 @@ TEST_CASE("obj: vertices, polygons and names are read, with negative indices and
 }
 
 TEST_CASE("obj: what is not read leaves one warning with its line") {
-    const Result<ObjFile> obj = parse_obj("v 0 0 0\nl 1 1\nl 1 1\np 1\n", "a.obj");
+    const Result<ObjFile> obj = parse_obj("v 0 0 0\nsurf 1 1\nsurf 1 1\ncurv 1\n", "a.obj");
     REQUIRE(obj.ok());
     CHECK(
         obj->warnings
-        == std::vector<std::string>{"a.obj:2: \"l\" is ignored", "a.obj:4: \"p\" is ignored"});
+        == std::vector<std::string>{
+            "a.obj:2: \"surf\" is ignored", "a.obj:4: \"curv\" is ignored"});
 }
 
 TEST_CASE("obj: a bad line costs what it says, and names what was found and what was expected") {
@@ -391,13 +392,45 @@ TEST_CASE("obj: the reports of byte order marks, colors and polygons are read as
     }
 }
 
-TEST_CASE("obj: a file without faces is refused") {
+TEST_CASE("obj: lines and points are drawn, and a file with vertices alone is a cloud of points") {
     const test::TemporaryFolder folder;
-    std::ofstream(folder.file("a.obj")) << "v 0 0 0\n";
-    World world;
-    const Result<LoadedScene> scene = load_scene(world, folder.file("a.obj"));
-    REQUIRE_FALSE(scene.ok());
-    CHECK(scene.error().message.find("found no faces, expected at least one") != std::string::npos);
+    const auto load = [&](const std::string& text) {
+        std::ofstream(folder.file("a.obj")) << text;
+        Result<GltfScene> scene = Error{};
+        static_cast<void>(test::messages_of([&] { scene = load_obj_scene(folder.file("a.obj")); }));
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        return *std::move(scene);
+    };
+    const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const GltfScene lines = load(v + "usemtl red\nl 1 2/1 -1\nl 1\nl 1 9\nl 2 3\n");
+    REQUIRE(lines.meshes.size() == 1);
+    CHECK(lines.meshes[0].name == "lines");
+    CHECK(lines.meshes[0].indices.size() == 3 * 3 * 6);  // three prisms
+    CHECK(lines.materials[lines.nodes[0].parts[0].material].name == "red");
+    CHECK(lines.warnings.size() == 2);
+    const GltfScene points = load(v + "p 1 3\nf 1 2 3\n");
+    REQUIRE(points.meshes.size() == 2);
+    CHECK(points.meshes[1].indices.size() == 2 * 24);
+    const GltfScene cloud = load("v 0 0 0 1 0 0\nv 1 0 0 0 1 0\n");
+    REQUIRE(cloud.meshes.size() == 1);
+    CHECK(cloud.meshes[0].indices.size() == 2 * 24);
+    CHECK(cloud.meshes[0].colors.front() == Vec4(1, 0, 0, 1));
+    CHECK(cloud.meshes[0].colors.back() == Vec4(0, 1, 0, 1));
+}
+
+TEST_CASE("obj: a file without anything to draw is refused") {
+    const test::TemporaryFolder folder;
+    for (const char* const text : {"", "vn 0 0 1\n", "v 0 0 0\nf 1 1\n", "v nan 0 0\n"}) {
+        std::ofstream(folder.file("a.obj")) << text;
+        static_cast<void>(test::messages_of([&] {
+            World world;
+            const Result<LoadedScene> scene = load_scene(world, folder.file("a.obj"));
+            REQUIRE_FALSE(scene.ok());
+            CHECK(
+                scene.error().message.find("found no faces, lines or points, expected at least one")
+                != std::string::npos);
+        }));
+    }
 }
 
 TEST_CASE("obj: a real face has its quads, texture coordinates and materials") {
