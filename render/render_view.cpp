@@ -1,6 +1,7 @@
 #include "render/render_view.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/name.h"
 #include "ecs/world.h"
 
@@ -159,7 +160,13 @@ RenderView make_render_view(const World& world, Entity camera, const ViewRequest
     if (jump != nullptr) {
         current = previous = request.alpha < jump->at ? &jump->before : current;
     }
-    RenderView view = make_render_view(world.get<Camera>(camera), *current, *previous, request);
+    Camera lens = world.get<Camera>(camera);
+    if (const auto* const framing = world.find<FramingState>(camera)) {
+        LIMN_CHECK(request.width > 0 && request.height > 0);
+        lens = fit_camera(
+            lens, *framing, static_cast<float>(request.width) / static_cast<float>(request.height));
+    }
+    RenderView view = make_render_view(lens, *current, *previous, request);
     view.cut = jump != nullptr && request.previous_alpha <= jump->at && jump->at <= request.alpha;
     view.lens = lens_view(world, camera);
     view.entity = camera;

@@ -11,16 +11,26 @@
 
 namespace limn::test {
 
-/// The path of a file under ../shared/assets, or nothing: then the line "SKIP: ..." is printed and
-/// the test returns. No other reason to skip is accepted by .ci/run.
-inline std::optional<std::string> shared_asset(const std::string& relative) {
+/// The path of a file under ../shared, or nothing: then the line "SKIP: ..." is printed and the
+/// test returns. No other reason to skip is accepted by .ci/run.
+inline std::optional<std::string> shared_file(const std::string& relative) {
     const std::filesystem::path path =
-        std::filesystem::path(LIMN_SOURCE_DIR) / ".." / "shared" / "assets" / relative;
+        std::filesystem::path(LIMN_SOURCE_DIR) / ".." / "shared" / relative;
     if (!std::filesystem::exists(path)) {
-        std::printf("SKIP: ../shared/assets/%s is not here\n", relative.c_str());
+        std::printf("SKIP: ../shared/%s is not here\n", relative.c_str());
         return std::nullopt;
     }
     return path.lexically_normal().string();
+}
+
+/// A real model or other asset.
+inline std::optional<std::string> shared_asset(const std::string& relative) {
+    return shared_file("assets/" + relative);
+}
+
+/// A small input rebuilt from a public bug report; expected.txt beside it says what is right.
+inline std::optional<std::string> shared_report(const std::string& relative) {
+    return shared_file("reports/" + relative);
 }
 
 /// Log messages that `action` leaves.

@@ -42,7 +42,9 @@ Status run_check(const std::string& scene) {
     const std::uint64_t errors_before = logged_error_count();
     set_log_sink(count_message);
     set_log_level(LogLevel::Debug);
-    const std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(scene));
+    StageOptions options;
+    options.model.load.max_warnings = SIZE_MAX;
+    const std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(scene, options));
     for (int i = 0; i < kSteps; ++i) {
         step_stage(*stage);
     }

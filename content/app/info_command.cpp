@@ -353,6 +353,17 @@ Status print_exr(const std::string& file) {
     fmt::print(
         "{}\nOpenEXR, {} x {} pixels, {}\n", file, image->width, image->height,
         counted(image->channels.size(), "channel"));
+    const ExrWindow& display = image->display;
+    if (display.x != image->x || display.y != image->y || display.width != image->width
+        || display.height != image->height) {
+        fmt::print(
+            "shown: {} x {} pixels from ({}, {}), of which there are {} x {} from ({}, {})\n",
+            display.width, display.height, display.x, display.y, image->width, image->height,
+            image->x, image->y);
+    }
+    if (const std::string shown = describe_shown(*image); !shown.empty()) {
+        fmt::print("{}\n", shown);
+    }
     for (const ExrChannel& channel : image->channels) {
         float smallest = INFINITY;
         float largest = -INFINITY;

@@ -19,10 +19,11 @@ constexpr float kStill = 1e-3f;                  // fraction of full speed treat
 constexpr float kSpeedStep = 1.2f;               // of one wheel step
 constexpr float kCameraZoomStep = 0.88f;         // of one wheel step
 constexpr float kZoomKeys = 8.0f;                // wheel steps a second of W and S
-constexpr float kMinSpeed = 0.1f;                // [m/s], so that walls do not hold the camera
+constexpr float kMinSpeed = 0.1f;                // [unit/s], so that walls do not hold the camera
+constexpr float kMaxSpeed = 1000.0f;             // [unit/s]
 constexpr float kReachTime = 0.4f;               // [s] time constant of PlayerCamera::reach
-constexpr float kMinDistance = 0.02f;            // [m]
-constexpr float kMaxDistance = 10000.0f;         // [m]
+constexpr float kMinDistance = 0.02f;            // [unit]
+constexpr float kMaxDistance = 10000.0f;         // [unit]
 
 Vec3 position_of(const Affine& pose) {
     return transform_point(pose, {0, 0, 0});
@@ -30,6 +31,10 @@ Vec3 position_of(const Affine& pose) {
 
 Quat rotation_of(const Affine& pose) {
     return glm::normalize(glm::quat_cast(Mat3(to_mat4(pose))));
+}
+
+float clamp_distance(const PlayerCamera& camera, float distance) {
+    return std::clamp(distance, kMinDistance * camera.unit, kMaxDistance * camera.unit);
 }
 
 }  // namespace
@@ -56,7 +61,8 @@ void start_fly(PlayerCamera& camera, const Affine& pose) {
 
 void step_fly(PlayerCamera& camera, const MoveInput& input, float dt) {
     camera.pace = std::clamp(camera.pace * std::pow(kSpeedStep, input.zoom), 0.02f, 20.0f);
-    camera.fly.speed = std::clamp(camera.pace * camera.reach, kMinSpeed, 1000.0f);
+    camera.fly.speed =
+        std::clamp(camera.pace * camera.reach, kMinSpeed * camera.unit, kMaxSpeed * camera.unit);
     const Vec3 wanted = input.move / std::max(glm::length(input.move), 1.0f);
     camera.glide += (wanted - camera.glide) * (1.0f - std::exp(-dt / kEaseTime));
     if (input.move == Vec3(0) && glm::length(camera.glide) < kStill) {
@@ -69,22 +75,25 @@ void step_fly(PlayerCamera& camera, const MoveInput& input, float dt) {
 }
 
 void follow_reach(PlayerCamera& camera, float ahead, float scene_radius, float dt) {
-    const float wanted = std::clamp(std::min(ahead, scene_radius), kMinDistance, kMaxDistance);
+    const float wanted = clamp_distance(camera, std::min(ahead, scene_radius));
     const float share = 1.0f - std::exp(-dt / kReachTime);
     camera.reach *= std::pow(wanted / camera.reach, share);  // far and near in equal times
 }
 
 void stop_at_floor(PlayerCamera& camera, std::optional<float> floor) {
     const float before = position_of(camera.previous).y;
-    if (!floor || *floor < kEyeHeight || camera.place.position.y >= before) {
+    const float eye_height = kEyeHeight * camera.unit;
+    if (!floor || *floor < eye_height || camera.place.position.y >= before) {
         return;
     }
-    camera.place.position.y = std::max(camera.place.position.y, before - *floor + kEyeHeight);
+    camera.place.position.y = std::max(camera.place.position.y, before - *floor + eye_height);
     camera.pose = affine_from(camera.place.position, camera.place.rotation, Vec3(1));
 }
 
-float framing_distance(const Camera& lens, float radius) {
-    return 1.15f * std::max(radius, kMinDistance) / std::sin(0.5f * lens.fov_y);
+float framing_distance(const PlayerCamera& camera, float radius, float aspect) {
+    const float up = std::tan(0.5f * camera.lens.fov_y);
+    const float half_angle = std::atan(up * std::min(aspect, 1.0f));
+    return 1.15f * std::max(radius, kMinDistance * camera.unit) / std::sin(half_angle);
 }
 
 void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target) {
@@ -94,7 +103,7 @@ void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target) {
     camera.mode = CameraMode::Orbit;
     camera.aim = target;
     camera.focus = target;
-    orbit.distance = std::clamp(glm::length(from_target), kMinDistance, kMaxDistance);
+    orbit.distance = clamp_distance(camera, glm::length(from_target));
     orbit.azimuth = std::atan2(direction.x, direction.z);
     orbit.elevation =
         std::clamp(std::asin(std::clamp(direction.y, -1.0f, 1.0f)), -kMaxElevation, kMaxElevation);
@@ -119,8 +128,7 @@ void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target
     orbit.azimuth -= input.look.x * sensitivity;
     orbit.elevation =
         std::clamp(orbit.elevation + input.look.y * sensitivity, -kMaxElevation, kMaxElevation);
-    orbit.distance =
-        std::clamp(orbit.distance * std::pow(kCameraZoomStep, zoom), kMinDistance, kMaxDistance);
+    orbit.distance = clamp_distance(camera, orbit.distance * std::pow(kCameraZoomStep, zoom));
 
     camera.focus = lag_position(camera.focus, target, orbit.follow, dt);
     const Affine frame = affine_from(camera.focus, {1, 0, 0, 0}, Vec3(1));

@@ -30,6 +30,7 @@ struct PlayerCamera {
     FlyCamera fly;
     OrbitCamera orbit;
     Transform place;         ///< pose while flying
+    float unit = 1.0f;       ///< what limits of distances and speeds are multiples of [m]
     Vec3 glide = {0, 0, 0};  ///< MoveInput::move, eased in and out
     float reach = 5.0f;      ///< distance to what a flying camera looks at, smoothed [m]
     float pace = 0.6f;       ///< speed of flying as fractions of `reach` [1/s]
@@ -37,7 +38,8 @@ struct PlayerCamera {
     Vec3 focus = {0, 0, 0};  ///< point that the orbit looks at; follows its target with a lag [m]
 };
 
-inline constexpr float kEyeHeight = 0.15f;  ///< [m] of a flying camera above the floor, at least
+inline constexpr float kEyeHeight =
+    0.15f;  ///< [PlayerCamera::unit] of a flying camera above the floor, at least
 
 /// The name of the mode for the HUD.
 [[nodiscard]] const char* camera_mode_name(CameraMode mode);
@@ -55,8 +57,9 @@ void follow_reach(PlayerCamera& camera, float ahead, float scene_radius, float d
 /// kEyeHeight where `floor`, the distance [m] from its `previous` position straight down, is known.
 void stop_at_floor(PlayerCamera& camera, std::optional<float> floor);
 
-/// The distance at which a box of `radius` fills most of the image of `lens`.
-[[nodiscard]] float framing_distance(const Camera& lens, float radius);
+/// The distance at which a box of `radius` [m] fills most of an image of `aspect` = width / height,
+/// in whichever direction the image is narrower.
+[[nodiscard]] float framing_distance(const PlayerCamera& camera, float radius, float aspect);
 
 /// Rotates and zooms an orbiting camera about `target`, which it follows with `orbit.follow`
 /// (engine.camera-lag).

@@ -37,8 +37,13 @@ Status Player::load(const std::string& scene, const std::string& show) {
     furrows_.reset();
     camera_ = {};
     const Bounds& bounds = stage_->scene.bounds;
+    if (stage_->scene.model && !is_empty(stage_->scene.model->subject)) {
+        const float radius = glm::length(half_extent(stage_->scene.model->subject));
+        camera_.unit = radius > 0 ? radius : 1;
+    }
     if (!is_empty(bounds)) {
-        camera_.reach = std::clamp(0.3f * glm::length(half_extent(bounds)), 0.5f, 50.0f);
+        camera_.reach = std::clamp(
+            0.3f * glm::length(half_extent(bounds)), 0.5f * camera_.unit, 50.0f * camera_.unit);
     }
     paused_ = false;
     rate_ = 1.0;

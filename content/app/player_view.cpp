@@ -2,6 +2,7 @@
 
 #include "content/app/pick.h"
 #include "content/app/player.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
@@ -42,6 +43,11 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
     const Entity level_camera = stage_->scene.camera;
     const Camera* lens = std::as_const(stage_->world).find<Camera>(level_camera);
     camera_.lens = lens != nullptr ? *lens : camera_.lens;
+    if (const auto* const framing = std::as_const(stage_->world).find<FramingState>(level_camera)) {
+        camera_.lens = fit_camera(
+            camera_.lens, *framing,
+            static_cast<float>(request.width) / static_cast<float>(request.height));
+    }
     camera_.previous = camera_.pose;
     if (camera_.mode == CameraMode::Level && lens != nullptr) {
         const RenderView view = make_render_view(stage_->world, level_camera, request);
@@ -129,7 +135,9 @@ void Player::focus_selection() {
     camera_.orbit.target = selected;
     const Bounds box = entity_bounds(stage_->world, selected);
     if (!is_empty(box)) {
-        camera_.orbit.distance = framing_distance(camera_.lens, glm::length(half_extent(box)));
+        camera_.orbit.distance = framing_distance(
+            camera_, glm::length(half_extent(box)),
+            static_cast<float>(view_request_.width) / static_cast<float>(view_request_.height));
     }
 }
 

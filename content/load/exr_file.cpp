@@ -106,6 +106,15 @@ Status check_header(const Imf::Header& header, const std::string& place, const E
             "{}: dataWindow: found {} x {} pixels, expected 1 to {} along a side", place, width,
             height, limits.max_size);
     }
+    const Imath::Box2i& display = header.displayWindow();
+    const std::int64_t shown_width = std::int64_t{display.max.x} - display.min.x + 1;
+    const std::int64_t shown_height = std::int64_t{display.max.y} - display.min.y + 1;
+    if (shown_width < 1 || shown_height < 1 || shown_width > limits.max_size
+        || shown_height > limits.max_size || 4 * shown_width * shown_height > limits.max_values) {
+        return fail(
+            "{}: displayWindow: found {} x {} pixels, expected 1 to {} along a side and {} in all",
+            place, shown_width, shown_height, limits.max_size, limits.max_values / 4);
+    }
     std::int64_t channels = 0;
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
         ++channels;
@@ -136,6 +145,20 @@ std::vector<std::pair<std::string, std::string>> metadata_of(const Imf::Header& 
     return metadata;
 }
 
+ExrWindow exr_window_of(const Imath::Box2i& box) {
+    return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
+}
+
+Imath::Box2i exr_box_of(const ExrWindow& window) {
+    return {{window.x, window.y}, {window.x + window.width - 1, window.y + window.height - 1}};
+}
+
+/// The display window; where it has no size, the data window.
+ExrWindow exr_display_of(const ExrImage& image) {
+    return image.display.width > 0 ? image.display
+                                   : ExrWindow{image.x, image.y, image.width, image.height};
+}
+
 Result<ExrImage>
 decode(std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits) {
     LIMN_TRY(check_kind(bytes, place));
@@ -151,6 +174,7 @@ decode(std::span<const std::byte> bytes, const std::string& place, const ExrLimi
     image.y = window.min.y;
     image.width = window.max.x - window.min.x + 1;
     image.height = window.max.y - window.min.y + 1;
+    image.display = exr_window_of(header.displayWindow());
     const std::size_t count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
@@ -190,9 +214,8 @@ half to_half(float value) {
 }
 
 std::vector<std::byte> encode(const ExrImage& image, ExrCompression compression) {
-    const Imath::Box2i window(
-        {image.x, image.y}, {image.x + image.width - 1, image.y + image.height - 1});
-    Imf::Header header(window, window);
+    const Imath::Box2i window = exr_box_of({image.x, image.y, image.width, image.height});
+    Imf::Header header(exr_box_of(exr_display_of(image)), window);
     header.compression() = to_library(compression);
     for (const auto& [name, text] : image.metadata) {
         header.insert(name, Imf::StringAttribute(text));
@@ -301,34 +324,148 @@ std::size_t replace_non_finite(std::span<float> values) {
     return count;
 }
 
-ImageData to_image_data(const ExrImage& image, const std::string& name) {
-    const ExrChannel* gray = find_channel(image, "Y");
-    gray = gray != nullptr ? gray : &image.channels.front();
-    const ExrChannel* sources[4] = {
-        find_channel(image, "R"), find_channel(image, "G"), find_channel(image, "B"),
-        find_channel(image, "A")};
-    if (sources[0] == nullptr || sources[1] == nullptr || sources[2] == nullptr) {
-        sources[0] = sources[1] = sources[2] = gray;
-    }
-    const bool all_half = std::all_of(
-        sources, sources + 4, [](const ExrChannel* c) { return c == nullptr || c->half; });
+namespace {
 
+/// "diffuse" and "R" of "diffuse.R"; "" and "R" of "R".
+std::pair<std::string_view, std::string_view> split_exr_layer(std::string_view name) {
+    const std::size_t dot = name.rfind('.');
+    return dot == std::string_view::npos ? std::pair(std::string_view(), name)
+                                         : std::pair(name.substr(0, dot), name.substr(dot + 1));
+}
+
+int exr_channel_index(const ExrImage& image, std::string_view layer, char letter) {
+    for (std::size_t i = 0; i < image.channels.size(); ++i) {
+        const auto [its_layer, its_letter] = split_exr_layer(image.channels[i].name);
+        if (its_layer == layer && its_letter.size() == 1 && its_letter[0] == letter) {
+            return static_cast<int>(i);
+        }
+    }
+    return -1;
+}
+
+/// Chooses three channels of a layer, if it has all of them.
+bool show_exr_layer(
+    const ExrImage& image, std::string_view layer, std::string_view letters, ExrShown& shown) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        shown.channels[k] = exr_channel_index(image, layer, letters[k]);
+        if (shown.channels[k] < 0) {
+            return false;
+        }
+    }
+    shown.channels[3] = exr_channel_index(image, layer, 'A');
+    shown.layer = layer;
+    return true;
+}
+
+/// The layers in the order of their first channels, "" without one.
+std::vector<std::string_view> exr_layers_of(const ExrImage& image) {
+    std::vector<std::string_view> layers;
+    for (const ExrChannel& channel : image.channels) {
+        const std::string_view layer = split_exr_layer(channel.name).first;
+        if (std::find(layers.begin(), layers.end(), layer) == layers.end()) {
+            layers.push_back(layer);
+        }
+    }
+    return layers;
+}
+
+}  // namespace
+
+ExrShown find_shown(const ExrImage& image) {
+    ExrShown shown;
+    const std::vector<std::string_view> layers = exr_layers_of(image);
+    const auto show_color = [&] {
+        if (show_exr_layer(image, "", "RGB", shown) || show_exr_layer(image, "", "YYY", shown)) {
+            return true;
+        }
+        for (const char* const letters : {"RGB", "rgb", "XYZ"}) {
+            for (const std::string_view layer : layers) {
+                if (show_exr_layer(image, layer, letters, shown)) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    };
+    if (show_color()) {
+        for (const std::string_view layer : layers) {
+            if (!shown.layer.empty() && layer != shown.layer) {
+                shown.others.emplace_back(layer.empty() ? "(without a layer)" : layer);
+            }
+        }
+        return shown;
+    }
+    const int alpha = exr_channel_index(image, "", 'A');
+    const int gray = alpha == 0 && image.channels.size() > 1 ? 1 : 0;
+    shown = {.channels = {gray, gray, gray, alpha}, .layer = {}, .others = {}};
+    for (int i = 0; i < static_cast<int>(image.channels.size()); ++i) {
+        const std::string& name = image.channels[static_cast<std::size_t>(i)].name;
+        if (i == gray) {
+            shown.layer = name;
+        } else if (i != alpha) {
+            shown.others.push_back(name);
+        }
+    }
+    return shown;
+}
+
+std::string describe_shown(const ExrImage& image) {
+    const ExrShown shown = find_shown(image);
+    if (shown.others.empty()) {
+        return "";
+    }
+    constexpr std::size_t kMaxNames = 12;
+    std::string others;
+    for (std::size_t i = 0; i < std::min(shown.others.size(), kMaxNames); ++i) {
+        others += format_text("{}{}", i > 0 ? ", " : "", shown.others[i]);
+    }
+    if (shown.others.size() > kMaxNames) {
+        others += format_text(" and {} more", shown.others.size() - kMaxNames);
+    }
+    return format_text(
+        "found no channels R, G and B; of its layers, {} is shown, and not {}", shown.layer,
+        others);
+}
+
+ImageData to_image_data(const ExrImage& image, const std::string& name) {
+    const ExrShown shown = find_shown(image);
+    const ExrChannel* sources[4] = {};
+    bool all_half = true;
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (shown.channels[k] >= 0) {
+            sources[k] = &image.channels[static_cast<std::size_t>(shown.channels[k])];
+            all_half = all_half && sources[k]->half;
+        }
+    }
+    const ExrWindow display = exr_display_of(image);
     ImageData result;
     result.name = name;
-    result.width = image.width;
-    result.height = image.height;
+    result.width = display.width;
+    result.height = display.height;
     result.format = all_half ? PixelFormat::Rgba16F : PixelFormat::Rgba32F;
+    const std::size_t bytes = all_half ? 2 : 4;
     const std::size_t count =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    result.pixels.resize(count * (all_half ? 8 : 16));
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            const float value = sources[k] != nullptr ? sources[k]->values[i] : 1.0f;
-            if (all_half) {
-                const std::uint16_t bits = half(value).bits();
-                std::memcpy(&result.pixels[(4 * i + k) * 2], &bits, 2);
-            } else {
-                std::memcpy(&result.pixels[(4 * i + k) * 4], &value, 4);
+        static_cast<std::size_t>(display.width) * static_cast<std::size_t>(display.height);
+    result.pixels.resize(count * 4 * bytes);
+    std::uint8_t* to = result.pixels.data();
+    for (int y = 0; y < display.height; ++y) {
+        // Both windows have at most 2^31 pixels along a side, but any position.
+        const std::int64_t from_y = std::int64_t{y} + display.y - image.y;
+        for (int x = 0; x < display.width; ++x) {
+            const std::int64_t from_x = std::int64_t{x} + display.x - image.x;
+            const bool has_pixel =
+                from_x >= 0 && from_y >= 0 && from_x < image.width && from_y < image.height;
+            const auto i = static_cast<std::size_t>(from_y * image.width + from_x);
+            for (std::size_t k = 0; k < 4; ++k, to += bytes) {
+                const float missing = k == 3 && sources[3] == nullptr ? 1.0f : 0.0f;
+                const float value =
+                    has_pixel && sources[k] != nullptr ? sources[k]->values[i] : missing;
+                if (all_half) {
+                    const std::uint16_t bits = half(value).bits();
+                    std::memcpy(to, &bits, bytes);
+                } else {
+                    std::memcpy(to, &value, bytes);
+                }
             }
         }
     }

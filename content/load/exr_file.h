@@ -16,8 +16,9 @@ struct ImageData;
 
 // OpenEXR images with any number of named channels (hdr.openexr): linear color and AOVs. A layer is
 // a channel prefix: "normal.X", "normal.Y", "normal.Z"; the color is R, G, B and A without one.
-// Values are floats in memory whatever the file holds: half to float and back is lossless
-// (hdr.float-formats); a 32 bit integer rounds to a float.
+// The display window is the image, the data window says where it has pixels: without them it is
+// black, and those beyond it are not shown. Values are floats in memory whatever the file holds:
+// half to float and back is lossless (hdr.float-formats); a 32 bit integer rounds to a float.
 //
 // Scan-line files of one part; tiled, deep, multi-part and subsampled (luminance/chroma) files are
 // errors that say so.
@@ -30,6 +31,14 @@ struct ExrChannel {
     std::vector<float> values;  ///< width * height, rows from top to bottom
 };
 
+/// A rectangle of pixels, y down.
+struct ExrWindow {
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
+};
+
 struct ExrImage {
     int width = 0;                          ///< of the data window [pixels], > 0
     int height = 0;                         ///< of the data window [pixels], > 0
@@ -37,6 +46,7 @@ struct ExrImage {
     int y = 0;                              ///< top edge of the data window [pixels]
     std::vector<ExrChannel> channels = {};  ///< unique names; the file sorts them by name
     std::vector<std::pair<std::string, std::string>> metadata = {};  ///< text attributes by name
+    ExrWindow display = {};  ///< what the image shows; without size: the data window
 };
 
 struct ExrLimits {
@@ -73,8 +83,22 @@ void add_layer(
 /// Replaces NaN by 0 and infinities by +-65504; returns how many values were replaced.
 std::size_t replace_non_finite(std::span<float> values);
 
-/// R, G, B and A as an image for a texture: Rgba16F where all are half, else Rgba32F. Without R, G
-/// and B it is gray, from Y or else the first channel; a missing alpha is 1.
+/// The channels that are shown as color, by index; -1: none.
+struct ExrShown {
+    int channels[4] = {-1, -1, -1, -1};
+    std::string layer;                ///< "" for the plain ones
+    std::vector<std::string> others;  ///< layers with a color, or channels, instead of which it is
+};
+
+/// R, G and B; else Y; else the first layer with those; else the first with X, Y and Z; else the
+/// first channel as gray. A in the same layer.
+[[nodiscard]] ExrShown find_shown(const ExrImage& image);
+
+/// One line on what is shown of an image without plain R, G and B, Y or single channel; else "".
+[[nodiscard]] std::string describe_shown(const ExrImage& image);
+
+/// The display window of what find_shown says as an image for a texture: Rgba16F where all are
+/// half, else Rgba32F. A missing alpha is 1.
 [[nodiscard]] ImageData to_image_data(const ExrImage& image, const std::string& name);
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace limn {
 
@@ -99,7 +100,27 @@ Bounds find_bounds(const GltfScene& scene) {
     return bounds;
 }
 
-Transform frame_bounds(const Bounds& bounds, float fov_y, float aspect) {
+namespace {
+
+/// Corners of a box about the origin, also of the box while it turns.
+std::vector<Vec3> framed_corners(const Vec3& half, bool turns) {
+    constexpr int kTurns = 64;
+    std::vector<Vec3> corners;
+    for (int turn = 0; turn < (turns ? kTurns : 1); ++turn) {
+        const float angle = 2 * kPi * static_cast<float>(turn) / kTurns;
+        const float cosine = std::cos(angle);
+        const float sine = std::sin(angle);
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 p = half * Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1);
+            corners.emplace_back(cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x);
+        }
+    }
+    return corners;
+}
+
+}  // namespace
+
+Framing frame_bounds(const Bounds& bounds, float fov_y, float aspect, bool turns) {
     const Bounds box = is_empty(bounds) ? Bounds{Vec3(-0.5f), Vec3(0.5f)} : bounds;
     const Vec3 to_camera = glm::normalize(Vec3(0.45f, 0.3f, 1.0f));  // by eye
     const Vec3 right = glm::normalize(glm::cross(Vec3(0, 1, 0), to_camera));
@@ -109,19 +130,25 @@ Transform frame_bounds(const Bounds& bounds, float fov_y, float aspect) {
     constexpr float kMargin = 1.08f;
     const float tan_y = std::tan(0.5f * fov_y) / kMargin;
     const float tan_x = tan_y * aspect;
-    const Vec3 half = glm::max(half_extent(box), Vec3(1e-6f));
+    const Vec3 extent = half_extent(box);
+    const float size = std::max({extent.x, extent.y, extent.z});
+    const Vec3 half = glm::max(extent, Vec3(size > 0 ? 1e-6f * size : 1e-6f));
+    const std::vector<Vec3> corners = framed_corners(half, turns);
     float distance = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 p = half * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    for (const Vec3& p : corners) {
         const float toward = glm::dot(p, to_camera);
         distance = std::max(
             {distance, toward + std::abs(glm::dot(p, right)) / tan_x,
              toward + std::abs(glm::dot(p, up)) / tan_y});
     }
-    Transform view;
-    view.position = center(box) + distance * to_camera;
-    view.rotation = glm::quat_cast(Mat3(right, up, to_camera));
-    return view;
+    Framing framing;
+    for (const Vec3& p : corners) {
+        const float depth = distance - glm::dot(p, to_camera);
+        framing.aspect = std::max(framing.aspect, std::abs(glm::dot(p, right)) / (depth * tan_y));
+    }
+    framing.camera.position = center(box) + distance * to_camera;
+    framing.camera.rotation = glm::quat_cast(Mat3(right, up, to_camera));
+    return framing;
 }
 
 }  // namespace limn

@@ -89,9 +89,16 @@ posed_bounds(const MeshData& mesh, const SkinData& skin, std::span<const Affine>
 /// Bounds of the transformed `box`.
 [[nodiscard]] Bounds transform_bounds(const Affine& matrix, const Bounds& box);
 
-/// Camera transform that frames all of `bounds` with the vertical field of view `fov_y` [rad] and
-/// `aspect` = width / height, from slightly above and to the side. An empty box counts as a unit
-/// cube.
-[[nodiscard]] Transform frame_bounds(const Bounds& bounds, float fov_y, float aspect);
+/// How a camera frames a box.
+struct Framing {
+    Transform camera;
+    float aspect = 0;  ///< width / height of the narrowest image that shows all of the box
+};
+
+/// Frames all of `bounds` with the vertical field of view `fov_y` [rad] and `aspect` = width /
+/// height, from slightly above and to the side. An empty box counts as a unit cube. `turns`: also
+/// when it turns about its vertical axis.
+[[nodiscard]] Framing
+frame_bounds(const Bounds& bounds, float fov_y, float aspect, bool turns = false);
 
 }  // namespace limn

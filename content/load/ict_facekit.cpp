@@ -86,7 +86,7 @@ Result<std::map<std::string, std::string>> find_expressions(const std::filesyste
 }
 
 Result<ObjFile> load_mesh(const std::string& path) {
-    ObjFile obj = LIMN_TRY(load_obj(path));
+    ObjFile obj = LIMN_TRY(load_intact_obj(path));
     if (obj.positions.size() != kVertices) {
         return fail(
             "{}: found {} vertices, expected the {} of ICT FaceKit", path, obj.positions.size(),

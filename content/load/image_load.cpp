@@ -4,6 +4,7 @@
 #include "content/load/atomic_file.h"
 #include "content/load/exr_file.h"
 #include "content/load/png_file.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/surface.h"
 
@@ -92,6 +93,9 @@ Result<ImageData> decode(
         const ExrLimits exr_limits{
             .max_size = limits.max_size, .max_values = 4 * limits.max_pixels, .max_channels = 64};
         const ExrImage exr = LIMN_TRY(decode_exr(bytes, place, exr_limits));
+        if (const std::string shown = describe_shown(exr); !shown.empty()) {
+            log_warn("{}: {}", place, shown);
+        }
         return to_image_data(exr, place);
     }
 

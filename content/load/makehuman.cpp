@@ -305,7 +305,7 @@ class MakehumanImporter {
 
     Result<GltfScene> read() {
         const std::string base = (folder_ / "base.obj").string();
-        obj_ = LIMN_TRY(load_obj(base));
+        obj_ = LIMN_TRY(load_intact_obj(base));
         if (obj_.positions.size() != kMakehumanVertices) {
             return fail(
                 "{}: found {} vertices, expected the {} of the base mesh hm08", base,
@@ -430,7 +430,7 @@ class MakehumanImporter {
         const MakehumanProxy proxy =
             LIMN_TRY(parse_makehuman_proxy(text, file, kMakehumanVertices));
         const std::string mesh_file = (folder / "eyes-high-poly.obj").string();
-        const ObjFile eyes = LIMN_TRY(load_obj(mesh_file));
+        const ObjFile eyes = LIMN_TRY(load_intact_obj(mesh_file));
         if (eyes.positions.size() != proxy.fits.size()) {
             return fail(
                 "{}: found {} vertices, expected the {} of {}", mesh_file, eyes.positions.size(),

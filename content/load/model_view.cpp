@@ -9,6 +9,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
@@ -33,7 +34,7 @@ namespace limn {
 namespace {
 
 constexpr float kFovY = radians(35.0f);  // like a portrait lens: little distortion
-constexpr float kAspect = 16.0f / 9.0f;
+constexpr float kAspect = 16.0f / 9.0f;  // of the image that the distance is for
 
 /// Illuminance [lx] at which exposure 0 shows white surfaces just below the shoulder of the
 /// neutral tone curve.
@@ -43,6 +44,7 @@ constexpr float kMinReflectance = 0.08f;
 /// The studio around lights of kReferenceLux: weak enough that they shape the form.
 constexpr float kStudioIntensity = 0.32f;
 constexpr float kMaxStudioIntensity = 2000.0f;  // its lamps stay within half floats
+constexpr float kNearPlane = 0.005f;            // of the subject's radius
 constexpr float kShadowDistance = 14.0f;        // of the subject's radius, from the camera
 constexpr int kShadowedLights = 4;
 
@@ -149,7 +151,7 @@ Shadow shadow_for(float radius) {
         .resolution = 2048,
         .source_size = 0.12f,
         .cascades = 2,
-        .distance = std::clamp(kShadowDistance * radius, 0.1f, 1e5f)};
+        .distance = kShadowDistance * radius};
 }
 
 /// How flat `subject` lies: 1 without height, 0 from 0.4 of its width on.
@@ -203,10 +205,12 @@ void add_sun(World& world, const Quat& camera, float radius, ModelView& view) {
 void add_model_camera(World& world, double turntable, ModelView& view) {
     Camera camera{.fov_y = kFovY};
     const float size = is_empty(view.subject) ? 1.0f : glm::length(half_extent(view.subject));
-    camera.near = std::clamp(0.005f * size, 1e-4f, 100.0f);
-    Transform place = frame_bounds(view.subject, kFovY, kAspect);
+    camera.near = kNearPlane * size;
+    const Framing framing = frame_bounds(view.subject, kFovY, kAspect, turntable > 0);
+    const FramingState state = {framing.aspect};
+    Transform position = framing.camera;
     if (turntable <= 0) {
-        view.camera = world.create(Name{"framing camera"}, place, camera);
+        view.camera = world.create(Name{"framing camera"}, position, camera, state);
         view.added.push_back(view.camera);
         return;
     }
@@ -214,8 +218,8 @@ void add_model_camera(World& world, double turntable, ModelView& view) {
     const float speed = 2 * kPi / static_cast<float>(turntable);
     const Entity pivot =
         world.create(Name{"turntable"}, Transform{.position = middle}, Spin{.speed = speed});
-    place.position -= middle;
-    view.camera = world.create(Name{"framing camera"}, place, camera, Parent{pivot});
+    position.position -= middle;
+    view.camera = world.create(Name{"framing camera"}, position, camera, state, Parent{pivot});
     view.added.insert(view.added.end(), {pivot, view.camera});
 }
 
@@ -337,7 +341,7 @@ ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
         }
         world.insert_resource(environment);
         world.insert_resource(model_exposure(ev));
-        const Quat rotation = frame_bounds(view.subject, kFovY, kAspect).rotation;
+        const Quat rotation = frame_bounds(view.subject, kFovY, kAspect).camera.rotation;
         if (lux <= kNoLight && backdrop.name == "sky") {
             add_sun(world, rotation, radius, view);
         } else if (lux <= kNoLight) {

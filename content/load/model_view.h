@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/load/load_warnings.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "ecs/components/surface.h"
@@ -22,6 +23,7 @@ class World;
 struct ModelViewOptions {
     std::string backdrop = "studio";  ///< studio, sky, gray, black, or an image: a panorama
     double turntable = 0;             ///< seconds per turn of the camera; 0: it stands still
+    LoadOptions load = {};            ///< what a bad part of the file costs
 };
 
 /// What is behind a model and lights it.

@@ -1,14 +1,17 @@
 #include "content/load/obj_file.h"
 
 #include "content/load/atomic_file.h"
-#include "content/load/json_document.h"
+#include "content/load/obj_colors.h"
+#include "content/load/obj_lines.h"
+#include "content/load/triangulate_polygon.h"
 #include "ecs/base/text.h"
 
 #include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <cmath>
 #include <exception>
 #include <unordered_map>
 #include <utility>
@@ -17,114 +20,10 @@ namespace limn {
 
 namespace {
 
-/// [file's unit]; beyond it cross products of edges overflow a float.
-constexpr double kLargestNumber = 1e9;
-constexpr std::size_t kMaxEarCorners = 64;
-
-constexpr std::string_view kSpaces = " \t\r\v\f";
-
-/// Lines of a text with their numbers and words. A backslash at the end of a line joins the next.
-class LineReader {
-  public:
-    explicit LineReader(std::string_view text) : text_(text) {}
-
-    /// False at the end of the text.
-    bool next() {
-        if (at_ >= text_.size()) {
-            return false;
-        }
-        joined_.clear();
-        number_ = next_number_;
-        rest_ = take_line();
-        while (rest_.ends_with('\\') && at_ < text_.size()) {
-            if (joined_.empty()) {
-                joined_ = rest_;
-            }
-            joined_.back() = ' ';
-            joined_ += take_line();
-            rest_ = joined_;
-        }
-        rest_ = rest_.substr(0, rest_.find('#'));
-        return true;
-    }
-
-    /// The next word of the line, or "".
-    std::string_view word() {
-        skip_spaces();
-        const std::string_view found = rest_.substr(0, rest_.find_first_of(kSpaces));
-        rest_.remove_prefix(found.size());
-        return found;
-    }
-
-    /// All that is left of the line, without spaces around.
-    std::string_view rest() {
-        skip_spaces();
-        const std::size_t last = rest_.find_last_not_of(kSpaces);
-        return rest_.substr(0, last == std::string_view::npos ? 0 : last + 1);
-    }
-
-    [[nodiscard]] std::size_t number() const { return number_; }
-
-  private:
-    void skip_spaces() {
-        rest_.remove_prefix(std::min(rest_.find_first_not_of(kSpaces), rest_.size()));
-    }
-
-    std::string_view take_line() {
-        const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-        std::string_view line = text_.substr(at_, end - at_);
-        if (line.ends_with('\r')) {
-            line.remove_suffix(1);
-        }
-        at_ = end + 1;
-        ++next_number_;
-        return line;
-    }
-
-    std::string_view text_;
-    std::size_t at_ = 0;
-    std::size_t next_number_ = 1;
-    std::size_t number_ = 0;
-    std::string joined_;  ///< of several lines; `rest_` may refer to it
-    std::string_view rest_;
-};
-
-/// What the readers of both formats share.
-class Reader {
-  protected:
-    Reader(std::string_view text, const std::string& file, const ObjLimits& limits)
-        : line_(text), file_(file), limits_(limits) {}
-
-    [[nodiscard]] std::string place() const { return format_text("{}:{}", file_, line_.number()); }
-
-    Result<float> number(std::string_view what) {
-        const std::string_view word = line_.word();
-        double value = 0;
-        const char* const begin = word.data() + (word.starts_with('+') ? 1 : 0);
-        const char* const end = word.data() + word.size();
-        const auto [stop, code] = std::from_chars(begin, end, value);
-        if (word.empty() || stop != end || code != std::errc{}
-            || !(std::abs(value) <= kLargestNumber)) {
-            return fail(
-                "{}: {}: found {}, expected a number of at most {}", place(), what, found(word),
-                kLargestNumber);
-        }
-        return static_cast<float>(value);
-    }
-
-    static std::string found(std::string_view word) {
-        return word.empty() ? "nothing" : in_quotes(word);
-    }
-
-    LineReader line_;
-    const std::string& file_;
-    const ObjLimits& limits_;
-};
-
 /// Index of a name in a list of unique names, which grows.
-class NameList {
+class ObjNameList {
   public:
-    explicit NameList(std::vector<std::string>& names) : names_(names) {}
+    explicit ObjNameList(std::vector<std::string>& names) : names_(names) {}
 
     std::uint32_t index_of(std::string_view name) {
         const auto next = static_cast<std::uint32_t>(names_.size());
@@ -141,15 +40,22 @@ class NameList {
     std::unordered_map<std::string, std::uint32_t> numbers_;
 };
 
-class ObjReader : Reader {
+constexpr double kFarFromOrigin = 10'000;  // [file's unit], where floats have steps of 1 mm
+
+class ObjReader {
   public:
     ObjReader(std::string_view text, const std::string& file, const ObjLimits& limits)
-        : Reader(text, file, limits) {}
+        : line_(text, file), file_(file), limits_(limits) {}
 
     Result<ObjFile> read() {
         while (line_.next()) {
             LIMN_TRY(read_statement(line_.word()));
         }
+        resolve_faces();
+        resolve_strokes(result_.points, 1);
+        resolve_strokes(result_.lines, 2);
+        result_.colors = colors_.decode(result_.positions.size());
+        errors_.finish(file_);
         return std::move(result_);
     }
 
@@ -159,16 +65,19 @@ class ObjReader : Reader {
             return Done{};
         }
         if (keyword == "v") {
-            return read_vector(result_.positions, "v");
+            return read_position();
         }
         if (keyword == "vt") {
             return read_uv();
         }
         if (keyword == "vn") {
-            return read_vector(result_.normals, "vn");
+            return read_normal();
         }
         if (keyword == "f" || keyword == "fo") {
             return read_face();
+        }
+        if (keyword == "l" || keyword == "p") {
+            return read_strokes(keyword == "l");
         }
         if (keyword == "o") {
             return read_name(objects_, state_.object);
@@ -196,40 +105,95 @@ class ObjReader : Reader {
             && std::find(ignored_.begin(), ignored_.end(), keyword) == ignored_.end()) {
             ignored_.emplace_back(keyword);
             result_.warnings.push_back(
-                format_text("{}: {} is ignored", place(), in_quotes(keyword)));
+                format_text("{}: {} is ignored", line_.position(), found_word(keyword)));
         }
+    }
+
+    void leave_out(std::string_view message, std::string_view what) {
+        errors_.add(format_text("{}; {} is left out", message, what));
     }
 
     Status check_room(std::size_t size, std::size_t limit, std::string_view what) const {
         if (size < limit) {
             return Done{};
         }
-        return fail("{}: found more {}, expected at most {}", place(), what, limit);
+        return fail("{}: found more {}, expected at most {}", line_.position(), what, limit);
     }
 
-    /// Three numbers; more, as a weight or a color, are ignored.
-    Status read_vector(std::vector<Vec3>& list, std::string_view keyword) {
-        LIMN_TRY(check_room(list.size(), limits_.max_vertices, keyword));
-        Vec3 value;
+    Result<glm::dvec3> three_numbers(std::string_view what) {
+        glm::dvec3 value;
         for (int i = 0; i < 3; ++i) {
-            value[i] = LIMN_TRY(number(keyword));
+            value[i] = LIMN_TRY(line_.number(what));
         }
-        list.push_back(value);
+        return value;
+    }
+
+    /// A bad vertex keeps its index, so that those after it keep theirs.
+    Status read_position() {
+        const std::size_t index = result_.positions.size();
+        LIMN_TRY(check_room(index, limits_.max_vertices, "v"));
+        const Result<glm::dvec3> position = three_numbers("v");
+        if (position && !has_origin_) {
+            has_origin_ = true;
+            const bool is_far = glm::length(*position) > kFarFromOrigin;
+            result_.origin = is_far ? Vec3(*position) : Vec3(0);
+        }
+        result_.positions.push_back(
+            position ? Vec3(*position - glm::dvec3(result_.origin)) : Vec3(0));
+        if (position) {
+            read_color(index);
+        } else {
+            bad_positions_.push_back(static_cast<std::uint32_t>(index));
+            leave_out(position.error().message, format_text("vertex {}", index + 1));
+        }
         return Done{};
+    }
+
+    void read_color(std::size_t vertex) {
+        std::array<float, 5> numbers;
+        std::size_t count = 0;
+        while (count < numbers.size() && line_.has_word()) {
+            const Result<double> number = line_.number("v");
+            if (!number) {
+                leave_out(
+                    number.error().message, format_text("the color of vertex {}", vertex + 1));
+                return;
+            }
+            numbers[count++] = static_cast<float>(*number);
+        }
+        colors_.add(vertex, std::span(numbers).first(count));
     }
 
     /// The second number may be missing.
     Status read_uv() {
         LIMN_TRY(check_room(result_.uvs.size(), limits_.max_vertices, "vt"));
-        Vec2 uv = {LIMN_TRY(number("vt")), 0};
-        if (!line_.rest().empty()) {
-            uv.y = LIMN_TRY(number("vt"));
+        Vec2 uv(0);
+        for (int i = 0; i < 2 && (i == 0 || line_.has_word()); ++i) {
+            const Result<double> number = line_.number("vt");
+            if (!number) {
+                uv = Vec2(0);
+                leave_out(
+                    number.error().message,
+                    format_text("texture coordinate {}", result_.uvs.size() + 1));
+                break;
+            }
+            uv[i] = static_cast<float>(*number);
         }
         result_.uvs.push_back(uv);
         return Done{};
     }
 
-    Status read_name(NameList& names, std::uint32_t& current) {
+    Status read_normal() {
+        LIMN_TRY(check_room(result_.normals.size(), limits_.max_vertices, "vn"));
+        const Result<glm::dvec3> normal = three_numbers("vn");
+        if (!normal) {
+            leave_out(normal.error().message, format_text("normal {}", result_.normals.size() + 1));
+        }
+        result_.normals.push_back(normal ? Vec3(*normal) : Vec3(0));
+        return Done{};
+    }
+
+    Status read_name(ObjNameList& names, std::uint32_t& current) {
         LIMN_TRY(check_room(names.size(), limits_.max_names, "names"));
         const std::string_view name = line_.rest();
         current = name.empty() ? 0 : names.index_of(name);
@@ -239,20 +203,72 @@ class ObjReader : Reader {
     Status read_face() {
         ObjFace face = state_;
         face.first = static_cast<std::uint32_t>(result_.corners.size());
-        for (std::string_view word = line_.word(); !word.empty(); word = line_.word()) {
+        Status status = Done{};
+        for (std::string_view word = line_.word(); status && !word.empty(); word = line_.word()) {
             LIMN_TRY(check_room(result_.corners.size(), limits_.max_corners, "corners of faces"));
-            result_.corners.push_back(LIMN_TRY(corner_of(word)));
+            const Result<ObjCorner> corner = corner_of(word);
+            if (corner) {
+                result_.corners.push_back(*corner);
+            } else {
+                status = corner.error();
+            }
         }
         face.count = static_cast<std::uint32_t>(result_.corners.size()) - face.first;
-        if (face.count < 3) {
-            return fail("{}: found {} corners, expected at least 3", place(), face.count);
+        if (status && face.count < 3) {
+            status =
+                fail("{}: found {} corners, expected at least 3", line_.position(), face.count);
+        }
+        if (!status) {
+            result_.corners.resize(face.first);
+            leave_out(status.error().message, "the face");
+            return Done{};
+        }
+        if (face.count > kMaxEarCorners) {
+            result_.warnings.push_back(format_text(
+                "{}: found a polygon of {} corners, expected at most {}; it is drawn as if convex",
+                line_.position(), face.count, kMaxEarCorners));
         }
         result_.faces.push_back(face);
+        face_lines_.push_back(static_cast<std::uint32_t>(line_.line()));
         return Done{};
     }
 
-    /// "7", "7/8", "7/8/9" or "7//9".
-    Result<ObjCorner> corner_of(std::string_view word) {
+    Status read_strokes(bool are_lines) {
+        ObjStrokes& strokes = are_lines ? result_.lines : result_.points;
+        std::vector<std::uint32_t> found;
+        for (std::string_view word = line_.word(); !word.empty(); word = line_.word()) {
+            LIMN_TRY(check_room(
+                strokes.indices.size() + 2 * found.size(), limits_.max_corners,
+                "corners of lines"));
+            const Result<ObjCorner> corner = corner_of(word);
+            if (!corner) {
+                leave_out(corner.error().message, are_lines ? "the line" : "the point");
+                return Done{};
+            }
+            found.push_back(corner->position);
+        }
+        if (found.size() < (are_lines ? 2u : 1u)) {
+            leave_out(
+                format_text(
+                    "{}: found {} corners, expected at least {}", line_.position(), found.size(),
+                    are_lines ? 2 : 1),
+                are_lines ? "the line" : "the point");
+            return Done{};
+        }
+        if (strokes.indices.empty()) {
+            strokes.material = state_.material;
+        }
+        for (std::size_t i = 0; i + (are_lines ? 1 : 0) < found.size(); ++i) {
+            strokes.indices.push_back(found[i]);
+            if (are_lines) {
+                strokes.indices.push_back(found[i + 1]);
+            }
+        }
+        return Done{};
+    }
+
+    /// "7", "7/8", "7/8/9" or "7//9". Those beyond their lists are found at the end.
+    Result<ObjCorner> corner_of(std::string_view word) const {
         ObjCorner corner;
         const std::string_view whole = word;
         const auto part = [&word] {
@@ -265,177 +281,162 @@ class ObjReader : Reader {
         const std::string_view uv = part();
         const std::string_view normal = part();
         if (!word.empty()) {
-            return fail("{}: found {}, expected at most three indices", place(), in_quotes(whole));
+            return fail(
+                "{}: found {}, expected at most three indices", line_.position(),
+                found_word(whole));
         }
-        corner.position = LIMN_TRY(index_of(position, result_.positions.size(), "vertices"));
+        corner.position =
+            static_cast<std::uint32_t>(LIMN_TRY(index_of(position, result_.positions.size(), "v")));
         if (!uv.empty()) {
-            corner.uv = static_cast<std::int32_t>(
-                LIMN_TRY(index_of(uv, result_.uvs.size(), "texture coordinates")));
+            corner.uv = LIMN_TRY(index_of(uv, result_.uvs.size(), "vt"));
         }
         if (!normal.empty()) {
-            corner.normal = static_cast<std::int32_t>(
-                LIMN_TRY(index_of(normal, result_.normals.size(), "normals")));
+            corner.normal = LIMN_TRY(index_of(normal, result_.normals.size(), "vn"));
         }
         return corner;
     }
 
-    /// From 1, or from -1 backwards; the list must have it already.
-    Result<std::uint32_t>
-    index_of(std::string_view word, std::size_t size, std::string_view what) const {
+    /// From 1, or from -1 backwards. A bad one is kMaxIndex, which no list has, unless it is of a
+    /// position.
+    Result<std::int32_t>
+    index_of(std::string_view word, std::size_t size, std::string_view keyword) const {
         std::int64_t index = 0;
         const char* const end = word.data() + word.size();
         const auto [stop, code] = std::from_chars(word.data(), end, index);
         const auto count = static_cast<std::int64_t>(size);
-        if (stop != end || code != std::errc{} || index == 0 || index > count || index < -count) {
-            return fail(
-                "{}: found {}, expected an index into the {} {} so far", place(), found(word), size,
-                what);
+        const bool is_good = stop == end && code == std::errc{} && index != 0 && index >= -count
+                             && index <= kMaxIndex;
+        if (is_good) {
+            return static_cast<std::int32_t>(index > 0 ? index - 1 : count + index);
         }
-        return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
+        if (keyword != "v" && stop == end) {
+            return kMaxIndex;
+        }
+        return fail(
+            "{}: found {}, expected an index of {}, from 1 or from -1 back to -{}",
+            line_.position(), found_word(word), keyword, count);
     }
 
-    ObjFile result_;
-    ObjFace state_;  ///< object, group and material of the next face
-    NameList objects_{result_.objects};
-    NameList groups_{result_.groups};
-    NameList materials_{result_.materials};
-    std::vector<std::string> ignored_;
-};
-
-class MaterialReader : Reader {
-  public:
-    MaterialReader(std::string_view text, const std::string& file, const ObjLimits& limits)
-        : Reader(text, file, limits) {}
-
-    Result<std::vector<ObjMaterial>> read() {
-        while (line_.next()) {
-            const std::string_view keyword = line_.word();
-            if (keyword == "newmtl") {
-                if (result_.size() >= limits_.max_names) {
-                    return fail(
-                        "{}: found more materials, expected at most {}", place(),
-                        limits_.max_names);
-                }
-                result_.push_back({.name = std::string(line_.rest())});
-            } else if (!result_.empty()) {
-                LIMN_TRY(read_value(keyword, result_.back()));
+    /// Checks all indices, now that the lists are complete.
+    void resolve_faces() {
+        normal_count_ = std::ssize(result_.normals);
+        std::size_t kept = 0;
+        for (std::size_t f = 0; f < result_.faces.size(); ++f) {
+            const ObjFace& face = result_.faces[f];
+            if (check_positions(face, face_lines_[f])) {
+                check_attributes(face, face_lines_[f]);
+                result_.faces[kept++] = face;
             }
         }
-        return std::move(result_);
+        result_.faces.resize(kept);
     }
 
-  private:
-    Status read_value(std::string_view keyword, ObjMaterial& material) {
-        if (keyword == "Kd") {
-            return read_color(keyword, 1, material.diffuse);
+    /// Drops those, of `size` indices each, that have a bad one.
+    void resolve_strokes(ObjStrokes& strokes, std::size_t size) {
+        std::vector<std::uint32_t>& indices = strokes.indices;
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < indices.size(); i += size) {
+            if (is_position(indices[i]) && is_position(indices[i + size - 1])) {
+                indices[kept] = indices[i];
+                indices[kept + size - 1] = indices[i + size - 1];
+                kept += size;
+            }
         }
-        if (keyword == "Ke") {
-            return read_color(keyword, 1e6f, material.emission);
+        if (kept < indices.size()) {
+            errors_.add(format_text(
+                "{}: found {} {} with an index that is not of the {} vertices; they are left out",
+                file_, (indices.size() - kept) / size, size == 2 ? "lines" : "points",
+                result_.positions.size()));
         }
-        if (keyword == "Ns") {
-            material.shininess = LIMN_TRY(in_range(keyword, 1000));
-        } else if (keyword == "d") {
-            material.opacity = LIMN_TRY(in_range(keyword, 1));
-        } else if (keyword == "Tr") {
-            material.opacity = 1 - LIMN_TRY(in_range(keyword, 1));
-        }
-        return Done{};
+        indices.resize(kept);
     }
 
-    Result<float> in_range(std::string_view keyword, float max) {
-        const float value = LIMN_TRY(number(keyword));
-        if (value < 0 || value > max) {
-            return fail("{}: {}: found {}, expected 0 to {}", place(), keyword, value, max);
+    [[nodiscard]] bool is_position(std::uint32_t index) const {
+        return index < result_.positions.size()
+               && !std::binary_search(bad_positions_.begin(), bad_positions_.end(), index);
+    }
+
+    bool check_positions(const ObjFace& face, std::uint32_t line) {
+        for (const ObjCorner& corner : corners_of(face)) {
+            const std::uint32_t index = corner.position;
+            if (index >= result_.positions.size()) {
+                errors_.add(format_text(
+                    "{}:{}: found {}, expected an index into the {} vertices; the face is left out",
+                    file_, line, index + std::uint64_t{1}, result_.positions.size()));
+                return false;
+            }
+            if (std::binary_search(bad_positions_.begin(), bad_positions_.end(), index)) {
+                errors_.add(format_text(
+                    "{}:{}: found vertex {}, which is left out, expected one of finite numbers; "
+                    "the face is left out",
+                    file_, line, index + 1));
+                return false;
+            }
         }
-        return value;
+        return true;
     }
 
-    /// One number is gray.
-    Status read_color(std::string_view keyword, float max, Vec3& color) {
-        color = Vec3(LIMN_TRY(in_range(keyword, max)));
-        for (int i = 1; i < 3 && !line_.rest().empty(); ++i) {
-            color[i] = LIMN_TRY(in_range(keyword, max));
+    void check_attributes(const ObjFace& face, std::uint32_t line) {
+        const std::span<ObjCorner> corners = corners_of(face);
+        const auto drop = [&](auto is_bad, std::int64_t count, std::string_view what) {
+            const bool found = std::any_of(corners.begin(), corners.end(), is_bad);
+            if (found) {
+                errors_.add(format_text(
+                    "{}:{}: found an index beyond the {} {}, expected one of them; the face has no "
+                    "{}",
+                    file_, line, count, what, what));
+            }
+            return found;
+        };
+        const std::int64_t uvs = std::ssize(result_.uvs);
+        if (drop([&](const ObjCorner& c) { return c.uv >= uvs; }, uvs, "texture coordinates")) {
+            for (ObjCorner& corner : corners) {
+                corner.uv = -1;
+            }
         }
-        return Done{};
-    }
-
-    std::vector<ObjMaterial> result_;
-};
-
-/// Cuts the corner `at` of `rest` off.
-void cut_ear(
-    std::vector<std::uint32_t>& rest, std::size_t at, std::vector<std::uint32_t>& triangles) {
-    const std::size_t n = rest.size();
-    triangles.insert(triangles.end(), {rest[(at + n - 1) % n], rest[at], rest[(at + 1) % n]});
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
-}
-
-class EarCutter {
-  public:
-    explicit EarCutter(std::span<const Vec3> corners) : p_(corners) {
-        // Newell's normal: the sum of the cross products of the edges.
-        for (std::size_t i = 0; i < p_.size(); ++i) {
-            normal_ += glm::cross(p_[i] - p_[0], p_[(i + 1) % p_.size()] - p_[0]);
+        const auto is_bad = [&](const ObjCorner& c) { return c.normal >= normal_count_; };
+        if (drop(is_bad, normal_count_, "normals")) {
+            for (ObjCorner& corner : corners) {
+                corner.normal = no_normal();
+            }
         }
     }
 
-    /// Twice the area of a triangle in the plane of the polygon, negative if it faces back.
-    [[nodiscard]] float area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-        return glm::dot(normal_, glm::cross(p_[b] - p_[a], p_[c] - p_[a]));
-    }
-
-    [[nodiscard]] bool is_ear(const std::vector<std::uint32_t>& rest, std::size_t at) const {
-        const std::size_t n = rest.size();
-        const std::uint32_t a = rest[(at + n - 1) % n];
-        const std::uint32_t b = rest[at];
-        const std::uint32_t c = rest[(at + 1) % n];
-        if (!(area(a, b, c) > 0)) {
-            return false;
+    /// A normal to be made anew, while those of other faces stay.
+    std::int32_t no_normal() {
+        if (std::ssize(result_.normals) == normal_count_) {
+            result_.normals.emplace_back(0);
         }
-        return std::none_of(rest.begin(), rest.end(), [&](std::uint32_t p) {
-            return p != a && p != b && p != c && area(a, b, p) >= 0 && area(b, c, p) >= 0
-                   && area(c, a, p) >= 0;
-        });
+        return static_cast<std::int32_t>(normal_count_);
     }
 
-  private:
-    std::span<const Vec3> p_;
-    Vec3 normal_ = Vec3(0);
+    std::span<ObjCorner> corners_of(const ObjFace& face) {
+        return std::span(result_.corners).subspan(face.first, face.count);
+    }
+
+    static constexpr std::int32_t kMaxIndex = 0x7fffffff;
+
+    ObjLines line_;
+    const std::string& file_;
+    const ObjLimits& limits_;
+    ObjFile result_;
+    ObjFace state_;  ///< object, group and material of the next face
+    ObjNameList objects_{result_.objects};
+    ObjNameList groups_{result_.groups};
+    ObjNameList materials_{result_.materials};
+    ObjColors colors_;
+    ObjWarnings errors_{result_.errors};
+    bool has_origin_ = false;
+    std::vector<std::string> ignored_;
+    std::vector<std::uint32_t> face_lines_;     ///< line of each face
+    std::vector<std::uint32_t> bad_positions_;  ///< sorted
+    std::int64_t normal_count_ = 0;             ///< of the file
 };
 
 }  // namespace
 
-std::vector<std::uint32_t> triangulate_polygon(std::span<const Vec3> corners) {
-    std::vector<std::uint32_t> triangles;
-    const auto count = static_cast<std::uint32_t>(corners.size());
-    const EarCutter cutter(corners);
-    if (count == 4 && cutter.area(0, 1, 2) > 0 && cutter.area(0, 2, 3) > 0) {
-        return {0, 1, 2, 0, 2, 3};
-    }
-    if (count == 4 && cutter.area(1, 2, 3) > 0 && cutter.area(1, 3, 0) > 0) {
-        return {0, 1, 3, 1, 2, 3};
-    }
-    std::vector<std::uint32_t> rest(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        rest[i] = i;
-    }
-    while (rest.size() > 3 && rest.size() <= kMaxEarCorners) {
-        std::size_t at = 0;
-        while (at < rest.size() && !cutter.is_ear(rest, at)) {
-            ++at;
-        }
-        if (at == rest.size()) {
-            break;  // it crosses itself, or has no area
-        }
-        cut_ear(rest, at, triangles);
-    }
-    for (std::size_t i = 1; i + 1 < rest.size(); ++i) {
-        triangles.insert(triangles.end(), {rest[0], rest[i], rest[i + 1]});
-    }
-    return triangles;
-}
-
 Result<ObjFile> parse_obj(std::string_view text, const std::string& file, const ObjLimits& limits) {
+    LIMN_TRY(check_encoding(text, file));
     try {
         return ObjReader(text, file, limits).read();
     } catch (const std::exception& exception) {  // out of memory
@@ -448,9 +449,17 @@ Result<ObjFile> load_obj(const std::string& path, const ObjLimits& limits) {
     return parse_obj({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, limits);
 }
 
-Result<std::vector<ObjMaterial>>
-parse_obj_materials(std::string_view text, const std::string& file, const ObjLimits& limits) {
-    return MaterialReader(text, file, limits).read();
+Result<ObjFile> load_intact_obj(const std::string& path) {
+    ObjFile obj = LIMN_TRY(load_obj(path));
+    if (!obj.errors.empty()) {
+        return Error{obj.errors.front()};
+    }
+    if (obj.origin != Vec3(0)) {
+        return fail(
+            "{}: found its first vertex far from the origin, expected it within {}", path,
+            kFarFromOrigin);
+    }
+    return obj;
 }
 
 }  // namespace limn

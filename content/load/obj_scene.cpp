@@ -1,17 +1,18 @@
 #include "content/load/obj_scene.h"
 
 #include "content/bake/tangents.h"
-#include "content/load/atomic_file.h"
-#include "content/load/gltf_file.h"
-#include "ecs/base/log.h"
+#include "content/load/gltf_strokes.h"
+#include "content/load/obj_libraries.h"
+#include "content/load/triangulate_polygon.h"
 #include "ecs/base/text.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <map>
-#include <string_view>
+#include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -38,50 +39,64 @@ struct SameCorner {
     }
 };
 
-/// Perceptual roughness whose GGX lobe is as wide as a Blinn-Phong lobe of this exponent
-/// (Karis 2013: alpha^2 = 2 / (n + 2)).
-float roughness_of(float shininess) {
-    return std::sqrt(std::sqrt(2.0f / (shininess + 2.0f)));
-}
-
-Material material_of(const ObjMaterial& source) {
-    Material material;
-    material.name = source.name;
-    material.base_color = Vec4(source.diffuse, source.opacity);
-    material.emission = source.emission;
-    material.alpha_mode = source.opacity < 1 ? AlphaMode::Blend : AlphaMode::Opaque;
-    material.roughness = roughness_of(source.shininess);
-    return material;
-}
-
-/// The materials of all libraries by name; those that cannot be read leave a warning.
-std::map<std::string, ObjMaterial, std::less<>>
-read_libraries(const ObjFile& obj, const std::string& path, const ObjLimits& limits) {
-    std::map<std::string, ObjMaterial, std::less<>> found;
-    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    const auto read = [&](const std::string& library) -> Status {
-        const std::vector<std::byte> bytes = LIMN_TRY(fetch_uri(
-            library, folder.empty() ? "." : folder.string(), path + ": mtllib", limits.max_bytes));
-        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        const std::vector<ObjMaterial> materials =
-            LIMN_TRY(parse_obj_materials(text, (folder / library).string(), limits));
-        for (const ObjMaterial& material : materials) {
-            found.emplace(material.name, material);
-        }
-        return Done{};
-    };
-    for (const std::string& library : obj.libraries) {
-        if (const Status status = read(library); !status) {
-            log_warn("{}", status.error().message);
+/// Normals where the file has a bad or zero one: of the triangles around each position.
+void replace_zero_normals(ObjMesh& made) {
+    MeshData& mesh = made.mesh;
+    if (std::find(mesh.normals.begin(), mesh.normals.end(), Vec3(0)) == mesh.normals.end()) {
+        return;
+    }
+    std::unordered_map<std::uint32_t, glm::dvec3> sums;  // by position of the file
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const std::uint32_t* const v = &mesh.indices[i];
+        const glm::dvec3 p = mesh.positions[v[0]];
+        const glm::dvec3 area =
+            glm::cross(glm::dvec3(mesh.positions[v[1]]) - p, glm::dvec3(mesh.positions[v[2]]) - p);
+        for (int k = 0; k < 3; ++k) {
+            sums.try_emplace(made.source[v[k]], 0).first->second += area;
         }
     }
-    return found;
+    for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+        if (mesh.normals[v] == Vec3(0)) {
+            const glm::dvec3 sum = sums[made.source[v]];
+            const double length = glm::length(sum);
+            mesh.normals[v] = length > 0 ? Vec3(sum / length) : Vec3(0, 1, 0);
+        }
+    }
 }
 
 std::string node_name(const ObjFile& obj, const ObjFace& face) {
     const std::string& object = obj.objects[face.object];
     const std::string& group = obj.groups[face.group];
     return object.empty() ? group : group.empty() ? object : object + "." + group;
+}
+
+void build_obj_nodes(const ObjFile& obj, GltfScene& scene) {
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>>
+        parts;
+    for (std::uint32_t f = 0; f < obj.faces.size(); ++f) {
+        const ObjFace& face = obj.faces[f];
+        parts[{face.object, face.group, face.material}].push_back(f);
+    }
+    const ObjFace* previous = nullptr;
+    for (const auto& [key, faces] : parts) {
+        const ObjFace& face = obj.faces[faces[0]];
+        if (previous == nullptr || face.object != previous->object
+            || face.group != previous->group) {
+            scene.nodes.emplace_back();
+            scene.nodes.back().name = node_name(obj, face);
+            scene.nodes.back().transform.position = obj.origin;
+        }
+        previous = &face;
+        MeshData mesh = make_obj_mesh(obj, faces).mesh;
+        mesh.name = node_name(obj, face);
+        if (mesh.normals.empty()) {
+            generate_normals(mesh, kCreaseAngle);
+        }
+        generate_tangents(mesh);
+        scene.nodes.back().parts.push_back(
+            {static_cast<std::uint32_t>(scene.meshes.size()), face.material});
+        scene.meshes.push_back(std::move(mesh));
+    }
 }
 
 }  // namespace
@@ -115,60 +130,84 @@ ObjMesh make_obj_mesh(const ObjFile& obj, std::span<const std::uint32_t> faces) 
             has_normals = has_normals && corner.normal >= 0;
             mesh.normals.push_back(
                 has_normals
-                    ? normalize_or(obj.normals[static_cast<std::size_t>(corner.normal)], {0, 1, 0})
+                    ? normalize_or(obj.normals[static_cast<std::size_t>(corner.normal)], Vec3(0))
                     : Vec3(0));
+            if (!obj.colors.empty()) {
+                mesh.colors.emplace_back(obj.colors[corner.position], 1);
+            }
         }
     }
     if (!has_normals) {
         mesh.normals.clear();
     }
+    replace_zero_normals(result);
     update_bounds(mesh);
     return result;
 }
 
-Result<GltfScene> load_obj_scene(const std::string& path, const ObjLimits& limits) {
-    const ObjFile obj = LIMN_TRY(load_obj(path, limits));
-    for (const std::string& warning : obj.warnings) {
-        log_warn("{}", warning);
-    }
-    if (obj.faces.empty()) {
-        return fail("{}: found no faces, expected at least one", path);
-    }
+namespace {
 
+/// Points or lines as a node of their own.
+void add_obj_strokes(
+    const ObjFile& obj, const ObjStrokes& source, std::int32_t mode, GltfScene& scene) {
+    const Strokes strokes = make_strokes(obj.positions, source.indices, mode);
+    if (strokes.indices.empty()) {
+        return;
+    }
+    const char* const name = mode == kGltfPoints ? "points" : "lines";
+    if (strokes.found > kMaxStrokes) {
+        scene.warnings.push_back(format_text(
+            "{}: found {} {}, of which {} are drawn", scene.name, strokes.found, name,
+            kMaxStrokes));
+    }
+    MeshData mesh;
+    mesh.name = name;
+    for (std::size_t i = 0; i < strokes.sources.size(); ++i) {
+        const std::uint32_t vertex = strokes.sources[i];
+        mesh.positions.push_back(obj.positions[vertex] + strokes.offsets[i]);
+        mesh.tangents.emplace_back(any_perpendicular(strokes.normals[i]), 1);
+        if (!obj.colors.empty()) {
+            mesh.colors.emplace_back(obj.colors[vertex], 1);
+        }
+    }
+    mesh.normals = strokes.normals;
+    mesh.uvs.assign(mesh.positions.size(), Vec2(0));
+    mesh.indices = strokes.indices;
+    update_bounds(mesh);
+    scene.nodes.emplace_back();
+    scene.nodes.back().name = name;
+    scene.nodes.back().transform.position = obj.origin;
+    scene.nodes.back().parts.push_back(
+        {static_cast<std::uint32_t>(scene.meshes.size()), source.material});
+    scene.meshes.push_back(std::move(mesh));
+}
+
+/// A cloud of points, as scanners write it, has vertices and nothing else.
+void make_point_cloud(ObjFile& obj) {
+    if (obj.errors.empty() && obj.faces.empty() && obj.lines.indices.empty()
+        && obj.points.indices.empty()) {
+        obj.points.indices.resize(obj.positions.size());
+        std::iota(obj.points.indices.begin(), obj.points.indices.end(), 0u);
+    }
+}
+
+}  // namespace
+
+Result<GltfScene>
+load_obj_scene(const std::string& path, const ObjLimits& limits, const LoadOptions& options) {
+    ObjFile obj = LIMN_TRY(load_obj(path, limits));
+    make_point_cloud(obj);
     GltfScene scene;
     scene.name = std::filesystem::path(path).stem().string();
-    const auto colors = read_libraries(obj, path, limits);
-    for (const std::string& name : obj.materials) {
-        const auto color = colors.find(name);
-        scene.materials.push_back(
-            material_of(color == colors.end() ? ObjMaterial{.name = name} : color->second));
-        scene.materials.back().name = name.empty() ? "default" : name;
-    }
-
-    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>>
-        parts;
-    for (std::uint32_t f = 0; f < obj.faces.size(); ++f) {
-        const ObjFace& face = obj.faces[f];
-        parts[{face.object, face.group, face.material}].push_back(f);
-    }
-    const ObjFace* previous = nullptr;
-    for (const auto& [key, faces] : parts) {
-        const ObjFace& face = obj.faces[faces[0]];
-        if (previous == nullptr || face.object != previous->object
-            || face.group != previous->group) {
-            scene.nodes.emplace_back();
-            scene.nodes.back().name = node_name(obj, face);
-        }
-        previous = &face;
-        MeshData mesh = make_obj_mesh(obj, faces).mesh;
-        mesh.name = node_name(obj, face);
-        if (mesh.normals.empty()) {
-            generate_normals(mesh, kCreaseAngle);
-        }
-        generate_tangents(mesh);
-        scene.nodes.back().parts.push_back(
-            {static_cast<std::uint32_t>(scene.meshes.size()), face.material});
-        scene.meshes.push_back(std::move(mesh));
+    scene.warnings = obj.errors;
+    scene.warnings.insert(scene.warnings.end(), obj.warnings.begin(), obj.warnings.end());
+    build_obj_materials(obj, path, limits, scene);
+    build_obj_nodes(obj, scene);
+    add_obj_strokes(obj, obj.points, kGltfPoints, scene);
+    add_obj_strokes(obj, obj.lines, kGltfLines, scene);
+    LIMN_TRY(report_load_warnings(path, scene.warnings, options));
+    if (scene.meshes.empty()) {
+        return fail("{}: found no faces, lines or points, expected at least one", path);
     }
     return scene;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/load/gltf_scene.h"
+#include "content/load/load_warnings.h"
 #include "content/load/obj_file.h"
 #include "ecs/base/result.h"
 #include "ecs/components/surface.h"
@@ -25,11 +26,12 @@ struct ObjMesh {
 /// gets a vertex of its own; vertices are in the order in which the triangles use them.
 [[nodiscard]] ObjMesh make_obj_mesh(const ObjFile& obj, std::span<const std::uint32_t> faces);
 
-/// A node for each object and group with faces, in parts by material. Missing normals are generated
-/// as for glTF. Materials have the color, emission and opacity of the file's libraries beside it,
-/// and a roughness that gives highlights as wide as Phong's exponent does; a library that cannot be
-/// read is a warning.
-[[nodiscard]] Result<GltfScene>
-load_obj_scene(const std::string& path, const ObjLimits& limits = {});
+/// A node for each object and group with faces, in parts by material, and one each for points and
+/// lines (gltf_strokes.h); a file with vertices alone is a cloud of points. Missing normals are
+/// generated as for glTF. Materials are those of the file's libraries under its folder
+/// (obj_textures.h); where none defines one, it is gray, or white under the colors of vertices.
+/// What is left out or ignored is in the scene's warnings, which are logged.
+[[nodiscard]] Result<GltfScene> load_obj_scene(
+    const std::string& path, const ObjLimits& limits = {}, const LoadOptions& options = {});
 
 }  // namespace limn

@@ -13,6 +13,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/gltf_source.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
@@ -89,8 +90,9 @@ Entity add_camera(World& world, const Bounds& bounds) {
     Camera camera{.fov_y = radians(35.0f)};
     const float size = is_empty(bounds) ? 1.0f : glm::length(half_extent(bounds));
     camera.near = std::clamp(0.005f * size, 1e-4f, 0.1f);
+    const Framing framing = frame_bounds(bounds, camera.fov_y, 16.0f / 9.0f);
     return world.create(
-        Name{"framing camera"}, frame_bounds(bounds, camera.fov_y, 16.0f / 9.0f), camera);
+        Name{"framing camera"}, framing.camera, camera, FramingState{framing.aspect});
 }
 
 /// Adds the resources that every scene needs.
@@ -137,7 +139,11 @@ Result<LoadedScene>
 load_model_scene(World& world, const std::string& path, const SceneOptions& options) {
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
     const bool is_obj = ends_with_any(path, {".obj"});
-    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path) : load_gltf(path));
+    const LoadOptions& load = options.model.load;
+    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path));
+    if (load.strict) {
+        LIMN_TRY(report_load_warnings(path, model.warnings, load));
+    }
     LoadedScene scene;
     scene.name = model.name;
     scene.path = path;
@@ -214,8 +220,10 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
         }
         return load_model_scene(world, scene, options);
     }
-    if (options.model.backdrop != ModelViewOptions{}.backdrop || options.model.turntable > 0) {
-        return fail("{}: found a level, expected a model with --backdrop and --turntable", scene);
+    if (options.model.backdrop != ModelViewOptions{}.backdrop || options.model.turntable > 0
+        || options.model.load.strict) {
+        return fail(
+            "{}: found a level, expected a model with --backdrop, --turntable and --strict", scene);
     }
     const bool is_path = ends_with_any(scene, {".json"}) || scene.find('/') != std::string::npos;
     const Result<std::string> path = is_path ? scene : find_level(scene);

@@ -13,6 +13,7 @@
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/force_field.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/furrows.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
@@ -177,6 +178,7 @@ void register_all_components() {
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
     register_component<CameraPath>();
+    register_component<FramingState>();
 
     register_resource<SiblingOrder>();
     register_resource<FrameTime>();

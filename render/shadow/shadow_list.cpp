@@ -83,7 +83,7 @@ Shadow sanitize(const Shadow& shadow) {
     Shadow valid = shadow;
     const auto resolution = static_cast<unsigned>(std::clamp(shadow.resolution, 16, 4096));
     valid.resolution = static_cast<int>(std::bit_ceil(resolution));
-    valid.source_size = std::clamp(finite_or(shadow.source_size, 0.0f), 0.0f, 100.0f);
+    valid.source_size = std::clamp(finite_or(shadow.source_size, 0.0f), 0.0f, 1e6f);
     valid.cascades = std::clamp(shadow.cascades, 1, kMaxCascades);
     valid.distance = finite_or(shadow.distance, 40.0f);
     valid.distance = valid.distance > 0 ? valid.distance : 40.0f;

@@ -110,10 +110,12 @@ ShadowView make_cascade_view(
     const double up = snapped(axes.up);
     const double forward = snapped(axes.forward);
 
-    // From well in front of the sphere, to include casters toward the sun, to its far side.
-    constexpr double kBefore = 200;
+    // From well in front of the sphere, to include casters toward the sun, to its far side: enough
+    // for the search of blockers to be as wide as the filter allows, however large the scene is.
+    constexpr double kMinBefore = 200;  // [m]
+    constexpr double kBefore = 4;       // of the sphere's radius
     const double far = forward + half;
-    const double range = 2 * half + kBefore;
+    const double range = 2 * half + std::max(kMinBefore, kBefore * half);
     Mat4 rows(0.0f);
     rows[0] = Vec4(axes.right, -right) * static_cast<float>(1 / half);
     rows[1] = Vec4(axes.up, -up) * static_cast<float>(1 / half);

@@ -90,11 +90,43 @@ TEST_CASE("player_camera: what sinks stays above the floor, what is told to sink
 }
 
 TEST_CASE("player_camera: a framed box fills most of the image's height") {
-    const Camera lens;
-    const float distance = framing_distance(lens, 2.0f);
-    const float share = std::asin(2.0f / distance) / (0.5f * lens.fov_y);
-    CHECK(share > 0.8f);
-    CHECK(share < 1.0f);
+    const PlayerCamera camera;
+    const float distance = framing_distance(camera, 2.0f, 1.5f);
+    const float fraction = std::asin(2.0f / distance) / (0.5f * camera.lens.fov_y);
+    CHECK(fraction > 0.8f);
+    CHECK(fraction < 1.0f);
+}
+
+TEST_CASE("player_camera: in an upright image a framed box fills most of the width") {
+    const PlayerCamera camera;
+    const float distance = framing_distance(camera, 2.0f, 0.25f);
+    const float half_width = std::atan(0.25f * std::tan(0.5f * camera.lens.fov_y));
+    const float fraction = std::asin(2.0f / distance) / half_width;
+    CHECK(fraction > 0.8f);
+    CHECK(fraction < 1.0f);
+}
+
+TEST_CASE("player_camera: around a model of any size, the camera moves as around one of 1 m") {
+    const auto move = [](float unit) {
+        PlayerCamera camera;
+        camera.unit = unit;
+        camera.reach = 5 * unit;
+        start_orbit(camera, look_at(unit * Vec3(3, 4, 5), {0, 0, 0}), {0, 0, 0});
+        for (int i = 0; i < 90; ++i) {  // in as far as it goes
+            step_orbit(camera, {.zoom = 1}, {0, 0, 0}, 1.0f / 60.0f);
+        }
+        const float nearest = camera.orbit.distance;
+        start_fly(camera, camera.pose);
+        for (int i = 0; i < 60; ++i) {
+            follow_reach(camera, nearest, 2 * unit, 1.0f / 60.0f);
+            step_fly(camera, {.move = {0, 0, -1}}, 1.0f / 60.0f);
+        }
+        return Vec3(nearest, position_of(camera.pose).y, position_of(camera.pose).z) / unit;
+    };
+    const Vec3 one = move(1);
+    for (const float unit : {1e-4f, 100.0f, 2e4f}) {
+        check_near(move(unit), one);
+    }
 }
 
 TEST_CASE("player_camera: two keys at once are no faster than one") {

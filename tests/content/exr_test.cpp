@@ -198,6 +198,115 @@ TEST_CASE("exr: as a texture a missing alpha is 1 and a lone channel is gray") {
     CHECK(bits[3] == 0x3C00);
 }
 
+TEST_CASE("exr: the display window is the image, black where the data window has no pixels") {
+    // Pixel (x, y) of the data window has the value 10 x + y + 1.
+    ExrImage image{.width = 3, .height = 2, .x = -1, .y = 4};
+    std::vector<float> values;
+    for (int y = 4; y < 6; ++y) {
+        for (int x = -1; x < 2; ++x) {
+            values.push_back(static_cast<float>(10 * x + y + 1));
+        }
+    }
+    add_layer(image, "", "Y", values, false);
+    const auto shown = [&](const ExrWindow& display) {
+        image.display = display;
+        const Result<ExrImage> back = decode_exr(bytes_of(image), "a.exr");
+        REQUIRE(back.ok());
+        CHECK(back->width == 3);
+        const ImageData made = to_image_data(*back, "a");
+        CHECK(made.width == display.width);
+        CHECK(made.height == display.height);
+        std::vector<float> gray;
+        for (std::size_t i = 0; i < made.pixels.size(); i += 16) {
+            float texel[4];
+            std::memcpy(texel, &made.pixels[i], 16);
+            CHECK(texel[1] == texel[0]);
+            CHECK(texel[3] == 1);
+            gray.push_back(texel[0]);
+        }
+        return gray;
+    };
+    CHECK(shown({-1, 4, 3, 2}) == values);
+    CHECK(shown({0, 5, 1, 1}) == std::vector<float>{6});                   // overscan
+    CHECK(shown({-2, 3, 3, 2}) == std::vector<float>{0, 0, 0, 0, -5, 5});  // a corner
+    CHECK(shown({-1, 3, 4, 3}) == std::vector<float>{0, 0, 0, 0, -5, 5, 15, 0, -4, 6, 16, 0});
+    CHECK(shown({100, 100, 2, 1}) == std::vector<float>{0, 0});
+}
+
+TEST_CASE("exr: a display window beyond the limits is refused, whatever the data window is") {
+    ExrImage image{.width = 1, .height = 1};
+    add_layer(image, "", "Y", std::vector<float>{1}, false);
+    image.display = {0, 0, 20000, 10};
+    const Result<ExrImage> wide = decode_exr(bytes_of(image), "a.exr");
+    REQUIRE_FALSE(wide.ok());
+    CHECK(contains(wide.error().message, "displayWindow: found 20000 x 10 pixels, expected 1 to"));
+    image.display = {0, 0, 200, 100};
+    CHECK_FALSE(decode_exr(bytes_of(image), "a.exr", {.max_values = 4 * 200 * 100 - 1}).ok());
+    CHECK(decode_exr(bytes_of(image), "a.exr", {.max_values = 4 * 200 * 100}).ok());
+}
+
+TEST_CASE("exr: without R, G and B, the first layer with a color is shown and the others named") {
+    const std::vector<float> color = {1, 2, 3};
+    const auto with_layers = [&](const std::vector<std::string>& layers) {
+        ExrImage image{.width = 1, .height = 1};
+        for (const std::string& layer : layers) {
+            const bool is_position = layer == "normal" || layer == "a.position";
+            add_layer(image, layer, is_position ? "XYZ" : "RGB", color, false);
+        }
+        return image;
+    };
+    const ExrImage plain = with_layers({"", "a", "b"});
+    CHECK(find_shown(plain).layer.empty());
+    CHECK(describe_shown(plain).empty());
+    const ExrImage layers = with_layers({"a.position", "glossy.x", "diffuse", "normal"});
+    CHECK(find_shown(layers).layer == "glossy.x");
+    CHECK(
+        describe_shown(layers)
+        == "found no channels R, G and B; of its layers, glossy.x is shown, and not a.position, "
+           "diffuse, normal");
+    const ImageData shown = to_image_data(layers, "a");
+    float texel[4];
+    std::memcpy(texel, shown.pixels.data(), 16);
+    CHECK(texel[0] == 1);
+    CHECK(texel[2] == 3);
+    CHECK(texel[3] == 1);
+    CHECK(find_shown(with_layers({"a.position", "normal"})).layer == "a.position");
+    CHECK(describe_shown(with_layers({"normal"})).empty());
+    ExrImage odd{.width = 1, .height = 1};
+    add_layer(odd, "", "AQZ", color, false);
+    CHECK(find_shown(odd).channels[0] == 1);
+    CHECK(find_shown(odd).channels[3] == 0);
+    CHECK(
+        describe_shown(odd)
+        == "found no channels R, G and B; of its layers, Q is shown, and not Z");
+}
+
+TEST_CASE("exr: the reports of windows have the pixels of their display windows") {
+    for (const auto& [file, size] : {std::pair("crop", 16), {"over", 8}, {"plain", 8}}) {
+        const auto path = limn::test::shared_report(std::string("25-exr-windows/") + file + ".exr");
+        if (!path) {
+            return;
+        }
+        CAPTURE(file);
+        const Result<ExrImage> exr = read_exr(*path);
+        REQUIRE(exr.ok());
+        const ImageData image = to_image_data(*exr, "a");
+        CHECK(image.width == size);
+        CHECK(image.height == size);
+        if (std::string_view(file) != "crop") {
+            continue;
+        }
+        REQUIRE(image.format == PixelFormat::Rgba32F);
+        for (int i = 0; i < 256; ++i) {
+            const int x = i % 16;
+            const int y = i / 16;
+            float red = 0;
+            std::memcpy(&red, &image.pixels[16 * static_cast<std::size_t>(i)], 4);
+            CHECK(red == (x >= 4 && x < 12 && y >= 4 && y < 12 ? 0.5f : 0.0f));
+        }
+    }
+}
+
 TEST_CASE("exr: broken files are errors of one line") {
     const std::vector<std::byte> good = bytes_of(make_picture());
     std::vector<std::byte> wrong_magic = good;

@@ -600,7 +600,8 @@ TEST_CASE("gltf: a camera that frames a box sees all of it, and not from far awa
         for (const float aspect : {0.5f, 16.0f / 9.0f}) {
             const Vec3 middle(3, -2, 7);
             const float fov_y = radians(40);
-            const Transform view = frame_bounds({middle - half, middle + half}, fov_y, aspect);
+            const Transform view =
+                frame_bounds({middle - half, middle + half}, fov_y, aspect).camera;
             float fill = 0;
             for (int corner = 0; corner < 8; ++corner) {
                 const Vec3 p =

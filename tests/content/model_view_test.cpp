@@ -1,3 +1,4 @@
+#include "content/load/gltf_scene.h"
 #include "content/load/model_view.h"
 #include "content/load/scene_bounds.h"
 #include "content/load/scene_load.h"
@@ -6,6 +7,7 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/framing.h"
 #include "ecs/components/light.h"
 #include "ecs/components/post.h"
 #include "ecs/components/shadow.h"
@@ -19,7 +21,9 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -61,6 +65,25 @@ struct Model {
 };
 
 const Bounds kUnit = {Vec3(-0.5f), Vec3(0.5f)};
+
+/// How far out in an image the corners of a box are: 1 at its border. `turns`: at any angle about
+/// its vertical axis.
+float corner_extent(const Bounds& box, const Transform& camera, const Vec2& tangent, bool turns) {
+    float extent = 0;
+    for (int turn = 0; turn < (turns ? 50 : 1); ++turn) {
+        const Quat rotation =
+            glm::angleAxis(2 * kPi * static_cast<float>(turn) / 50, Vec3(0, 1, 0));
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3 sides(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+            const Vec3 corner_ws = center(box) + rotation * (half_extent(box) * sides);
+            const Vec3 p = glm::conjugate(camera.rotation) * (corner_ws - camera.position);
+            CHECK(p.z < 0);
+            extent = std::max(
+                {extent, std::abs(p.x / p.z) / tangent.x, std::abs(p.y / p.z) / tangent.y});
+        }
+    }
+    return extent;
+}
 
 }  // namespace
 
@@ -273,6 +296,25 @@ TEST_CASE("model view: a model far away is moved to the origin, one that is near
     }
 }
 
+TEST_CASE("model view: offsets of ten million meters that cancel leave the same view, to the bit") {
+    const auto near_file = test::shared_report("20-far-away/near.gltf");
+    const auto cancel_file = test::shared_report("20-far-away/cancel.gltf");
+    if (!near_file || !cancel_file) {
+        return;
+    }
+    World world;
+    World other;
+    const Result<LoadedScene> scene = load_scene(world, *near_file);
+    const Result<LoadedScene> same = load_scene(other, *cancel_file);
+    REQUIRE(scene.ok());
+    REQUIRE(same.ok());
+    CHECK(same->model->subject.min == scene->model->subject.min);
+    CHECK(same->model->subject.max == scene->model->subject.max);
+    CHECK(
+        other.get<const Transform>(same->camera).position
+        == world.get<const Transform>(scene->camera).position);
+}
+
 TEST_CASE("model view: a turntable turns the camera once in so many seconds") {
     Model model;
     const ModelView view = model.view("studio", 4);
@@ -281,8 +323,94 @@ TEST_CASE("model view: a turntable turns the camera once in so many seconds") {
     const SceneMatrices matrices(model.world);
     Model still;
     const ModelView other = still.view();
-    const Vec3 place = transform_point(matrices.of(view.camera), {0, 0, 0});
-    CHECK(glm::distance(place, still.world.get<const Transform>(other.camera).position) < 1e-4f);
+    const Vec3 middle = center(view.subject);
+    const Vec3 turning = transform_point(matrices.of(view.camera), {0, 0, 0}) - middle;
+    const Vec3 standing = still.world.get<const Transform>(other.camera).position - middle;
+    CHECK(glm::dot(glm::normalize(turning), glm::normalize(standing)) > 0.99999f);
+    CHECK(glm::length(turning) >= glm::length(standing));
+}
+
+TEST_CASE("model view: every corner of a box is in the image, of any shape, at any size") {
+    for (const Vec3& size :
+         {Vec3(1, 1, 1), Vec3(20, 1, 1), Vec3(1, 20, 1), Vec3(1, 1, 20), Vec3(10, 0, 10),
+          Vec3(10, 10, 0), Vec3(0, 10, 10), Vec3(1e-4f, 3e-4f, 2e-4f), Vec3(7e4f, 2e4f, 1e5f)}) {
+        CAPTURE(size.x);
+        CAPTURE(size.y);
+        CAPTURE(size.z);
+        const Bounds box = {{2, 3, 4}, Vec3(2, 3, 4) + size};
+        for (const bool turns : {false, true}) {
+            const Camera lens{.fov_y = radians(35.0f)};
+            const Framing framing = frame_bounds(box, lens.fov_y, 16.0f / 9.0f, turns);
+            for (const float aspect : {0.25f, 0.5f, 0.75f, 1.0f, 4 / 3.0f, 16 / 9.0f, 4.0f}) {
+                CAPTURE(aspect);
+                const float up = std::tan(0.5f * fit_camera(lens, {framing.aspect}, aspect).fov_y);
+                const float widest = corner_extent(box, framing.camera, {up * aspect, up}, turns);
+                CHECK(widest < 0.95f);
+                if (!turns) {  // and no smaller than it has to be
+                    CHECK(widest > (aspect > 1.8f ? 0.3f : 0.45f));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("model view: an image as wide as the framing is for has its field of view") {
+    const Camera lens{.fov_y = radians(35.0f)};
+    const FramingState wide{frame_bounds({Vec3(0), Vec3(20, 1, 1)}, lens.fov_y, 1.5f).aspect};
+    CHECK(wide.aspect == near(1.5));
+    CHECK(fit_camera(lens, wide, 1.51f).fov_y == lens.fov_y);
+    CHECK(fit_camera(lens, wide, 1.0f).fov_y > lens.fov_y);
+    // What is tall needs no wider view in an upright image.
+    const FramingState tall{frame_bounds({Vec3(0), Vec3(1, 20, 1)}, lens.fov_y, 1.5f).aspect};
+    CHECK(fit_camera(lens, tall, 0.5f).fov_y == lens.fov_y);
+}
+
+TEST_CASE("model view: whatever is chosen for a model scales with it") {
+    const auto choose = [](float scale) {
+        Model model;
+        auto& assets = model.world.resource<Assets>();
+        assets.meshes[0] = make_box({.size = Vec3(scale)});
+        const Entity box = model.world.query<const MeshInstance>().single_entity();
+        model.world.get<Transform>(box).position = {0, 0.5f * scale, 0};
+        const ModelView view = model.view();
+        std::vector<float> lengths = {
+            model.world.get<const Camera>(view.camera).near,
+            glm::length(model.world.get<const Transform>(view.camera).position),
+            assets.meshes.back().bounds.max.x};
+        model.world.query<const Shadow>().each(
+            [&](const Shadow& shadow) { lengths.push_back(shadow.distance); });
+        for (float& length : lengths) {
+            length /= scale;
+        }
+        return lengths;
+    };
+    const std::vector<float> one = choose(1);
+    CHECK(one.size() == 4);
+    for (const float scale : {1e-4f, 1e-2f, 100.0f, 2e4f, 1e5f}) {
+        CAPTURE(scale);
+        const std::vector<float> other = choose(scale);
+        for (std::size_t i = 0; i < one.size(); ++i) {
+            CHECK(other[i] == near(one[i]).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("model view: an OBJ millions of meters from its origin keeps its millimeters") {
+    const test::TemporaryFolder folder;
+    const auto load = [&](const char* vertices) {
+        const std::string path = folder.file("far.obj");
+        std::ofstream(path) << vertices << "f 1 2 3\n";
+        World world;
+        const Result<LoadedScene> scene = load_scene(world, path);
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        return scene->model->subject;
+    };
+    const Bounds close = load("v 0 0 0\nv 1.125 0 0\nv 0 0.375 0.625\n");
+    const Bounds far = load("v 1842022.25 10 -5173301.5\nv 1842023.375 10 -5173301.5\n"
+                            "v 1842022.25 10.375 -5173300.875\n");
+    CHECK(half_extent(far).x == near(half_extent(close).x));
+    CHECK(half_extent(far).y == near(half_extent(close).y));
+    CHECK(half_extent(far).z == near(half_extent(close).z));
 }
 
 TEST_CASE("scene bounds: what is attached to a joint is sheared before the first step, too") {
@@ -333,6 +461,10 @@ TEST_CASE("model view: formats that are not read are named, with what is") {
         load_scene(world, "gallery", {.model = {.backdrop = "sky", .turntable = 0}});
     REQUIRE_FALSE(level.ok());
     CHECK(level.error().message.find("found a level, expected a model") != std::string::npos);
+    const Result<LoadedScene> strict =
+        load_scene(world, "gallery", {.model = {.load = {.strict = true}}});
+    REQUIRE_FALSE(strict.ok());
+    CHECK(strict.error().message.find("--strict") != std::string::npos);
 }
 
 }  // namespace limn::model_view_test

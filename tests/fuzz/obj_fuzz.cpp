@@ -1,6 +1,7 @@
 // Bytes into the OBJ and MTL readers and the mesh made of them: whatever they are, there is a valid
 // mesh or one line.
 
+#include "content/load/obj_material.h"
 #include "content/load/obj_scene.h"
 
 #include <cmath>
@@ -42,6 +43,12 @@ void check_mesh(const limn::ObjFile& obj) {
     for (const limn::Vec3& position : mesh.positions) {
         require(limn::is_finite(position));
     }
+    require(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
+    for (const limn::Vec4& color : mesh.colors) {
+        for (int i = 0; i < 4; ++i) {
+            require(color[i] >= 0 && color[i] <= 1);
+        }
+    }
     for (const limn::Vec3& normal : mesh.normals) {
         require(std::abs(glm::length(normal) - 1.0f) < 1e-3f);
     }
@@ -57,10 +64,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(!obj.error().message.empty());
         require(obj.error().message.find('\n') == std::string::npos);
     }
-    if (const auto materials = limn::parse_obj_materials(text, "fuzz.mtl", kLimits)) {
-        for (const limn::ObjMaterial& material : *materials) {
-            require(material.opacity >= 0 && material.opacity <= 1);
-            require(limn::is_finite(material.diffuse) && limn::is_finite(material.emission));
+    if (const auto library = limn::parse_obj_materials(text, "fuzz.mtl", kLimits)) {
+        for (const limn::ObjMaterial& material : library->materials) {
+            require(material.opacity.value_or(1) >= 0 && material.opacity.value_or(1) <= 1);
+            require(limn::is_finite(material.diffuse.value_or(limn::Vec3(0))));
+            require(limn::is_finite(material.emission.value_or(limn::Vec3(0))));
+            require(std::isfinite(material.shininess));
         }
     }
     return 0;
