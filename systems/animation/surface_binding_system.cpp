@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kMaxFaces = 65536;  ///< joints that SkinWeights can name
 
-using Bindings = Query<const SurfaceBinding, SurfaceBindingState, const MeshInstance>;
+using MeshBindings = Query<const SurfaceBinding, SurfaceBindingState, const MeshInstance>;
 
 MeshId mesh_of(const SurfaceQuery& surfaces, Entity entity) {
     if (const auto* control = surfaces.find<const ControlSurface>(entity)) {
@@ -71,7 +71,7 @@ std::vector<std::uint64_t> motion_kinds(const MeshData& mesh) {
 /// Binds one entity, for bind_surfaces.
 class Binder {
   public:
-    Binder(const Bindings& bindings, const SurfaceQuery& surfaces, Assets& assets)
+    Binder(const MeshBindings& bindings, const SurfaceQuery& surfaces, Assets& assets)
         : bindings_(bindings), surfaces_(surfaces), assets_(assets) {}
 
     Status bind(Entity entity, SurfaceBindingState& state) {
@@ -206,7 +206,7 @@ class Binder {
         }
     }
 
-    const Bindings& bindings_;
+    const MeshBindings& bindings_;
     const SurfaceQuery& surfaces_;
     Assets& assets_;
 };
@@ -283,7 +283,8 @@ void release_surface_bindings(
 }
 
 void bind_surfaces(
-    Bindings bindings, Query<MeshInstance> instances, SurfaceQuery surfaces, Res<Assets> assets) {
+    MeshBindings bindings, Query<MeshInstance> instances, SurfaceQuery surfaces,
+    Res<Assets> assets) {
     bindings.each([&](Entity entity, const SurfaceBinding& binding, SurfaceBindingState& state,
                       const MeshInstance& instance) {
         const bool is_bound = state.bound != MeshId{} && instance.mesh == state.bound;
