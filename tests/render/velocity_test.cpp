@@ -269,11 +269,14 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     VelocityScene,
     "velocity: what jumps within a step is drawn on one side or the other and shows no motion") {
-    const Entity box = moving(add(make_ball(8)), at({-0.4f, 0.5f, 0}), at({-0.4f, 0.5f, 0}));
+    const auto small_at = [](float x) {
+        return affine_from({x, 0.5f, 0}, Quat(1, 0, 0, 0), Vec3(0.2f));
+    };
+    const Entity ball = moving(add(make_ball(8)), small_at(-0.4f), small_at(-0.4f));
     oracle::CameraMotion still = moving_camera();
     still.previous = still.current;
     StepJumps jumps;
-    jumps.transforms.push_back({box, 0.5f, at({0.4f, 0.5f, 0})});
+    jumps.transforms.push_back({ball, 0.5f, small_at(0.4f)});
     world.insert_resource(jumps);
     for (const double alpha : {0.25, 0.75, 1.0}) {
         for (const double previous_alpha : {-1.0, 0.0}) {
