@@ -74,15 +74,14 @@ void EnvProbeList::collect(const World& world, float alpha, int max_resolution) 
         }
         fill_region(*found.probe, found.pose, slot);
     };
+    const auto* const jumps = world.find_resource<StepJumps>();
     world
         .query<
             const EnvProbe, const WorldTransform, Optional<const PreviousWorldTransform>,
             Optional<const EnvProbeState>>()
         .each([&](Entity entity, const EnvProbe& probe, const WorldTransform& now,
                   const PreviousWorldTransform* before, const EnvProbeState* state) {
-            const Affine pose = before == nullptr || alpha == 1.0f
-                                    ? now.world
-                                    : mix_affine(before->world, now.world, alpha);
+            const Affine pose = world_at(jumps, entity, now, before, {alpha, alpha});
             // Worlds that were never stepped have no states: every probe is captured once.
             const std::uint64_t due =
                 std::max<std::uint64_t>(state != nullptr ? state->faces : 0, kCubeFaces);

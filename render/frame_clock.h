@@ -16,8 +16,8 @@ struct FrameClock {
 };
 
 /// Simulated seconds since the previous frame; nullopt after a cut: another world, time that ran
-/// backward or forward by more than a second, or a camera that jumped (is_cut).
-[[nodiscard]] std::optional<float>
-seconds_since_last(FrameClock& clock, std::uint64_t world, double time, const Affine& camera);
+/// backward or forward by more than a second, or a camera that jumped (`cut`, is_cut).
+[[nodiscard]] std::optional<float> seconds_since_last(
+    FrameClock& clock, std::uint64_t world, double time, const Affine& camera, bool cut = false);
 
 }  // namespace limn

@@ -256,7 +256,7 @@ void InstanceCollector::write_block(
         }
         KeyCount& kind = work.keys[work.local[i]];
         const std::uint32_t place = kind.place++;
-        Affine a = block.world_at(i, items.alpha());
+        Affine a = block.world_at(i, items.time());
         if (selection.casters != nullptr) {
             set_back(items, block, i, kind.key, *selection.casters, a);
         }
@@ -272,7 +272,8 @@ void InstanceCollector::write_block(
                 place % kCullBlock, block.boxes.middle(i), block.boxes.half(i));
         }
         if (selection.velocity) {
-            previous_transforms[place] = block.world_at(i, selection.previous_alpha);
+            previous_transforms[place] =
+                block.world_at(i, items.previous_time(selection.previous_alpha));
         }
         if (is_blended(kind.key)) {
             const Vec3 middle = transform_point(a, center(items.local_bounds(block, i)));

@@ -90,6 +90,7 @@ struct LightEntity {
 /// Calls use(light, LightEntity) for every light of a type that is on, or for all.
 template <typename Light, typename Use>
 void each_light(const World& world, double time, float alpha, bool all, Use&& use) {
+    const auto* const jumps = world.find_resource<StepJumps>();
     world
         .query<
             const Light, const WorldTransform, Optional<const PreviousWorldTransform>,
@@ -98,9 +99,8 @@ void each_light(const World& world, double time, float alpha, bool all, Use&& us
                   const PreviousWorldTransform* before, const LightPulse* pulse,
                   const Shadow* shadow, const Projector* projector) {
             if (all || is_on(light)) {
-                const Affine world_from_light = alpha == 1.0f || before == nullptr
-                                                    ? now.world
-                                                    : mix_affine(before->world, now.world, alpha);
+                const Affine world_from_light =
+                    world_at(jumps, entity, now, before, {alpha, alpha});
                 const float factor = pulse != nullptr ? pulse_factor(*pulse, time) : 1.0f;
                 Light shown = light;
                 if (pulse != nullptr) {

@@ -33,7 +33,7 @@ std::optional<Affine> pose_of(const World& world, Entity entity, float alpha) {
     if (now == nullptr) {
         return std::nullopt;
     }
-    return mix_affine(before != nullptr ? before->world : now->world, now->world, alpha);
+    return world_at(world.find_resource<StepJumps>(), entity, *now, before, {alpha, alpha});
 }
 
 std::optional<Vec3> place_of(const World& world, Entity entity, float alpha) {

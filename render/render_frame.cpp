@@ -286,7 +286,7 @@ void Renderer::begin(ViewKind kind, const World& world, const RenderView& camera
     update_assets();
     if ((kind & kFilmViews) != 0) {
         frame_.since_last =
-            seconds_since_last(clock_, assets_, frame_.time, camera.world_from_camera);
+            seconds_since_last(clock_, assets_, frame_.time, camera.world_from_camera, camera.cut);
     } else {
         frame_.since_last.reset();
     }

@@ -77,6 +77,7 @@ void RenderItems::update(
         blocks_.push_back(std::make_unique<RenderItemBlock>());
     }
 
+    const auto* const jumps = world.find_resource<StepJumps>();
     std::atomic<std::size_t> refreshed = 0;
     query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
@@ -92,6 +93,7 @@ void RenderItems::update(
         block.now = now;
         block.before = before;
         block.inflate = inflate;
+        block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
         block.casts_shadows = !chunk.has<NoShadow>();
         block.archetype_ = &chunk.archetype();
         block.first_row_ = chunk.first_row();
@@ -133,6 +135,7 @@ void RenderItems::add_particles() {
                 block.now = copies.now;
                 block.before = copies.before;
                 block.inflate = {};
+                block.jumps = nullptr;
                 block.casts_shadows = !world_->has<NoShadow>(entity);
                 block.archetype_ = nullptr;
                 refresh(block);
@@ -159,7 +162,7 @@ void RenderItems::refresh(RenderItemBlock& block) const {
         if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
             const Bounds& own = deformed ? (*shapes_)[shape].bounds : meshes[mesh].bounds;
             const Bounds local = block.inflate.empty() ? own : inflated(own, block.inflate[i]);
-            const Affine a = block.world_at(i, alpha_);
+            const Affine a = block.world_at(i, time());
             const Vec3 middle = transform_point(a, center(local));
             const Vec3 half = transform_half_extent(a, half_extent(local));
             det = determinant(a);
@@ -206,7 +209,7 @@ void RenderItems::hash_block(RenderItemBlock& block) const {
                                     : block.is_drawable(i) ? meshes[state.index].version
                                                            : 0;
         const std::uint64_t what = hash_combine(drawn, shape);
-        const Affine a = block.world_at(i, alpha_);
+        const Affine a = block.world_at(i, time());
         const float inflation = block.inflation(i);
         block.caster_hashes[i] =
             state.blended

@@ -72,6 +72,7 @@ struct RenderItemBlock {
     std::span<const WorldTransform> now;
     std::span<const PreviousWorldTransform> before;  ///< empty: static
     std::span<const Inflate> inflate;                ///< empty: not inflated
+    const StepJumps* jumps = nullptr;                ///< null: none in the last step
     bool casts_shadows = true;                       ///< no NoShadow
 
     /// World-space boxes. What cannot be drawn (no such mesh, no triangles, a transform that is not
@@ -86,10 +87,12 @@ struct RenderItemBlock {
     [[nodiscard]] float inflation(std::size_t i) const {
         return inflate.empty() ? 0.0f : inflate[i].distance;
     }
-    /// World matrix at `alpha` (RenderView).
-    [[nodiscard]] Affine world_at(std::size_t i, float alpha) const {
-        return before.empty() || alpha == 1.0f ? now[i].world
-                                               : mix_affine(before[i].world, now[i].world, alpha);
+    [[nodiscard]] Affine world_at(std::size_t i, const StepTime& time) const {
+        if (before.empty() || (time.alpha == 1.0f && time.shown == 1.0f)) {
+            return now[i].world;
+        }
+        return jumps == nullptr ? mix_affine(before[i].world, now[i].world, time.alpha)
+                                : limn::world_at(jumps, entities[i], now[i], &before[i], time);
     }
     [[nodiscard]] bool is_drawable(std::size_t i) const { return boxes.half_x[i] >= 0; }
     [[nodiscard]] Bounds box(std::size_t i) const;
@@ -136,7 +139,10 @@ class RenderItems {
     [[nodiscard]] const MeshPool& meshes() const { return *meshes_; }
     [[nodiscard]] const MaterialPool& materials() const { return *materials_; }
     [[nodiscard]] DeformedList& shapes() const { return *shapes_; }
-    [[nodiscard]] float alpha() const { return alpha_; }
+    [[nodiscard]] StepTime time() const { return {alpha_, alpha_}; }
+    [[nodiscard]] StepTime previous_time(float previous_alpha) const {
+        return {previous_alpha, alpha_};
+    }
 
   private:
     void add_particles();

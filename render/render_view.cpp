@@ -47,6 +47,19 @@ Affine mix_affine(const Affine& previous, const Affine& current, float alpha) {
     return mixed;
 }
 
+Affine world_at(
+    const StepJumps* jumps, Entity entity, const WorldTransform& now,
+    const PreviousWorldTransform* previous, const StepTime& time) {
+    if (previous == nullptr || (time.shown == 1.0f && time.alpha == 1.0f)) {
+        return now.world;
+    }
+    const TransformJump* const jump = find_jump(jumps, entity);
+    if (jump != nullptr) {
+        return time.is_before(jump->at) ? jump->before : now.world;
+    }
+    return mix_affine(previous->world, now.world, time.alpha);
+}
+
 bool is_cut(const Affine& before, const Affine& now) {
     const Vec3 was = normalize_or(column(before, 2), {0, 0, 1});
     const Vec3 is = normalize_or(column(now, 2), {0, 0, 1});
@@ -139,11 +152,15 @@ LensView lens_view(const World& world, Entity camera) {
 }
 
 RenderView make_render_view(const World& world, Entity camera, const ViewRequest& request) {
-    const Affine& current = world.get<WorldTransform>(camera).world;
-    const auto* previous = world.find<PreviousWorldTransform>(camera);
-    RenderView view = make_render_view(
-        world.get<Camera>(camera), current, previous != nullptr ? previous->world : current,
-        request);
+    const Affine* current = &world.get<WorldTransform>(camera).world;
+    const auto* before = world.find<PreviousWorldTransform>(camera);
+    const Affine* previous = before != nullptr ? &before->world : current;
+    const TransformJump* const jump = find_jump(world.find_resource<StepJumps>(), camera);
+    if (jump != nullptr) {
+        current = previous = request.alpha < jump->at ? &jump->before : current;
+    }
+    RenderView view = make_render_view(world.get<Camera>(camera), *current, *previous, request);
+    view.cut = jump != nullptr && request.previous_alpha <= jump->at && jump->at <= request.alpha;
     view.lens = lens_view(world, camera);
     view.entity = camera;
     return view;

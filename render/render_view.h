@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/step_jumps.h"
 #include "ecs/components/transform.h"
 #include "ecs/entity.h"
 #include "render/thin_lens.h"
@@ -21,6 +22,9 @@ class World;
 // frame in the same unit: -0.1 if that frame lay a tenth of a step before the previous step.
 // Headless renders show the last step and its whole motion: 1 and 0.
 //
+// What jumped within the last step (StepJumps) is shown on one side or the other, by the time of
+// the jump, and moves neither in this frame nor from the previous one.
+//
 // Depth is reversed with an infinite far plane: 1 at the near plane, near / distance beyond it.
 
 struct RenderView {
@@ -35,10 +39,19 @@ struct RenderView {
     Vec2 jitter = {0, 0};                 ///< subpixel shift of the image, right and up [px]
     float alpha = 1.0f;                   ///< time shown, 0 .. 1
     float previous_alpha = 0.0f;          ///< time motion is measured from, <= alpha
+    bool cut = false;                     ///< the camera jumped since the previous frame
     LensView lens;                        ///< a pinhole by default
     Entity entity;                        ///< of the camera; null: none
     Vec4 clip_plane = {0, 0, 0, 0};       ///< clips where dot(xyz, p) + w < 0; 0: no clipping
     Entity hidden;                        ///< hidden with its descendants; null: nothing is hidden
+};
+
+/// A time within the last step at which something is evaluated for a frame.
+struct StepTime {
+    float alpha = 1.0f;  ///< RenderView::alpha, or previous_alpha
+    float shown = 1.0f;  ///< RenderView::alpha: decides which side of a jump is shown
+
+    [[nodiscard]] bool is_before(float jump) const { return shown < jump; }
 };
 
 /// Arguments of make_render_view besides the camera.
@@ -93,5 +106,10 @@ make_render_view(const World& world, Entity camera, const ViewRequest& request =
 /// Interpolates from `previous` to `current` componentwise: exact for translation, a chord of the
 /// arc for rotation.
 [[nodiscard]] Affine mix_affine(const Affine& previous, const Affine& current, float alpha);
+
+/// world_from_local of `entity` at `time`. `previous`: null for what never moves.
+[[nodiscard]] Affine world_at(
+    const StepJumps* jumps, Entity entity, const WorldTransform& now,
+    const PreviousWorldTransform* previous, const StepTime& time);
 
 }  // namespace limn

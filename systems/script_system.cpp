@@ -1,7 +1,11 @@
 #include "systems/script_system.h"
 
+#include "ecs/components/animation.h"
+#include "ecs/components/deformers.h"
 #include "ecs/components/input.h"
 #include "ecs/components/lifetime.h"
+#include "ecs/components/path.h"
+#include "ecs/components/rotation_track.h"
 #include "ecs/field_access.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
@@ -61,6 +65,43 @@ void apply_edits(const ScriptAction& action, void* target) {
     }
 }
 
+/// Fields of a component that determine where its entity is, or its pose.
+struct PlacingFields {
+    ComponentId component;
+    std::vector<std::string_view> names;  ///< empty: all
+    bool of_pose = false;
+};
+
+const std::vector<PlacingFields>& placing_fields() {
+    static const std::vector<PlacingFields> kFields = {
+        {component_id<Transform>, {}},
+        {component_id<Sway>, {}},
+        {component_id<CameraPath>, {}},
+        {component_id<RotationTrack>, {}},
+        {component_id<JointAttachment>, {}},
+        {component_id<PathFollower>, {"path", "distance", "offset", "level"}},
+        {component_id<ClipPlayer>, {"clip", "time"}, true},
+        {component_id<MorphPlayer>, {}, true},
+        {component_id<MorphWeights>, {}, true},
+        {component_id<Deformers>, {}, true}};
+    return kFields;
+}
+
+/// After an edit: what was moved by it, rather than by time, has no velocity.
+void mark_jump(World& world, const ScriptAction& action) {
+    for (const PlacingFields& fields : placing_fields()) {
+        const auto places = [&fields](const FieldEdit& edit) {
+            return fields.names.empty()
+                   || std::ranges::find(fields.names, edit.field->name) != fields.names.end();
+        };
+        if (fields.component == action.value.info().id
+            && std::ranges::any_of(action.edits, places)) {
+            fields.of_pose ? (void)world.add(action.entity, PoseCut{})
+                           : (void)world.add(action.entity, Teleport{});
+        }
+    }
+}
+
 /// Does nothing if the resource or entity does not exist. Set adds a missing component.
 void edit_target(World& world, const ScriptAction& action) {
     const ComponentInfo& info = action.value.info();
@@ -81,6 +122,7 @@ void edit_target(World& world, const ScriptAction& action) {
     if (!component.is_empty()) {
         apply_edits(action, component.data());
         world.write(action.entity, info.id, component.data());
+        mark_jump(world, action);
     }
 }
 
@@ -149,8 +191,9 @@ void end_lifetimes(World& world) {
 
 void update_camera_paths(
     Query<const CameraPath, Transform> cameras, Query<const WorldTransform> targets,
-    Res<const FrameTime> time) {
-    cameras.each([&](const CameraPath& path, Transform& transform) {
+    Res<const FrameTime> time, OptionalRes<StepJumps> jumps) {
+    const auto step = static_cast<double>(time->step);
+    cameras.each([&](Entity entity, const CameraPath& path, Transform& transform) {
         if (!path.enabled || path.keys.empty()) {
             return;
         }
@@ -163,6 +206,11 @@ void update_camera_paths(
         const CameraPose pose = camera_pose(path, time->time, target);
         transform.position = pose.position;
         transform.rotation = pose.rotation;
+        const std::optional<double> cut = camera_cut(path, time->time - step, time->time);
+        if (cut && jumps) {
+            const double at = (*cut - (time->time - step)) / step;
+            jumps->requests.push_back({entity, static_cast<float>(std::clamp(at, 0.0, 1.0))});
+        }
     });
 }
 

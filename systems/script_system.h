@@ -2,6 +2,7 @@
 
 #include "ecs/components/camera_path.h"
 #include "ecs/components/script.h"
+#include "ecs/components/step_jumps.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
@@ -24,6 +25,6 @@ void end_lifetimes(World& world);
 /// camera's parent: cameras with a target should have no parent.
 void update_camera_paths(
     Query<const CameraPath, Transform> cameras, Query<const WorldTransform> targets,
-    Res<const FrameTime> time);
+    Res<const FrameTime> time, OptionalRes<StepJumps> jumps);
 
 }  // namespace limn

@@ -4,6 +4,7 @@
 #include "systems/motion_kernels.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 namespace limn {
@@ -18,7 +19,34 @@ enum class Work : std::uint8_t {
 };
 
 /// Flags of an entity slot in this step.
-enum : std::uint8_t { kMoved = 1, kJumped = 2 };
+enum : std::uint8_t { kMoved = 1 };
+
+/// The jumps of one step: what was requested, then also what hangs on it.
+class JumpTimes {
+  public:
+    /// The earliest counts.
+    void add(Entity entity, float at) {
+        const auto [found, added] = times_.try_emplace(entity, at);
+        found->second = std::min(found->second, at);
+    }
+    [[nodiscard]] bool empty() const { return times_.empty(); }
+    void add_descendants(std::span<const HierarchyNode> nodes) {
+        for (const HierarchyNode& node : nodes) {  // parents first
+            if (const auto found = times_.find(node.parent); found != times_.end()) {
+                add(node.entity, found->second);
+            }
+        }
+    }
+    template <typename Visit>
+    void each(Visit&& visit) const {
+        for (const auto& [entity, at] : times_) {
+            visit(entity, at);
+        }
+    }
+
+  private:
+    std::map<Entity, float> times_;
+};
 
 /// Flags by Entity::index; 0 if absent.
 class SlotFlags {
@@ -63,9 +91,9 @@ void settle(std::span<const WorldTransform> world, std::span<PreviousWorldTransf
 }
 
 /// Updates the current and previous world matrix of one entity.
-void step_body(const NodeBody& body, const Affine& world, bool jumped) {
+void step_body(const NodeBody& body, const Affine& world) {
     const bool fresh = body.previous->row[0] == Vec4(0);
-    *body.previous = jumped || fresh ? world : *body.world;
+    *body.previous = fresh ? world : *body.world;
     *body.world = world;
 }
 
@@ -127,7 +155,7 @@ bool collect_children(
         const std::uint32_t node = numbers.of(entities[i]);
         const bool moved = (flags.get(entities[i]) & kMoved) != 0;
         if (node == NodeNumbers::kNone && compute) {
-            step_body(body, local_matrix(local[i]), false);
+            step_body(body, local_matrix(local[i]));
         } else if (node != NodeNumbers::kNone && moved) {
             node_bodies[node] = body;
         } else {
@@ -135,6 +163,28 @@ bool collect_children(
         }
     }
     return moves;
+}
+
+/// The jumps of this step, with descendants; forgets those of the previous one.
+JumpTimes take_jumps(
+    const Query<const Transform, With<Teleport>>& teleports, StepJumps* jumps,
+    std::span<const HierarchyNode> nodes, Commands& commands) {
+    JumpTimes times;
+    teleports.each([&](Entity entity, const Transform&) {
+        times.add(entity, 0.0f);
+        commands.remove<Teleport>(entity);
+    });
+    if (jumps != nullptr) {
+        for (const JumpRequest& request : jumps->requests) {
+            times.add(request.entity, request.at);
+        }
+        jumps->requests.clear();
+        jumps->transforms.clear();
+    }
+    if (!times.empty()) {
+        times.add_descendants(nodes);
+    }
+    return times;
 }
 
 }  // namespace
@@ -151,10 +201,11 @@ void update_transforms(
     TransformVersions versions,
     Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
     Query<const WorldTransform> worlds, Query<const Transform, With<Teleport>> teleports,
-    HierarchyRef hierarchy, Commands commands) {
+    OptionalRes<StepJumps> jumps, HierarchyRef hierarchy, Commands commands) {
     const std::span<const HierarchyNode> nodes = hierarchy->nodes();
     const NodeNumbers numbers(nodes);
     SlotFlags flags;
+    const JumpTimes jump_times = take_jumps(teleports, jumps.get(), nodes, commands);
 
     // The work for each chunk and, if there is a hierarchy, which entities move.
     std::vector<Work> work(versions.chunk_count(), Work::None);
@@ -174,10 +225,6 @@ void update_transforms(
                 flags.set(entity, kMoved);
             }
         }
-    });
-    teleports.each([&](Entity entity, const Transform&) {
-        flags.set(entity, kMoved | kJumped);
-        commands.remove<Teleport>(entity);
     });
     if (!any) {
         return;
@@ -229,20 +276,22 @@ void update_transforms(
                     const auto* parent = worlds.find<const WorldTransform>(node.parent);
                     above = parent != nullptr ? &parent->world : nullptr;
                 }
-                step_body(
-                    body, above != nullptr ? *above * local : local,
-                    (flags.get(node.entity) & kJumped) != 0);
+                step_body(body, above != nullptr ? *above * local : local);
             }
         });
     }
 
-    // Teleported roots have no velocity.
-    teleports.each([&](Entity entity, const Transform&) {
-        const auto* world = bodies.find<WorldTransform>(entity);
-        auto* previous = bodies.find<PreviousWorldTransform>(entity);
-        if (world != nullptr && previous != nullptr) {
-            previous->world = world->world;
+    // What jumped has no velocity.
+    jump_times.each([&](Entity entity, float at) {
+        const auto* const world = worlds.find<const WorldTransform>(entity);
+        auto* const previous = bodies.find<PreviousWorldTransform>(entity);
+        if (world == nullptr || previous == nullptr) {
+            return;
         }
+        if (jumps) {
+            jumps->transforms.push_back({entity, at, previous->world});
+        }
+        previous->world = world->world;
     });
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "ecs/commands.h"
+#include "ecs/components/step_jumps.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
 #include "ecs/query.h"
+#include "ecs/resource.h"
 
 namespace limn {
 
@@ -15,9 +17,9 @@ namespace limn {
 // WorldTransforms; a child, if that holds for its chunk or its parent was recomputed. When entities
 // come to rest, PreviousWorldTransform catches up one step later, and then nothing is written.
 //
-// In its first step, and in the step of a Teleport of itself or of anything above it, an entity's
-// previous matrix is its new one: no velocity. A parent without WorldTransform counts as the world
-// origin.
+// In its first step, and in the step of a jump of itself or of anything above it, an entity's
+// previous matrix is its new one: no velocity. A Teleport is a jump at the beginning of the step,
+// StepJumps has the others. A parent without WorldTransform counts as the world origin.
 
 /// Adds WorldTransform and PreviousWorldTransform to every entity with a Transform that lacks them.
 /// Before update_transforms, with a sync point in between, so that new entities are drawn in the
@@ -30,11 +32,11 @@ void add_world_transforms(
 using TransformVersions =
     Query<const Transform, const WorldTransform, const PreviousWorldTransform>;
 
-/// Writes WorldTransform and PreviousWorldTransform, removes Teleport.
+/// Writes WorldTransform and PreviousWorldTransform, removes Teleport, lists the jumps.
 void update_transforms(
     TransformVersions versions,
     Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
     Query<const WorldTransform> worlds, Query<const Transform, With<Teleport>> teleports,
-    HierarchyRef hierarchy, Commands commands);
+    OptionalRes<StepJumps> jumps, HierarchyRef hierarchy, Commands commands);
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #include "systems/update_world.h"
 
 #include "ecs/components/input.h"
+#include "ecs/components/step_jumps.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/weather.h"
@@ -169,6 +170,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<Assets>(world);
     resource_or_default<WeatherState>(world);
     resource_or_default<ParticleObstacles>(world);
+    resource_or_default<StepJumps>(world);
     return resource_or_default<FrameTime>(world);
 }
 

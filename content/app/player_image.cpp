@@ -215,9 +215,9 @@ void Player::draw_outline(const RenderView& view) const {
     }
     const PreviousWorldTransform* previous =
         world.find<PreviousWorldTransform>(inspector_.selected());
-    const Affine shown = previous != nullptr
-                             ? mix_affine(previous->world, transform->world, view.alpha)
-                             : transform->world;
+    const Affine shown = world_at(
+        world.find_resource<StepJumps>(), inspector_.selected(), *transform, previous,
+        {view.alpha, view.alpha});
     draw_box_outline(view, shown, box);
 }
 

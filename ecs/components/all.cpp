@@ -112,6 +112,7 @@ void register_all_components() {
     register_component<Skeleton>();
     register_component<ClipPlayer>();
     register_component<Pose>();
+    register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();
     register_component<Deformed>();

@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/skeleton.h"
+#include "ecs/components/step_jumps.h"
 #include "ecs/entity.h"
 #include "ecs/reflect.h"
 
@@ -37,10 +38,21 @@ LIMN_FIELDS(ClipPlayer) {
     LIMN_FIELD(loop, "loops; otherwise holds the last pose");
 }
 
+/// Tag: the pose or the morph weights were changed discontinuously, so the next step yields no
+/// velocity of them. Removed by update_poses.
+struct PoseCut {};
+
+template <>
+struct ComponentTraits<PoseCut> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
+
 /// With a Skeleton: its joint matrices. Only update_poses writes it, before update_transforms.
 struct Pose {
     std::vector<Affine> joints;
-    std::vector<Affine> previous;  ///< of the previous step; equal to `joints` in the first
+    std::vector<Affine> previous;  ///< of the previous step; equal to `joints` in the first, and
+                                   ///< that of a joint which jumped to the joint's
+    std::vector<ValueJump<Affine>> jumps = {};  ///< of the last step, ascending; never saved
 };
 
 LIMN_FIELDS(Pose) {
@@ -53,6 +65,7 @@ LIMN_FIELDS(Pose) {
 struct MorphWeights {
     std::vector<float> weights;
     std::vector<float> previous;  ///< of the previous step; as long as `weights` after the first
+    std::vector<ValueJump<float>> jumps = {};  ///< of the last step, ascending; never saved
 };
 
 LIMN_FIELDS(MorphWeights) {

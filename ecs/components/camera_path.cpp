@@ -214,6 +214,11 @@ auto smooth_at(const KeyWindow& keys, Member CameraKey::*member) {
     return hermite(keys.from().*member, keys.to().*member, slope(0), slope(1), keys.u());
 }
 
+bool have_same_pose(const CameraKey& a, const CameraKey& b) {
+    return a.position == b.position && a.look_at == b.look_at && a.rotation == b.rotation
+           && a.roll == b.roll;
+}
+
 }  // namespace
 
 CameraPose camera_pose(const CameraPath& path, double time, const Vec3& target) {
@@ -241,6 +246,29 @@ CameraPose camera_pose(const CameraPath& path, double time, const Vec3& target) 
     }
     const Quat level = path.upright ? upright_rotation(rotation) : rotation;
     return {position, level * glm::angleAxis(roll, Vec3(0, 0, 1))};
+}
+
+std::optional<double> camera_cut(const CameraPath& path, double from, double to) {
+    const std::vector<CameraKey>& keys = path.keys;
+    const double duration = camera_duration(path);
+    std::optional<double> last;
+    const auto add = [&](double time) {
+        if (path.loop && duration > 0.0) {  // its last repetition
+            time += std::max(std::floor((to - time) / duration), 0.0) * duration;
+        }
+        if (time > from && time <= to) {
+            last = std::max(last.value_or(time), time);
+        }
+    };
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+        if (keys[i + 1].time <= keys[i].time && !have_same_pose(keys[i], keys[i + 1])) {
+            add(static_cast<double>(keys[i].time));
+        }
+    }
+    if (path.loop && duration > 0.0 && !have_same_pose(keys.back(), keys.front())) {
+        add(static_cast<double>(keys.back().time));
+    }
+    return last;
 }
 
 double camera_duration(const CameraPath& path) {

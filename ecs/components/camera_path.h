@@ -4,6 +4,7 @@
 #include "ecs/entity.h"
 #include "ecs/reflect.h"
 
+#include <optional>
 #include <vector>
 
 namespace limn {
@@ -67,6 +68,10 @@ struct CameraPose {
 /// reached instantly.
 [[nodiscard]] CameraPose
 camera_pose(const CameraPath& path, double time, const Vec3& target = {0, 0, 0});
+
+/// The last time in (`from`, `to`] [s] at which the camera jumps: at keys whose time does not
+/// increase, and where a loop starts over at another pose than that of its last key.
+[[nodiscard]] std::optional<double> camera_cut(const CameraPath& path, double from, double to);
 
 /// Time from the first key to the last [s].
 [[nodiscard]] double camera_duration(const CameraPath& path);

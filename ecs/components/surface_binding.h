@@ -82,8 +82,9 @@ struct SurfaceBindingState {
     std::shared_ptr<const std::vector<std::uint32_t>> order;  ///< bound vertices, patch by patch
     float largest_offset = 0.0f;                              ///< of the places [m]
     std::vector<Vec4> rest_patches;
-    std::vector<Vec4> patches;           ///< now
-    std::vector<Vec4> previous_patches;  ///< of the previous step
+    std::vector<Vec4> patches;                                 ///< now
+    std::vector<Vec4> previous_patches;                        ///< of the previous step
+    ValueJump<std::vector<Vec4>> patches_jump{.at = kNoJump};  ///< of the last step; never saved
 
     bool has_added_deformed = false;  ///< to the entity, which lacked one
 };

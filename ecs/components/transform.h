@@ -24,7 +24,7 @@ struct WorldTransform {
 };
 
 /// world_from_local one simulation step earlier, equal to WorldTransform in the step of the spawn
-/// and after a Teleport. Rendering interpolates between the two and derives velocities from them.
+/// and in that of a jump. Rendering interpolates between the two and derives velocities from them.
 struct PreviousWorldTransform {
     Affine world = {{Vec4(0), Vec4(0), Vec4(0)}};  ///< all 0: no step has been taken yet
 };
@@ -40,9 +40,15 @@ struct ComponentTraits<PreviousWorldTransform> : DefaultTraits {
     static constexpr bool in_prefabs = false;
 };
 
-/// Tag: the entity was moved discontinuously, so the next step yields no velocity. Removed by
-/// update_transforms.
+/// Tag: the entity was moved discontinuously, at the beginning of the next step, which yields no
+/// velocity. Removed by update_transforms.
 struct Teleport {};
+
+/// Sparse: an entity that teleports keeps its position among the others, and so in all lists.
+template <>
+struct ComponentTraits<Teleport> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
 
 /// Rotates the entity about a fixed axis in its local space.
 struct Spin {

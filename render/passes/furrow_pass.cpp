@@ -121,6 +121,7 @@ void place_images(FurrowEffect& effect, const FrameData& frame) {
 }
 
 void show_meshes(FurrowEffect& effect, FrameData& frame) {
+    const auto* const jumps = frame.world->find_resource<StepJumps>();
     std::size_t count = 0;
     frame.world
         ->query<
@@ -143,9 +144,8 @@ void show_meshes(FurrowEffect& effect, FrameData& frame) {
             }
             ShownFurrows& furrows = effect.shown[count++];
             furrows.mode = view.mode;
-            furrows.world_from_mesh = before != nullptr
-                                          ? mix_affine(before->world, now.world, frame.camera.alpha)
-                                          : now.world;
+            const float alpha = frame.camera.alpha;
+            furrows.world_from_mesh = world_at(jumps, entity, now, before, {alpha, alpha});
             furrows.corners = static_cast<int>(mesh.indices.size());
             furrows.vertices.upload(*frame.ring, vertex_records(mesh));
             furrows.indices.upload(*frame.ring, mesh.indices);

@@ -60,16 +60,16 @@ bool MirrorCausticEffect::is_used(const FrameData& frame) {
 
 void MirrorCausticEffect::collect(FrameData& frame) {
     mirrors.clear();
+    const auto* const jumps = frame.world->find_resource<StepJumps>();
     frame.world
         ->query<
             const MirrorCaustic, const MeshInstance, const WorldTransform,
             Optional<const PreviousWorldTransform>>()
-        .each([&](const MirrorCaustic& settings, const MeshInstance& surface,
+        .each([&](Entity entity, const MirrorCaustic& settings, const MeshInstance& surface,
                   const WorldTransform& now, const PreviousWorldTransform* before) {
             if (is_finite(settings) && settings.strength > 0) {
-                const Affine place = before != nullptr
-                                         ? mix_affine(before->world, now.world, frame.camera.alpha)
-                                         : now.world;
+                const float alpha = frame.camera.alpha;
+                const Affine place = world_at(jumps, entity, now, before, {alpha, alpha});
                 mirrors.push_back({settings, surface.mesh.index, place});
             }
         });

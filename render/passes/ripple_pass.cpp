@@ -43,18 +43,14 @@ float view_distance(const RenderView& view, const Vec3& place) {
     return distance;
 }
 
-Affine shown(const WorldTransform& now, const PreviousWorldTransform* before, float alpha) {
-    return before == nullptr || alpha == 1.0f ? now.world
-                                              : mix_affine(before->world, now.world, alpha);
-}
-
 void collect_rings(const World& world, const RenderView& view, float ago, RippleList& list) {
+    const auto* const jumps = world.find_resource<StepJumps>();
     world.query<const RippleRing, const WorldTransform, Optional<const PreviousWorldTransform>>()
-        .each([&](const RippleRing& last, const WorldTransform& now,
+        .each([&](Entity entity, const RippleRing& last, const WorldTransform& now,
                   const PreviousWorldTransform* before) {
             RippleRing ring = last;
             ring.age -= ago;
-            const Affine place = shown(now, before, view.alpha);
+            const Affine place = world_at(jumps, entity, now, before, {view.alpha, view.alpha});
             const Vec3 center = {place.row[0].w, place.row[1].w, place.row[2].w};
             const float radius = ring.start_radius + ring.speed * ring.age;
             const float amplitude = ring.amplitude * ripple_fade(ring);
@@ -70,10 +66,12 @@ void collect_rings(const World& world, const RenderView& view, float ago, Ripple
 }
 
 void collect_hazes(const World& world, const RenderView& view, double time, RippleList& list) {
+    const auto* const jumps = world.find_resource<StepJumps>();
     world.query<const HeatHaze, const WorldTransform, Optional<const PreviousWorldTransform>>()
-        .each([&](const HeatHaze& haze, const WorldTransform& now,
+        .each([&](Entity entity, const HeatHaze& haze, const WorldTransform& now,
                   const PreviousWorldTransform* before) {
-            const Mat4 place = to_mat4(shown(now, before, view.alpha));
+            const Mat4 place =
+                to_mat4(world_at(jumps, entity, now, before, {view.alpha, view.alpha}));
             // The box lies within the sphere about its farthest corner.
             float reach = 0;
             for (int corner = 0; corner < 4; ++corner) {

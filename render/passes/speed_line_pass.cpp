@@ -72,17 +72,19 @@ void SpeedLineEffect::collect(FrameData& frame) {
     const float seconds = step * (view.alpha - view.previous_alpha);
     const std::vector<MeshData>& meshes = frame.assets->meshes;
     lines.clear();
+    const auto* const jumps = frame.world->find_resource<StepJumps>();
     frame.world
         ->query<
             const SpeedLines, const MeshInstance, const WorldTransform,
             const PreviousWorldTransform>()
-        .each([&](const SpeedLines& settings, const MeshInstance& instance,
+        .each([&](Entity entity, const SpeedLines& settings, const MeshInstance& instance,
                   const WorldTransform& now, const PreviousWorldTransform& before) {
             if (instance.mesh.index < meshes.size()) {
                 append_speed_lines(
-                    meshes[instance.mesh.index], mix_affine(before.world, now.world, view.alpha),
-                    mix_affine(before.world, now.world, view.previous_alpha), seconds, settings,
-                    lines);
+                    meshes[instance.mesh.index],
+                    world_at(jumps, entity, now, &before, {view.alpha, view.alpha}),
+                    world_at(jumps, entity, now, &before, {view.previous_alpha, view.alpha}),
+                    seconds, settings, lines);
             }
         });
     records.upload(*frame.ring, lines);

@@ -253,7 +253,7 @@ void VolumeCollector::add_item(
                                + "; lights that reach it use shadow maps");
         } else {
             add_caster(
-                candidate, view, frustum, assets, surface, block.world_at(i, items.alpha()), box);
+                candidate, view, frustum, assets, surface, block.world_at(i, items.time()), box);
         }
     }
 }

@@ -82,6 +82,18 @@ std::uint64_t hash_at(const std::vector<T>& before, const std::vector<T>& now, f
         hash_combine(hash_values(before), hash_values(now)), std::bit_cast<std::uint32_t>(alpha));
 }
 
+/// Hash of what jumps and is shown as before; 0 if nothing is.
+template <typename T>
+std::uint64_t hash_before_jumps(const std::vector<ValueJump<T>>& jumps, float shown) {
+    std::uint64_t hash = 0;
+    for (const ValueJump<T>& jump : jumps) {
+        if (shown < jump.at) {
+            hash = hash_bytes(&jump.before, sizeof jump.before, hash_combine(hash, jump.index));
+        }
+    }
+    return hash;
+}
+
 /// Texels at time `alpha` between the last two steps.
 std::vector<Vec4>
 mix_texels(const std::vector<Vec4>& previous, const std::vector<Vec4>& now, float alpha) {
@@ -96,9 +108,17 @@ std::vector<Vec4> make_controls(const DeformerState* state, float alpha) {
     return state != nullptr ? mix_texels(state->previous, state->now, alpha) : std::vector<Vec4>{};
 }
 
-std::vector<Vec4> make_patches(const SurfaceBindingState* state, float alpha) {
-    return state != nullptr ? mix_texels(state->previous_patches, state->patches, alpha)
-                            : std::vector<Vec4>{};
+bool shows_patches_before(const SurfaceBindingState& state, const StepTime& time) {
+    return state.patches_jump.at != kNoJump && time.is_before(state.patches_jump.at);
+}
+
+std::vector<Vec4> make_patches(const SurfaceBindingState* state, const StepTime& time) {
+    if (state == nullptr) {
+        return {};
+    }
+    return shows_patches_before(*state, time)
+               ? state->patches_jump.before
+               : mix_texels(state->previous_patches, state->patches, time.alpha);
 }
 
 std::span<const SurfacePlace> places_of(const World& world, Entity entity) {
@@ -229,10 +249,12 @@ void DeformedList::evaluate(Entry& entry) const {
         shape = hash_combine(shape, settings.first_morph);
         if (entry.skin != nullptr) {
             shape = hash_combine(shape, hash_at(entry.pose->previous, entry.pose->joints, alpha));
+            shape ^= hash_before_jumps(entry.pose->jumps, alpha_);
         }
         if (entry.morphs != nullptr) {
             shape =
                 hash_combine(shape, hash_at(entry.morphs->previous, entry.morphs->weights, alpha));
+            shape ^= hash_before_jumps(entry.morphs->jumps, alpha_);
         }
         if (entry.deformers != nullptr) {
             shape = hash_combine(
@@ -241,6 +263,10 @@ void DeformedList::evaluate(Entry& entry) const {
         if (entry.surface != nullptr) {
             shape = hash_combine(
                 shape, hash_at(entry.surface->previous_patches, entry.surface->patches, alpha));
+            const std::vector<Vec4>& before = entry.surface->patches_jump.before;
+            shape = shows_patches_before(*entry.surface, {alpha, alpha_})
+                        ? hash_bytes(before.data(), before.size() * sizeof(Vec4), shape)
+                        : shape;
         }
         if (entry.folds != 0) {
             shape = hash_combine(shape, entry.folds);
@@ -253,12 +279,12 @@ void DeformedList::evaluate(Entry& entry) const {
         return;
     }
     entry.evaluated = entry.shape;
-    make_palette(entry.skin, entry.pose, settings.skinning, alpha_, entry.palette);
+    const StepTime now = {alpha_, alpha_};
+    make_palette(entry.skin, entry.pose, settings.skinning, now, entry.palette);
     make_morph_weights(
-        entry.morphs, settings.first_morph, entry.rest->bounds.morphs.size(), alpha_,
-        entry.weights);
+        entry.morphs, settings.first_morph, entry.rest->bounds.morphs.size(), now, entry.weights);
     entry.controls = make_controls(entry.deformers, alpha_);
-    entry.patches = make_patches(entry.surface, alpha_);
+    entry.patches = make_patches(entry.surface, now);
     float displacement = max_displacement(entry.controls) + entry.largest_fold;
     if (entry.surface != nullptr) {
         displacement +=
@@ -415,13 +441,13 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
         const Deformed& settings = entry.settings;
         std::vector<Affine> palette;
         std::vector<float> weights;
-        make_palette(entry.skin, entry.pose, settings.skinning, previous_alpha_, palette);
-        make_morph_weights(
-            entry.morphs, settings.first_morph, entry.weights.size(), previous_alpha_, weights);
+        const StepTime then = {previous_alpha_, alpha_};
+        make_palette(entry.skin, entry.pose, settings.skinning, then, palette);
+        make_morph_weights(entry.morphs, settings.first_morph, entry.weights.size(), then, weights);
         job.previous_palette = add_palette(palette);
         job.previous_weights = add_weights(weights);
         job.previous_controls = add_controls(make_controls(entry.deformers, previous_alpha_));
-        job.previous_patches = add_controls(make_patches(entry.surface, previous_alpha_));
+        job.previous_patches = add_controls(make_patches(entry.surface, then));
     }
     if ((flags & (layout::kDeformPrevious | layout::kDeformCopyPrevious)) != 0) {
         entry.drawn_previous = entry.previous_shape;

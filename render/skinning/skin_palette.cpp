@@ -1,7 +1,6 @@
 #include "render/skinning/skin_palette.h"
 
 #include "ecs/base/rotation.h"
-#include "render/render_view.h"
 
 #include <cmath>
 
@@ -20,21 +19,28 @@ Quat rotation_of(const Affine& a) {
     return extract_rotation(linear_part(a)).value_or(Quat(1, 0, 0, 0));
 }
 
+template <typename T>
+bool shows_before(const std::vector<ValueJump<T>>& jumps, std::size_t index, const StepTime& time) {
+    const ValueJump<T>* const jump = jumps.empty() ? nullptr : find_jump(jumps, index);
+    return jump != nullptr && time.is_before(jump->at);
+}
+
 }  // namespace
 
 void make_palette(
-    const SkinData* skin, const Pose* pose, Skinning skinning, float alpha,
+    const SkinData* skin, const Pose* pose, Skinning skinning, const StepTime& time,
     std::vector<Affine>& palette) {
     palette.clear();
     if (skin == nullptr || pose == nullptr) {
         return;
     }
-    const bool moves = alpha != 1.0f && pose->previous.size() == pose->joints.size();
+    const bool moves = time.alpha != 1.0f && pose->previous.size() == pose->joints.size();
     palette.reserve(skin->joints.size());
     for (std::size_t i = 0; i < skin->joints.size(); ++i) {
         const std::uint16_t j = skin->joints[i];
-        const Affine joint =
-            moves ? mix_affine(pose->previous[j], pose->joints[j], alpha) : pose->joints[j];
+        const Affine joint = shows_before(pose->jumps, j, time) ? find_jump(pose->jumps, j)->before
+                             : moves ? mix_affine(pose->previous[j], pose->joints[j], time.alpha)
+                                     : pose->joints[j];
         const Affine posed = joint * skin->joint_from_mesh[i];
         palette.push_back(
             skinning == Skinning::Linear
@@ -44,17 +50,20 @@ void make_palette(
 }
 
 void make_morph_weights(
-    const MorphWeights* morphs, std::size_t first, std::size_t count, float alpha,
+    const MorphWeights* morphs, std::size_t first, std::size_t count, const StepTime& time,
     std::vector<float>& weights) {
     weights.assign(count, 0.0f);
     if (morphs == nullptr) {
         return;
     }
-    const bool moves = alpha != 1.0f && morphs->previous.size() == morphs->weights.size();
+    const bool moves = time.alpha != 1.0f && morphs->previous.size() == morphs->weights.size();
     for (std::size_t i = 0; i < count && first + i < morphs->weights.size(); ++i) {
         const float now = morphs->weights[first + i];
         const float before = moves ? morphs->previous[first + i] : now;
-        const float mixed = moves ? before + alpha * (now - before) : now;
+        const float mixed = shows_before(morphs->jumps, first + i, time)
+                                ? find_jump(morphs->jumps, first + i)->before
+                            : moves ? before + time.alpha * (now - before)
+                                    : now;
         weights[i] = std::isfinite(mixed) ? mixed : 0.0f;
     }
 }

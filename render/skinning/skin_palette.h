@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/animation.h"
+#include "render/render_view.h"
 
 #include <vector>
 
@@ -9,17 +10,17 @@ namespace limn {
 // Skinning matrices K = joint * joint_from_mesh, one per joint of the skin (char.skin-bone-offset),
 // interpolated between two steps.
 
-/// Fills `palette` with the joints of `skin` at time `alpha`, interpolated componentwise from the
+/// Fills `palette` with the joints of `skin` at `time`, interpolated componentwise from the
 /// previous pose to the current one (mix_affine); without scale and shear for dual quaternions.
 /// Empty without a skin or a pose. All joints must exist in the pose.
 void make_palette(
-    const SkinData* skin, const Pose* pose, Skinning skinning, float alpha,
+    const SkinData* skin, const Pose* pose, Skinning skinning, const StepTime& time,
     std::vector<Affine>& palette);
 
-/// Fills `weights` with `count` weights starting at `first`, at time `alpha`; 0 for missing and
+/// Fills `weights` with `count` weights starting at `first`, at `time`; 0 for missing and
 /// non-finite ones.
 void make_morph_weights(
-    const MorphWeights* morphs, std::size_t first, std::size_t count, float alpha,
+    const MorphWeights* morphs, std::size_t first, std::size_t count, const StepTime& time,
     std::vector<float>& weights);
 
 /// As deform.comp reads them: per joint three matrix rows, or a unit dual quaternion in two texels.

@@ -29,7 +29,7 @@ void add_deformer_states(
 
 void update_deformers(
     Query<const Deformers, DeformerState> deformers, Query<const Deformed> deformed,
-    Query<const SkinPulls, const Deformed> pulled) {
+    Query<const SkinPulls, const Deformed> pulled, Query<const PoseCut> cuts) {
     std::vector<CharacterTug> all;
     pulled.each([&](const SkinPulls& skin, const Deformed& deformed_skin) {
         for (const SkinPull& pull : skin.pulls) {
@@ -48,7 +48,8 @@ void update_deformers(
         }
         state.previous = std::move(state.now);
         state.now = pack_deformers(controls, tugs);
-        if (state.previous.size() != state.now.size()) {
+        if (state.previous.size() != state.now.size()
+            || cuts.find<const PoseCut>(entity) != nullptr) {
             state.previous = state.now;
         }
     });

@@ -17,10 +17,10 @@ void add_deformer_states(
     Commands commands);
 
 /// Packs the controls, and the pulls of the character's skin after them; keeps those of the
-/// previous step for velocities. In the first step, and where controls came or went, both are the
-/// same.
+/// previous step for velocities. In the first step, after a PoseCut, and where controls came or
+/// went, both are the same.
 void update_deformers(
     Query<const Deformers, DeformerState> deformers, Query<const Deformed> deformed,
-    Query<const SkinPulls, const Deformed> pulled);
+    Query<const SkinPulls, const Deformed> pulled, Query<const PoseCut> cuts);
 
 }  // namespace limn

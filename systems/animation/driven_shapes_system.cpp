@@ -29,6 +29,26 @@ void drive(std::span<const MorphTarget> targets, std::size_t first, std::vector<
     }
 }
 
+/// Shapes jump with what drives them.
+void drive_jumps(std::span<const MorphTarget> targets, std::size_t first, MorphWeights& morph) {
+    if (morph.jumps.empty()) {
+        return;
+    }
+    std::vector<float> before = morph.previous;
+    for (const ValueJump<float>& jump : morph.jumps) {
+        before[jump.index] = jump.before;
+    }
+    drive(targets, first, before);
+    const float at = morph.jumps.front().at;
+    for (std::size_t t = first; t < std::min(first + targets.size(), before.size()); ++t) {
+        if (has_drivers(targets[t - first]) && before[t] != morph.previous[t]
+            && std::ranges::find(morph.jumps, t, &ValueJump<float>::index) == morph.jumps.end()) {
+            morph.jumps.push_back({static_cast<std::uint16_t>(t), at, before[t]});
+        }
+    }
+    std::ranges::sort(morph.jumps, {}, &ValueJump<float>::index);
+}
+
 }  // namespace
 
 float driven_weight(std::span<const ShapeDriver> drivers, std::span<const float> weights) {
@@ -54,6 +74,7 @@ void update_driven_shapes(
         if (MorphWeights* const morph = faces.find<MorphWeights>(deformed.character)) {
             drive(targets, deformed.first_morph, morph->weights);
             drive(targets, deformed.first_morph, morph->previous);
+            drive_jumps(targets, deformed.first_morph, *morph);
         }
     });
 }

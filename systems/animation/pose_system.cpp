@@ -2,6 +2,7 @@
 
 #include "ecs/base/jobs.h"
 #include "ecs/components/placement.h"
+#include "systems/animation/clip_jumps.h"
 #include "systems/animation/clip_sampling.h"
 
 #include <algorithm>
@@ -31,15 +32,21 @@ bool has_weights(const ClipData& clip, std::size_t weights) {
     });
 }
 
-/// Entities that teleport in this step: those with a Teleport, and their descendants.
-class Jumps {
+/// Entities whose pose is cut in this step: those with a PoseCut, and those with a Teleport and
+/// their descendants.
+class Cuts {
   public:
-    Jumps(
-        const Query<const Transform, With<Teleport>>& teleports, const Query<const Parent>& parents)
-        : teleports_(teleports), parents_(parents), any_(!teleports.empty()) {}
+    Cuts(
+        const Query<const Transform, With<Teleport>>& teleports, const Query<const Parent>& parents,
+        const Query<const PoseCut>& cuts)
+        : teleports_(teleports), parents_(parents), cuts_(cuts), any_teleport_(!teleports.empty()),
+          any_cut_(!cuts.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
-        while (any_) {
+        if (any_cut_ && cuts_.find<const PoseCut>(entity) != nullptr) {
+            return true;
+        }
+        while (any_teleport_) {
             if (teleports_.find<const Transform>(entity) != nullptr) {
                 return true;
             }
@@ -55,7 +62,9 @@ class Jumps {
   private:
     const Query<const Transform, With<Teleport>>& teleports_;
     const Query<const Parent>& parents_;
-    bool any_;
+    const Query<const PoseCut>& cuts_;
+    bool any_teleport_;
+    bool any_cut_;
 };
 
 template <typename T>
@@ -63,20 +72,71 @@ const T* find_asset(const std::vector<T>& assets, std::uint32_t index) {
     return index < assets.size() ? &assets[index] : nullptr;
 }
 
+/// What plays clips on a character, and how in this step.
+struct Playback {
+    const ClipPlayer* player = nullptr;
+    const MorphPlayer* morph_player = nullptr;
+    bool is_cut = false;
+    float step = 0;  ///< [s]
+};
+
+/// What jumps in this step has no velocity. `pose`: null for an entity with weights only.
+void apply_jumps(
+    const Assets& assets, const SkeletonData& skeleton, const Playback& playback, Pose* pose,
+    MorphWeights* morph) {
+    std::vector<float> joints;  // filled for the first clip that may jump, which is rare
+    std::vector<float> weights;
+    const auto find_jumps = [&](const auto& played, bool moves_joints) {
+        const ClipData* const clip = find_asset(assets.clips, played.clip.index);
+        const ClipStep step = clip_step(played, playback.step);
+        if (clip == nullptr || !may_jump(*clip, step)) {
+            return;
+        }
+        joints.resize(pose != nullptr ? pose->joints.size() : 0, kNoJump);
+        weights.resize(morph != nullptr ? morph->weights.size() : 0, kNoJump);
+        if (moves_joints && fits(*clip, joints.size(), weights.size())) {
+            find_clip_jumps(*clip, step, joints, weights);
+        } else if (!moves_joints && has_weights(*clip, weights.size())) {
+            find_clip_jumps(*clip, step, {}, weights);
+        }
+    };
+    if (playback.is_cut) {
+        joints.resize(pose != nullptr ? pose->joints.size() : 0, 0.0f);
+        weights.resize(morph != nullptr ? morph->weights.size() : 0, 0.0f);
+    }
+    if (playback.player != nullptr && !playback.is_cut) {
+        find_jumps(*playback.player, true);
+    }
+    if (playback.morph_player != nullptr && !playback.is_cut) {
+        for (const MorphAnimation& animation : playback.morph_player->animations) {
+            find_jumps(animation, false);
+        }
+    }
+    if (pose != nullptr) {
+        apply_joint_jumps(skeleton, joints, *pose);
+    }
+    if (morph != nullptr) {
+        apply_weight_jumps(weights, *morph);
+    }
+}
+
 /// Samples the clip of one character that has a Pose.
 void step_character(
-    const Assets& assets, const SkeletonData& skeleton, const ClipPlayer* player,
-    const MorphPlayer* morph_player, bool jumps, Pose& pose, MorphWeights* morph) {
+    const Assets& assets, const SkeletonData& skeleton, const Playback& playback, Pose& pose,
+    MorphWeights* morph) {
     thread_local LocalPose scratch;  // reused between characters
+    const auto& [player, morph_player, is_cut, step] = playback;
     const bool is_new = pose.joints.size() != skeleton.joints.size();
     if (is_new) {
         pose.joints.resize(skeleton.joints.size());
         pose.previous.resize(skeleton.joints.size());
     }
     std::swap(pose.joints, pose.previous);
+    pose.jumps.clear();
     std::span<float> weights;
     if (morph != nullptr) {
         morph->previous = morph->weights;
+        morph->jumps.clear();
         weights = morph->weights;
     }
     const ClipData* const clip =
@@ -86,22 +146,24 @@ void step_character(
     if (morph_player != nullptr) {
         add_morph_animations(*morph_player, assets.clips, weights);
     }
-    if (is_new || jumps) {
+    if (is_new) {
         pose.previous = pose.joints;
         if (morph != nullptr) {
             morph->previous = morph->weights;
         }
+    } else {
+        apply_jumps(assets, skeleton, playback, &pose, morph);
     }
 }
 
 /// The same for an entity with morph targets only.
-void step_weights(
-    const Assets& assets, const ClipPlayer* player, const MorphPlayer* morph_player, bool jumps,
-    MorphWeights& morph) {
+void step_weights(const Assets& assets, const Playback& playback, MorphWeights& morph) {
+    static const SkeletonData kNoJoints;
+    const auto& [player, morph_player, is_cut, step] = playback;
     const bool is_new = morph.previous.size() != morph.weights.size();
     morph.previous = morph.weights;
+    morph.jumps.clear();
     if (player != nullptr) {
-        static const SkeletonData kNoJoints;
         LocalPose none;
         const ClipData* const clip = find_asset(assets.clips, player->clip.index);
         evaluate_pose(kNoJoints, clip, player->time, none, {}, morph.weights);
@@ -109,8 +171,10 @@ void step_weights(
     if (morph_player != nullptr) {
         add_morph_animations(*morph_player, assets.clips, morph.weights);
     }
-    if (is_new || jumps) {
+    if (is_new) {
         morph.previous = morph.weights;
+    } else {
+        apply_jumps(assets, kNoJoints, playback, nullptr, &morph);
     }
 }
 
@@ -155,8 +219,11 @@ void update_poses(
         AnyOf<ClipPlayer, MorphPlayer>, Without<Skeleton>>
         faces,
     Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
-    Res<const Assets> assets) {
-    const Jumps jumps(teleports, parents);
+    Query<const PoseCut> pose_cuts, Res<const Assets> assets, OptionalRes<const FrameTime> time,
+    Commands commands) {
+    const Cuts cuts(teleports, parents, pose_cuts);
+    const float step = time ? time->step : 0.0f;
+    pose_cuts.each([&](Entity entity, const PoseCut&) { commands.remove<PoseCut>(entity); });
     characters.chunks([&](ChunkView chunk, std::span<const Skeleton> skeletons,
                           std::span<const ClipPlayer> players,
                           std::span<const MorphPlayer> morph_players,
@@ -167,25 +234,43 @@ void update_poses(
                 const SkeletonData* const skeleton =
                     find_asset(assets->skeletons, skeletons[i].skeleton.index);
                 if (skeleton != nullptr) {
+                    const Playback playback = {
+                        players.empty() ? nullptr : &players[i],
+                        morph_players.empty() ? nullptr : &morph_players[i], cuts.has(entities[i]),
+                        step};
                     step_character(
-                        *assets, *skeleton, players.empty() ? nullptr : &players[i],
-                        morph_players.empty() ? nullptr : &morph_players[i], jumps.has(entities[i]),
-                        poses[i], morphs.empty() ? nullptr : &morphs[i]);
+                        *assets, *skeleton, playback, poses[i],
+                        morphs.empty() ? nullptr : &morphs[i]);
                 }
             }
         });
     });
     faces.each([&](Entity entity, MorphWeights& morph, const ClipPlayer* player,
                    const MorphPlayer* morph_player) {
-        step_weights(*assets, player, morph_player, jumps.has(entity), morph);
+        step_weights(*assets, {player, morph_player, cuts.has(entity), step}, morph);
     });
 }
 
-void update_attachments(Query<const JointAttachment, Transform> attached, Query<const Pose> poses) {
+void update_attachments(
+    Query<const JointAttachment, Transform> attached, Query<const Pose> poses,
+    OptionalRes<StepJumps> jumps) {
     attached.par_each([&](const JointAttachment& attachment, Transform& transform) {
         const Pose* const pose = poses.find<const Pose>(attachment.character);
         if (pose != nullptr && attachment.joint < pose->joints.size()) {
             transform = decompose_affine(pose->joints[attachment.joint]);
+        }
+    });
+    bool any = false;
+    poses.each([&any](const Pose& pose) { any |= !pose.jumps.empty(); });
+    if (!any || !jumps) {
+        return;
+    }
+    attached.each([&](Entity entity, const JointAttachment& attachment, const Transform&) {
+        const Pose* const pose = poses.find<const Pose>(attachment.character);
+        const auto* const jump =
+            pose != nullptr ? find_jump(pose->jumps, attachment.joint) : nullptr;
+        if (jump != nullptr) {
+            jumps->requests.push_back({entity, jump->at});
         }
     });
 }

@@ -2,11 +2,14 @@
 
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
+#include "ecs/components/step_jumps.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_binding.h"
+#include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
 #include "ecs/query.h"
+#include "ecs/resource.h"
 #include "ecs/system.h"
 
 namespace limn {
@@ -14,8 +17,9 @@ namespace limn {
 // Poses of characters from their clips, and entities attached to joints.
 //
 // `previous` of Pose and MorphWeights holds the values of the previous step. In a character's first
-// step, and in the step of a Teleport of it or of an ancestor, it holds the current ones: no
-// velocity. A clip that does not fit the skeleton is ignored: the character keeps its rest pose.
+// step, and in the step of a PoseCut or of a Teleport of it or of an ancestor, it holds the current
+// ones: no velocity. The same holds for joints and weights that jump within a clip. A clip that
+// does not fit the skeleton is ignored: the character keeps its rest pose.
 
 /// Adds a Pose to every Skeleton that lacks one, and MorphWeights of 0 to those among them that
 /// lack weights although their meshes, or surfaces that move meshes, have morph targets. Before
@@ -36,10 +40,14 @@ void update_poses(
         AnyOf<ClipPlayer, MorphPlayer>, Without<Skeleton>>
         faces,
     Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
-    Res<const Assets> assets);
+    Query<const PoseCut> pose_cuts, Res<const Assets> assets, OptionalRes<const FrameTime> time,
+    Commands commands);
 
-/// Writes the Transform of attached entities, unless the character has no such joint.
-void update_attachments(Query<const JointAttachment, Transform> attached, Query<const Pose> poses);
+/// Writes the Transform of attached entities, unless the character has no such joint. They jump
+/// where their joint does.
+void update_attachments(
+    Query<const JointAttachment, Transform> attached, Query<const Pose> poses,
+    OptionalRes<StepJumps> jumps);
 
 /// Sets the morph targets that the animations control to the sum of their current weights.
 void add_morph_animations(

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limn {
 namespace {
@@ -34,6 +35,21 @@ Quat mix_angles(const Quat& from, const Quat& to, float u) {
     const Vec3 angles = glm::mix(euler_angles(from), euler_angles(to), u);
     return glm::angleAxis(angles.x, Vec3(0, 1, 0)) * glm::angleAxis(angles.y, Vec3(1, 0, 0))
            * glm::angleAxis(angles.z, Vec3(0, 0, 1));
+}
+
+/// Since a loop last started over at another rotation than that of its last key [s]; infinite if
+/// it has not.
+double
+seconds_since_restart(const RotationTrack& track, const RotationTrackState& state, double time) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    if (!track.loop || state.times.size() < 2) {
+        return kNever;
+    }
+    const double duration = static_cast<double>(state.times.back() - state.times.front());
+    const double played = time - static_cast<double>(state.times.front());
+    const bool closes =
+        std::abs(glm::dot(state.rotations.front(), state.rotations.back())) > 1.0f - 1e-6f;
+    return closes || duration <= 0.0 || played < duration ? kNever : std::fmod(played, duration);
 }
 
 }  // namespace
@@ -109,7 +125,7 @@ void prepare_rotation_tracks(
 
 void update_rotation_tracks(
     Query<const RotationTrack, const RotationTrackState, Transform> tracks,
-    Res<const FrameTime> time) {
+    Res<const FrameTime> time, OptionalRes<StepJumps> jumps) {
     tracks.par_each(
         [now = time->time](
             const RotationTrack& track, const RotationTrackState& state, Transform& transform) {
@@ -117,6 +133,14 @@ void update_rotation_tracks(
                 transform.rotation = rotation_at(track, state, now);
             }
         });
+    const auto step = static_cast<double>(time->step);
+    tracks.each([&](Entity entity, const RotationTrack& track, const RotationTrackState& state,
+                    const Transform&) {
+        const double since = seconds_since_restart(track, state, time->time);
+        if (since < step && jumps) {
+            jumps->requests.push_back({entity, static_cast<float>(1.0 - since / step)});
+        }
+    });
 }
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 
 #include "ecs/commands.h"
 #include "ecs/components/rotation_track.h"
+#include "ecs/components/step_jumps.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
@@ -26,6 +27,6 @@ void prepare_rotation_tracks(
 
 void update_rotation_tracks(
     Query<const RotationTrack, const RotationTrackState, Transform> tracks,
-    Res<const FrameTime> time);
+    Res<const FrameTime> time, OptionalRes<StepJumps> jumps);
 
 }  // namespace limn

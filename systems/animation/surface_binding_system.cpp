@@ -3,6 +3,7 @@
 #include "ecs/base/hash.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
+#include "systems/animation/clip_jumps.h"
 #include "systems/animation/mesh_source.h"
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/surface_faces.h"
@@ -210,22 +211,31 @@ class Binder {
     Assets& assets_;
 };
 
-void step_patches(const std::vector<Vec3>& positions, SurfaceBindingState& state) {
+/// `jump`: fraction of the step at which the surface jumps.
+void step_patches(const std::vector<Vec3>& positions, float jump, SurfaceBindingState& state) {
     std::swap(state.patches, state.previous_patches);
     make_patches(positions, state.corners, state.patches);
     if (state.previous_patches.size() != state.patches.size()) {
         state.previous_patches = state.patches;
+    } else if (jump != kNoJump) {
+        state.patches_jump = {0, jump, std::exchange(state.previous_patches, state.patches)};
     }
 }
 
 void step_pose(
-    const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& corners, Pose& pose) {
+    const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& corners, float jump,
+    Pose& pose) {
     const std::size_t faces = corners.size() / 3;
     const bool is_new = pose.joints.size() != faces;
     std::swap(pose.joints, pose.previous);
     pose.joints.resize(faces);
     compute_face_frames(positions, corners, pose.joints);
     if (is_new) {
+        pose.previous = pose.joints;
+    } else if (jump != kNoJump) {
+        for (std::size_t i = 0; i < faces; ++i) {
+            pose.jumps.push_back({static_cast<std::uint16_t>(i), jump, pose.previous[i]});
+        }
         pose.previous = pose.joints;
     }
 }
@@ -312,6 +322,8 @@ void update_surface_bindings(
     std::vector<Vec3> positions;
     bindings.each([&](SurfaceBindingState& state) {
         const MeshId mesh = mesh_of(surfaces, state.surface);
+        state.pose.jumps.clear();
+        state.patches_jump.at = kNoJump;
         if (state.corners.empty() || mesh != state.surface_mesh) {
             state.pose.previous = state.pose.joints;  // the surface is gone: as it was
             state.previous_patches = state.patches;
@@ -321,10 +333,11 @@ void update_surface_bindings(
             mesh, surfaces.find<const Deformed>(state.surface),
             surfaces.find<const DeformerState>(state.surface), poses, morphs, *assets);
         place_vertices(source, Affine{}, positions);
+        const float jump = first_jump(source.pose, source.morphs);
         if (state.settings.method == SurfaceMethod::Patches) {
-            step_patches(positions, state);
+            step_patches(positions, jump, state);
         } else {
-            step_pose(positions, state.corners, state.pose);
+            step_pose(positions, state.corners, jump, state.pose);
         }
     });
 }

@@ -225,8 +225,7 @@ TEST_CASE_FIXTURE(
         {{0, 0, 0}, {0, 0.5f, 0}}, {{1, 0, 0, 0}, {1, 0, 0, 0}}, {{1, 1, 1}, {1, 1, 1}}};
     assets.skeletons.push_back(skeleton);
     ClipSheet sheet;
-    sheet.interpolation = Interpolation::Step;
-    sheet.times = {0, 1.5f / 60};
+    sheet.times = {1.0f / 60, 2.0f / 60};
     sheet.rotating = {1};
     sheet.rotations = {Quat(1, 0, 0, 0), rotation_about({0, 0, 1}, 1)};
     assets.clips.push_back({.name = "bend", .duration = 3, .sheets = {sheet}});
@@ -265,6 +264,32 @@ TEST_CASE_FIXTURE(
     const RenderView between = make_render_view(
         motion.camera, motion.current, motion.previous, {.width = 9, .height = 9, .alpha = 0.5f});
     CHECK(between.world_from_camera.row[0] == motion.current.row[0]);
+}
+
+TEST_CASE_FIXTURE(
+    VelocityScene,
+    "velocity: what jumps within a step is drawn on one side or the other and shows no motion") {
+    const auto small_at = [](float x) {
+        return affine_from({x, 0.5f, 0}, Quat(1, 0, 0, 0), Vec3(0.2f));
+    };
+    const Entity ball = moving(add(make_ball(8)), small_at(-0.4f), small_at(-0.4f));
+    oracle::CameraMotion still = moving_camera();
+    still.previous = still.current;
+    StepJumps jumps;
+    jumps.transforms.push_back({ball, 0.5f, small_at(0.4f)});
+    world.insert_resource(jumps);
+    for (const double alpha : {0.25, 0.75, 1.0}) {
+        for (const double previous_alpha : {-1.0, 0.0}) {
+            still.alpha = alpha;
+            still.previous_alpha = previous_alpha;
+            CHECK(fastest(view_of(still)) == 0);
+        }
+        const FrameOutput out = draw(view_of(still), {.aovs = {"depth"}});
+        const gpu::FloatImage depth = gpu::read_floats(*out.aovs[0].texture);
+        const int row = kSize / 2;
+        CHECK((depth.at(kSize / 3, row, 0) != kNoDepth) == (alpha >= 0.5));
+        CHECK((depth.at(kSize - kSize / 3, row, 0) != kNoDepth) == (alpha < 0.5));
+    }
 }
 
 TEST_CASE_FIXTURE(

@@ -1,10 +1,14 @@
+#include "ecs/components/animation.h"
+#include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/input.h"
 #include "ecs/components/lifetime.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/path.h"
 #include "ecs/components/post.h"
+#include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "systems/script_system.h"
@@ -13,6 +17,7 @@
 #include <doctest/doctest.h>
 
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace limn::script_system_test {
@@ -310,6 +315,38 @@ TEST_CASE("script: a camera follows its path and its target, and rests when told
     world.destroy(path.target);
     world.run(update_camera_paths);  // then it looks where the first key does
     CHECK(std::isfinite(world.get<const Transform>(camera).rotation.w));
+}
+
+TEST_CASE("script: what an event moves jumps; what it only sets in motion does not") {
+    const auto marks = [](auto&& component, EventAction action, std::string_view field) {
+        World world;
+        const Entity entity = world.create(Transform{}, component);
+        world.insert_resource(EventList{{event_at(0, change(action, entity, component, field))}});
+        run_step(world, 0);
+        return std::pair(world.has<Teleport>(entity), world.has<PoseCut>(entity));
+    };
+    constexpr std::pair kNone(false, false);
+    constexpr std::pair kTeleport(true, false);
+    constexpr std::pair kPoseCut(false, true);
+    using enum EventAction;
+    World world;
+    const Entity box = world.create(Transform{});
+    world.insert_resource(
+        EventList{{event_at(0, change(Set, box, Transform{.position = {1, 0, 0}}, "position"))}});
+    run_step(world, 0);
+    CHECK(world.has<Teleport>(box));
+    CHECK(world.get<const Transform>(box).position.x == 1);
+    CHECK(marks(Sway{}, Set, "center") == kTeleport);
+    CHECK(marks(Sway{}, Impulse, "center") == kTeleport);
+    CHECK(marks(CameraPath{}, Set, "enabled") == kTeleport);
+    CHECK(marks(PathFollower{}, Set, "distance") == kTeleport);
+    CHECK(marks(PathFollower{}, Set, "speed") == kNone);
+    CHECK(marks(Spin{}, Set, "speed") == kNone);
+    CHECK(marks(Camera{}, Set, "active") == kNone);
+    CHECK(marks(ClipPlayer{}, Set, "time") == kPoseCut);
+    CHECK(marks(ClipPlayer{}, Set, "clip") == kPoseCut);
+    CHECK(marks(ClipPlayer{}, Set, "speed") == kNone);
+    CHECK(marks(MorphWeights{}, Set, "weights") == kPoseCut);
 }
 
 }  // namespace limn::script_system_test
