@@ -225,11 +225,13 @@ class MeshBuilder {
     /// The set of texture coordinates that the normal map uses, if the mesh has it.
     [[nodiscard]] int tangent_uv_set() const {
         const std::int32_t material = index_of(source_["material"]);
-        const bool asks_for_second =
-            material >= 0
-            && index_of(json_item(document_, "materials", material)["normalTexture"]["texCoord"])
-                   == 1;
-        return asks_for_second && !result_.uvs1.empty() ? 1 : 0;
+        if (material < 0 || result_.uvs1.empty()) {
+            return 0;
+        }
+        const JsonValue& map = json_item(document_, "materials", material)["normalTexture"];
+        const JsonValue* const own =
+            map["extensions"]["KHR_texture_transform"].find("texCoord");  // overrides the map's
+        return index_of(own != nullptr ? *own : map["texCoord"]) == 1 ? 1 : 0;
     }
 
     void complete() {

@@ -51,11 +51,11 @@ const std::string kAccessorsEnd = R"("values": {"bufferView": 3}}})";
 const std::string kViewsEnd = R"({"buffer": 0, "byteOffset": 68, "byteLength": 24})";
 const std::string kAttributes = R"({"POSITION": 0})";
 
-/// The square with one more attribute, whose bytes are `values`.
+/// The square with one more attribute, whose bytes are `values`, and its material replaced.
 template <typename T>
 GltfScene load_with_attribute(
     const std::string& name, const std::vector<T>& values, int component_type,
-    const std::string& type, bool normalized) {
+    const std::string& type, bool normalized, const std::string& material = R"("name": "paint")") {
     std::vector<std::byte> binary = square_binary();
     append_values(binary, values);
     const std::size_t size = values.size() * sizeof(T);
@@ -67,7 +67,8 @@ GltfScene load_with_attribute(
          {kAccessorsEnd, kAccessorsEnd + R"(, {"bufferView": 4, "count": 4, "componentType": )"
                              + std::to_string(component_type) + R"(, "type": ")" + type
                              + R"(", "normalized": )" + (normalized ? "true}" : "false}")},
-         {kAttributes, R"({"POSITION": 0, ")" + name + R"(": 3})"}},
+         {kAttributes, R"({"POSITION": 0, ")" + name + R"(": 3})"},
+         {R"("name": "paint")", material}},
         std::move(binary));
 }
 
@@ -284,6 +285,23 @@ TEST_CASE("gltf: clear media have their index, thickness and absorption; opaque 
                 {"transmissionFactor": 1, "transmissionTexture": {"index": 0}})")
             .transmission
         == 0);
+}
+
+TEST_CASE("gltf: tangents follow the texture coordinates of the normal map, also those of its "
+          "transform") {
+    // The second set has u along +y, the first is missing.
+    const auto follows_second = [](const std::string& info) {
+        const GltfScene scene = load_with_attribute<float>(
+            "TEXCOORD_1", {0, 0, 0, -1, 1, -1, 1, 0}, 5126, "VEC2", false,
+            R"("normalTexture": {"index": 0)" + info + R"(}}], "textures": [{}], "samplers": [{)");
+        return near(Vec3(scene.meshes[0].tangents[0]), {0, 1, 0});
+    };
+    const std::string transform = R"(, "extensions": {"KHR_texture_transform": )";
+    CHECK(follows_second(R"(, "texCoord": 1)"));
+    CHECK(follows_second(R"(, "texCoord": 1)" + transform + R"({"scale": [2, 2]}})"));
+    CHECK(follows_second(R"(, "texCoord": 0)" + transform + R"({"texCoord": 1}})"));
+    CHECK_FALSE(follows_second(""));
+    CHECK_FALSE(follows_second(R"(, "texCoord": 1)" + transform + R"({"texCoord": 0}})"));
 }
 
 TEST_CASE("gltf: textures keep wrap, filter, uv set and transform; color and data are apart") {
