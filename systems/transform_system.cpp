@@ -68,6 +68,7 @@ class SlotFlags {
 /// Components of a hierarchy node.
 struct NodeBody {
     const Transform* local = nullptr;  ///< null: unchanged in this step
+    const Affine* joint = nullptr;     ///< instead of `local`; null: not attached to a joint
     Affine* world = nullptr;
     Affine* previous = nullptr;
 };
@@ -100,6 +101,22 @@ void step_body(const NodeBody& body, const Affine& world) {
 Affine local_matrix(const Transform& local) {
     return affine_from(local.position, local.rotation, local.scale);
 }
+
+/// The joints that entities are attached to. Their matrices may be sheared, which a Transform
+/// cannot represent.
+struct AttachedJoints {
+    const Query<const JointAttachment>& attachments;
+    const Query<const Pose>& poses;
+
+    /// Null if the character has no such joint.
+    [[nodiscard]] const Affine* of(Entity entity) const {
+        const auto& attachment = *attachments.find<const JointAttachment>(entity);
+        const auto* const pose = poses.find<const Pose>(attachment.character);
+        return pose != nullptr && attachment.joint < pose->joints.size()
+                   ? &pose->joints[attachment.joint]
+                   : nullptr;
+    }
+};
 
 /// Maps entity slots to hierarchy nodes.
 class NodeNumbers {
@@ -142,16 +159,19 @@ bool has_new_orphan(
 }
 
 /// One chunk of children: collects the components of those that change, and updates those whose
-/// parent was destroyed. Returns whether anything changes.
+/// parent was destroyed. `joints`: null if they are not attached to any. Returns whether anything
+/// changes.
 bool collect_children(
     std::span<const Entity> entities, const NodeNumbers& numbers, const SlotFlags& flags,
-    bool compute, std::span<const Transform> local, std::span<WorldTransform> world,
-    std::span<PreviousWorldTransform> previous, std::vector<NodeBody>& node_bodies) {
+    bool compute, const AttachedJoints* joints, std::span<const Transform> local,
+    std::span<WorldTransform> world, std::span<PreviousWorldTransform> previous,
+    std::vector<NodeBody>& node_bodies) {
     const bool moves = compute || std::any_of(entities.begin(), entities.end(), [&](Entity entity) {
                            return (flags.get(entity) & kMoved) != 0;
                        });
     for (std::size_t i = 0; moves && i < entities.size(); ++i) {
-        const NodeBody body = {&local[i], &world[i].world, &previous[i].world};
+        const Affine* const joint = joints != nullptr ? joints->of(entities[i]) : nullptr;
+        const NodeBody body = {&local[i], joint, &world[i].world, &previous[i].world};
         const std::uint32_t node = numbers.of(entities[i]);
         const bool moved = (flags.get(entities[i]) & kMoved) != 0;
         if (node == NodeNumbers::kNone && compute) {
@@ -201,7 +221,8 @@ void update_transforms(
     TransformVersions versions,
     Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
     Query<const WorldTransform> worlds, Query<const Transform, With<Teleport>> teleports,
-    OptionalRes<StepJumps> jumps, HierarchyRef hierarchy, Commands commands) {
+    Query<const JointAttachment> attachments, Query<const Pose> poses, OptionalRes<StepJumps> jumps,
+    HierarchyRef hierarchy, Commands commands) {
     const std::span<const HierarchyNode> nodes = hierarchy->nodes();
     const NodeNumbers numbers(nodes);
     SlotFlags flags;
@@ -234,6 +255,7 @@ void update_transforms(
     }
 
     // Roots; collects the children that change.
+    const AttachedJoints joints{attachments, poses};
     std::vector<NodeBody> node_bodies(nodes.size());
     bodies.par_chunks([&](ChunkView chunk, std::span<const Transform> local,
                           std::span<WorldTransform> world,
@@ -241,8 +263,9 @@ void update_transforms(
         const Work wanted = work[chunk.index()];
         if (chunk.has<Parent>()) {
             if (collect_children(
-                    chunk.entities(), numbers, flags, wanted == Work::Compute, local, world,
-                    previous, node_bodies)) {
+                    chunk.entities(), numbers, flags, wanted == Work::Compute,
+                    chunk.has<JointAttachment>() ? &joints : nullptr, local, world, previous,
+                    node_bodies)) {
                 return;
             }
         } else if (wanted == Work::Compute) {
@@ -268,7 +291,8 @@ void update_transforms(
                     continue;
                 }
                 const HierarchyNode& node = level[i];
-                const Affine local = local_matrix(*body.local);
+                const Affine local =
+                    body.joint != nullptr ? *body.joint : local_matrix(*body.local);
                 const Affine* above = node.parent_node != HierarchyNode::kRoot
                                           ? node_bodies[node.parent_node].world
                                           : nullptr;

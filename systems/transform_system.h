@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/commands.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/step_jumps.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
@@ -10,7 +11,8 @@
 namespace limn {
 
 // World matrices of entities: WorldTransform = the parent's WorldTransform * Transform, and those
-// of the previous step.
+// of the previous step. What is attached to a joint has the joint's matrix instead of its
+// Transform, which lacks the shear that rotations below uneven scales make.
 //
 // Roots are processed by chunk on all threads, children level by level. Change detection uses
 // column versions: a chunk of roots is recomputed if its Transforms or its rows are newer than its
@@ -37,6 +39,7 @@ void update_transforms(
     TransformVersions versions,
     Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
     Query<const WorldTransform> worlds, Query<const Transform, With<Teleport>> teleports,
-    OptionalRes<StepJumps> jumps, HierarchyRef hierarchy, Commands commands);
+    Query<const JointAttachment> attachments, Query<const Pose> poses, OptionalRes<StepJumps> jumps,
+    HierarchyRef hierarchy, Commands commands);
 
 }  // namespace limn

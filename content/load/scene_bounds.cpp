@@ -15,6 +15,7 @@
 #include <map>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -27,6 +28,36 @@ Affine local_matrix(const World& world, Entity entity) {
     const Transform* const t = world.find<Transform>(entity);
     return t == nullptr ? Affine{} : affine_from(t->position, t->rotation, t->scale);
 }
+
+/// Matrices of joints in the rest pose: a Transform attached to one has lost their shear.
+class RestJoints {
+  public:
+    explicit RestJoints(const World& world)
+        : world_(world), assets_(world.find_resource<Assets>()) {}
+
+    /// The joint that `entity` is attached to; null if there is none.
+    const Affine* of(Entity entity) {
+        const auto* const attachment = world_.find<JointAttachment>(entity);
+        if (attachment == nullptr || assets_ == nullptr || !world_.alive(attachment->character)) {
+            return nullptr;
+        }
+        const Skeleton* const character = world_.find<Skeleton>(attachment->character);
+        if (character == nullptr || character->skeleton.index >= assets_->skeletons.size()) {
+            return nullptr;
+        }
+        const auto [found, is_new] = joints_.try_emplace(character->skeleton.index);
+        if (is_new) {
+            found->second = find_rest_joints(assets_->skeletons[character->skeleton.index]);
+        }
+        return attachment->joint < found->second.size() ? &found->second[attachment->joint]
+                                                        : nullptr;
+    }
+
+  private:
+    const World& world_;
+    const Assets* assets_;
+    std::map<std::uint32_t, std::vector<Affine>> joints_;
+};
 
 /// Bounds of meshes with their initial morph weights, skinned ones in the rest pose.
 class RestBounds {
@@ -125,8 +156,11 @@ bool is_dome(const Bounds& box, const Bounds& others) {
 }  // namespace
 
 SceneMatrices::SceneMatrices(World& world) : world_(world) {
+    RestJoints joints(world);
     for (const HierarchyNode& node : hierarchy(world).nodes()) {
-        children_[node.entity] = of(node.parent) * local_matrix(world, node.entity);
+        const Affine* const joint = joints.of(node.entity);
+        children_[node.entity] =
+            of(node.parent) * (joint != nullptr ? *joint : local_matrix(world, node.entity));
     }
 }
 

@@ -121,8 +121,8 @@ LIMN_FIELDS(Deformed) {
     LIMN_FIELD(skinning, .doc = "skinning method", .values = "linear dual_quaternion");
 }
 
-/// Attaches a child of the character to a joint: update_attachments writes its Transform, before
-/// update_transforms.
+/// Attaches a child of the character to a joint: update_attachments writes its Transform, and
+/// update_transforms its WorldTransform, from the joint's matrix.
 struct JointAttachment {
     Entity character;
     std::uint16_t joint = 0;

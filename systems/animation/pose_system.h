@@ -43,8 +43,8 @@ void update_poses(
     Query<const PoseCut> pose_cuts, Res<const Assets> assets, OptionalRes<const FrameTime> time,
     Commands commands);
 
-/// Writes the Transform of attached entities, unless the character has no such joint. They jump
-/// where their joint does.
+/// Writes the Transform of attached entities, without shear, unless the character has no such
+/// joint. They jump where their joint does.
 void update_attachments(
     Query<const JointAttachment, Transform> attached, Query<const Pose> poses,
     OptionalRes<StepJumps> jumps);

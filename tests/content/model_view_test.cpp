@@ -285,6 +285,26 @@ TEST_CASE("model view: a turntable turns the camera once in so many seconds") {
     CHECK(glm::distance(place, still.world.get<const Transform>(other.camera).position) < 1e-4f);
 }
 
+TEST_CASE("scene bounds: what is attached to a joint is sheared before the first step, too") {
+    World world;
+    const Quat turned = glm::angleAxis(radians(45.0f), Vec3(0, 0, 1));
+    Assets assets;
+    SkeletonData skeleton;
+    skeleton.joints = {"wide", "turned"};
+    skeleton.parents = {-1, 0};
+    skeleton.rest = {{Vec3(0), Vec3(0)}, {Quat(1, 0, 0, 0), turned}, {Vec3(2, 1, 1), Vec3(1)}};
+    assets.skeletons.push_back(skeleton);
+    world.insert_resource(std::move(assets));
+    const Entity character = world.create(Transform{}, Skeleton{{0}});
+    const Entity attached =
+        world.create(Transform{}, Parent{character}, JointAttachment{character, 1});
+    const Affine matrix = SceneMatrices(world).of(attached);
+    const float half = std::sqrt(0.5f);
+    const Vec3 corner = transform_point(matrix, {0.5f, -0.5f, 0});  // of a rhombus
+    CHECK(glm::distance(corner, {2 * half, 0, 0}) < 1e-5f);
+    CHECK(glm::distance(transform_point(matrix, {0.5f, 0.5f, 0}), {0, half, 0}) < 1e-5f);
+}
+
 TEST_CASE("model view: an unknown backdrop names those that exist") {
     const Result<Backdrop> none = load_backdrop("stduio");
     REQUIRE_FALSE(none.ok());

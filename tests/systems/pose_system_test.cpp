@@ -174,6 +174,44 @@ TEST_CASE("pose system: a teleport of a character, or of what carries it, leaves
     }
 }
 
+TEST_CASE("pose system: what is attached to a joint is sheared like a child of entities with the "
+          "same transforms") {
+    const Quat turned = rotation_about({0, 0, 1}, radians(45));
+    Assets assets;
+    SkeletonData skeleton = make_chain(3);
+    skeleton.rest.scales[1] = {2, 1, 1};
+    skeleton.rest.rotations[2] = turned;
+    assets.skeletons.push_back(skeleton);
+    Stage stage;
+    stage.world.insert_resource(std::move(assets));
+    const Quat leaning = rotation_about({1, 0, 0}, 0.4f);
+    const Transform start{.position = {1, 2, 3}, .rotation = leaning, .scale = {1, 3, 1}};
+    const Entity character = stage.world.create(Transform{start}, Skeleton{{0}});
+    const Entity attached =
+        stage.world.create(Transform{}, Parent{character}, JointAttachment{character, 2});
+    const Entity below = stage.world.create(Transform{.rotation = turned}, Parent{attached});
+    const auto add = [&stage](const Transform& transform, Entity parent) {
+        return stage.world.create(Transform{transform}, Parent{parent});
+    };
+    const Entity root = stage.world.create(Transform{start});
+    const Entity wide = add({.position = {0, 1, 0}, .scale = {2, 1, 1}}, root);
+    const Entity tip = add({.position = {0, 1, 0}, .rotation = turned}, wide);
+    const Entity leaf = add({.rotation = turned}, tip);
+    start_world(stage.world);
+    for (int step = 0; step < 3; ++step) {
+        for (const auto& [one, other] : {std::pair(attached, tip), std::pair(below, leaf)}) {
+            const Affine& a = stage.world.get<const WorldTransform>(one).world;
+            const Affine& b = stage.world.get<const WorldTransform>(other).world;
+            for (int row = 0; row < 3; ++row) {
+                CHECK(glm::distance(a.row[row], b.row[row]) < 1e-5f);
+            }
+        }
+        stage.step();
+        stage.world.get<Transform>(character).position.x += 1;
+        stage.world.get<Transform>(root).position.x += 1;
+    }
+}
+
 TEST_CASE("pose system: without a clip, or with one that does not fit, a character rests") {
     Stage stage;
     const Entity bare = stage.world.create(Transform{}, Skeleton{{0}});
