@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/make/four.h"
 #include "content/make/head.h"
 #include "ecs/base/math.h"
 
@@ -30,8 +31,9 @@ struct Stroke {
     float age = 0;    ///< ... and age - 0.3
 };
 
-/// Adds `solids` in order to the surface that is `distance` away from `p`.
-[[nodiscard]] float join(float distance, std::span<const Solid> solids, const Vec3& p);
+/// Adds `solids` in order to the surface that is `distance` away from `p`. Number: float or Four.
+template <typename Number>
+[[nodiscard]] Number join(Number distance, std::span<const Solid> solids, const PointOf<Number>& p);
 
 /// A stroke as chords, and the box beyond which less than exp(-9) of it is left.
 struct StrokePath {
@@ -43,9 +45,10 @@ struct StrokePath {
 [[nodiscard]] std::vector<StrokePath> make_stroke_paths(
     std::span<const Stroke> strokes, const std::function<Vec3(const Vec3&)>& place = nullptr);
 
-/// How much `strokes` raise the surface at `p` [cm].
-[[nodiscard]] float relief(
-    std::span<const Stroke> strokes, std::span<const StrokePath> paths, const Vec3& p,
+/// How much `strokes` raise the surface at `p` [cm]. Number: float or Four.
+template <typename Number>
+[[nodiscard]] Number relief(
+    std::span<const Stroke> strokes, std::span<const StrokePath> paths, const PointOf<Number>& p,
     const HeadShape& shape);
 
 }  // namespace limn

@@ -96,13 +96,25 @@ Vec3 from_neutral_shoulders(const Vec3& p, const HeadShape& shape) {
     return kShoulderAxis + (p - kShoulderAxis) * shoulder_size(p.y, shape);
 }
 
-float join_shoulders(float distance, const Vec3& p) {
-    return p.y < kTop ? join(distance, kSolids, p) : distance;
+template <typename Number>
+Number join_shoulders(const Number& distance, const PointOf<Number>& p) {
+    const auto below = p.y < kTop;
+    return any_of(below) ? (below ? join<Number>(distance, kSolids, p) : distance) : distance;
 }
 
-float shoulder_relief(const Vec3& p, const HeadShape& shape) {
-    return p.y < kTop ? relief(kStrokes, stroke_paths(), p, shape) : 0.0f;
+template float join_shoulders(const float&, const PointOf<float>&);
+template Four join_shoulders(const Four&, const PointOf<Four>&);
+
+template <typename Number>
+Number shoulder_relief(const PointOf<Number>& p, const HeadShape& shape) {
+    const auto below = p.y < kTop;
+    const Number none = same_for_all<Number>(0);
+    return any_of(below) ? (below ? relief<Number>(kStrokes, stroke_paths(), p, shape) : none)
+                         : none;
 }
+
+template float shoulder_relief(const PointOf<float>&, const HeadShape&);
+template Four shoulder_relief(const PointOf<Four>&, const HeadShape&);
 
 Vec3 shoulder_start(const Vec3& neck, float turn, float down) {
     // Of the end: an ellipse at nearly even distances, a little closer in front.

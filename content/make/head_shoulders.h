@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/make/four.h"
 #include "content/make/head.h"
 #include "ecs/base/math.h"
 
@@ -18,11 +19,14 @@ inline constexpr float kShouldersEnd = -27;  ///< y of the ring where a body beg
 [[nodiscard]] Vec3 to_neutral_shoulders(const Vec3& p, const HeadShape& shape);
 [[nodiscard]] Vec3 from_neutral_shoulders(const Vec3& p, const HeadShape& shape);
 
-/// Adds neutral shoulders to the surface that is `distance` away from `p`, without details.
-[[nodiscard]] float join_shoulders(float distance, const Vec3& p);
+/// Adds neutral shoulders to the surface that is `distance` away from `p`, without details. Number:
+/// float or Four.
+template <typename Number>
+[[nodiscard]] Number join_shoulders(const Number& distance, const PointOf<Number>& p);
 
 /// How much bones and muscles raise their surface at `p`.
-[[nodiscard]] float shoulder_relief(const Vec3& p, const HeadShape& shape);
+template <typename Number>
+[[nodiscard]] Number shoulder_relief(const PointOf<Number>& p, const HeadShape& shape);
 
 /// Where a vertex begins, before it is wrapped: below `neck`, on the ring where the head ends;
 /// `turn`: evenly around the ring, 0 in front, pi / 2 left; `down`: 0 at the neck, 1 at the end.

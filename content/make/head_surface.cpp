@@ -182,52 +182,95 @@ const std::vector<StrokePath>& head_paths() {
     return paths;
 }
 
-}  // namespace
+/// As Vec3, for functions of one point.
+Vec3 one_of(const PointOf<float>& p, int /*index*/) {
+    return {p.x, p.y, p.z};
+}
+Vec3 one_of(const PointOf<Four>& p, int index) {
+    return {p.x[index], p.y[index], p.z[index]};
+}
+void set_one(PointOf<float>& p, int /*index*/, const Vec3& one) {
+    p = {one.x, one.y, one.z};
+}
+void set_one(PointOf<Four>& p, int index, const Vec3& one) {
+    p.x[index] = one.x;
+    p.y[index] = one.y;
+    p.z[index] = one.z;
+}
 
-float head_distance(const Vec3& point, const HeadShape& shape, float detail) {
-    // Women's faces are smaller below the brow, more so the lower; heavy ones broader.
+/// Where `p` is on a neutral head. Women's faces are smaller below the brow, more so the lower;
+/// heavy ones broader.
+Vec3 to_neutral_head(const Vec3& point, const HeadShape& shape) {
     const float low = glm::smoothstep(6.0f, -7.0f, point.y);
     Vec3 p = {std::abs(point.x), point.y, point.z};
     p.x /= 1 + 0.03f * shape.sex * low + 0.05f * shape.build * low;
     p.y /= 1 + 0.025f * shape.sex * low;
-    if (shape.shoulders) {
-        p = to_neutral_shoulders(p, shape);
+    return shape.shoulders ? to_neutral_shoulders(p, shape) : p;
+}
+
+/// Number: float, of one point, or Four, of four.
+template <typename Number>
+Number distance_of(PointOf<Number> p, const HeadShape& shape, float detail) {
+    for (int i = 0; i < static_cast<int>(sizeof(Number) / sizeof(float)); ++i) {
+        set_one(p, i, to_neutral_head(one_of(p, i), shape));
     }
-    float distance = join(1e6f, kBase, p);
+    Number distance = join<Number>(same_for_all<Number>(1e6f), kBase, p);
     if (shape.shoulders) {
         distance = join_shoulders(distance, p);
     }
-    const float base = distance;
+    const Number base = distance;
     if (detail == 0) {
         return base;
     }
-    distance = join(distance, kFeatures, p) - relief(kSurfaceStrokes, head_paths(), p, shape);
+    distance = join<Number>(distance, kFeatures, p)
+               - relief<Number>(kSurfaceStrokes, head_paths(), p, shape);
     if (shape.shoulders) {
         distance -= shoulder_relief(p, shape);
     }
-    return glm::mix(base, distance, detail);
+    return base * (1 - detail) + distance * detail;
 }
 
-namespace {
+struct DistanceAndGradient {
+    float distance;
+    Vec3 gradient;
+};
 
-/// `distance`: at `p`.
-Vec3 gradient_at(const Vec3& p, float distance, const HeadShape& shape, float detail) {
+/// By differences from `p`.
+DistanceAndGradient distance_and_gradient(const Vec3& p, const HeadShape& shape, float detail) {
     constexpr float kStep = 0.01f;
-    const auto slope = [&](const Vec3& axis) {
-        return (head_distance(p + kStep * axis, shape, detail) - distance) / kStep;
-    };
-    return {slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
+    const PointOf<Four> points = {
+        p.x + kStep * Four{0, 1, 0, 0}, p.y + kStep * Four{0, 0, 1, 0},
+        p.z + kStep * Four{0, 0, 0, 1}};
+    const Four distances = distance_of(points, shape, detail);
+    const Four slopes = (distances - distances[0]) / kStep;
+    return {distances[0], {slopes[1], slopes[2], slopes[3]}};
+}
+
+/// Moves one point or four along z to the foremost point of the surface.
+template <typename Number>
+void step_forwards(PointOf<Number>& p, const HeadShape& shape, float detail) {
+    p.z = same_for_all<Number>(13);
+    for (int i = 0; i < 30; ++i) {
+        const Number before = p.z;
+        p.z -= 0.6f * distance_of(p, shape, detail);
+        if (!any_of(p.z != before)) {
+            break;  // no later step moves it
+        }
+    }
 }
 
 }  // namespace
 
+float head_distance(const Vec3& p, const HeadShape& shape, float detail) {
+    return distance_of(PointOf<float>{p.x, p.y, p.z}, shape, detail);
+}
+
 Vec3 head_gradient(const Vec3& p, const HeadShape& shape, float detail) {
-    return gradient_at(p, head_distance(p, shape, detail), shape, detail);
+    return distance_and_gradient(p, shape, detail).gradient;
 }
 
 Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail, int steps) {
-    float distance = head_distance(p, shape, detail);
-    const Vec3 gradient = gradient_at(p, distance, shape, detail);
+    auto [distance, gradient] = distance_and_gradient(p, shape, detail);
     const float slope2 = std::max(glm::dot(gradient, gradient), 0.15f);
     for (int i = 0; i < steps; ++i) {
         distance = i == 0 ? distance : head_distance(p, shape, detail);
@@ -236,12 +279,29 @@ Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail, int steps) {
     return p;
 }
 
-Vec3 project_forwards(Vec3 p, const HeadShape& shape, float detail) {
-    p.z = 13;
-    for (int i = 0; i < 30; ++i) {
-        p.z -= 0.6f * head_distance(p, shape, detail);
+Vec3 project_forwards(const Vec3& p, const HeadShape& shape, float detail) {
+    Vec3 projected = p;
+    project_forwards({&projected, 1}, shape, detail);
+    return projected;
+}
+
+void project_forwards(std::span<Vec3> points, const HeadShape& shape, float detail) {
+    for (; points.size() > 1; points = points.subspan(std::min<std::size_t>(points.size(), 4))) {
+        const int count = static_cast<int>(std::min<std::size_t>(points.size(), 4));
+        PointOf<Four> four;
+        for (int i = 0; i < 4; ++i) {
+            set_one(four, i, points[static_cast<std::size_t>(std::min(i, count - 1))]);
+        }
+        step_forwards(four, shape, detail);
+        for (int i = 0; i < count; ++i) {
+            points[static_cast<std::size_t>(i)] = one_of(four, i);
+        }
     }
-    return p;
+    if (!points.empty()) {
+        PointOf<float> one = {points[0].x, points[0].y, points[0].z};
+        step_forwards(one, shape, detail);
+        points[0] = one_of(one, 0);
+    }
 }
 
 Vec3 lid_margin(float angle) {

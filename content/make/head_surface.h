@@ -31,7 +31,9 @@ inline constexpr Vec2 kJawAxis = {-0.55f, 1.82f};
 [[nodiscard]] Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail, int steps = 3);
 
 /// Likewise along z, to the foremost point: for the nose, where gradients would fold the mesh.
-[[nodiscard]] Vec3 project_forwards(Vec3 p, const HeadShape& shape, float detail);
+[[nodiscard]] Vec3 project_forwards(const Vec3& p, const HeadShape& shape, float detail);
+/// The same of many points, faster.
+void project_forwards(std::span<Vec3> points, const HeadShape& shape, float detail);
 
 /// Of the left lids: outer edge of the margin at `angle` [rad], 0 lateral, pi / 2 up.
 [[nodiscard]] Vec3 lid_margin(float angle);

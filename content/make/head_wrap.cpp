@@ -51,12 +51,16 @@ bool on_nose(const HeadVertex& vertex) {
            && start.y > -2 && start.y < 5;
 }
 
+/// A membrane from the rim to the grid until the nose is there; then, a rounded rim.
+bool is_free_of_surface(const HeadVertex& vertex, float detail) {
+    return vertex.loops == HeadLoops::Nostril && (detail < 1 || vertex.loop > kNostrilRim - 3);
+}
+
 /// Onto the surface.
 Vec3 project(
     const HeadVertex& vertex, const Vec3& p, const HeadShape& shape, float detail, int steps = 3) {
-    if (vertex.loops == HeadLoops::Nostril && (detail < 1 || vertex.loop > kNostrilRim - 3)) {
-        return p;  // a membrane from the rim to the grid until the nose is there; then, a rounded
-                   // rim
+    if (is_free_of_surface(vertex, detail)) {
+        return p;
     }
     return on_nose(vertex) ? project_forwards(p, shape, detail)
                            : project_to_head(p, shape, detail, steps);
@@ -198,11 +202,23 @@ class HeadWrap {
     void relax(float detail) {
         const std::vector<Vec3> before = positions_;
         parallel_for(positions_.size(), 256, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::size_t> nose;
+            std::vector<Vec3> on_nose_points;
             for (std::size_t v = begin; v < end; ++v) {
-                if (free_[v]) {
-                    const Vec3 moved = glm::mix(before[v], mean_around(before, v), 0.35f);
+                if (!free_[v]) {
+                    continue;
+                }
+                const Vec3 moved = glm::mix(before[v], mean_around(before, v), 0.35f);
+                if (on_nose(layout_.vertices[v])) {
+                    nose.push_back(v);
+                    on_nose_points.push_back(moved);
+                } else {
                     positions_[v] = project(layout_.vertices[v], moved, shape_, detail, 1);
                 }
+            }
+            project_forwards(on_nose_points, shape_, detail);
+            for (std::size_t i = 0; i < nose.size(); ++i) {
+                positions_[nose[i]] = on_nose_points[i];
             }
         });
     }

@@ -303,6 +303,35 @@ TEST_CASE("head: at weight 1 of the shape age every part is that of seventy year
     }
 }
 
+TEST_CASE("head: the surface of four points at once is that of each, to the last bit") {
+    constexpr float kStep = 0.01f;
+    for (const bool shoulders : {false, true}) {
+        const HeadShape shape = {.sex = 0.7f, .build = -0.4f, .shoulders = shoulders};
+        std::vector<Vec3> points;
+        for (int i = 0; i < 1001; ++i) {  // nor a multiple of four
+            const float t = static_cast<float>(i);
+            points.emplace_back(
+                9 * std::sin(t), 14 * std::cos(0.7f * t) - 4, 12 * std::sin(0.3f * t));
+        }
+        int different = 0;
+        for (const Vec3& p : points) {
+            const auto slope = [&](const Vec3& axis) {
+                return (head_distance(p + kStep * axis, shape, 1) - head_distance(p, shape, 1))
+                       / kStep;
+            };
+            const Vec3 slopes = {slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
+            different += head_gradient(p, shape, 1) == slopes ? 0 : 1;
+        }
+        CHECK(different == 0);
+        std::vector<Vec3> together = points;
+        project_forwards(together, shape, 1);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            different += project_forwards(points[i], shape, 1) == together[i] ? 0 : 1;
+        }
+        CHECK(different == 0);
+    }
+}
+
 TEST_CASE("head: no number of a made mesh is NaN at the ends of all parameters") {
     for (const float end : {0.0f, 1.0f}) {
         const MeshData mesh =
