@@ -26,7 +26,7 @@
 namespace limn {
 namespace {
 
-using FrameClock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 constexpr const char* kLightsScene =
     "lights";  ///< by name, not by file: measured by light count and method
@@ -43,7 +43,7 @@ bool is_program(const std::string& scene) {
     return scene == kParticlesName || scene == kFacesName;
 }
 
-double ms_between(FrameClock::time_point begin, FrameClock::time_point end) {
+double ms_between(SteadyClock::time_point begin, SteadyClock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
 }
 
@@ -131,37 +131,37 @@ void run_bench_frame(
     Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report) {
     FrameGraph& graph = frame_graph(*headless.renderer);
     const double begin_threads = all_threads_ms();
-    const FrameClock::time_point begin = FrameClock::now();
+    const SteadyClock::time_point begin = SteadyClock::now();
     step_stage(stage);
-    const FrameClock::time_point simulated = FrameClock::now();
+    const SteadyClock::time_point simulated = SteadyClock::now();
     const RenderView view =
         make_render_view(stage.world, stage.scene.camera, {.width = size.x, .height = size.y});
     const FrameOutput frame = render_frame(*headless.renderer, stage.world, view);
-    const FrameClock::time_point drawn = FrameClock::now();
+    const SteadyClock::time_point drawn = SteadyClock::now();
     graph.wait_for_timings();
-    const FrameClock::time_point end = FrameClock::now();
+    const SteadyClock::time_point end = SteadyClock::now();
     const double threads = all_threads_ms() - begin_threads;
     if (report == nullptr) {
         return;
     }
-    const auto add = [report](BenchKind kind, FrameClock clock, std::string_view name, double ms) {
+    const auto add = [report](BenchKind kind, BenchClock clock, std::string_view name, double ms) {
         find_series(*report, kind, clock, name).samples.push_back(ms);
     };
-    add(BenchKind::Frame, FrameClock::Cpu, "frame", ms_between(begin, end));
-    add(BenchKind::Frame, FrameClock::Cpu, "all threads", threads);
-    add(BenchKind::Frame, FrameClock::Cpu, "simulate", ms_between(begin, simulated));
-    add(BenchKind::Frame, FrameClock::Cpu, "draw", ms_between(simulated, drawn));
-    add(BenchKind::Frame, FrameClock::Cpu, "extract", frame.statistics.extract_ms);
+    add(BenchKind::Frame, BenchClock::Cpu, "frame", ms_between(begin, end));
+    add(BenchKind::Frame, BenchClock::Cpu, "all threads", threads);
+    add(BenchKind::Frame, BenchClock::Cpu, "simulate", ms_between(begin, simulated));
+    add(BenchKind::Frame, BenchClock::Cpu, "draw", ms_between(simulated, drawn));
+    add(BenchKind::Frame, BenchClock::Cpu, "extract", frame.statistics.extract_ms);
     for (const SystemTiming& timing : stage.schedule.timings()) {
-        add(BenchKind::System, FrameClock::Cpu, timing.name, timing.last * 1e3);
+        add(BenchKind::System, BenchClock::Cpu, timing.name, timing.last * 1e3);
     }
     double gpu_ms = 0.0;
     for (const PassTiming& timing : graph.timings()) {
-        add(BenchKind::Pass, FrameClock::Cpu, timing.name, timing.last_cpu_ms);
-        add(BenchKind::Pass, FrameClock::Gpu, timing.name, timing.last_gpu_ms);
+        add(BenchKind::Pass, BenchClock::Cpu, timing.name, timing.last_cpu_ms);
+        add(BenchKind::Pass, BenchClock::Gpu, timing.name, timing.last_gpu_ms);
         gpu_ms += timing.last_gpu_ms;
     }
-    add(BenchKind::Frame, FrameClock::Gpu, "passes", gpu_ms);
+    add(BenchKind::Frame, BenchClock::Gpu, "passes", gpu_ms);
     report->draws = frame.statistics.draws;
     report->triangles = frame.statistics.triangles;
     report->programs = frame.statistics.programs;
@@ -243,9 +243,9 @@ Status run_bench(const BenchOptions& options) {
     BenchReport report = machine_report(stage, *headless, options);
     report.frames = options.frames;
     report.warmup = options.warmup;
-    const FrameClock::time_point begin = FrameClock::now();
+    const SteadyClock::time_point begin = SteadyClock::now();
     warm_up_world(*headless, stage.world, stage.scene.camera, options.size);
-    report.compile_ms = ms_between(begin, FrameClock::now());
+    report.compile_ms = ms_between(begin, SteadyClock::now());
     report.resident_begin_mib = resident_memory_mib();
     report.heap_begin_mib = heap_memory_mib();
     {

@@ -1,42 +1,39 @@
-// Every level: loads, runs for a second without a logged error, repeats bit for bit, and looks like
-// the image in tests/golden that we last agreed is right. `limn` draws software and GPU images
-// with other roundings, so the comparison is FLIP's, not equality. The target `golden` draws them
-// anew. With the formats and definitions of a GPU it looks the same.
+// Every level: loads, runs for a second without a logged error, and looks like the image in
+// tests/golden that we last agreed is right. `limn` draws software and GPU images with other
+// roundings, so the comparison is FLIP's, not equality. The target `golden` draws them anew. With
+// the formats and definitions of a GPU it looks the same.
 
-#include "content/app/headless.h"
 #include "content/app/stage.h"
 #include "content/bake/image_compare.h"
 #include "content/load/image_load.h"
 #include "content/load/level_list.h"
-#include "content/load/made_assets.h"
 #include "content/load/png_file.h"
 #include "ecs/base/log.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
-#include "ecs/snapshot.h"
 #include "render/gpu/readback.h"
 #include "render/render_view.h"
+#include "tests/app/level_fixture.h"
 
 #include <doctest/doctest.h>
 
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace limn::level_golden_test {
+using test::played_levels;
+using test::PlayedLevel;
+
 namespace {
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 180;
 constexpr int kSamples = 4;
-constexpr int kSteps = 60;
-constexpr int kStepsToRepeat = 10;
 constexpr double kMinPsnr = 45;  // between the profiles [dB]
 
 /// FLIP's largest mean, and its 99th percentile, against the golden images.
@@ -49,22 +46,6 @@ constexpr Tolerance kSoftware = {0.01, 0.1};
 /// of a pixel: textures are up to a code or two of 255 darker, edges fall into other pixels. An
 /// NVIDIA H200 has 0.037 (cistern) and 0.23 (storm).
 constexpr Tolerance kHardware = {0.04, 0.25};
-
-HeadlessRenderer create_renderer(std::optional<gpu::Profile> profile) {
-    // Anisotropic filters, which a software OpenGL never gets, draw other details than the goldens.
-    Result<HeadlessRenderer> made = create_headless_renderer(profile, {.anisotropy = 1});
-    if (!made) {
-        std::fprintf(stderr, "%s\n", made.error().message.c_str());
-        std::exit(1);
-    }
-    return *std::move(made);
-}
-
-/// Meshes and images that levels make, which the test cases share.
-MadeAssets& shared_assets() {
-    static MadeAssets shared;
-    return shared;
-}
 
 gpu::ByteImage draw_level(HeadlessRenderer& headless, const Stage& stage) {
     const RenderView view =
@@ -86,52 +67,13 @@ ColorImage color_image(const gpu::ByteImage& image) {
     return color_image(image.width, image.height, image.channels, image.pixels.data());
 }
 
-/// A level after a second, of which the test cases look at what they are about.
-struct PlayedLevel {
-    std::string name;
-    std::unique_ptr<Stage> stage;
-    std::uint64_t hash = 0;  ///< of the state after kStepsToRepeat
-    bool logged_error = false;
-};
-
-std::unique_ptr<Stage> open_level(const LevelEntry& level) {
-    Result<std::unique_ptr<Stage>> stage = open_stage(level.path, {.made = &shared_assets()});
-    REQUIRE_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
-    return *std::move(stage);
-}
-
-void step_times(Stage& stage, int steps) {
-    for (int i = 0; i < steps; ++i) {
-        step_stage(stage);
-    }
-}
-
-const std::vector<PlayedLevel>& played_levels() {
-    static const std::vector<PlayedLevel> played = [] {
-        std::vector<PlayedLevel> levels;
-        for (const LevelEntry& level : list_levels()) {
-            CAPTURE(level.name);
-            const std::uint64_t errors_before = logged_error_count();
-            PlayedLevel made = {.name = level.name, .stage = open_level(level)};
-            step_times(*made.stage, kStepsToRepeat);
-            made.hash = state_hash(made.stage->world);
-            step_times(*made.stage, kSteps - kStepsToRepeat);
-            made.logged_error = logged_error_count() != errors_before;
-            levels.push_back(std::move(made));
-        }
-        return levels;
-    }();
-    return played;
-}
-
 struct DrawnLevels {
     bool by_software = true;
     std::vector<gpu::ByteImage> images{};
 };
 
-/// Of each level, by one profile's renderer.
-DrawnLevels draw_levels(gpu::Profile profile) {
-    HeadlessRenderer headless = create_renderer(profile);
+/// Of each level.
+DrawnLevels draw_levels(HeadlessRenderer& headless) {
     DrawnLevels drawn = {.by_software = headless.device->caps().software};
     for (const PlayedLevel& level : played_levels()) {
         drawn.images.push_back(draw_level(headless, *level.stage));
@@ -140,7 +82,7 @@ DrawnLevels draw_levels(gpu::Profile profile) {
 }
 
 const DrawnLevels& software_levels() {
-    static const DrawnLevels drawn = draw_levels(gpu::Profile::Software);
+    static const DrawnLevels drawn = draw_levels(test::level_renderer());
     return drawn;
 }
 
@@ -215,7 +157,9 @@ TEST_CASE("level: every level is named and has a camera that moves or that keys 
 }
 
 TEST_CASE("level: every level looks the same with the formats and definitions of a GPU") {
-    const std::vector<gpu::ByteImage> images = draw_levels(gpu::Profile::Gpu).images;
+    (void)software_levels();
+    HeadlessRenderer gpu = test::create_level_renderer(gpu::Profile::Gpu);
+    const std::vector<gpu::ByteImage> images = draw_levels(gpu).images;
     for (std::size_t i = 0; i < images.size(); ++i) {
         CAPTURE(played_levels()[i].name);
         CHECK(psnr(color_image(images[i]), color_image(software_levels().images[i])) >= kMinPsnr);
@@ -239,7 +183,7 @@ TEST_CASE("level: the cloister has shadows of every method, and no light is refu
     set_log_sink([](LogLevel, std::string_view) { ++warnings; });
     const RenderView view =
         make_render_view((*stage)->world, (*stage)->scene.camera, {.width = 64, .height = 36});
-    HeadlessRenderer headless = create_renderer({});
+    HeadlessRenderer& headless = test::level_renderer();
     render_frame(*headless.renderer, (*stage)->world, view);
     // What stays where it is has been drawn once and for all; the cages turn, but no map sees them.
     step_stage(**stage);
@@ -248,16 +192,6 @@ TEST_CASE("level: the cloister has shadows of every method, and no light is refu
     CHECK(warnings == 0);
     CHECK(next.statistics.shadow_views >= 14 * 6);
     CHECK(next.statistics.shadow_views_drawn == 0);
-}
-
-TEST_CASE("level: the same level runs to the same state twice") {
-    const std::vector<LevelEntry> levels = list_levels();
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        CAPTURE(levels[i].name);
-        const std::unique_ptr<Stage> again = open_level(levels[i]);
-        step_times(*again, kStepsToRepeat);
-        CHECK(state_hash(again->world) == played_levels()[i].hash);
-    }
 }
 
 }  // namespace limn::level_golden_test

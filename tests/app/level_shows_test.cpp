@@ -1,21 +1,20 @@
 // Every show of every level, on and off: the images differ, or for methods that must agree, do not.
 
-#include "content/app/headless.h"
 #include "content/app/render_command.h"
 #include "content/app/stage.h"
 #include "content/load/json_document.h"
 #include "content/load/level_show.h"
-#include "content/load/made_assets.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/world.h"
 #include "render/gpu/readback.h"
+#include "tests/app/level_fixture.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
-#include <optional>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,18 +27,6 @@ constexpr int kHeight = 90;
 constexpr int kVisible = 8;          // of 255: a difference of a channel that can be seen
 constexpr double kMinShare = 0.002;  // of the pixels that must differ so much
 constexpr double kMaxShare = 0.001;  // of the pixels that may, where methods must agree
-
-HeadlessRenderer& shared_renderer() {
-    static HeadlessRenderer shared = [] {
-        Result<HeadlessRenderer> made = create_headless_renderer();
-        if (!made) {
-            std::fprintf(stderr, "%s\n", made.error().message.c_str());
-            std::exit(1);
-        }
-        return *std::move(made);
-    }();
-    return shared;
-}
 
 /// Takes the environment probes away, whose six faces are half the work of an image, where a show
 /// is not about them.
@@ -55,21 +42,16 @@ void remove_probes(World& world, const LevelShow& show) {
     }
 }
 
-/// The show's image as `limn render` makes it; nothing where the level cannot be loaded.
-std::optional<gpu::ByteImage> draw_show(const FoundShow& found, bool off) {
-    static MadeAssets made;
-    Result<std::unique_ptr<Stage>> stage = open_stage(
-        found.level.path, {.show = {.technique = found.show.technique, .off = off}, .made = &made});
-    CHECK_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
-    if (!stage) {
-        return std::nullopt;
-    }
-    remove_probes((*stage)->world, found.show);
+/// The show's image as `limn render` makes it.
+gpu::ByteImage draw_show(const FoundShow& found, bool off) {
+    const std::unique_ptr<Stage> stage =
+        test::open_level(found.level.path, {.technique = found.show.technique, .off = off});
+    remove_probes(stage->world, found.show);
     RenderOptions options;
     options.size = {kWidth, kHeight};
     options.edge_samples = 1;
     const FrameOutput frame = draw_still(
-        *shared_renderer().renderer, **stage, (*stage)->scene.camera, options, found.show.time);
+        *test::level_renderer().renderer, *stage, stage->scene.camera, options, found.show.time);
     return gpu::read_bytes(*frame.display);
 }
 
@@ -98,12 +80,7 @@ TEST_CASE("shows: each changes the image where it is on, or nothing where method
     for (const FoundShow& found : *shows) {
         CAPTURE(found.level.name);
         CAPTURE(found.show.technique);
-        const std::optional<gpu::ByteImage> on = draw_show(found, false);
-        const std::optional<gpu::ByteImage> off = draw_show(found, true);
-        if (!on || !off) {
-            continue;
-        }
-        const double share = different_share(*on, *off);
+        const double share = different_share(draw_show(found, false), draw_show(found, true));
         if (found.show.equal) {
             CHECK(share <= kMaxShare);
         } else {

@@ -1,19 +1,18 @@
-// What a level needs is compiled when it is loaded: no frame of any level compiles a program, none
-// needs more programs than agreed, and a warm-up leaves no trace in the image.
+// What a level needs is compiled when it is loaded: no frame of any level compiles a program, and a
+// warm-up leaves no trace in the image or the state.
 
-#include "content/app/headless.h"
 #include "content/app/stage.h"
-#include "content/load/level_list.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/shading_comparison.h"
+#include "ecs/snapshot.h"
 #include "render/gpu/readback.h"
 #include "render/render_view.h"
+#include "tests/app/level_fixture.h"
 #include "tests/app/run_program.h"
 
 #include <doctest/doctest.h>
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -23,35 +22,6 @@ namespace {
 constexpr IVec2 kSize = {64, 36};
 constexpr int kPathViews = 8;
 constexpr int kSeconds = 10;  // to play, the longest that an event of a level takes to begin
-
-/// Shader programs that a level may need. If a level needs more: find out which definitions it has
-/// got (LIMN_SHADER_DUMP writes all programs to a folder). If an effect now makes two programs
-/// where one would do, or has definitions that follow the view (render/effect.h), change the
-/// effect; if the level shows something new, raise its number to what it needs and a few.
-const std::map<std::string, int> kMaxPrograms = {
-    {"cistern", 79},   {"cloister", 64}, {"crowd-of-faces", 48},
-    {"forge", 57},     {"furrows", 48},  {"gallery", 43},
-    {"herd", 43},      {"lagoon", 81},   {"lights", 43},
-    {"markers", 48},   {"million", 56},  {"museum", 105},
-    {"ocean", 58},     {"phonglab", 60}, {"pond", 62},
-    {"portrait", 53},  {"raceway", 78},  {"relax", 50},
-    {"stilllife", 73}, {"storm", 75},    {"stress-instances", 41},
-    {"vale", 103}};
-
-HeadlessRenderer& shared_headless() {
-    static HeadlessRenderer shared = [] {
-        Result<HeadlessRenderer> made = create_headless_renderer();
-        REQUIRE_MESSAGE(made.ok(), (made ? std::string() : made.error().message));
-        return *std::move(made);
-    }();
-    return shared;
-}
-
-std::unique_ptr<Stage> open(const std::string& level) {
-    Result<std::unique_ptr<Stage>> stage = open_stage(level);
-    REQUIRE_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
-    return *std::move(stage);
-}
 
 RenderView view_from(const Stage& stage, const Affine& pose) {
     RenderView view = make_render_view(
@@ -89,22 +59,20 @@ gpu::FloatImage radiance_of(Renderer& renderer, const Stage& stage) {
 
 }  // namespace
 
-TEST_CASE("warm-up: after it no frame of a level compiles a program") {
-    HeadlessRenderer& headless = shared_headless();
-    for (const LevelEntry& level : list_levels()) {
-        CAPTURE(level.name);
-        const std::unique_ptr<Stage> stage = open(level.path);
+TEST_CASE("warm-up: after it no frame of a level compiles a program, and its state is the same") {
+    HeadlessRenderer& headless = test::level_renderer();
+    for (const test::PlayedLevel& played : test::played_levels()) {
+        CAPTURE(played.name);
+        const std::unique_ptr<Stage> stage = test::open_level(played.name);
         const int programs = warm_up_world(headless, stage->world, stage->scene.camera, kSize);
-        const auto limit = kMaxPrograms.find(level.name);
-        CAPTURE(programs);
-        CHECK_MESSAGE(limit != kMaxPrograms.end(), "no number of programs agreed, add one");
-        CHECK(programs <= (limit != kMaxPrograms.end() ? limit->second : 0));
         int compiled = 0;
         for (const RenderView& view : many_views(*stage)) {
             compiled += render_frame(*headless.renderer, stage->world, view).statistics.compiled;
         }
+        test::step_times(*stage, test::kStepsToRepeat);
+        CHECK(state_hash(stage->world) == played.hash);
         // A second of a million particles takes half a minute here, and no event begins later.
-        const int seconds = level.name == "million" ? 1 : kSeconds;
+        const int seconds = played.name == "million" ? 1 : kSeconds;
         for (int second = 1; second <= seconds; ++second) {
             advance_stage(*stage, second);
             const RenderView view = make_render_view(
@@ -112,15 +80,15 @@ TEST_CASE("warm-up: after it no frame of a level compiles a program") {
             compiled += render_frame(*headless.renderer, stage->world, view).statistics.compiled;
         }
         CHECK(compiled == 0);
-        // Nor one that another level happened to compile before.
+        // Nor one that another level, or another test, happened to compile before.
         CHECK(headless.device->shaders().loaded_count() == static_cast<std::size_t>(programs));
     }
 }
 
 TEST_CASE(
     "warm-up: where methods of shading are compared, a key that switches one compiles nothing") {
-    HeadlessRenderer& headless = shared_headless();
-    const std::unique_ptr<Stage> stage = open("phonglab");
+    HeadlessRenderer& headless = test::level_renderer();
+    const std::unique_ptr<Stage> stage = test::open_level("phonglab");
     (void)warm_up_world(headless, stage->world, stage->scene.camera, kSize);
     const auto compiled = [&] {
         const RenderView view = make_render_view(
@@ -139,10 +107,10 @@ TEST_CASE(
 TEST_CASE("warm-up: frames after it have the bits of those of a renderer without") {
     for (const char* level : {"lagoon", "raceway"}) {
         CAPTURE(level);
-        const std::unique_ptr<Stage> stage = open(level);
+        const std::unique_ptr<Stage> stage = test::open_level(level);
         step_stage(*stage);
-        RendererPtr plain = *create_renderer(*shared_headless().device);
-        RendererPtr warm = *create_renderer(*shared_headless().device);
+        RendererPtr plain = *create_renderer(*test::level_renderer().device);
+        RendererPtr warm = *create_renderer(*test::level_renderer().device);
         warm_up(
             *warm, stage->world,
             make_render_view(stage->world, stage->scene.camera, {.width = 320, .height = 180}));
