@@ -2,7 +2,7 @@
 
 #include "content/bake/tangents.h"
 #include "content/load/atomic_file.h"
-#include "content/load/gltf_file.h"
+#include "content/load/file_uri.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
 
