@@ -3,7 +3,7 @@
 packages=(
     g++ cmake ninja-build pkg-config ccache mold git ca-certificates
     libglm-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
-    libopenexr-dev libopenimageio-dev libpng-dev libmeshoptimizer-dev nlohmann-json3-dev
+    libtinygltf-dev libopenexr-dev libopenimageio-dev libpng-dev libmeshoptimizer-dev nlohmann-json3-dev
     libtbb-dev libhwy-dev libimgui-dev libcli11-dev libfmt-dev libspdlog-dev
     doctest-dev libbenchmark-dev libkissfft-dev
     glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick
@@ -22,7 +22,7 @@ name_missing() {
         command -v "$tool" >/dev/null 2>&1 || missing+=("$tool")
     done
     if command -v pkg-config >/dev/null 2>&1; then
-        for module in glfw3 epoxy egl OpenEXR OpenImageIO libpng libhwy tbb imgui fmt spdlog kissfft-float; do
+        for module in glfw3 epoxy egl tinygltf OpenEXR OpenImageIO libpng libhwy tbb imgui fmt spdlog kissfft-float; do
             pkg-config --exists "$module" 2>/dev/null || missing+=("$module")
         done
     fi

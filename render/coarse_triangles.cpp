@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 namespace limn {
@@ -23,6 +24,10 @@ constexpr float kRatio = 0.4f;     // triangles wanted of a level, of those of t
 // The finest levels are drawn of what is seen large: steps between them are smaller.
 constexpr float kFineRatios[] = {0.65f, 0.62f};
 constexpr float kWorthwhile = 0.75f;
+// Of more triangles than this in pieces of fewer, such as points and lines, nothing is simplified:
+// there is little to collapse, and measuring distances takes some 20 s per million triangles.
+constexpr std::size_t kMaxLooseTriangles = 200'000;
+constexpr std::size_t kMinPiece = 12;
 
 /// The triangles of the mesh that are no lines, with one of the vertices at the same place.
 Indices welded_indices(const MeshData& mesh) {
@@ -78,6 +83,33 @@ Indices cluster(const MeshData& mesh, const Indices& finer, std::size_t wanted) 
     return coarser;
 }
 
+/// Sets of triangles that share no vertex with others.
+std::size_t count_pieces(const Indices& indices, std::size_t vertices) {
+    Indices parent(vertices);
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root_of = [&parent](std::uint32_t vertex) {
+        while (parent[vertex] != vertex) {
+            parent[vertex] = parent[parent[vertex]];
+            vertex = parent[vertex];
+        }
+        return vertex;
+    };
+    std::size_t pieces = vertices_of(indices).size();
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        const std::uint32_t a = root_of(indices[i]);
+        const std::uint32_t b = root_of(indices[i / 3 * 3]);
+        pieces -= a != b ? 1 : 0;
+        parent[a] = b;
+    }
+    return pieces;
+}
+
+bool is_loose(const Indices& indices, std::size_t vertices) {
+    const std::size_t triangles = indices.size() / 3;
+    return triangles > kMaxLooseTriangles
+           && triangles < kMinPiece * count_pieces(indices, vertices);
+}
+
 bool is_rigid(const MeshData& mesh) {
     return mesh.skin.empty() && mesh.morphs.empty();
 }
@@ -101,6 +133,9 @@ std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
         return levels;
     }
     const Indices all = is_rigid(mesh) ? welded_indices(mesh) : mesh.indices;
+    if (is_loose(all, mesh.positions.size())) {
+        return levels;
+    }
     const Indices vertices = vertices_of(all);
     Indices finer = all;
     finer.resize(finer.size() / 3 * 3);

@@ -29,7 +29,8 @@ struct CoarseTriangles {
 };
 
 /// Coarser levels of a mesh with valid indices, each with at most 3/4 of the triangles of the one
-/// before; none for a mesh that is small already or has positions that are not finite.
+/// before; none for a mesh that is small already, has positions that are not finite, or consists of
+/// more than 200,000 triangles in pieces of fewer than 12.
 [[nodiscard]] std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh);
 
 /// Remembers the coarser levels of meshes, for worlds that are loaded again.

@@ -8,11 +8,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace limn {
 namespace {
 
 constexpr float kMaxCells = 128;  // along an axis
+/// Entries per triangle, on average: long thin triangles reach through far more cells than a
+/// surface of that many has.
+constexpr std::size_t kMaxEntries = 32;
 
 template <typename Visit>
 void for_cells(const IVec3& low, const IVec3& high, Visit visit) {
@@ -40,17 +44,30 @@ TriangleGrid::TriangleGrid(std::span<const Vec3> positions, std::span<const std:
     const float longest = std::max({size.x, size.y, size.z, 1e-6f});
     const auto count = static_cast<float>(indices.size() / 3);
     const float along = std::clamp(std::sqrt(count), 1.0f, kMaxCells);
-    side_ = longest / along;
-    cells_ = glm::min(IVec3(size / side_) + 1, IVec3(static_cast<int>(kMaxCells) + 1));
-
     const std::size_t triangles = indices.size() / 3;
-    const auto for_cells_of = [&](std::size_t t, auto visit) {
+    const auto cells_of = [&](std::size_t t) {
         const Vec3& a = positions[indices[3 * t]];
         const Vec3& b = positions[indices[3 * t + 1]];
         const Vec3& c = positions[indices[3 * t + 2]];
-        for_cells(
-            cell_of(glm::min(glm::min(a, b), c)), cell_of(glm::max(glm::max(a, b), c)), visit);
+        return std::pair(
+            cell_of(glm::min(glm::min(a, b), c)), cell_of(glm::max(glm::max(a, b), c)));
     };
+    const auto count_entries = [&] {
+        std::size_t entries = 0;
+        for (std::size_t t = 0; t < triangles; ++t) {
+            const auto [from, to] = cells_of(t);
+            const IVec3 extent = to - from + 1;
+            entries += static_cast<std::size_t>(extent.x * extent.y) * extent.z;
+        }
+        return entries;
+    };
+    for (float fineness = along;; fineness /= 2) {
+        side_ = longest / fineness;
+        cells_ = glm::min(IVec3(size / side_) + 1, IVec3(static_cast<int>(kMaxCells) + 1));
+        if (fineness < 2 || count_entries() <= kMaxEntries * triangles) {
+            break;
+        }
+    }
     for (std::size_t t = 0; t < triangles; ++t) {
         const Vec3& a = positions[indices[3 * t]];
         const Vec3& b = positions[indices[3 * t + 1]];
@@ -61,6 +78,10 @@ TriangleGrid::TriangleGrid(std::span<const Vec3> positions, std::span<const std:
         balls_.push_back({center, 1.0001f * radius});  // against rounding
     }
     first_.resize(number_of(cells_ - 1) + 2);
+    const auto for_cells_of = [&](std::size_t t, auto visit) {
+        const auto [from, to] = cells_of(t);
+        for_cells(from, to, visit);
+    };
     for (std::size_t t = 0; t < triangles; ++t) {
         for_cells_of(t, [&](const IVec3& cell) { ++first_[number_of(cell) + 1]; });
     }

@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +19,10 @@ class TriangleGrid {
 
     /// The distance of `p` from the nearest triangle, or any that is at most `enough` [m].
     [[nodiscard]] float distance(const Vec3& p, float enough) const;
+
+    /// Triangles in all cells together: at most 32 times their number, unless a single cell or a
+    /// few have all of them.
+    [[nodiscard]] std::size_t entries() const { return triangles_.size(); }
 
   private:
     [[nodiscard]] IVec3 cell_of(const Vec3& p) const;

@@ -167,7 +167,7 @@ void visit_mesh(Archive& archive, Mesh& mesh) {
     archive(version);
 }
 
-std::string path_of(const std::string& folder, std::string_view key) {
+std::string cache_path(const std::string& folder, std::string_view key) {
     return fmt::format("{}/{:016x}.asset", folder, hash_text(key, hash_text(generators_hash())));
 }
 
@@ -211,7 +211,7 @@ void write_asset(
     visit_asset(writer, asset);
     const std::uint64_t hash = hash_bytes(std::span(writer.bytes).subspan(sizeof(std::uint64_t)));
     std::memcpy(writer.bytes.data(), &hash, sizeof hash);
-    if (write_file(path_of(folder, key), writer.bytes)) {
+    if (write_file(cache_path(folder, key), writer.bytes)) {
         prune(folder, max_bytes);
     }
 }
@@ -222,7 +222,7 @@ read_asset(const std::string& folder, std::string_view key, void (*visit_asset)(
     if (folder.empty()) {
         return std::nullopt;
     }
-    const std::string path = path_of(folder, key);
+    const std::string path = cache_path(folder, key);
     std::error_code error;
     if (!fs::exists(path, error)) {
         return std::nullopt;

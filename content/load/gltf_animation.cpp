@@ -95,7 +95,7 @@ Quat quaternion_of(const float* numbers) {
 class AnimationBuilder {
   public:
     AnimationBuilder(GltfDocument& document, GltfScene& scene)
-        : document_(document), scene_(scene), animations_(document.json["animations"].items) {}
+        : document_(document), scene_(scene), animations_(document.model.animations) {}
 
     Status build() {
         LIMN_TRY(find_joints());
@@ -109,9 +109,8 @@ class AnimationBuilder {
     }
 
     /// The node of the scene that node `node` of the file became, -1 for none.
-    [[nodiscard]] std::int32_t scene_node(const JsonValue& node) const {
-        const std::int32_t index = index_of(node);
-        return index >= 0 ? document_.scene_nodes[static_cast<std::size_t>(index)] : -1;
+    [[nodiscard]] std::int32_t scene_node(int node) const {
+        return node >= 0 ? item_at(document_.scene_nodes, node) : -1;
     }
 
     /// The nodes that a skin in use or a channel references.
@@ -120,22 +119,21 @@ class AnimationBuilder {
         for (const GltfNode& node : scene_.nodes) {
             if (node.skin >= 0) {
                 const auto skin = static_cast<std::size_t>(node.skin);
-                for (const JsonValue& joint : document_.json["skins"].items[skin]["joints"].items) {
+                for (const int joint : document_.model.skins[skin].joints) {
                     const std::int32_t found = scene_node(joint);
                     if (found < 0) {
                         return fail(
                             "{}.joints: found node {}, which is not in the scene", skin_place(skin),
-                            index_of(joint));
+                            joint);
                     }
                     moves[static_cast<std::size_t>(found)] = true;
                 }
             }
         }
-        for (const JsonValue& animation : animations_) {
-            for (const JsonValue& channel : animation["channels"].items) {
-                const JsonValue& target = channel["target"];
-                const std::int32_t found = scene_node(target["node"]);
-                if (found >= 0 && target["path"].text != "weights") {
+        for (const tinygltf::Animation& animation : animations_) {
+            for (const tinygltf::AnimationChannel& channel : animation.channels) {
+                const std::int32_t found = scene_node(channel.target_node);
+                if (found >= 0 && channel.target_path != "weights") {
                     moves[static_cast<std::size_t>(found)] = true;
                 }
             }
@@ -187,7 +185,7 @@ class AnimationBuilder {
         skeleton.rest.scales.push_back(rest.scale);
     }
 
-    [[nodiscard]] std::uint16_t joint_of(const JsonValue& node) const {
+    [[nodiscard]] std::uint16_t joint_of(int node) const {
         return static_cast<std::uint16_t>(
             scene_.joints[static_cast<std::size_t>(scene_node(node))]);
     }
@@ -210,17 +208,17 @@ class AnimationBuilder {
     }
 
     Status add_skin(std::size_t index) {
-        const JsonValue& source = document_.json["skins"].items[index];
+        const tinygltf::Skin& source = document_.model.skins[index];
         SkinData skin;
-        skin.name = source["name"].text;
-        for (const JsonValue& joint : source["joints"].items) {
+        skin.name = source.name;
+        for (const int joint : source.joints) {
             skin.joints.push_back(joint_of(joint));
         }
         skin.joint_from_mesh.resize(skin.joints.size());
-        if (const JsonValue* const matrices = source.find("inverseBindMatrices")) {
+        if (source.inverseBindMatrices >= 0) {
             const std::string place = skin_place(index) + ".inverseBindMatrices";
             const std::vector<float> values =
-                LIMN_TRY(read_floats(document_, index_of(*matrices), 16, place));
+                LIMN_TRY(read_floats(document_, source.inverseBindMatrices, 16, place));
             if (values.size() < 16 * skin.joints.size()) {
                 return fail(
                     "{}: found {} matrices, expected one for each of {} joints", place,
@@ -243,13 +241,12 @@ class AnimationBuilder {
 
     Status add_clips() {
         for (std::size_t i = 0; i < animations_.size(); ++i) {
-            const JsonValue& animation = animations_[i];
             place_ = fmt::format("{}: animations[{}]", document_.file, i);
             groups_.clear();
-            LIMN_TRY(read_channels(animation));
-            const JsonValue* name = animation.find("name");
+            LIMN_TRY(read_channels(animations_[i]));
+            const std::string& name = animations_[i].name;
             ClipData clip;
-            clip.name = name != nullptr ? name->text : fmt::format("clip {}", i);
+            clip.name = !name.empty() ? name : fmt::format("clip {}", i);
             for (const auto& [key, group] : groups_) {
                 clip.sheets.push_back(make_sheet(group));
                 clip.duration = std::max(clip.duration, group.times.back());
@@ -264,29 +261,25 @@ class AnimationBuilder {
         return Done{};
     }
 
-    Status read_channels(const JsonValue& animation) {
-        const std::vector<JsonValue>& samplers = animation["samplers"].items;
-        const std::vector<JsonValue>& channels = animation["channels"].items;
-        for (std::size_t i = 0; i < channels.size(); ++i) {
-            const auto sampler = static_cast<std::size_t>(channels[i]["sampler"].number);
-            if (sampler >= samplers.size()) {
+    Status read_channels(const tinygltf::Animation& animation) {
+        for (std::size_t i = 0; i < animation.channels.size(); ++i) {
+            const tinygltf::AnimationChannel& channel = animation.channels[i];
+            const auto sampler = static_cast<std::size_t>(channel.sampler);
+            if (sampler >= animation.samplers.size()) {
                 return fail(
                     "{}.channels[{}].sampler: found the number {}, expected an index below {}",
-                    place_, i, sampler, samplers.size());
+                    place_, i, sampler, animation.samplers.size());
             }
-            const JsonValue& target = channels[i]["target"];
-            const JsonValue& node = target["node"];
-            if (scene_node(node) < 0) {
+            if (scene_node(channel.target_node) < 0) {
                 continue;  // ignored, as specified; nodes outside of the scene likewise
             }
-            const std::string& name = target["path"].text;
+            const std::string& name = channel.target_path;
             const auto* path =
                 std::find_if(std::begin(kPaths), std::end(kPaths), [&](const auto& known) {
                     return known.first == name;
                 });
             const bool is_weights = path != std::end(kPaths) && path->second == Path::Weights;
-            const GltfMorphs& morphs =
-                document_.node_morphs[static_cast<std::size_t>(index_of(node))];
+            const GltfMorphs& morphs = item_at(document_.node_morphs, channel.target_node);
             if (path == std::end(kPaths) || (is_weights && morphs.count == 0)) {
                 document_.warnings.push_back(fmt::format(
                     "{}.channels[{}].target.path: {} is ignored", place_, i, in_quotes(name)));
@@ -298,30 +291,29 @@ class AnimationBuilder {
                 moved.subject = static_cast<std::uint16_t>(morphs.first);
                 moved.count = morphs.count;
             } else {
-                moved.subject = joint_of(node);
+                moved.subject = joint_of(channel.target_node);
             }
-            LIMN_TRY(read_sampler(samplers[sampler], place, std::move(moved)));
+            LIMN_TRY(read_sampler(animation.samplers[sampler], place, std::move(moved)));
         }
         return Done{};
     }
 
     /// Reads the sampler's output into `channel` and adds that to the group with its times.
-    Status read_sampler(const JsonValue& sampler, const std::string& place, Channel channel) {
-        const std::string& word = sampler["interpolation"].text;
+    Status read_sampler(
+        const tinygltf::AnimationSampler& sampler, const std::string& place, Channel channel) {
+        const std::string& word = sampler.interpolation;
         const Interpolation interpolation = word == "STEP"          ? Interpolation::Step
                                             : word == "CUBICSPLINE" ? Interpolation::Cubic
                                                                     : Interpolation::Linear;
-        const std::int32_t input = index_of(sampler["input"]);
-        ChannelGroup& group = groups_[{input, interpolation}];
+        ChannelGroup& group = groups_[{sampler.input, interpolation}];
         if (group.times.empty()) {
-            group.times = LIMN_TRY(read_floats(document_, input, 1, place + ".input"));
+            group.times = LIMN_TRY(read_floats(document_, sampler.input, 1, place + ".input"));
             group.interpolation = interpolation;
         }
         const int width = channel.path == Path::Weights    ? 1
                           : channel.path == Path::Rotation ? 4
                                                            : 3;
-        channel.values =
-            LIMN_TRY(read_floats(document_, index_of(sampler["output"]), width, place + ".output"));
+        channel.values = LIMN_TRY(read_floats(document_, sampler.output, width, place + ".output"));
         const std::size_t expected = height_of(group) * channel.count;
         const std::size_t found = channel.values.size() / static_cast<std::size_t>(width);
         if (found != expected) {
@@ -373,7 +365,7 @@ class AnimationBuilder {
 
     GltfDocument& document_;
     GltfScene& scene_;
-    const std::vector<JsonValue>& animations_;
+    const std::vector<tinygltf::Animation>& animations_;
     std::string place_;  ///< of the animation being read
     /// By input accessor and interpolation.
     std::map<std::pair<std::int32_t, Interpolation>, ChannelGroup> groups_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -35,9 +36,9 @@ struct InfluenceSet {
 };
 
 Result<std::vector<float>> read_attribute(
-    GltfDocument& document, const GltfVertices& vertices, const JsonValue& accessor, int width,
+    GltfDocument& document, const GltfVertices& vertices, int accessor, int width,
     const std::string& place) {
-    std::vector<float> values = LIMN_TRY(read_floats(document, index_of(accessor), width, place));
+    std::vector<float> values = LIMN_TRY(read_floats(document, accessor, width, place));
     if (values.size() != vertices.count * static_cast<std::size_t>(width)) {
         return fail(
             "{}: found {} elements, expected as many as POSITION has, {}", place,
@@ -48,33 +49,34 @@ Result<std::vector<float>> read_attribute(
 
 Result<std::vector<InfluenceSet>>
 read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
-    const JsonValue& attributes = vertices.primitive["attributes"];
+    const std::map<std::string, int>& attributes = vertices.primitive.attributes;
     std::vector<InfluenceSet> sets;
     for (int n = 0;; ++n) {
         const std::string names[] = {fmt::format("JOINTS_{}", n), fmt::format("WEIGHTS_{}", n)};
-        const JsonValue* const joints = attributes.find(names[0]);
-        const JsonValue* const weights = attributes.find(names[1]);
-        if (joints == nullptr && weights == nullptr) {
+        const auto joints = attributes.find(names[0]);
+        const auto weights = attributes.find(names[1]);
+        if (joints == attributes.end() && weights == attributes.end()) {
             return sets;
         }
-        if (joints == nullptr || weights == nullptr) {
+        if (joints == attributes.end() || weights == attributes.end()) {
             return fail(
                 "{}.attributes: found {} alone, expected {} and {}", vertices.place,
-                names[joints == nullptr ? 1 : 0], names[0], names[1]);
+                names[joints == attributes.end() ? 1 : 0], names[0], names[1]);
         }
         InfluenceSet set;
         set.joints_place = fmt::format("{}.attributes.{}", vertices.place, names[0]);
         set.weights_place = fmt::format("{}.attributes.{}", vertices.place, names[1]);
-        const int type = accessor_at(document, index_of(*joints)).type;
-        if (type != kGltfUnsignedByte && type != kGltfUnsignedShort) {
+        const int type = item_at(document.model.accessors, joints->second).componentType;
+        if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+            && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
             return fail(
                 "{}: accessors[{}].componentType: found {}, expected 5121 or 5123",
-                set.joints_place, index_of(*joints), type);
+                set.joints_place, joints->second, type);
         }
         set.joints =
-            LIMN_TRY(read_attribute(document, vertices, *joints, kWidth, set.joints_place));
-        set.weights =
-            LIMN_TRY(read_attribute(document, vertices, *weights, kWidth, set.weights_place));
+            LIMN_TRY(read_attribute(document, vertices, joints->second, kWidth, set.joints_place));
+        set.weights = LIMN_TRY(
+            read_attribute(document, vertices, weights->second, kWidth, set.weights_place));
         sets.push_back(std::move(set));
     }
 }
@@ -187,10 +189,10 @@ MorphTarget keep_displaced(const Differences& all, std::span<const std::uint32_t
 }
 
 Result<Differences> read_differences(
-    GltfDocument& document, const GltfVertices& vertices, const JsonValue& source,
+    GltfDocument& document, const GltfVertices& vertices, const std::map<std::string, int>& source,
     const std::string& place) {
     Differences all;
-    for (const auto& [name, at, accessor] : source.members) {
+    for (const auto& [name, accessor] : source) {
         std::vector<float>* const target = name == "POSITION"  ? &all.positions
                                            : name == "NORMAL"  ? &all.normals
                                            : name == "TANGENT" ? &all.tangents
@@ -305,7 +307,7 @@ read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const J
     const std::vector<JsonValue>& names = extras["targetNames"].items;
     const std::vector<JsonValue>& units = extras["actionUnits"].items;
     std::vector<MorphTarget> targets;
-    for (const JsonValue& source : vertices.primitive["targets"].items) {
+    for (const std::map<std::string, int>& source : vertices.primitive.targets) {
         const std::size_t i = targets.size();
         const Differences all = LIMN_TRY(read_differences(
             document, vertices, source, fmt::format("{}.targets[{}]", vertices.place, i)));
@@ -321,12 +323,11 @@ read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const J
 Result<std::vector<VertexRegion>>
 read_regions(GltfDocument& document, const GltfVertices& vertices) {
     std::vector<VertexRegion> regions;
-    const JsonValue& attributes = vertices.primitive["attributes"];
-    for (const auto& [attribute, at, accessor] : attributes.members) {
+    const std::map<std::string, int>& attributes = vertices.primitive.attributes;
+    for (const auto& [attribute, accessor] : attributes) {
         const std::string here = fmt::format("{}.attributes.{}", vertices.place, attribute);
         if (attribute.starts_with(kAcross)
-            && attributes.find(std::string(kRegion) + attribute.substr(kAcross.size()))
-                   == nullptr) {
+            && !attributes.contains(std::string(kRegion) + attribute.substr(kAcross.size()))) {
             document.warnings.push_back(here + " is ignored: there is no region of that name");
         }
         if (!attribute.starts_with(kRegion)) {
@@ -343,9 +344,9 @@ read_regions(GltfDocument& document, const GltfVertices& vertices) {
             region.weights.push_back(std::clamp(weights[vertex], 0.0f, 1.0f));
         }
         const std::string other = std::string(kAcross) + attribute.substr(kRegion.size());
-        if (const JsonValue* const across = attributes.find(other)) {
+        if (const auto across = attributes.find(other); across != attributes.end()) {
             const std::vector<float> values = LIMN_TRY(read_attribute(
-                document, vertices, *across, 3,
+                document, vertices, across->second, 3,
                 fmt::format("{}.attributes.{}", vertices.place, other)));
             for (const std::uint32_t vertex : vertices.used) {
                 region.across.push_back(unit_or_zero(vector_at(values, vertex)));

@@ -1,216 +1,82 @@
 #include "content/load/gltf_document.h"
 
-#include "content/load/gltf_file.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
-#include <set>
-#include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace limn {
 
 namespace {
 
-constexpr std::array kExtensions = {
-    std::string_view("KHR_lights_punctual"),   std::string_view("KHR_materials_emissive_strength"),
-    std::string_view("KHR_materials_ior"),     std::string_view("KHR_materials_transmission"),
-    std::string_view("KHR_materials_unlit"),   std::string_view("KHR_materials_volume"),
-    std::string_view("KHR_mesh_quantization"), std::string_view("KHR_texture_transform"),
-};
+const tinygltf::Value kNullValue;
 
 /// Maximum number of elements without a buffer view.
 constexpr std::uint64_t kMaxZeros = std::uint64_t{1} << 22;
 
-std::uint64_t size_of(const JsonValue& value) {
-    return static_cast<std::uint64_t>(value.number);
-}
-
-bool has_extension(std::string_view name) {
-    return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
-}
-
-/// Names of the extensions in `json`, whether the file lists them or not.
-void find_extensions(const JsonValue& json, std::set<std::string_view>& names) {
-    for (const JsonValue& item : json.items) {
-        find_extensions(item, names);
-    }
-    for (const JsonMember& member : json.members) {
-        if (member.key == "extensions") {
-            for (const JsonMember& extension : member.value.members) {
-                names.insert(extension.key);
-            }
-        } else if (member.key != "extras") {
-            find_extensions(member.value, names);
-        }
-    }
-}
-
-void warn_of_extensions(GltfDocument& document) {
-    std::set<std::string_view> used;
-    for (const JsonValue& name : document.json["extensionsUsed"].items) {
-        used.insert(name.text);
-    }
-    find_extensions(document.json, used);
-    for (const std::string_view name : used) {
-        if (!has_extension(name)) {
-            document.warnings.push_back(
-                fmt::format("{}: the extension {} is ignored", document.file, in_quotes(name)));
-        }
-    }
-}
-
-Status check_version(const JsonValue& json, const std::string& file) {
-    const std::string& version = json["asset"]["version"].text;
-    if (!version.starts_with("2.")) {
-        return fail("{}: asset.version: found {}, expected 2.x", file, in_quotes(version));
-    }
-    const std::vector<JsonValue>& required = json["extensionsRequired"].items;
-    for (std::size_t i = 0; i < required.size(); ++i) {
-        const std::string& name = required[i].text;
-        if (!has_extension(name)) {
-            return fail(
-                "{}: extensionsRequired[{}]: found {}, expected one of {}", file, i,
-                in_quotes(name), join_text(kExtensions, ", "));
-        }
-    }
-    return Done{};
-}
-
-Status load_buffers(GltfDocument& document, const GltfChunks& chunks) {
-    const std::vector<JsonValue>& buffers = document.json["buffers"].items;
-    std::uint64_t total = 0;
-    for (std::size_t i = 0; i < buffers.size(); ++i) {
-        const std::string place = fmt::format("{}: buffers[{}]", document.file, i);
-        const std::uint64_t length = size_of(buffers[i]["byteLength"]);
-        std::vector<std::byte> bytes;
-        if (const JsonValue* uri = buffers[i].find("uri"); uri != nullptr) {
-            bytes = LIMN_TRY(
-                fetch_uri(uri->text, document.folder, place + ".uri", document.limits.max_bytes));
-        } else if (i == 0 && chunks.has_binary) {
-            bytes.assign(chunks.binary.begin(), chunks.binary.end());
-        } else {
-            // An extension that Limn does not have may tell where the data are.
-            document.warnings.push_back(place + ": it has no data");
-            document.buffers.emplace_back();
-            continue;
-        }
-        if (length > bytes.size()) {
-            return fail(
-                "{}.byteLength: found {}, expected at most the {} bytes available", place, length,
-                bytes.size());
-        }
-        bytes.resize(length);
-        total += length;
-        if (total > document.limits.max_bytes) {
-            return fail(
-                "{}: found {} bytes in buffers, expected at most {}", place, total,
-                document.limits.max_bytes);
-        }
-        document.buffers.push_back(std::move(bytes));
-    }
-    return Done{};
-}
-
-Status find_views(GltfDocument& document) {
-    for (const JsonValue& view : document.json["bufferViews"].items) {
-        const std::size_t number = document.views.size();
-        const std::int32_t buffer = index_of(view["buffer"]);
-        const std::span<const std::byte> all = document.buffers[static_cast<std::size_t>(buffer)];
-        const std::uint64_t offset = size_of(view["byteOffset"]);
-        const std::uint64_t length = size_of(view["byteLength"]);
-        const std::uint64_t stride = size_of(view["byteStride"]);
-        if (stride % 4 != 0) {
-            return fail(
-                "{}: bufferViews[{}].byteStride: found {}, expected a multiple of 4", document.file,
-                number, stride);
-        }
-        if (all.empty()) {
-            document.views.push_back({all, stride});  // what reads it fails
-            continue;
-        }
-        if (offset > all.size() || length > all.size() - offset) {
-            return fail(
-                "{}: bufferViews[{}]: found {} bytes from byte {}, expected to stay within the {} "
-                "of buffers[{}]",
-                document.file, number, length, offset, all.size(), buffer);
-        }
-        document.views.push_back({all.subspan(offset, length), stride});
-    }
-    return Done{};
-}
-
-// ---- accessors ----------------------------------------------------------------------------------
-
-/// Bytes of one component; 0 for types that glTF does not have (5124, 5127 ...).
-std::uint64_t component_size(int type) {
-    switch (type) {
-    case kGltfByte:
-    case kGltfUnsignedByte:
-        return 1;
-    case kGltfShort:
-    case kGltfUnsignedShort:
-        return 2;
-    case kGltfUnsignedInt:
-    case kGltfFloat:
-        return 4;
-    default:
-        return 0;
-    }
-}
-
 bool is_index_type(int type) {
-    return type == kGltfUnsignedByte || type == kGltfUnsignedShort || type == kGltfUnsignedInt;
+    return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+           || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+           || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+std::uint64_t size_of_component(int type) {
+    return static_cast<std::uint64_t>(
+        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
+}
+
+int count_components(const tinygltf::Accessor& accessor) {
+    return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
 }
 
 template <typename T>
-T load(const std::byte* at) {
+T load_component(const std::byte* at) {
     T value;
     std::memcpy(&value, at, sizeof(T));
     return value;
 }
 
-/// The component at `at`; normalized by the specification's equations.
+/// Normalized by the specification's equations.
+template <typename T>
+float load_as_float(const std::byte* at, bool normalized) {
+    const T value = load_component<T>(at);
+    if (!std::is_integral_v<T> || !normalized) {
+        return static_cast<float>(value);
+    }
+    constexpr double kMax = static_cast<double>(std::numeric_limits<T>::max());
+    return std::max(static_cast<float>(value / kMax), -1.0f);
+}
+
 float load_float(const std::byte* at, int type, bool normalized) {
     switch (type) {
-    case kGltfByte: {
-        const float value = load<std::int8_t>(at);
-        return normalized ? std::max(value / 127.0f, -1.0f) : value;
-    }
-    case kGltfUnsignedByte: {
-        const float value = load<std::uint8_t>(at);
-        return normalized ? value / 255.0f : value;
-    }
-    case kGltfShort: {
-        const float value = load<std::int16_t>(at);
-        return normalized ? std::max(value / 32767.0f, -1.0f) : value;
-    }
-    case kGltfUnsignedShort: {
-        const float value = load<std::uint16_t>(at);
-        return normalized ? value / 65535.0f : value;
-    }
-    case kGltfUnsignedInt: {
-        const auto value = load<std::uint32_t>(at);
-        return normalized ? static_cast<float>(value / 4294967295.0) : static_cast<float>(value);
-    }
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return load_as_float<std::int8_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return load_as_float<std::uint8_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return load_as_float<std::int16_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return load_as_float<std::uint16_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return load_as_float<std::uint32_t>(at, normalized);
     default:
-        return load<float>(at);
+        return load_as_float<float>(at, normalized);
     }
 }
 
 std::uint32_t load_index(const std::byte* at, int type) {
     switch (type) {
-    case kGltfUnsignedByte:
-        return load<std::uint8_t>(at);
-    case kGltfUnsignedShort:
-        return load<std::uint16_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return load_component<std::uint8_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return load_component<std::uint16_t>(at);
     default:
-        return load<std::uint32_t>(at);
+        return load_component<std::uint32_t>(at);
     }
 }
 
@@ -224,26 +90,27 @@ struct Strip {
 Result<Strip> find_strip(
     const GltfDocument& document, std::int32_t index, std::uint64_t offset, std::uint64_t count,
     std::uint64_t element_size, bool strided, const std::string& place) {
-    const GltfView& view = document.views[static_cast<std::size_t>(index)];
-    const std::uint64_t stride = strided && view.stride != 0 ? view.stride : element_size;
+    const std::span<const std::byte> bytes = view_bytes(document, index);
+    const std::uint64_t given = item_at(document.model.bufferViews, index).byteStride;
+    const std::uint64_t stride = strided && given != 0 ? given : element_size;
     if (stride < element_size) {
         return fail(
             "{}: found a stride of {} in bufferViews[{}], expected at least the {} bytes of an "
             "element",
             place, stride, index, element_size);
     }
-    if (view.bytes.empty()) {
+    if (bytes.empty()) {
         return fail("{}: found bufferViews[{}] in a buffer without data", place, index);
     }
     // count < 2^32, stride <= 252 and offset < 2^53: no overflow.
     const std::uint64_t end = offset + (count - 1) * stride + element_size;
-    if (end > view.bytes.size()) {
+    if (end > bytes.size()) {
         return fail(
             "{}: found {} elements that end at byte {}, expected to stay within the {} of "
             "bufferViews[{}]",
-            place, count, end, view.bytes.size(), index);
+            place, count, end, bytes.size(), index);
     }
-    return Strip{view.bytes.data() + offset, stride};
+    return Strip{bytes.data() + offset, stride};
 }
 
 /// Storage of the elements of an accessor; those in neither are zero.
@@ -255,31 +122,32 @@ struct Elements {
 };
 
 Status find_replacements(
-    const GltfDocument& document, const JsonValue& sparse, std::uint64_t size,
-    const std::string& place, Elements& elements) {
-    const JsonValue& indices = sparse["indices"];
-    const JsonValue& values = sparse["values"];
-    const std::uint64_t count = size_of(sparse["count"]);
-    const std::int32_t type = index_of(indices["componentType"]);
-    if (count > size) {
-        return fail("{}.sparse.count: found {}, expected at most {}", place, count, size);
+    const GltfDocument& document, const tinygltf::Accessor& accessor, const std::string& place,
+    Elements& elements) {
+    const auto& indices = accessor.sparse.indices;
+    const auto& values = accessor.sparse.values;
+    const auto count = static_cast<std::uint64_t>(accessor.sparse.count);
+    if (count > accessor.count) {
+        return fail("{}.sparse.count: found {}, expected at most {}", place, count, accessor.count);
     }
-    if (!is_index_type(type)) {
+    if (!is_index_type(indices.componentType)) {
         return fail(
-            "{}.sparse.indices.componentType: found {}, expected 5121, 5123 or 5125", place, type);
+            "{}.sparse.indices.componentType: found {}, expected 5121, 5123 or 5125", place,
+            indices.componentType);
     }
     const Strip strip = LIMN_TRY(find_strip(
-        document, index_of(indices["bufferView"]), size_of(indices["byteOffset"]), count,
-        component_size(type), false, place + ".sparse.indices"));
+        document, indices.bufferView, static_cast<std::uint64_t>(indices.byteOffset), count,
+        size_of_component(indices.componentType), false, place + ".sparse.indices"));
     elements.replacements = LIMN_TRY(find_strip(
-        document, index_of(values["bufferView"]), size_of(values["byteOffset"]), count,
+        document, values.bufferView, static_cast<std::uint64_t>(values.byteOffset), count,
         elements.size, false, place + ".sparse.values"));
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint32_t element = load_index(strip.first + i * strip.stride, type);
-        if (element >= size) {
+        const std::uint32_t element =
+            load_index(strip.first + i * strip.stride, indices.componentType);
+        if (element >= accessor.count) {
             return fail(
                 "{}.sparse.indices: found {} at {}, expected an index below {}", place, element, i,
-                size);
+                accessor.count);
         }
         if (!elements.replaced.empty() && element <= elements.replaced.back()) {
             return fail(
@@ -292,21 +160,21 @@ Status find_replacements(
 }
 
 Result<Elements> find_elements(
-    const GltfDocument& document, std::int32_t index, const GltfAccessor& accessor,
-    const std::string& place) {
+    const GltfDocument& document, const tinygltf::Accessor& accessor, const std::string& place) {
     Elements elements;
-    elements.size = component_size(accessor.type) * static_cast<std::uint64_t>(accessor.components);
-    if (accessor.view >= 0) {
+    elements.size = size_of_component(accessor.componentType)
+                    * static_cast<std::uint64_t>(count_components(accessor));
+    if (accessor.bufferView >= 0) {
         elements.base = LIMN_TRY(find_strip(
-            document, accessor.view, accessor.offset, accessor.count, elements.size, true, place));
+            document, accessor.bufferView, accessor.byteOffset, accessor.count, elements.size, true,
+            place));
     } else if (accessor.count > kMaxZeros) {
         return fail(
             "{}.count: found {} elements without a bufferView, expected at most {}", place,
             accessor.count, kMaxZeros);
     }
-    const JsonValue& sparse = json_item(document, "accessors", index)["sparse"];
-    if (sparse.kind == JsonKind::Object) {
-        LIMN_TRY(find_replacements(document, sparse, accessor.count, place, elements));
+    if (accessor.sparse.isSparse) {
+        LIMN_TRY(find_replacements(document, accessor, place, elements));
     }
     return elements;
 }
@@ -319,37 +187,6 @@ void visit_elements(const Elements& elements, std::uint64_t count, Store&& store
     }
     for (std::uint64_t i = 0; i < elements.replaced.size(); ++i) {
         store(elements.replaced[i], elements.replacements.first + i * elements.size);
-    }
-}
-
-/// Components of an element: 3 for "VEC3"; 0 for a type that glTF does not have.
-int component_count_of(std::string_view type) {
-    constexpr std::pair<std::string_view, int> kTypes[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3},
-                                                           {"VEC4", 4},   {"MAT2", 4}, {"MAT3", 9},
-                                                           {"MAT4", 16}};
-    for (const auto& [name, components] : kTypes) {
-        if (name == type) {
-            return components;
-        }
-    }
-    return 0;
-}
-
-/// Names what glTF does not have, in parts that may go unused: what reads it fails.
-void warn_of_unknown_types(GltfDocument& document) {
-    const std::vector<JsonValue>& accessors = document.json["accessors"].items;
-    for (std::size_t i = 0; i < accessors.size(); ++i) {
-        const std::string place = fmt::format("{}: accessors[{}]", document.file, i);
-        const std::string& type = accessors[i]["type"].text;
-        const int component = index_of(accessors[i]["componentType"]);
-        if (component_count_of(type) == 0) {
-            document.warnings.push_back(
-                fmt::format("{}.type: found {}, expected a type of glTF", place, in_quotes(type)));
-        } else if (component_size(component) == 0) {
-            document.warnings.push_back(fmt::format(
-                "{}.componentType: found {}, expected 5120 to 5123, 5125 or 5126", place,
-                component));
-        }
     }
 }
 
@@ -366,74 +203,48 @@ Status take_values(GltfDocument& document, std::uint64_t values, const std::stri
 
 }  // namespace
 
-Result<GltfDocument> open_gltf(
-    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
-    const GltfLimits& limits) {
-    if (bytes.size() > limits.max_bytes) {
-        return fail(
-            "{}: found {} bytes, expected at most {}", file, bytes.size(), limits.max_bytes);
-    }
-    const GltfChunks chunks = LIMN_TRY(split_gltf(bytes, file));
-    GltfDocument document;
-    document.file = file;
-    document.folder = folder;
-    document.limits = limits;
-    document.values_left = limits.max_values;
-    document.json = LIMN_TRY(parse_json(
-        chunks.json, file,
-        {.max_bytes = limits.max_bytes, .max_values = limits.max_json_values, .max_depth = 64}));
-    LIMN_TRY(check_gltf_schema(document.json, file));
-    LIMN_TRY(check_version(document.json, file));
-    if (chunks.trailing > 0) {
-        document.warnings.push_back(
-            fmt::format("{}: {} bytes after the GLB are ignored", file, chunks.trailing));
-    }
-    warn_of_extensions(document);
-    warn_of_unknown_types(document);
-    LIMN_TRY(load_buffers(document, chunks));
-    LIMN_TRY(find_views(document));
-    return document;
+const tinygltf::Value& member_of(const tinygltf::Value& object, const char* name) {
+    return object.Has(name) ? object.Get(name) : kNullValue;
 }
 
-GltfAccessor accessor_at(const GltfDocument& document, std::int32_t index) {
-    const JsonValue& json = json_item(document, "accessors", index);
-    GltfAccessor accessor;
-    accessor.view = index_of(json["bufferView"]);
-    accessor.offset = size_of(json["byteOffset"]);
-    accessor.count = size_of(json["count"]);
-    accessor.type = index_of(json["componentType"]);
-    accessor.components = component_count_of(json["type"].text);
-    accessor.normalized = json["normalized"].truth;
-    return accessor;
+const tinygltf::Value& extension_of(const tinygltf::ExtensionMap& extensions, const char* name) {
+    const auto found = extensions.find(name);
+    return found != extensions.end() ? found->second : kNullValue;
+}
+
+float number_of(const tinygltf::Value& object, const char* name, double missing) {
+    const tinygltf::Value& value = member_of(object, name);
+    return static_cast<float>(value.IsNumber() ? value.GetNumberAsDouble() : missing);
+}
+
+std::span<const std::byte> view_bytes(const GltfDocument& document, std::int32_t view) {
+    const tinygltf::BufferView& source = item_at(document.model.bufferViews, view);
+    const auto bytes =
+        std::as_bytes(std::span(item_at(document.model.buffers, source.buffer).data));
+    return bytes.empty() ? bytes : bytes.subspan(source.byteOffset, source.byteLength);
 }
 
 Result<std::vector<float>>
 read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& place) {
-    const GltfAccessor accessor = accessor_at(document, index);
+    const tinygltf::Accessor& accessor = item_at(document.model.accessors, index);
     const std::string here = fmt::format("{}: accessors[{}]", place, index);
-    const std::uint64_t size = component_size(accessor.type);
-    if (accessor.components == 0) {
-        return fail(
-            "{}.type: found {}, expected a type of glTF", here,
-            in_quotes(json_item(document, "accessors", index)["type"].text));
+    if (const std::string& unknown = item_at(document.unknown_types, index); !unknown.empty()) {
+        return fail("{}.{}", here, unknown);
     }
-    if (accessor.components != components) {
+    if (const int found = count_components(accessor); found != components) {
         return fail(
-            "{}.type: found {} components per element, expected {}", here, accessor.components,
-            components);
+            "{}.type: found {} components per element, expected {}", here, found, components);
     }
-    if (size == 0) {
-        return fail(
-            "{}.componentType: found {}, expected 5120 to 5123, 5125 or 5126", here, accessor.type);
-    }
+    const std::uint64_t size = size_of_component(accessor.componentType);
     const auto width = static_cast<std::uint64_t>(components);
     LIMN_TRY(take_values(document, accessor.count * width, here));
-    const Elements elements = LIMN_TRY(find_elements(document, index, accessor, here));
+    const Elements elements = LIMN_TRY(find_elements(document, accessor, here));
     std::vector<float> values(accessor.count * width, 0.0f);
     std::optional<std::uint64_t> bad;
     visit_elements(elements, accessor.count, [&](std::uint64_t element, const std::byte* bytes) {
         for (std::uint64_t k = 0; k < width; ++k) {
-            const float value = load_float(bytes + k * size, accessor.type, accessor.normalized);
+            const float value =
+                load_float(bytes + k * size, accessor.componentType, accessor.normalized);
             values[element * width + k] = value;
             if (!std::isfinite(value) && !bad) {
                 bad = element;
@@ -448,19 +259,22 @@ read_floats(GltfDocument& document, std::int32_t index, int components, const st
 
 Result<std::vector<std::uint32_t>>
 read_indices(GltfDocument& document, std::int32_t index, const std::string& place) {
-    const GltfAccessor accessor = accessor_at(document, index);
+    const tinygltf::Accessor& accessor = item_at(document.model.accessors, index);
     const std::string here = fmt::format("{}: accessors[{}]", place, index);
-    if (accessor.components != 1 || !is_index_type(accessor.type)) {
+    if (const std::string& unknown = item_at(document.unknown_types, index); !unknown.empty()) {
+        return fail("{}.{}", here, unknown);
+    }
+    if (count_components(accessor) != 1 || !is_index_type(accessor.componentType)) {
         return fail(
             "{}: found {} components of type {} per element, expected one of type 5121, 5123 or "
             "5125",
-            here, accessor.components, accessor.type);
+            here, count_components(accessor), accessor.componentType);
     }
     LIMN_TRY(take_values(document, accessor.count, here));
-    const Elements elements = LIMN_TRY(find_elements(document, index, accessor, here));
+    const Elements elements = LIMN_TRY(find_elements(document, accessor, here));
     std::vector<std::uint32_t> values(accessor.count, 0);
     visit_elements(elements, accessor.count, [&](std::uint64_t element, const std::byte* bytes) {
-        values[element] = load_index(bytes, accessor.type);
+        values[element] = load_index(bytes, accessor.componentType);
     });
     return values;
 }

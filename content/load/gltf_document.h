@@ -3,6 +3,10 @@
 #include "content/load/gltf_load.h"
 #include "content/load/json_document.h"
 
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,30 +17,13 @@ namespace limn {
 // A glTF file while it is converted to a GltfScene, and the readers that do it, in the order in
 // which gltf_load.cpp calls them.
 //
-// The JSON is parsed once; check_gltf_schema has validated it, so that the readers use its types
-// and indices unchecked. A missing member reads as null, without items and with an empty text.
+// tinygltf parses the file (gltf_file.h) after check_gltf_schema has validated its JSON, so that
+// the readers use the types and indices of `model` unchecked. A missing index is -1.
 
-/// Bytes of a buffer view.
-struct GltfView {
-    std::span<const std::byte> bytes;
-    std::uint64_t stride = 0;  ///< between elements; 0 = tightly packed
-};
-
-/// Component types of an accessor.
-inline constexpr int kGltfByte = 5120;
-inline constexpr int kGltfUnsignedByte = 5121;
-inline constexpr int kGltfShort = 5122;
-inline constexpr int kGltfUnsignedShort = 5123;
-inline constexpr int kGltfUnsignedInt = 5125;
-inline constexpr int kGltfFloat = 5126;
-
-struct GltfAccessor {
-    std::int32_t view = -1;  ///< none: zeros
-    std::uint64_t offset = 0;
-    std::uint64_t count = 0;  ///< of elements
-    int type = 0;             ///< of a component
-    int components = 1;       ///< per element; 0 if glTF has no such type
-    bool normalized = false;
+/// Where the bytes of an image are; images are loaded when a material uses them.
+struct GltfImage {
+    std::optional<std::string> uri;
+    std::int32_t view = -1;
 };
 
 /// Morph weights of one node: a range of GltfScene::morph_weights.
@@ -49,10 +36,11 @@ struct GltfDocument {
     std::string file;    ///< prefix of messages
     std::string folder;  ///< base of relative URIs
     GltfLimits limits;
-    JsonValue json;
-    std::vector<std::vector<std::byte>> buffers;  ///< indexed as in the file
-    std::vector<GltfView> views;                  ///< indexed as in the file
-    std::uint64_t values_left = 0;                ///< remaining of limits.max_values
+    tinygltf::Model model;
+    JsonValue json;                          ///< of the file, without URIs; see extras_of
+    std::vector<GltfImage> images;           ///< indexed as in the file
+    std::vector<std::string> unknown_types;  ///< of each accessor: what its type is, if not glTF's
+    std::uint64_t values_left = 0;           ///< remaining of limits.max_values
     /// Scene node of each file node, or -1; set by build_nodes.
     std::vector<std::int32_t> scene_nodes;
     std::vector<GltfMorphs> node_morphs;  ///< per file node; set by build_nodes
@@ -62,36 +50,47 @@ struct GltfDocument {
 /// Validates the JSON of a file: every property that is read has the right type and range, and
 /// every index refers to an existing item. Unknown properties are ignored, as the specification
 /// requires. Fails with "file: nodes[3].mesh: found the number 7, expected an index below 2".
-[[nodiscard]] Status check_gltf_schema(const JsonValue& json, const std::string& file);
-
-/// Reads container, JSON and buffers; images are loaded with the materials.
-[[nodiscard]] Result<GltfDocument> open_gltf(
-    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
-    const GltfLimits& limits);
+/// Integers that are spelled as 1e3 or 7.0 become 1000 and 7, the only spelling of tinygltf.
+[[nodiscard]] Status check_gltf_schema(JsonValue& json, const std::string& file);
 
 // ---- values -------------------------------------------------------------------------------------
 
-/// -1 for a missing member.
-[[nodiscard]] inline std::int32_t index_of(const JsonValue& value) {
-    return value.kind == JsonKind::Number ? static_cast<std::int32_t>(value.number) : -1;
-}
-
-[[nodiscard]] inline float number_of(const JsonValue& value, double missing) {
-    return static_cast<float>(value.kind == JsonKind::Number ? value.number : missing);
-}
-
 template <typename T>
-[[nodiscard]] T vector_of(const JsonValue& value, T missing) {
-    for (std::size_t i = 0; i < value.items.size(); ++i) {
-        missing[static_cast<int>(i)] = static_cast<float>(value.items[i].number);
+[[nodiscard]] const T& item_at(const std::vector<T>& items, std::int32_t index) {
+    return items[static_cast<std::size_t>(index)];
+}
+
+/// `missing` when there are none.
+template <typename T>
+[[nodiscard]] T vector_of(const std::vector<double>& values, T missing) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        missing[static_cast<int>(i)] = static_cast<float>(values[i]);
     }
     return missing;
 }
 
-/// Item `index` of the top-level array `array`, which must exist.
+/// A null value when it is not there; so are members of null.
+[[nodiscard]] const tinygltf::Value&
+extension_of(const tinygltf::ExtensionMap& extensions, const char* name);
+[[nodiscard]] const tinygltf::Value& member_of(const tinygltf::Value& object, const char* name);
+
+[[nodiscard]] float number_of(const tinygltf::Value& object, const char* name, double missing);
+
+template <typename T>
+[[nodiscard]] T vector_of(const tinygltf::Value& object, const char* name, T missing) {
+    const tinygltf::Value& values = member_of(object, name);
+    for (std::size_t i = 0; i < values.ArrayLen(); ++i) {
+        missing[static_cast<int>(i)] =
+            static_cast<float>(values.Get(static_cast<int>(i)).GetNumberAsDouble());
+    }
+    return missing;
+}
+
+/// Of item `index` of the top-level array `array`. From the JSON, since tinygltf drops nulls and
+/// empty objects, which shifts names and loses components, and casts integers to 32 bits.
 [[nodiscard]] inline const JsonValue&
-json_item(const GltfDocument& document, std::string_view array, std::int32_t index) {
-    return document.json[array].items[static_cast<std::size_t>(index)];
+extras_of(const GltfDocument& document, std::string_view array, std::size_t index) {
+    return document.json[array].items[index]["extras"];
 }
 
 // ---- accessors ----------------------------------------------------------------------------------
@@ -101,7 +100,9 @@ json_item(const GltfDocument& document, std::string_view array, std::int32_t ind
 // The total number of values per file is limited, since a small file can reference the same bytes a
 // million times.
 
-[[nodiscard]] GltfAccessor accessor_at(const GltfDocument& document, std::int32_t index);
+/// Empty in a buffer without data.
+[[nodiscard]] std::span<const std::byte>
+view_bytes(const GltfDocument& document, std::int32_t view);
 
 /// All elements of accessor `index`, tightly packed; integers become floats, normalized ones 0 .. 1
 /// or -1 .. 1. Fails unless elements have `components` components and all are finite.
@@ -128,7 +129,7 @@ build_mesh(GltfDocument& document, std::size_t mesh, std::size_t primitive, std:
 
 /// A primitive and its vertices in use, as element indices into its accessors.
 struct GltfVertices {
-    const JsonValue& primitive;
+    const tinygltf::Primitive& primitive;
     std::string place;  ///< "file: meshes[2].primitives[0]"
     std::size_t count;  ///< elements of each attribute
     std::span<const std::uint32_t> used;

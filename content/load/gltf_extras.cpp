@@ -45,8 +45,7 @@ class ExtrasReader {
             if (document_.scene_nodes[index] < 0) {
                 continue;
             }
-            const JsonValue& source = document_.json["nodes"].items[index];
-            if (const JsonValue* const limn = source["extras"].find("limn")) {
+            if (const JsonValue* const limn = extras_of(document_, "nodes", index).find("limn")) {
                 LIMN_TRY(read_components(*limn, index));
             }
         }

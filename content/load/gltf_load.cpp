@@ -1,7 +1,7 @@
 #include "content/load/gltf_load.h"
 
 #include "content/load/atomic_file.h"
-#include "content/load/gltf_document.h"
+#include "content/load/gltf_file.h"
 #include "ecs/base/log.h"
 
 #include <algorithm>
@@ -16,13 +16,11 @@ constexpr std::size_t kMaxWarnings = 10;  ///< that are logged
 
 /// Smallest joint count of the skins that draw each mesh; 0 = it is not skinned.
 std::vector<std::size_t> common_joints(const GltfDocument& document) {
-    std::vector<std::size_t> counts(document.json["meshes"].items.size(), 0);
-    for (const JsonValue& node : document.json["nodes"].items) {
-        const std::int32_t mesh = index_of(node["mesh"]);
-        const std::int32_t skin = index_of(node["skin"]);
-        if (mesh >= 0 && skin >= 0) {
-            const std::size_t joints = json_item(document, "skins", skin)["joints"].items.size();
-            std::size_t& count = counts[static_cast<std::size_t>(mesh)];
+    std::vector<std::size_t> counts(document.model.meshes.size(), 0);
+    for (const tinygltf::Node& node : document.model.nodes) {
+        if (node.mesh >= 0 && node.skin >= 0) {
+            const std::size_t joints = item_at(document.model.skins, node.skin).joints.size();
+            std::size_t& count = counts[static_cast<std::size_t>(node.mesh)];
             count = count == 0 ? joints : std::min(count, joints);
         }
     }
@@ -36,12 +34,11 @@ Result<GltfParts> build_meshes(GltfDocument& document, GltfScene& scene) {
     bool uses_default = false;
     GltfParts parts(joints.size());
     for (std::size_t mesh = 0; mesh < parts.size(); ++mesh) {
-        const std::vector<JsonValue>& primitives =
-            document.json["meshes"].items[mesh]["primitives"].items;
+        const std::vector<tinygltf::Primitive>& primitives = document.model.meshes[mesh].primitives;
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             std::optional<MeshData> data = LIMN_TRY(build_mesh(document, mesh, i, joints[mesh]));
             if (data) {
-                const std::int32_t material = index_of(primitives[i]["material"]);
+                const int material = primitives[i].material;
                 uses_default = uses_default || material < 0;
                 parts[mesh].push_back(
                     {static_cast<std::uint32_t>(scene.meshes.size()),

@@ -30,9 +30,9 @@ namespace limn {
 // demands: models without normals are mostly organic scans and low-poly animals, which look better
 // smooth, and boxes keep their edges. Missing tangents: content/bake/tangents.h.
 //
-// Data flow: gltf_file.h (container and URIs) -> parse_json -> gltf_schema.cpp (types and ranges of
-// all values and indices) -> gltf_document.h (accessors) -> gltf_material.cpp, gltf_mesh.cpp,
-// gltf_deform.cpp, gltf_node.cpp, gltf_animation.cpp, gltf_extras.cpp -> GltfScene.
+// Data flow: gltf_schema.cpp (types and ranges of all values and indices in the JSON) -> tinygltf,
+// with the bytes of file_uri.h (gltf_file.cpp) -> gltf_document.h (accessors) -> gltf_material.cpp,
+// gltf_mesh.cpp, gltf_deform.cpp, gltf_node.cpp, gltf_animation.cpp, gltf_extras.cpp -> GltfScene.
 
 /// Limits on untrusted files.
 struct GltfLimits {

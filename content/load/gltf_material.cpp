@@ -1,5 +1,5 @@
+#include "content/load/file_uri.h"
 #include "content/load/gltf_document.h"
-#include "content/load/gltf_file.h"
 #include "content/load/image_load.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/text.h"
@@ -21,20 +21,15 @@ struct UsedImage {
     bool srgb = false;
 };
 
-// Values of samplers, as in OpenGL.
-constexpr std::int32_t kNearest = 9728;
-constexpr std::int32_t kClampToEdge = 33071;
-constexpr std::int32_t kMirroredRepeat = 33648;
-
 constexpr float kIndex = 1.5f;  ///< of refraction, by default; of every opaque material
 constexpr float kMaxIndex = 3;
 constexpr float kMaxThickness = 1000;  // [m]
 
 Wrap to_wrap(std::int32_t mode) {
     switch (mode) {
-    case kClampToEdge:
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
         return Wrap::Clamp;
-    case kMirroredRepeat:
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
         return Wrap::Mirror;
     default:
         return Wrap::Repeat;
@@ -44,98 +39,97 @@ Wrap to_wrap(std::int32_t mode) {
 class MaterialBuilder {
   public:
     explicit MaterialBuilder(GltfDocument& document)
-        : document_(document), number_(2 * document.json["images"].items.size(), kNoAsset) {}
+        : document_(document), number_(2 * document.images.size(), kNoAsset) {}
 
     Material build(std::size_t index) {
-        const JsonValue& source = document_.json["materials"].items[index];
-        const JsonValue& pbr = source["pbrMetallicRoughness"];
-        const JsonValue& extensions = source["extensions"];
-        const std::string& alpha = source["alphaMode"].text;
+        const tinygltf::Material& source = document_.model.materials[index];
+        const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
         place_ = fmt::format("{}: materials[{}]", document_.file, index);
 
         Material material;
-        material.name = source["name"].text;
-        material.double_sided = source["doubleSided"].truth;
-        material.alpha_mode = alpha == "MASK"    ? AlphaMode::Mask
-                              : alpha == "BLEND" ? AlphaMode::Blend
-                                                 : AlphaMode::Opaque;
-        material.alpha_cutoff = number_of(source["alphaCutoff"], 0.5);
-        material.base_color = vector_of(pbr["baseColorFactor"], Vec4(1));
-        material.metalness = number_of(pbr["metallicFactor"], 1);
-        material.roughness = number_of(pbr["roughnessFactor"], 1);
-        material.normal_scale = number_of(source["normalTexture"]["scale"], 1);
-        material.occlusion_strength = number_of(source["occlusionTexture"]["strength"], 1);
+        material.name = source.name;
+        material.double_sided = source.doubleSided;
+        material.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::Mask
+                              : source.alphaMode == "BLEND" ? AlphaMode::Blend
+                                                            : AlphaMode::Opaque;
+        material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+        material.base_color = vector_of(pbr.baseColorFactor, Vec4(1));
+        material.metalness = static_cast<float>(pbr.metallicFactor);
+        material.roughness = static_cast<float>(pbr.roughnessFactor);
+        material.normal_scale = static_cast<float>(source.normalTexture.scale);
+        material.occlusion_strength = static_cast<float>(source.occlusionTexture.strength);
+        const tinygltf::Value& emission =
+            extension_of(source.extensions, "KHR_materials_emissive_strength");
         material.emission =
-            number_of(extensions["KHR_materials_emissive_strength"]["emissiveStrength"], 1)
-            * vector_of(source["emissiveFactor"], Vec3(0));
-        if (extensions.find("KHR_materials_unlit") != nullptr) {
+            number_of(emission, "emissiveStrength", 1) * vector_of(source.emissiveFactor, Vec3(0));
+        if (source.extensions.contains("KHR_materials_unlit")) {
             material.shading = ShadingModel::Unlit;
             material.metalness = 0;  // no reflections, whatever the fallback is
         }
-        material.base_color_texture = slot(pbr["baseColorTexture"], true);
+        material.base_color_texture = slot(pbr.baseColorTexture, true);
         if (material.shading != ShadingModel::Unlit) {
-            material.metal_rough_texture = slot(pbr["metallicRoughnessTexture"], false);
+            material.metal_rough_texture = slot(pbr.metallicRoughnessTexture, false);
         }
-        material.normal_texture = slot(source["normalTexture"], false);
-        material.occlusion_texture = slot(source["occlusionTexture"], false);
-        material.emission_texture = slot(source["emissiveTexture"], true);
-        transmit(extensions, material);
+        material.normal_texture = slot(source.normalTexture, false);
+        material.occlusion_texture = slot(source.occlusionTexture, false);
+        material.emission_texture = slot(source.emissiveTexture, true);
+        transmit(source.extensions, material);
         return material;
     }
 
     [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
 
   private:
-    void transmit(const JsonValue& extensions, Material& material) {
-        const JsonValue& transmission = extensions["KHR_materials_transmission"];
-        const float factor = number_of(transmission["transmissionFactor"], 0);
-        const float index = number_of(extensions["KHR_materials_ior"]["ior"], kIndex);
+    void transmit(const tinygltf::ExtensionMap& extensions, Material& material) {
+        const tinygltf::Value& transmission =
+            extension_of(extensions, "KHR_materials_transmission");
+        const float factor = number_of(transmission, "transmissionFactor", 0);
+        const float index = number_of(extension_of(extensions, "KHR_materials_ior"), "ior", kIndex);
         if (factor <= 0 || material.alpha_mode == AlphaMode::Mask) {
             if (std::abs(index - kIndex) > 0.01f) {
                 warn(fmt::format("ior {:.3g} of an opaque material is drawn as {}", index, kIndex));
             }
             return;
         }
-        if (transmission.find("transmissionTexture") != nullptr) {
+        if (transmission.Has("transmissionTexture")) {
             warn("transmissionTexture is unsupported, it is drawn opaque");
             return;
         }
-        const JsonValue& volume = extensions["KHR_materials_volume"];
+        const tinygltf::Value& volume = extension_of(extensions, "KHR_materials_volume");
         material.transmission = factor;
         material.refractive_index = std::clamp(index, 1.0f, kMaxIndex);
-        material.thickness = std::min(number_of(volume["thicknessFactor"], 0), kMaxThickness);
-        const float distance = number_of(volume["attenuationDistance"], 0);
+        material.thickness = std::min(number_of(volume, "thicknessFactor", 0), kMaxThickness);
+        const float distance = number_of(volume, "attenuationDistance", 0);
         if (distance > 0) {
             material.attenuation_distance = distance;
-            material.attenuation_color = vector_of(volume["attenuationColor"], Vec3(1));
+            material.attenuation_color = vector_of(volume, "attenuationColor", Vec3(1));
         }
     }
 
-    TextureSlot slot(const JsonValue& info, bool srgb) {
+    template <typename TextureInfo>
+    TextureSlot slot(const TextureInfo& info, bool srgb) {
         TextureSlot result;
-        const std::int32_t index = index_of(info["index"]);
-        if (index < 0) {
+        if (info.index < 0) {
             return result;
         }
-        const JsonValue& texture = json_item(document_, "textures", index);
-        const std::int32_t source = index_of(texture["source"]);
-        if (source < 0) {
-            warn(fmt::format("textures[{}] has no image in a supported format", index));
+        const tinygltf::Texture& texture = item_at(document_.model.textures, info.index);
+        if (texture.source < 0) {
+            warn(fmt::format("textures[{}] has no image in a supported format", info.index));
             return result;
         }
-        result.image.index = use_image(static_cast<std::size_t>(source), srgb);
-        if (const std::int32_t number = index_of(texture["sampler"]); number >= 0) {
-            const JsonValue& sampler = json_item(document_, "samplers", number);
-            result.wrap_u = to_wrap(index_of(sampler["wrapS"]));
-            result.wrap_v = to_wrap(index_of(sampler["wrapT"]));
-            result.nearest = index_of(sampler["magFilter"]) == kNearest;
+        result.image.index = use_image(static_cast<std::size_t>(texture.source), srgb);
+        if (texture.sampler >= 0) {
+            const tinygltf::Sampler& sampler = item_at(document_.model.samplers, texture.sampler);
+            result.wrap_u = to_wrap(sampler.wrapS);
+            result.wrap_v = to_wrap(sampler.wrapT);
+            result.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         }
-        const JsonValue& transform = info["extensions"]["KHR_texture_transform"];
-        result.offset = vector_of(transform["offset"], Vec2(0));
-        result.scale = vector_of(transform["scale"], Vec2(1));
-        result.rotation = number_of(transform["rotation"], 0);
-        const JsonValue* const uv_set = transform.find("texCoord");
-        const std::int32_t set = index_of(uv_set != nullptr ? *uv_set : info["texCoord"]);
+        const tinygltf::Value& transform = extension_of(info.extensions, "KHR_texture_transform");
+        result.offset = vector_of(transform, "offset", Vec2(0));
+        result.scale = vector_of(transform, "scale", Vec2(1));
+        result.rotation = number_of(transform, "rotation", 0);
+        const tinygltf::Value& uv_set = member_of(transform, "texCoord");
+        const int set = uv_set.IsNumber() ? uv_set.GetNumberAsInt() : info.texCoord;
         if (set > 1) {
             warn(fmt::format("uv set {} is unsupported, 0 is used instead", set));
         }
@@ -164,32 +158,30 @@ class MaterialBuilder {
 
 Result<ImageData>
 load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits& limits) {
-    const JsonValue& source = document.json["images"].items[used.source];
-    const JsonValue* uri = source.find("uri");
-    const JsonValue* view = source.find("bufferView");
-    const JsonValue* name = source.find("name");
+    const GltfImage& source = document.images[used.source];
     std::string place = fmt::format("{}: images[{}]", document.file, used.source);
-    if ((uri == nullptr) == (view == nullptr)) {
+    if (source.uri.has_value() == (source.view >= 0)) {
         return fail(
             "{}: found {} uri and bufferView, expected one of them", place,
-            uri == nullptr ? "neither" : "both");
+            source.uri ? "both" : "neither");
     }
     std::vector<std::byte> fetched;
     std::span<const std::byte> bytes;
-    if (uri != nullptr) {
+    if (source.uri) {
         fetched = LIMN_TRY(
-            fetch_uri(uri->text, document.folder, place + ".uri", document.limits.max_bytes));
+            fetch_uri(*source.uri, document.folder, place + ".uri", document.limits.max_bytes));
         bytes = fetched;
-        if (!uri->text.starts_with("data:")) {
-            place += " (" + uri->text.substr(0, 200) + ")";
+        if (!source.uri->starts_with("data:")) {
+            place += " (" + source.uri->substr(0, 200) + ")";
         }
     } else {
-        bytes = document.views[static_cast<std::size_t>(index_of(*view))].bytes;
+        bytes = view_bytes(document, source.view);
     }
     ImageData image = LIMN_TRY(decode_image(bytes, place, used.srgb, limits));
-    image.name = name != nullptr  ? name->text
-                 : uri != nullptr ? uri->text.substr(0, 200)
-                                  : fmt::format("image {}", used.source);
+    const std::string& name = document.model.images[used.source].name;
+    image.name = !name.empty() ? name
+                 : source.uri  ? source.uri->substr(0, 200)
+                               : fmt::format("image {}", used.source);
     return image;
 }
 
@@ -197,7 +189,7 @@ load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits
 
 Status build_materials(GltfDocument& document, GltfScene& scene) {
     MaterialBuilder builder(document);
-    for (std::size_t i = 0; i < document.json["materials"].items.size(); ++i) {
+    for (std::size_t i = 0; i < document.model.materials.size(); ++i) {
         scene.materials.push_back(builder.build(i));
     }
     Material fallback;  // specified for primitives without a material

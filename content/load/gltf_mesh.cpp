@@ -16,10 +16,6 @@ namespace limn {
 
 namespace {
 
-// Modes of a primitive.
-constexpr std::int32_t kTriangles = 4;
-constexpr std::int32_t kTriangleFan = 6;
-
 constexpr float kCreaseAngle = radians(50);
 
 /// [m]; beyond it cross products of edges overflow a float.
@@ -28,14 +24,14 @@ constexpr float kLargestPosition = 1e9f;
 /// The three corners of each triangle, from the index list of a list, strip or fan.
 std::vector<std::uint32_t>
 make_triangles(const std::vector<std::uint32_t>& list, std::int32_t mode) {
-    if (mode == kTriangles) {
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
         return list;
     }
     std::vector<std::uint32_t> triangles;
     for (std::size_t i = 0; i + 2 < list.size(); ++i) {
         // Every second triangle of a strip has reversed winding; a fan is about its first vertex.
         const bool odd = (i & 1u) != 0;
-        const bool fan = mode == kTriangleFan;
+        const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
         const std::uint32_t a = list[fan ? 0 : i];
         const std::uint32_t b = list[fan || !odd ? i + 1 : i + 2];
         const std::uint32_t c = list[fan || !odd ? i + 2 : i + 1];
@@ -49,19 +45,18 @@ make_triangles(const std::vector<std::uint32_t>& list, std::int32_t mode) {
 class MeshBuilder {
   public:
     MeshBuilder(GltfDocument& document, std::size_t mesh, std::size_t primitive, std::size_t joints)
-        : document_(document), mesh_(document.json["meshes"].items[mesh]),
-          source_(mesh_["primitives"].items[primitive]), joints_(joints),
+        : document_(document), mesh_(mesh),
+          source_(document.model.meshes[mesh].primitives[primitive]), joints_(joints),
           place_(fmt::format("{}: meshes[{}].primitives[{}]", document.file, mesh, primitive)) {
-        const JsonValue* const mode = source_.find("mode");
-        mode_ = mode != nullptr ? index_of(*mode) : kTriangles;
-        result_.name = mesh_["name"].text;
-        if (mesh_["primitives"].items.size() > 1 && !result_.name.empty()) {
+        const tinygltf::Mesh& all = document.model.meshes[mesh];
+        result_.name = all.name;
+        if (all.primitives.size() > 1 && !result_.name.empty()) {
             result_.name += fmt::format(".{}", primitive);
         }
     }
 
     Result<std::optional<MeshData>> build() {
-        if (source_["attributes"].find("POSITION") == nullptr) {
+        if (find_attribute("POSITION") < 0) {
             return skip("it has no POSITION attribute");
         }
         LIMN_TRY(read_positions());
@@ -83,6 +78,12 @@ class MeshBuilder {
     }
 
   private:
+    /// The index of its accessor, or -1.
+    [[nodiscard]] int find_attribute(const char* name) const {
+        const auto found = source_.attributes.find(name);
+        return found != source_.attributes.end() ? found->second : -1;
+    }
+
     Result<std::optional<MeshData>> skip(std::string_view why) {
         document_.warnings.push_back(fmt::format("{} is ignored: {}", place_, why));
         return std::optional<MeshData>();
@@ -91,7 +92,7 @@ class MeshBuilder {
     Status read_positions() {
         const std::string place = place_ + ".attributes.POSITION";
         const std::vector<float> values =
-            LIMN_TRY(read_floats(document_, index_of(source_["attributes"]["POSITION"]), 3, place));
+            LIMN_TRY(read_floats(document_, find_attribute("POSITION"), 3, place));
         positions_.resize(values.size() / 3);
         std::memcpy(positions_.data(), values.data(), values.size() * sizeof(float));
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -109,8 +110,8 @@ class MeshBuilder {
     Status read_triangles() {
         std::vector<std::uint32_t> list;
         const std::string place = place_ + ".indices";
-        if (const JsonValue* const indices = source_.find("indices")) {
-            list = LIMN_TRY(read_indices(document_, index_of(*indices), place));
+        if (source_.indices >= 0) {
+            list = LIMN_TRY(read_indices(document_, source_.indices, place));
         } else {
             list.resize(positions_.size());
             std::iota(list.begin(), list.end(), 0u);
@@ -122,14 +123,14 @@ class MeshBuilder {
                     i, positions_.size());
             }
         }
-        if (mode_ == kTriangles && list.size() % 3 != 0) {
+        if (source_.mode == TINYGLTF_MODE_TRIANGLES && list.size() % 3 != 0) {
             return fail("{}: found {} indices, expected a multiple of 3", place, list.size());
         }
         if (strokes()) {
             stroke(list);
             return Done{};
         }
-        result_.indices = make_triangles(list, mode_);
+        result_.indices = make_triangles(list, source_.mode);
         std::vector<std::uint32_t> number(positions_.size(), kNoAsset);
         for (std::uint32_t& index : result_.indices) {
             if (number[index] == kNoAsset) {
@@ -143,14 +144,14 @@ class MeshBuilder {
     }
 
     /// Points and lines, which have no triangles of their own.
-    [[nodiscard]] bool strokes() const { return mode_ < kTriangles; }
+    [[nodiscard]] bool strokes() const { return source_.mode < TINYGLTF_MODE_TRIANGLES; }
 
     void stroke(const std::vector<std::uint32_t>& list) {
-        Strokes made = make_strokes(positions_, list, mode_);
+        Strokes made = make_strokes(positions_, list, source_.mode);
         if (made.found > kMaxStrokes) {
             document_.warnings.push_back(fmt::format(
                 "{}: {} of its {} {} are drawn", place_, kMaxStrokes, made.found,
-                mode_ == kGltfPoints ? "points" : "lines"));
+                source_.mode == kGltfPoints ? "points" : "lines"));
         }
         used_ = std::move(made.sources);
         result_.indices = std::move(made.indices);
@@ -174,14 +175,13 @@ class MeshBuilder {
     /// The attribute `name`, for the vertices in use; empty when the file has none.
     template <typename T>
     Status read(const char* name, std::vector<T>& target) {
-        const JsonValue* const accessor = source_["attributes"].find(name);
-        if (accessor == nullptr) {
+        const int accessor = find_attribute(name);
+        if (accessor < 0) {
             return Done{};
         }
         const std::string place = fmt::format("{}.attributes.{}", place_, name);
         const int width = static_cast<int>(T::length());
-        const std::vector<float> values =
-            LIMN_TRY(read_floats(document_, index_of(*accessor), width, place));
+        const std::vector<float> values = LIMN_TRY(read_floats(document_, accessor, width, place));
         std::vector<T> all(values.size() / static_cast<std::size_t>(width));
         if (all.size() != positions_.size()) {
             return fail(
@@ -194,8 +194,9 @@ class MeshBuilder {
     }
 
     Status read_colors() {
-        const JsonValue* const accessor = source_["attributes"].find("COLOR_0");
-        if (accessor == nullptr || accessor_at(document_, index_of(*accessor)).components == 4) {
+        const int accessor = find_attribute("COLOR_0");
+        if (accessor < 0
+            || item_at(document_.model.accessors, accessor).type == TINYGLTF_TYPE_VEC4) {
             return read("COLOR_0", result_.colors);
         }
         std::vector<Vec3> opaque;
@@ -212,7 +213,8 @@ class MeshBuilder {
             result_.skin = LIMN_TRY(read_skin_weights(document_, vertices, joints_));
         }
         // Most exporters write the names of the targets there.
-        result_.morphs = LIMN_TRY(read_morph_targets(document_, vertices, mesh_["extras"]));
+        result_.morphs = LIMN_TRY(
+            read_morph_targets(document_, vertices, extras_of(document_, "meshes", mesh_)));
         if (strokes()) {
             for (MorphTarget& morph : result_.morphs) {
                 morph.normals.clear();
@@ -224,14 +226,14 @@ class MeshBuilder {
 
     /// The set of texture coordinates that the normal map uses, if the mesh has it.
     [[nodiscard]] int tangent_uv_set() const {
-        const std::int32_t material = index_of(source_["material"]);
-        if (material < 0 || result_.uvs1.empty()) {
+        if (source_.material < 0 || result_.uvs1.empty()) {
             return 0;
         }
-        const JsonValue& map = json_item(document_, "materials", material)["normalTexture"];
-        const JsonValue* const own =
-            map["extensions"]["KHR_texture_transform"].find("texCoord");  // overrides the map's
-        return index_of(own != nullptr ? *own : map["texCoord"]) == 1 ? 1 : 0;
+        const tinygltf::NormalTextureInfo& map =
+            item_at(document_.model.materials, source_.material).normalTexture;
+        const tinygltf::Value& own =  // overrides the map's
+            member_of(extension_of(map.extensions, "KHR_texture_transform"), "texCoord");
+        return (own.IsNumber() ? own.GetNumberAsInt() : map.texCoord) == 1 ? 1 : 0;
     }
 
     void complete() {
@@ -254,7 +256,13 @@ class MeshBuilder {
             for (MorphTarget& morph : result_.morphs) {
                 morph.tangents.clear();
             }
-            generate_tangents(result_, tangent_uv_set());
+            if (strokes()) {  // what is found without uvs; both ends of a triangle have the same
+                for (const Vec3& normal : result_.normals) {
+                    result_.tangents.emplace_back(any_perpendicular(normal), 1.0f);
+                }
+            } else {
+                generate_tangents(result_, tangent_uv_set());
+            }
         }
         for (std::size_t i = 0; i < result_.tangents.size(); ++i) {
             Vec4& tangent = result_.tangents[i];
@@ -267,11 +275,10 @@ class MeshBuilder {
     }
 
     GltfDocument& document_;
-    const JsonValue& mesh_;
-    const JsonValue& source_;
+    std::size_t mesh_;
+    const tinygltf::Primitive& source_;
     std::size_t joints_;  ///< of its skin
     std::string place_;
-    std::int32_t mode_ = kTriangles;
     std::vector<Vec3> positions_;      ///< all of the accessor
     std::vector<std::uint32_t> used_;  ///< the vertex of the file of each vertex of the result
     MeshData result_;

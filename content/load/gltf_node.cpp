@@ -14,7 +14,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::string_view kLightExtension = "KHR_lights_punctual";
+constexpr const char* kLightExtension = "KHR_lights_punctual";
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 constexpr std::size_t kMaxMorphs = std::numeric_limits<std::uint16_t>::max();
@@ -60,7 +60,7 @@ void avoid_zero_scale(Transform& transform) {
 class NodeBuilder {
   public:
     NodeBuilder(GltfDocument& document, const GltfParts& parts, GltfScene& scene)
-        : document_(document), nodes_(document.json["nodes"].items), parts_(parts), scene_(scene) {}
+        : document_(document), nodes_(document.model.nodes), parts_(parts), scene_(scene) {}
 
     Status build() {
         LIMN_TRY(find_parents());
@@ -85,8 +85,7 @@ class NodeBuilder {
     Status find_parents() {
         parent_.assign(nodes_.size(), kNone);
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            for (const JsonValue& item : nodes_[i]["children"].items) {
-                const std::int32_t child = index_of(item);
+            for (const int child : nodes_[i].children) {
                 std::uint32_t& parent = parent_[static_cast<std::size_t>(child)];
                 if (parent != kNone) {
                     return fail(
@@ -102,7 +101,7 @@ class NodeBuilder {
 
     /// Lists the nodes of the scene, parents first. Nodes unreachable from any root form cycles.
     Status order_nodes() {
-        const std::vector<JsonValue>& scenes = document_.json["scenes"].items;
+        const std::vector<tinygltf::Scene>& scenes = document_.model.scenes;
         std::vector<bool> reached(nodes_.size(), false);
         std::vector<std::uint32_t> all;
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
@@ -120,10 +119,10 @@ class NodeBuilder {
             order_ = std::move(all);
             return Done{};
         }
-        const std::int32_t scene = std::max(index_of(document_.json["scene"]), 0);
+        const int scene = std::max(document_.model.defaultScene, 0);
         reached.assign(nodes_.size(), false);
-        for (const JsonValue& root : scenes[static_cast<std::size_t>(scene)]["nodes"].items) {
-            const auto index = static_cast<std::uint32_t>(index_of(root));
+        for (const int root : item_at(scenes, scene).nodes) {
+            const auto index = static_cast<std::uint32_t>(root);
             if (parent_[index] != kNone || reached[index]) {
                 return fail(
                     "{}: scenes[{}].nodes: found node {}, which {}, expected each root once",
@@ -154,29 +153,30 @@ class NodeBuilder {
             }
             reached[now.node] = true;
             order.push_back(now.node);
-            const std::vector<JsonValue>& children = nodes_[now.node]["children"].items;
+            const std::vector<int>& children = nodes_[now.node].children;
             for (auto child = children.rbegin(); child != children.rend(); ++child) {
-                open.push_back({static_cast<std::uint32_t>(index_of(*child)), now.depth + 1});
+                open.push_back({static_cast<std::uint32_t>(*child), now.depth + 1});
             }
         }
         return Done{};
     }
 
     Status add_node(std::uint32_t index) {
-        const JsonValue& source = nodes_[index];
+        const tinygltf::Node& source = nodes_[index];
         GltfNode node;
-        node.name = source["name"].text;
+        node.name = source.name;
         if (parent_[index] != kNone) {
             node.parent = static_cast<std::int32_t>(number_.at(parent_[index]));
         }
         LIMN_TRY(read_transform(index, node.transform));
-        if (source.find("mesh") != nullptr && source.find("skin") == nullptr) {
+        if (source.mesh >= 0 && source.skin < 0) {
             LIMN_TRY(add_parts(index, node));
         }
         read_camera(source, node);
-        const std::int32_t light = index_of(source["extensions"][kLightExtension]["light"]);
-        if (light >= 0) {
-            node.light = make_light(light);
+        const tinygltf::Value& light =
+            member_of(extension_of(source.extensions, kLightExtension), "light");
+        if (light.IsNumber()) {
+            node.light = make_light(light.GetNumberAsInt());
         }
         number_[index] = static_cast<std::uint32_t>(scene_.nodes.size());
         scene_.nodes.push_back(std::move(node));
@@ -184,17 +184,16 @@ class NodeBuilder {
     }
 
     Status read_transform(std::uint32_t index, Transform& transform) {
-        const JsonValue& source = nodes_[index];
-        if (const std::vector<JsonValue>& items = source["matrix"].items; !items.empty()) {
-            const auto m = [&](std::size_t i) { return items[i].number; };
-            if (m(3) != 0 || m(7) != 0 || m(11) != 0 || m(15) != 1) {
+        const tinygltf::Node& source = nodes_[index];
+        if (const std::vector<double>& m = source.matrix; !m.empty()) {
+            if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
                 return fail(
                     "{}.matrix: found {}, {}, {}, {} as its last row, expected 0, 0, 0, 1",
-                    place(index), m(3), m(7), m(11), m(15));
+                    place(index), m[3], m[7], m[11], m[15]);
             }
             Mat4 matrix;
             for (int i = 0; i < 16; ++i) {
-                matrix[i / 4][i % 4] = static_cast<float>(m(static_cast<std::size_t>(i)));
+                matrix[i / 4][i % 4] = static_cast<float>(m[static_cast<std::size_t>(i)]);
             }
             bool sheared = false;
             transform = decompose(matrix, sheared);
@@ -202,8 +201,8 @@ class NodeBuilder {
                 document_.warnings.push_back(place(index) + ".matrix: its shear is ignored");
             }
         } else {
-            transform.position = vector_of(source["translation"], Vec3(0));
-            transform.scale = vector_of(source["scale"], Vec3(1));
+            transform.position = vector_of(source.translation, Vec3(0));
+            transform.scale = vector_of(source.scale, Vec3(1));
             LIMN_TRY(read_rotation(index, transform.rotation));
         }
         avoid_zero_scale(transform);
@@ -211,11 +210,11 @@ class NodeBuilder {
     }
 
     Status read_rotation(std::uint32_t index, Quat& rotation) {
-        const std::vector<JsonValue>& items = nodes_[index]["rotation"].items;
+        const std::vector<double>& items = nodes_[index].rotation;
         if (items.empty()) {
             return Done{};
         }
-        const glm::dvec4 q(items[0].number, items[1].number, items[2].number, items[3].number);
+        const glm::dvec4 q(items[0], items[1], items[2], items[3]);
         const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
         if (length < 1e-6) {
             return fail(
@@ -227,80 +226,77 @@ class NodeBuilder {
         return Done{};
     }
 
-    void read_camera(const JsonValue& source, GltfNode& node) {
-        const std::int32_t index = index_of(source["camera"]);
-        if (index < 0) {
+    void read_camera(const tinygltf::Node& source, GltfNode& node) {
+        if (source.camera < 0) {
             return;
         }
-        const JsonValue& camera = json_item(document_, "cameras", index);
-        if (camera["type"].text != "perspective") {
+        const tinygltf::Camera& camera = item_at(document_.model.cameras, source.camera);
+        if (camera.type != "perspective") {
             document_.warnings.push_back(fmt::format(
-                "{}: cameras[{}] is ignored: it is orthographic", document_.file, index));
+                "{}: cameras[{}] is ignored: it is orthographic", document_.file, source.camera));
             return;
         }
         // Wider or narrower than a level may have it: nothing else would be seen.
-        const float fov_y = number_of(camera["perspective"]["yfov"], 0);
+        const float fov_y = static_cast<float>(camera.perspective.yfov);
         node.has_camera = true;
         node.camera.fov_y = std::clamp(fov_y, kSmallestFov, kLargestFov);
         if (node.camera.fov_y != fov_y) {
             document_.warnings.push_back(fmt::format(
-                "{}: cameras[{}].perspective.yfov: found {}, shown as {}", document_.file, index,
-                fov_y, node.camera.fov_y));
+                "{}: cameras[{}].perspective.yfov: found {}, shown as {}", document_.file,
+                source.camera, fov_y, node.camera.fov_y));
         }
-        node.camera.near = number_of(camera["perspective"]["znear"], 0);
+        node.camera.near = static_cast<float>(camera.perspective.znear);
         if (node.name.empty()) {
-            node.name = camera["name"].text;
+            node.name = camera.name;
         }
     }
 
     /// No light, and a warning, if its type is unknown.
     [[nodiscard]] GltfLight make_light(std::int32_t index) {
-        const JsonValue& lights = document_.json["extensions"][kLightExtension]["lights"];
-        const JsonValue& source = lights.items[static_cast<std::size_t>(index)];
-        const Vec3 color = vector_of(source["color"], Vec3(1));
-        const float intensity = number_of(source["intensity"], 1);
-        const float radius = number_of(source["range"], 0);  // 0 = none, as in our lights
-        if (source["type"].text == "directional") {
+        const tinygltf::Light& source = item_at(document_.model.lights, index);
+        const Vec3 color = vector_of(source.color, Vec3(1));
+        const auto intensity = static_cast<float>(source.intensity);
+        const auto radius = static_cast<float>(source.range);  // 0 = none, as in our lights
+        if (source.type == "directional") {
             DirectionalLight light;
             light.color = color;
             light.illuminance = intensity;
             return light;
         }
-        if (source["type"].text == "point") {
+        if (source.type == "point") {
             PointLight light;
             light.color = color;
             light.intensity = intensity;
             light.radius = radius;
             return light;
         }
-        if (source["type"].text != "spot") {
+        if (source.type != "spot") {
             document_.warnings.push_back(fmt::format(
                 "{}: extensions.{}.lights[{}] is ignored: its type is {}, expected directional, "
                 "point or spot",
-                document_.file, kLightExtension, index, in_quotes(source["type"].text)));
+                document_.file, kLightExtension, index, in_quotes(source.type)));
             return {};
         }
-        const JsonValue& spot = source["spot"];
         SpotLight light;
         light.color = color;
         light.intensity = intensity;
         light.radius = radius;
-        light.outer_angle = std::min(number_of(spot["outerConeAngle"], 0.7853981634), 0.5f * kPi);
-        light.inner_angle = std::min(number_of(spot["innerConeAngle"], 0), light.outer_angle);
+        light.outer_angle = std::min(static_cast<float>(source.spot.outerConeAngle), 0.5f * kPi);
+        light.inner_angle =
+            std::min(static_cast<float>(source.spot.innerConeAngle), light.outer_angle);
         return light;
     }
 
     /// Their joints place them, not their nodes, so they get nodes of their own.
     Status add_skinned_meshes() {
         for (const std::uint32_t index : order_) {
-            const JsonValue& source = nodes_[index];
-            const std::string& name = source["name"].text;
-            if (source.find("mesh") == nullptr || source.find("skin") == nullptr) {
+            const tinygltf::Node& source = nodes_[index];
+            if (source.mesh < 0 || source.skin < 0) {
                 continue;
             }
             GltfNode node;
-            node.name = name.empty() ? "" : name + ".skin";
-            node.skin = index_of(source["skin"]);
+            node.name = source.name.empty() ? "" : source.name + ".skin";
+            node.skin = source.skin;
             LIMN_TRY(add_parts(index, node));
             scene_.nodes.push_back(std::move(node));
         }
@@ -309,8 +305,8 @@ class NodeBuilder {
 
     /// Adds the parts of the mesh of node `index`, and weights for its morph targets.
     Status add_parts(std::uint32_t index, GltfNode& node) {
-        const JsonValue& source = nodes_[index];
-        const auto mesh = static_cast<std::size_t>(index_of(source["mesh"]));
+        const tinygltf::Node& source = nodes_[index];
+        const auto mesh = static_cast<std::size_t>(source.mesh);
         node.parts = parts_[mesh];
         const std::size_t count =
             node.parts.empty() ? 0 : scene_.meshes[node.parts[0].mesh].morphs.size();
@@ -329,9 +325,9 @@ class NodeBuilder {
             return fail(
                 "{}: found more than {} morph targets in all nodes", place(index), kMaxMorphs);
         }
-        const bool own = !source["weights"].items.empty();
-        const std::vector<JsonValue>& values =
-            (own ? source : document_.json["meshes"].items[mesh])["weights"].items;
+        const bool own = !source.weights.empty();
+        const std::vector<double>& values =
+            own ? source.weights : document_.model.meshes[mesh].weights;
         if (!values.empty() && values.size() != count) {
             return fail(
                 "{}.weights: found {}, expected one for each of {} targets",
@@ -341,13 +337,13 @@ class NodeBuilder {
         node.first_morph = static_cast<std::int32_t>(weights.size());
         document_.node_morphs[index] = {node.first_morph, count};
         for (std::size_t i = 0; i < count; ++i) {
-            weights.push_back(values.empty() ? 0.0f : static_cast<float>(values[i].number));
+            weights.push_back(values.empty() ? 0.0f : static_cast<float>(values[i]));
         }
         return Done{};
     }
 
     GltfDocument& document_;
-    const std::vector<JsonValue>& nodes_;
+    const std::vector<tinygltf::Node>& nodes_;
     const GltfParts& parts_;
     GltfScene& scene_;
     std::vector<std::uint32_t> parent_;  ///< of each node of the file

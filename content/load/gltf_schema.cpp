@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -12,459 +13,293 @@ namespace limn {
 
 namespace {
 
-enum class Shape : std::uint8_t {
-    Object,
-    Array,    ///< min .. max items
-    Index,    ///< of an item of the array at the path `text`
-    Integer,  ///< min .. max, a whole number
-    Number,   ///< min .. max
-    Numbers,  ///< `length` of them, each min .. max
-    String,   ///< one of `text`, separated by spaces, unless that is empty
-    Bool,
-};
+constexpr double kLargestNumber = 1e9;  // no length, angle or intensity is larger
+constexpr double kLargestSize = 9e15;   // integers that a double holds exactly
 
-constexpr bool kRequired = true;
-constexpr double kLargestNumber = 1e9;  ///< no length, angle or intensity is larger
-constexpr double kLargestSize = 9e15;   ///< integers that a double holds exactly
+// "path: member kind; member kind ..." for the members that are read. A path is of objects: "a.b"
+// is a member, "a[]" every item of an array. A member may be absent unless it ends with "!"; "*" is
+// every member, "a[]" every item of the member a. Kinds: object, array MIN (items), index ARRAY,
+// size MIN MAX (a whole number), number MIN MAX, vecN MIN MAX (N numbers), text WORDS (one of them,
+// any without), bool. Angles are rounded up, since files hold them as floats.
+constexpr std::string_view kSchema =
+    R"(: asset! object; extensionsUsed[] text; extensionsRequired[] text
+asset: version! text
+buffers[]: uri text; byteLength! size 1
+bufferViews[]: buffer! index buffers; byteOffset size; byteLength! size 1; byteStride size 4 252
+accessors[]: bufferView index bufferViews; byteOffset size; componentType! size 0 65535
+accessors[]: count! size 1 4294967295; type! text; normalized bool
+accessors[].sparse: count! size 1 2147483647; indices! object; values! object
+accessors[].sparse.indices: bufferView! index bufferViews; byteOffset size 0 2147483647
+accessors[].sparse.indices: componentType! size 5121 5125
+accessors[].sparse.values: bufferView! index bufferViews; byteOffset size 0 2147483647
+images[]: name text; uri text; bufferView index bufferViews
+samplers[]: magFilter size 0 65535; minFilter size 0 65535; wrapS size 0 65535; wrapT size 0 65535
+textures[]: source index images; sampler index samplers
+materials[]: name text; alphaMode text OPAQUE MASK BLEND; alphaCutoff number 0 1e9
+materials[]: doubleSided bool; emissiveFactor vec3 0 1
+materials[].extensions.KHR_materials_transmission: transmissionFactor number 0 1
+materials[].extensions.KHR_materials_ior: ior number 0 1e9
+materials[].extensions.KHR_materials_volume: thicknessFactor number 0 1e9
+materials[].extensions.KHR_materials_volume: attenuationDistance number 0 1e9
+materials[].extensions.KHR_materials_volume: attenuationColor vec3 0 1
+materials[].extensions.KHR_materials_emissive_strength: emissiveStrength number 0 1e9
+materials[].pbrMetallicRoughness: baseColorFactor vec4 0 1; metallicFactor number 0 1
+materials[].pbrMetallicRoughness: roughnessFactor number 0 1
+materials[].normalTexture: scale number
+materials[].occlusionTexture: strength number 0 1
+cameras[]: name text; type! text perspective orthographic
+cameras[].perspective: yfov! number 1e-6 3.1415928; znear! number 1e-9 1e9
+extensions.KHR_lights_punctual.lights[]: name text; type! text; color vec3 0 1e9
+extensions.KHR_lights_punctual.lights[]: intensity number 0 1e9; range number 1e-6 1e9
+extensions.KHR_lights_punctual.lights[].spot: innerConeAngle number 0 1.5707964
+extensions.KHR_lights_punctual.lights[].spot: outerConeAngle number 0 1.5707964
+meshes[]: name text; primitives! array 1; weights[] number
+meshes[].primitives[]: attributes! object; indices index accessors; material index materials
+meshes[].primitives[]: mode size 0 6
+meshes[].primitives[].attributes: * index accessors
+meshes[].primitives[].targets[]: * index accessors
+skins[]: name text; joints! array 1; joints[] index nodes; inverseBindMatrices index accessors
+animations[]: name text; samplers! array 1; channels! array 1
+animations[].samplers[]: input! index accessors; output! index accessors
+animations[].samplers[]: interpolation text LINEAR STEP CUBICSPLINE
+animations[].channels[]: sampler! size 0 2147483647; target! object
+animations[].channels[].target: node index nodes; path! text
+nodes[]: name text; children[] index nodes; mesh index meshes; camera index cameras
+nodes[]: skin index skins; matrix vec16; translation vec3; rotation vec4; scale vec3
+nodes[]: weights[] number
+nodes[].extensions.KHR_lights_punctual: light! index extensions.KHR_lights_punctual.lights
+scenes[]: nodes[] index nodes
+: scene index scenes)";
 
-/// A constraint on all values at `path`: "a.b" is a member, "a[]" every item of an array, "a.*"
-/// every member. Members may be absent unless the last one is `required`.
-struct Rule {
-    const char* path;
-    Shape shape;
-    bool required = false;
-    double min = -kLargestNumber;
-    double max = kLargestNumber;
-    int length = 0;
-    const char* text = "";
-};
-
-constexpr const char* kLights = "extensions.KHR_lights_punctual.lights";
-// Rounded up: files hold them as floats.
-constexpr double kHalfPi = 1.5707964;
-constexpr double kMaxYfov = 3.1415928;
-
-constexpr Rule index_of(const char* path, const char* target, bool required = false) {
-    return {path, Shape::Index, required, 0, 0, 0, target};
-}
-constexpr Rule
-size(const char* path, double min, bool required = false, double max = kLargestSize) {
-    return {path, Shape::Integer, required, min, max};
-}
-constexpr Rule factor(const char* path, double max = 1.0, bool required = false) {
-    return {path, Shape::Number, required, 0, max};
-}
-constexpr Rule factors(const char* path, int length, double max = 1.0) {
-    return {path, Shape::Numbers, false, 0, max, length};
-}
-constexpr Rule numbers(const char* path, int length) {
-    return {path, Shape::Numbers, false, -kLargestNumber, kLargestNumber, length};
-}
-constexpr Rule text(const char* path, const char* values = "", bool required = false) {
-    return {path, Shape::String, required, 0, 0, 0, values};
-}
-constexpr Rule object(const char* path, bool required = false) {
-    return {path, Shape::Object, required};
-}
-constexpr Rule array(const char* path, double min = 0) {
-    return {path, Shape::Array, false, min, kLargestSize};
-}
-constexpr Rule required_array(const char* path, double min) {
-    return {path, Shape::Array, kRequired, min, kLargestSize};
-}
-
-// Containers before their contents: a rule assumes that the path to its value is valid.
-constexpr Rule kRules[] = {
-    object("asset", kRequired),
-    text("asset.version", "", kRequired),
-    array("extensionsUsed"),
-    text("extensionsUsed[]"),
-    array("extensionsRequired"),
-    text("extensionsRequired[]"),
-    object("extensions"),
-    object("extensions.KHR_lights_punctual"),
-
-    array("buffers"),
-    object("buffers[]"),
-    text("buffers[].uri"),
-    size("buffers[].byteLength", 1, kRequired),
-
-    array("bufferViews"),
-    object("bufferViews[]"),
-    index_of("bufferViews[].buffer", "buffers", kRequired),
-    size("bufferViews[].byteOffset", 0),
-    size("bufferViews[].byteLength", 1, kRequired),
-    size("bufferViews[].byteStride", 4, false, 252),
-
-    array("accessors"),
-    object("accessors[]"),
-    index_of("accessors[].bufferView", "bufferViews"),
-    size("accessors[].byteOffset", 0),
-    size("accessors[].componentType", 0, kRequired, 65535),
-    size("accessors[].count", 1, kRequired, 4294967295.0),
-    text("accessors[].type", "", kRequired),
-    {"accessors[].normalized", Shape::Bool},
-    object("accessors[].sparse"),
-    size("accessors[].sparse.count", 1, kRequired, 2147483647.0),
-    object("accessors[].sparse.indices", kRequired),
-    index_of("accessors[].sparse.indices.bufferView", "bufferViews", kRequired),
-    size("accessors[].sparse.indices.byteOffset", 0, false, 2147483647.0),
-    size("accessors[].sparse.indices.componentType", 5121, kRequired, 5125),
-    object("accessors[].sparse.values", kRequired),
-    index_of("accessors[].sparse.values.bufferView", "bufferViews", kRequired),
-    size("accessors[].sparse.values.byteOffset", 0, false, 2147483647.0),
-
-    array("images"),
-    object("images[]"),
-    text("images[].name"),
-    text("images[].uri"),
-    index_of("images[].bufferView", "bufferViews"),
-    array("samplers"),
-    object("samplers[]"),
-    size("samplers[].magFilter", 0),
-    size("samplers[].minFilter", 0),
-    size("samplers[].wrapS", 0),
-    size("samplers[].wrapT", 0),
-    array("textures"),
-    object("textures[]"),
-    index_of("textures[].source", "images"),
-    index_of("textures[].sampler", "samplers"),
-
-    array("materials"),
-    object("materials[]"),
-    text("materials[].name"),
-    text("materials[].alphaMode", "OPAQUE MASK BLEND"),
-    factor("materials[].alphaCutoff", kLargestNumber),
-    {"materials[].doubleSided", Shape::Bool},
-    factors("materials[].emissiveFactor", 3),
-    object("materials[].extensions"),
-    object("materials[].extensions.KHR_materials_transmission"),
-    factor("materials[].extensions.KHR_materials_transmission.transmissionFactor"),
-    object("materials[].extensions.KHR_materials_ior"),
-    factor("materials[].extensions.KHR_materials_ior.ior", kLargestNumber),
-    object("materials[].extensions.KHR_materials_volume"),
-    factor("materials[].extensions.KHR_materials_volume.thicknessFactor", kLargestNumber),
-    factor("materials[].extensions.KHR_materials_volume.attenuationDistance", kLargestNumber),
-    factors("materials[].extensions.KHR_materials_volume.attenuationColor", 3),
-    object("materials[].extensions.KHR_materials_emissive_strength"),
-    factor(
-        "materials[].extensions.KHR_materials_emissive_strength.emissiveStrength", kLargestNumber),
-    object("materials[].pbrMetallicRoughness"),
-    factors("materials[].pbrMetallicRoughness.baseColorFactor", 4),
-    factor("materials[].pbrMetallicRoughness.metallicFactor"),
-    factor("materials[].pbrMetallicRoughness.roughnessFactor"),
-    object("materials[].normalTexture"),
-    {"materials[].normalTexture.scale", Shape::Number},
-    object("materials[].occlusionTexture"),
-    factor("materials[].occlusionTexture.strength"),
-
-    array("cameras"),
-    object("cameras[]"),
-    text("cameras[].name"),
-    text("cameras[].type", "perspective orthographic", kRequired),
-    object("cameras[].orthographic"),
-    object("cameras[].perspective"),
-    {"cameras[].perspective.yfov", Shape::Number, kRequired, 1e-6, kMaxYfov},
-    {"cameras[].perspective.znear", Shape::Number, kRequired, 1e-9, kLargestNumber},
-
-    array(kLights),
-    object("extensions.KHR_lights_punctual.lights[]"),
-    text("extensions.KHR_lights_punctual.lights[].name"),
-    text("extensions.KHR_lights_punctual.lights[].type", "", kRequired),
-    factors("extensions.KHR_lights_punctual.lights[].color", 3, kLargestNumber),
-    factor("extensions.KHR_lights_punctual.lights[].intensity", kLargestNumber),
-    {"extensions.KHR_lights_punctual.lights[].range", Shape::Number, false, 1e-6, kLargestNumber},
-    object("extensions.KHR_lights_punctual.lights[].spot"),
-    factor("extensions.KHR_lights_punctual.lights[].spot.innerConeAngle", kHalfPi),
-    factor("extensions.KHR_lights_punctual.lights[].spot.outerConeAngle", kHalfPi),
-
-    array("meshes"),
-    object("meshes[]"),
-    text("meshes[].name"),
-    required_array("meshes[].primitives", 1),
-    object("meshes[].primitives[]"),
-    object("meshes[].primitives[].attributes", kRequired),
-    index_of("meshes[].primitives[].attributes.*", "accessors"),
-    index_of("meshes[].primitives[].indices", "accessors"),
-    index_of("meshes[].primitives[].material", "materials"),
-    size("meshes[].primitives[].mode", 0, false, 6),
-    array("meshes[].primitives[].targets"),
-    object("meshes[].primitives[].targets[]"),
-    index_of("meshes[].primitives[].targets[].*", "accessors"),
-    array("meshes[].weights"),
-    {"meshes[].weights[]", Shape::Number},
-
-    array("skins"),
-    object("skins[]"),
-    text("skins[].name"),
-    required_array("skins[].joints", 1),
-    index_of("skins[].joints[]", "nodes"),
-    index_of("skins[].inverseBindMatrices", "accessors"),
-
-    array("animations"),
-    object("animations[]"),
-    text("animations[].name"),
-    required_array("animations[].samplers", 1),
-    object("animations[].samplers[]"),
-    index_of("animations[].samplers[].input", "accessors", kRequired),
-    index_of("animations[].samplers[].output", "accessors", kRequired),
-    text("animations[].samplers[].interpolation", "LINEAR STEP CUBICSPLINE"),
-    required_array("animations[].channels", 1),
-    object("animations[].channels[]"),
-    size("animations[].channels[].sampler", 0, kRequired),
-    object("animations[].channels[].target", kRequired),
-    index_of("animations[].channels[].target.node", "nodes"),
-    text("animations[].channels[].target.path", "", kRequired),
-
-    array("nodes"),
-    object("nodes[]"),
-    text("nodes[].name"),
-    array("nodes[].children"),
-    index_of("nodes[].children[]", "nodes"),
-    index_of("nodes[].mesh", "meshes"),
-    index_of("nodes[].camera", "cameras"),
-    index_of("nodes[].skin", "skins"),
-    numbers("nodes[].matrix", 16),
-    numbers("nodes[].translation", 3),
-    numbers("nodes[].rotation", 4),
-    numbers("nodes[].scale", 3),
-    array("nodes[].weights"),
-    {"nodes[].weights[]", Shape::Number},
-    object("nodes[].extensions"),
-    object("nodes[].extensions.KHR_lights_punctual"),
-    index_of("nodes[].extensions.KHR_lights_punctual.light", kLights, kRequired),
-
-    array("scenes"),
-    object("scenes[]"),
-    array("scenes[].nodes"),
-    index_of("scenes[].nodes[]", "nodes"),
-    index_of("scene", "scenes"),
-};
-
-/// The texture references of a material; each has the rules of a textureInfo.
-constexpr const char* kTextureInfos[] = {
+/// The references to textures; each has the rules of a textureInfo.
+constexpr std::string_view kTextureInfos[] = {
     "materials[].pbrMetallicRoughness.baseColorTexture",
     "materials[].pbrMetallicRoughness.metallicRoughnessTexture",
     "materials[].normalTexture",
     "materials[].occlusionTexture",
     "materials[].emissiveTexture",
 };
-constexpr Rule kTextureRules[] = {
-    object(""),
-    index_of(".index", "textures", kRequired),
-    size(".texCoord", 0, false, 255),
-    object(".extensions"),
-    object(".extensions.KHR_texture_transform"),
-    numbers(".extensions.KHR_texture_transform.offset", 2),
-    {".extensions.KHR_texture_transform.rotation", Shape::Number},
-    numbers(".extensions.KHR_texture_transform.scale", 2),
-    size(".extensions.KHR_texture_transform.texCoord", 0, false, 255),
+constexpr std::string_view kTextureSchema =
+    R"(: index! index textures; texCoord size 0 255
+.extensions.KHR_texture_transform: offset vec2; rotation number; scale vec2; texCoord size 0 255)";
+
+/// What a light or a camera must have by its type.
+constexpr std::pair<std::string_view, std::string_view> kMembersOfTypes[] = {
+    {"cameras", "perspective"},
+    {"cameras", "orthographic"},
+    {"extensions.KHR_lights_punctual.lights", "spot"}};
+
+std::vector<std::string_view> split_text(std::string_view text, std::string_view separator) {
+    std::vector<std::string_view> parts;
+    for (std::size_t end = text.find(separator); end != text.npos; end = text.find(separator)) {
+        parts.push_back(text.substr(0, end));
+        text.remove_prefix(end + separator.size());
+    }
+    parts.push_back(text);
+    return parts;
+}
+
+/// A constraint on all values at `path`.
+struct SchemaRule {
+    std::string path;
+    bool required = false;
+    std::string_view kind;                ///< of those above
+    std::vector<std::string_view> words;  ///< that follow it
+    double min = 0;
+    double max = 0;
 };
 
-/// One step of the path to a value, for messages.
-struct Step {
+SchemaRule parse_rule(std::string_view prefix, std::string_view text) {
+    SchemaRule rule;
+    rule.words = split_text(text, " ");
+    std::string_view member = rule.words[0];
+    rule.kind = rule.words[1];
+    rule.words.erase(rule.words.begin(), rule.words.begin() + 2);
+    rule.required = member.ends_with("!");
+    member.remove_suffix(rule.required ? 1 : 0);
+    rule.path = fmt::format("{}{}{}", prefix, prefix.empty() ? "" : ".", member);
+    const bool is_size = rule.kind == "size" || rule.kind == "array";
+    const auto number = [&rule](std::size_t word, double value) {
+        if (word < rule.words.size()) {
+            const std::string_view digits = rule.words[word];
+            (void)std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        }
+        return value;
+    };
+    rule.min = number(0, is_size ? 0 : -kLargestNumber);
+    rule.max = number(1, is_size ? kLargestSize : kLargestNumber);
+    return rule;
+}
+
+/// The last step of the path to a value, for messages.
+struct SchemaStep {
+    const SchemaStep* parent = nullptr;
     std::string_view key;      ///< of a member; "" for an item
     std::size_t position = 0;  ///< of an item
 };
 
-class Checker {
-  public:
-    Checker(const JsonValue& root, const std::string& file) : root_(root), file_(file) {}
+std::string path_of(const SchemaStep* step) {
+    if (step == nullptr) {
+        return "";
+    }
+    const std::string parent = path_of(step->parent);
+    return step->key.empty() ? fmt::format("{}[{}]", parent, step->position)
+                             : fmt::format("{}{}{}", parent, parent.empty() ? "" : ".", step->key);
+}
 
-    Status check(const Rule& rule) {
-        rule_ = &rule;
-        steps_.clear();
-        target_size_ = 0;
-        if (rule.shape == Shape::Index) {
-            const JsonValue* target = find_target(rule.text);
-            target_size_ = target != nullptr ? target->items.size() : 0;
+const JsonValue& value_at(const JsonValue& root, std::string_view path) {
+    const JsonValue* value = &root;
+    for (const std::string_view key : split_text(path, ".")) {
+        value = &(*value)[key];
+    }
+    return *value;
+}
+
+class SchemaChecker {
+  public:
+    SchemaChecker(JsonValue& root, const std::string& file) : root_(root), file_(file) {}
+
+    /// All lines of `schema`, with paths below `prefix`.
+    Status check(std::string_view prefix, std::string_view schema) {
+        for (const std::string_view line : split_text(schema, "\n")) {
+            const std::vector<std::string_view> parts = split_text(line, ": ");
+            for (const std::string_view text : split_text(parts[1], "; ")) {
+                rule_ = parse_rule(fmt::format("{}{}", prefix, parts[0]), text);
+                targets_ = rule_.kind == "index" ? value_at(root_, rule_.words[0]).items.size() : 0;
+                LIMN_TRY(walk(root_, rule_.path, nullptr));
+            }
         }
-        return walk(root_, rule.path);
+        return Done{};
     }
 
   private:
-    [[nodiscard]] const JsonValue* find_target(std::string_view path) const {
-        const JsonValue* value = &root_;
-        while (value != nullptr && !path.empty()) {
-            const std::size_t dot = std::min(path.find('.'), path.size());
-            value = value->find(path.substr(0, dot));
-            path.remove_prefix(std::min(dot + 1, path.size()));
-        }
-        return value;
-    }
-
     /// Recurses once for each step of the rule's path, so never deeply.
-    Status walk(const JsonValue& value, std::string_view path) {
+    Status walk(JsonValue& value, std::string_view path, const SchemaStep* at) {
         if (path.empty()) {
-            return check_value(value);
+            return check_value(value, at);
         }
-        if (path.starts_with("[]")) {
-            path.remove_prefix(path.starts_with("[].") ? 3 : 2);
+        const bool is_array = path.starts_with("[]");
+        if (value.kind != (is_array ? JsonKind::Array : JsonKind::Object)) {
+            return refuse(describe(value), is_array ? "an array" : "an object", at);
+        }
+        if (is_array) {
+            path.remove_prefix(2);
             for (std::size_t i = 0; i < value.items.size(); ++i) {
-                LIMN_TRY(descend(value.items[i], {"", i}, path));
+                const SchemaStep step{at, "", i};
+                LIMN_TRY(walk(value.items[i], path, &step));
             }
             return Done{};
         }
-        if (path.starts_with("*")) {
-            for (const JsonMember& member : value.members) {
-                LIMN_TRY(descend(member.value, {member.key}, path.substr(1)));
+        path.remove_prefix(path.starts_with(".") ? 1 : 0);
+        const std::string_view key = path.substr(0, path.find_first_of(".["));
+        path.remove_prefix(key.size());
+        bool is_found = false;
+        for (JsonMember& member : value.members) {
+            if (key == "*" || member.key == key) {
+                is_found = true;
+                const SchemaStep step{at, member.key};
+                LIMN_TRY(walk(member.value, path, &step));
             }
-            return Done{};
         }
-        const std::size_t end = std::min(path.find_first_of(".["), path.size());
-        const std::string_view key = path.substr(0, end);
-        path.remove_prefix(end);
-        if (path.starts_with(".")) {
-            path.remove_prefix(1);
-        }
-        if (const JsonValue* member = value.find(key); member != nullptr) {
-            return descend(*member, {key}, path);
-        }
-        if (path.empty() && rule_->required) {
-            steps_.push_back({key});
-            return fail("{}: {}: found nothing, expected {}", file_, place(), expectation());
+        if (!is_found && path.empty() && rule_.required) {
+            const SchemaStep step{at, key};
+            return refuse("nothing", expectation(), &step);
         }
         return Done{};
     }
 
-    Status descend(const JsonValue& value, Step step, std::string_view path) {
-        steps_.push_back(step);
-        LIMN_TRY(walk(value, path));
-        steps_.pop_back();
+    Status check_value(JsonValue& value, const SchemaStep* at) const {
+        if (!fits(value)) {
+            return refuse(describe(value), expectation(), at);
+        }
+        if ((rule_.kind == "index" || rule_.kind == "size")
+            && value.text.find_first_not_of("0123456789") != std::string::npos) {
+            value.text = std::to_string(static_cast<std::int64_t>(value.number));
+        }
         return Done{};
     }
 
-    Status check_value(const JsonValue& value) const {
-        if (fits(value)) {
-            return Done{};
-        }
+    [[nodiscard]] Status
+    refuse(std::string_view found, std::string_view expected, const SchemaStep* at) const {
+        const std::string path = path_of(at);
         return fail(
-            "{}: {}: found {}, expected {}", file_, place(), describe(value), expectation());
+            "{}{}{}: found {}, expected {}", file_, path.empty() ? "" : ": ", path, found,
+            expected);
     }
 
     [[nodiscard]] bool fits(const JsonValue& value) const {
+        const std::string_view kind = rule_.kind;
         const auto is_number = [this](const JsonValue& v) {
-            return v.kind == JsonKind::Number && v.number >= rule_->min && v.number <= rule_->max;
+            return v.kind == JsonKind::Number && v.number >= rule_.min && v.number <= rule_.max;
         };
-        const auto is_integer = [](const JsonValue& v) {
-            return v.kind == JsonKind::Number && v.number >= 0 && v.number <= kLargestSize
-                   && v.number == std::floor(v.number);
-        };
-        switch (rule_->shape) {
-        case Shape::Object:
-            return value.kind == JsonKind::Object;
-        case Shape::Array:
-            return value.kind == JsonKind::Array
-                   && static_cast<double>(value.items.size()) >= rule_->min;
-        case Shape::Index:
-            return is_integer(value) && value.number < static_cast<double>(target_size_);
-        case Shape::Integer:
-            return is_integer(value) && is_number(value);
-        case Shape::Number:
-            return is_number(value);
-        case Shape::Numbers:
-            return value.kind == JsonKind::Array
-                   && value.items.size() == static_cast<std::size_t>(rule_->length)
-                   && std::all_of(value.items.begin(), value.items.end(), is_number);
-        case Shape::String:
-            return value.kind == JsonKind::String && is_allowed(value.text);
-        case Shape::Bool:
-            return value.kind == JsonKind::Bool;
+        const bool is_size = value.kind == JsonKind::Number && value.number >= 0
+                             && value.number <= kLargestSize
+                             && value.number == std::floor(value.number);
+        if (kind == "index") {
+            return is_size && value.number < static_cast<double>(targets_);
         }
-        return false;
+        if (kind == "size" || kind == "number") {
+            return is_number(value) && (is_size || kind == "number");
+        }
+        if (kind == "array") {
+            return value.kind == JsonKind::Array
+                   && static_cast<double>(value.items.size()) >= rule_.min;
+        }
+        if (kind == "text") {
+            return value.kind == JsonKind::String
+                   && (rule_.words.empty()
+                       || std::ranges::find(rule_.words, value.text) != rule_.words.end());
+        }
+        if (kind == "object" || kind == "bool") {
+            return value.kind == (kind == "bool" ? JsonKind::Bool : JsonKind::Object);
+        }
+        return value.kind == JsonKind::Array && std::to_string(value.items.size()) == vec_length()
+               && std::ranges::all_of(value.items, is_number);
     }
 
-    [[nodiscard]] bool is_allowed(std::string_view word) const {
-        const std::string_view words = rule_->text;
-        for (std::size_t at = 0; !words.empty() && at < words.size();) {
-            const std::size_t end = std::min(words.find(' ', at), words.size());
-            if (words.substr(at, end - at) == word) {
-                return true;
-            }
-            at = end + 1;
-        }
-        return words.empty();
-    }
+    [[nodiscard]] std::string_view vec_length() const { return rule_.kind.substr(3); }
 
     [[nodiscard]] std::string expectation() const {
-        const std::string range = fmt::format("from {} to {}", rule_->min, rule_->max);
-        switch (rule_->shape) {
-        case Shape::Object:
-            return "an object";
-        case Shape::Array:
-            return rule_->min > 0 ? fmt::format("an array of at least {}", rule_->min) : "an array";
-        case Shape::Index:
-            return target_size_ > 0 ? fmt::format("an index below {}", target_size_)
-                                    : fmt::format("no index, since there are no {}", rule_->text);
-        case Shape::Integer:
-            return "a whole number " + range;
-        case Shape::Number:
-            return "a number " + range;
-        case Shape::Numbers:
-            return fmt::format("{} numbers {}", rule_->length, range);
-        case Shape::String:
-            return *rule_->text != 0 ? fmt::format("one of {}", rule_->text) : "a string";
-        case Shape::Bool:
-            return "true or false";
+        const std::string_view kind = rule_.kind;
+        const std::string range = fmt::format("from {} to {}", rule_.min, rule_.max);
+        if (kind == "index") {
+            return targets_ > 0 ? fmt::format("an index below {}", targets_)
+                                : fmt::format("no index, since there are no {}", rule_.words[0]);
         }
-        return "";
+        return kind == "object"      ? "an object"
+               : kind == "array"     ? fmt::format("an array of at least {}", rule_.min)
+               : kind == "bool"      ? "true or false"
+               : kind == "size"      ? "a whole number " + range
+               : kind == "number"    ? "a number " + range
+               : kind != "text"      ? fmt::format("{} numbers {}", vec_length(), range)
+               : rule_.words.empty() ? "a string"
+                                     : fmt::format("one of {}", fmt::join(rule_.words, " "));
     }
 
-    [[nodiscard]] std::string place() const {
-        std::string result;
-        for (const Step& step : steps_) {
-            if (step.key.empty()) {
-                result += fmt::format("[{}]", step.position);
-            } else {
-                result += result.empty() ? "" : ".";
-                result += step.key;
-            }
-        }
-        return result;
-    }
-
-    const JsonValue& root_;
+    JsonValue& root_;
     const std::string& file_;
-    const Rule* rule_ = nullptr;
-    std::vector<Step> steps_;
-    std::size_t target_size_ = 0;
+    SchemaRule rule_;
+    std::size_t targets_ = 0;  ///< items of the array of an index
 };
-
-/// Fails unless each item has the member that its type asks for.
-Status check_member_of_type(
-    const std::vector<JsonValue>& items, std::string_view type, std::string_view path,
-    const std::string& file) {
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        if (items[i]["type"].text == type && items[i].find(type) == nullptr) {
-            return fail("{}: {}[{}].{}: found nothing, expected an object", file, path, i, type);
-        }
-    }
-    return Done{};
-}
 
 }  // namespace
 
-Status check_gltf_schema(const JsonValue& json, const std::string& file) {
-    if (json.kind != JsonKind::Object) {
-        return fail("{}: found {}, expected an object", file, describe(json));
+Status check_gltf_schema(JsonValue& json, const std::string& file) {
+    SchemaChecker checker(json, file);
+    LIMN_TRY(checker.check("", kSchema));
+    for (const std::string_view info : kTextureInfos) {
+        LIMN_TRY(checker.check(info, kTextureSchema));
     }
-    Checker checker(json, file);
-    for (const Rule& rule : kRules) {
-        LIMN_TRY(checker.check(rule));
-    }
-    for (const char* info : kTextureInfos) {
-        for (const Rule& rule : kTextureRules) {
-            const std::string path = std::string(info) + rule.path;
-            Rule placed = rule;
-            placed.path = path.c_str();
-            LIMN_TRY(checker.check(placed));
+    for (const auto& [path, type] : kMembersOfTypes) {
+        const std::vector<JsonValue>& items = value_at(json, path).items;
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (items[i]["type"].text == type && items[i].find(type) == nullptr) {
+                return fail(
+                    "{}: {}[{}].{}: found nothing, expected an object", file, path, i, type);
+            }
         }
     }
-    const std::vector<JsonValue>& cameras = json["cameras"].items;
-    LIMN_TRY(check_member_of_type(cameras, "perspective", "cameras", file));
-    LIMN_TRY(check_member_of_type(cameras, "orthographic", "cameras", file));
-    const JsonValue& lights = json["extensions"]["KHR_lights_punctual"]["lights"];
-    return check_member_of_type(lights.items, "spot", kLights, file);
+    return Done{};
 }
 
 }  // namespace limn

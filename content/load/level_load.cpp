@@ -3,7 +3,7 @@
 #include "content/load/brdf_file.h"
 #include "content/load/component_json.h"
 #include "content/load/error_list.h"
-#include "content/load/gltf_file.h"
+#include "content/load/file_uri.h"
 #include "content/load/level_events.h"
 #include "content/load/level_hints.h"
 #include "content/load/level_names.h"

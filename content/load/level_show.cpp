@@ -68,7 +68,7 @@ Result<LevelShow> read_show(const JsonValue& json, const JsonPlace& place) {
     return show;
 }
 
-JsonMember* find_member(JsonValue& json, std::string_view key) {
+JsonMember* find_show_member(JsonValue& json, std::string_view key) {
     const auto found =
         std::find_if(json.members.begin(), json.members.end(), [key](const JsonMember& member) {
             return member.key == key;
@@ -87,7 +87,7 @@ find_node(JsonValue& nodes, std::string_view name, std::vector<std::string_view>
         if (own.kind == JsonKind::String && own.text == name) {
             return &node;
         }
-        JsonMember* const children = find_member(node, "children");
+        JsonMember* const children = find_show_member(node, "children");
         JsonValue* const found =
             children != nullptr ? find_node(children->value, name, names) : nullptr;
         if (found != nullptr) {
@@ -137,7 +137,7 @@ Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& 
         target.at = patch.at;
     }
     for (const JsonMember& member : patch.members) {
-        JsonMember* own = find_member(target, member.key);
+        JsonMember* own = find_show_member(target, member.key);
         if (member.value.kind == JsonKind::Null && own != nullptr) {
             std::erase_if(
                 target.members, [&](const JsonMember& other) { return other.key == member.key; });

@@ -1,6 +1,6 @@
 #include "content/load/obj_paths.h"
 
-#include "content/load/gltf_file.h"
+#include "content/load/file_uri.h"
 
 #include <algorithm>
 #include <cctype>

@@ -21,7 +21,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kCreaseAngle = radians(50);  // as for glTF
+constexpr float kObjCreaseAngle = radians(50);  // as for glTF
 
 struct CornerHash {
     std::size_t operator()(const ObjCorner& corner) const {
@@ -90,7 +90,7 @@ void build_obj_nodes(const ObjFile& obj, GltfScene& scene) {
         MeshData mesh = make_obj_mesh(obj, faces).mesh;
         mesh.name = node_name(obj, face);
         if (mesh.normals.empty()) {
-            generate_normals(mesh, kCreaseAngle);
+            generate_normals(mesh, kObjCreaseAngle);
         }
         generate_tangents(mesh);
         scene.nodes.back().parts.push_back(

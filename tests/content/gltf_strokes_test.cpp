@@ -1,13 +1,18 @@
+#include "content/bake/tangents.h"
+#include "content/load/gltf_load.h"
 #include "content/load/gltf_strokes.h"
 #include "ecs/base/math.h"
+#include "tests/content/gltf_samples.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace limn::gltf_strokes_test {
@@ -79,6 +84,22 @@ TEST_CASE("strokes: more points than are drawn are thinned out over all of them"
     for (std::size_t i = 6; i < strokes.sources.size(); i += 6) {
         REQUIRE(strokes.sources[i] > strokes.sources[i - 6]);
         REQUIRE(strokes.sources[i] <= strokes.sources[i - 6] + 4);
+    }
+}
+
+TEST_CASE("gltf: points and lines have the tangents that their triangles would get") {
+    for (const int mode : {0, 1}) {
+        const std::string json = test::replace_once(
+            test::kSquareJson, R"("indices": 1)", fmt::format(R"("mode": {})", mode));
+        const Result<GltfScene> scene =
+            parse_gltf(test::make_glb(json, test::square_binary()), "square.glb", "");
+        REQUIRE(scene.ok());
+        MeshData mesh = scene->meshes.at(0);
+        const std::vector<Vec4> tangents = mesh.tangents;
+        const std::size_t vertices = mesh.positions.size();
+        generate_tangents(mesh);
+        CHECK(mesh.positions.size() == vertices);
+        CHECK(mesh.tangents == tangents);
     }
 }
 

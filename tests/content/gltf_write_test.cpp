@@ -304,7 +304,7 @@ TEST_CASE("gltf: a region of another size is refused, and a direction without on
     CHECK(message_with("\"_NONE\"", "") == "it loads");
     // Accessor 0 has the positions: three components.
     CHECK(
-        message_with("\"_REGION_EMPTY\": ", "\"_REGION_EMPTY\": 0, \"_OTHER\": ")
+        message_with("\"_REGION_EMPTY\":", "\"_REGION_EMPTY\":0,\"_OTHER\":")
             .find("_REGION_EMPTY: accessors[0].type: found 3 components")
         != std::string::npos);
     CHECK(

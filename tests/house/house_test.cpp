@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -328,6 +329,54 @@ TEST_CASE("house: what a file uses of the standard library and fmt is included")
                     source.path << ": found a name of <" << rule.headers.front()
                                 << ">, expected its #include");
             }
+        }
+    }
+}
+
+TEST_CASE("house: each of the five packages of the project does its work, where it belongs") {
+    struct Package {
+        std::string name;
+        std::regex header;
+        std::vector<std::string> places;  ///< files, or folders and stems that begin so
+    };
+    const std::vector<Package> packages = {
+        {"GLFW", std::regex("GLFW/.*"), {"content/app/"}},  // window and input
+        {"GLM",
+         std::regex("glm/.*"),  // vectors and matrices
+         {"ecs/base/", "ecs/components/", "systems/", "render/", "content/", "bench/"}},
+        {"tinygltf", std::regex("tiny_gltf\\.h"), {"content/load/gltf_"}},  // glTF, both ways
+        {"OpenEXR", std::regex("(OpenEXR|Imath)/.*"), {"content/load/exr_file.cpp"}},
+        {"OpenImageIO", std::regex("OpenImageIO/.*"), {"content/codecs/"}},  // other image formats
+    };
+    const std::regex include(R"re(^\s*#\s*include\s+<([^>]+)>)re");
+    std::vector<std::set<std::string>> users(packages.size());
+    for (const SourceFile& source : own_sources()) {
+        if (starts_with(source.path, "tests/")) {
+            continue;
+        }
+        for (const std::string& line : source.lines) {
+            std::smatch match;
+            if (!std::regex_search(line, match, include)) {
+                continue;
+            }
+            for (std::size_t i = 0; i < packages.size(); ++i) {
+                if (std::regex_match(match[1].str(), packages[i].header)) {
+                    users[i].insert(source.path);
+                }
+            }
+        }
+    }
+    for (std::size_t i = 0; i < packages.size(); ++i) {
+        INFO(packages[i].name);
+        for (const std::string& place : packages[i].places) {
+            const auto is_there = [&](const std::string& path) { return starts_with(path, place); };
+            INFO("used nowhere in " << place);
+            CHECK(std::any_of(users[i].begin(), users[i].end(), is_there));
+        }
+        for (const std::string& path : users[i]) {
+            const auto allows = [&](const std::string& place) { return starts_with(path, place); };
+            INFO(path << " is no file for it");
+            CHECK(std::any_of(packages[i].places.begin(), packages[i].places.end(), allows));
         }
     }
 }

@@ -87,6 +87,52 @@ TEST_CASE("triangle grid: it finds the same distances as a loop over all triangl
     }
 }
 
+TEST_CASE("triangle grid: long thin triangles in all directions have few entries, and distances") {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> place(-1, 1);
+    MeshData mesh;
+    for (std::uint32_t i = 0; i < 6000; ++i) {
+        if (i % 3 != 1) {
+            mesh.positions.emplace_back(place(random), place(random), place(random));
+        } else {
+            mesh.positions.push_back(mesh.positions.back() + Vec3(0.001f));
+        }
+        mesh.indices.push_back(i);
+    }
+    const TriangleGrid grid(mesh.positions, mesh.indices);
+    CHECK(grid.entries() <= 32 * 2000);
+    for (int i = 0; i < 20; ++i) {
+        const Vec3 p = {place(random), place(random), place(random)};
+        CHECK(grid.distance(p, 0) == near(nearest_of_all(p, mesh, mesh.indices)));
+    }
+}
+
+TEST_CASE("coarse triangles: a million points or lines are not simplified, a surface is") {
+    const auto pieces = [](std::size_t count, std::uint32_t step) {
+        MeshData mesh;  // strips of two triangles, which share vertices if `step` is 2
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const auto x = static_cast<float>(i % 1000);
+            const auto y = static_cast<float>(i / 1000);
+            const std::uint32_t first = i * step;
+            mesh.positions.resize(first);
+            for (const Vec3& corner :
+                 {Vec3(0, 0, 0), Vec3(0, 0.5f, 0), Vec3(1, 0, 0), Vec3(1, 0.5f, 0)}) {
+                mesh.positions.push_back(corner + Vec3(x, y, 0));
+            }
+            for (const std::uint32_t corner : {0u, 2u, 1u, 1u, 2u, 3u}) {
+                mesh.indices.push_back(first + corner);
+            }
+        }
+        return mesh;
+    };
+    MeshData loose = pieces(101'000, 4);
+    for (std::size_t i = 0; i < loose.positions.size(); ++i) {
+        loose.positions[i].z = static_cast<float>(i / 4);  // no two pieces at the same place
+    }
+    CHECK(simplify_triangles(loose).empty());
+    CHECK_FALSE(simplify_triangles(pieces(101'000, 2)).empty());
+}
+
 TEST_CASE("coarse triangles: every vertex of the mesh is within the error of each level") {
     for (const MeshData& mesh :
          {ball(), make_torus({}), make_box({.bevel = 0.05f, .bevel_segments = 4})}) {
