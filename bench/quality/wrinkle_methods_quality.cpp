@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace limn::wrinkle_methods_quality {
+namespace limn {
 namespace {
 
 using glm::dvec2;
@@ -137,4 +137,4 @@ Status measure_wrinkle_methods(HeadlessRenderer& headless, QualityReport& report
     return measure_oat(*headless.device, report);
 }
 
-}  // namespace limn::wrinkle_methods_quality
+}  // namespace limn
