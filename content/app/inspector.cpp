@@ -23,6 +23,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace limn {
@@ -282,8 +284,9 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
     ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * style.scale);
     draw_add_button(world);
     std::vector<ComponentId> components = world.components_of(selected_);
-    std::stable_partition(components.begin(), components.end(), [](ComponentId id) {
-        return !is_internal(component_info(id));
+    std::ranges::sort(components, {}, [](ComponentId id) {  // ids differ from build to build
+        const ComponentInfo& info = component_info(id);
+        return std::tuple(is_internal(info), info.name != "transform", std::string_view(info.name));
     });
     for (const ComponentId id : components) {
         if (!world.alive(selected_)) {
