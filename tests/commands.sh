@@ -48,6 +48,7 @@ if [ -d ../shared/assets ]; then
     ln -s "$(realpath ../shared/assets)/makehuman" "$folder/makehuman"
 fi
 for name in model.glb helmet.glb face.glb clock.glb; do cp content/levels/lagoon_lantern.gltf "$folder/$name"; done
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$folder/model.obj"
 for name in a.png b.png before.png after.png model.exr memorial.exr museum.exr; do
     "$limn" render "$folder/model.glb" -o "$folder/$name" --size 64x36 >/dev/null || exit 1
 done
