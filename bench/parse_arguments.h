@@ -1,6 +1,6 @@
 #pragma once
 
-#include "content/app/command_values.h"
+#include "content/app/commands/command_values.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

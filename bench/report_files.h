@@ -1,6 +1,6 @@
 #pragma once
 
-#include "content/load/atomic_file.h"
+#include "content/load/files/atomic_file.h"
 
 #include <fmt/format.h>
 

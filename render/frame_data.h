@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
-#include "render/gbuffer.h"
+#include "render/geometry/gbuffer.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/graph/frame_graph.h"
 #include "render/render_view.h"

@@ -1,5 +1,5 @@
 #include "render/gpu/embedded_shaders.h"
-#include "render/shading_models.h"
+#include "render/material/shading_models.h"
 
 #include <iterator>
 

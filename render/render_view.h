@@ -5,7 +5,7 @@
 #include "ecs/components/step_jumps.h"
 #include "ecs/components/transform.h"
 #include "ecs/entity.h"
-#include "render/thin_lens.h"
+#include "render/lens/thin_lens.h"
 
 #include <optional>
 #include <string_view>

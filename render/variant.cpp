@@ -1,9 +1,9 @@
 #include "render/variant.h"
 
 #include "ecs/base/log.h"
+#include "render/geometry/mesh_pool.h"
 #include "render/gpu/device.h"
-#include "render/material_pool.h"
-#include "render/mesh_pool.h"
+#include "render/material/material_pool.h"
 
 #include <algorithm>
 #include <utility>

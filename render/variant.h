@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/gpu/shader_library.h"
-#include "render/surface_features.h"
+#include "render/material/surface_features.h"
 
 #include <array>
 #include <cstdint>

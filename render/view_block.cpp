@@ -2,7 +2,7 @@
 
 #include "render/frame_data.h"
 #include "render/gpu/device.h"
-#include "render/light_clusters.h"
+#include "render/light/light_clusters.h"
 
 namespace limn {
 namespace {

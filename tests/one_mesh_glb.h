@@ -1,6 +1,6 @@
 #pragma once
 
-#include "content/load/gltf_write.h"
+#include "content/load/gltf/gltf_write.h"
 
 #include <doctest/doctest.h>
 

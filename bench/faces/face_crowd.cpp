@@ -1,7 +1,7 @@
 #include "bench/faces/face_crowd.h"
 
 #include "bench/oracles/marked_head.h"
-#include "content/make/head.h"
+#include "content/make/head/head.h"
 #include "ecs/base/jobs.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/deform_mesh.h"

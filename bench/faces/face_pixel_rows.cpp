@@ -1,6 +1,6 @@
 #include "bench/faces/face_rows.h"
-#include "content/app/headless.h"
-#include "content/app/stage.h"
+#include "content/app/commands/headless.h"
+#include "content/app/commands/stage.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/wrinkle.h"

@@ -1,7 +1,7 @@
 #include "bench/fakephong/phong_models.h"
 
-#include "content/make/shapes.h"
-#include "content/make/teapot.h"
+#include "content/make/models/shapes.h"
+#include "content/make/models/teapot.h"
 
 #include <algorithm>
 #include <cmath>

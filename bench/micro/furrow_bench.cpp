@@ -1,7 +1,7 @@
 #include "content/bake/furrow_height.h"
 #include "content/bake/furrow_map.h"
 #include "content/bake/furrow_trace.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 
 #include <benchmark/benchmark.h>
 

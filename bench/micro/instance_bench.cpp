@@ -4,10 +4,10 @@
 #include "ecs/base/jobs.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/geometry/instance_list.h"
+#include "render/geometry/mesh_pool.h"
 #include "render/gpu/context.h"
 #include "render/gpu/device.h"
-#include "render/instance_list.h"
-#include "render/mesh_pool.h"
 #include "render/skinning/deformed_list.h"
 
 #include <benchmark/benchmark.h>

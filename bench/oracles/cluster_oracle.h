@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/light_clusters.h"
+#include "render/light/light_clusters.h"
 
 #include <glm/vec3.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "render/gpu/ring_buffer.h"
 #include "render/graph/frame_graph.h"
-#include "render/passes/cluster_pass.h"
+#include "render/light/cluster_pass.h"
 
 #include <memory>
 #include <span>

@@ -1,6 +1,6 @@
 #include "bench/oracles/face_folding.h"
 
-#include "content/load/action_unit_names.h"
+#include "content/load/faces/action_unit_names.h"
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_measure.h"
 

@@ -4,7 +4,7 @@ namespace limn::oracle {
 
 // A thin lens by ray tracing in double precision: rays from a point through the rim of the lens
 // converge behind it, and the film's section of that cone is the circle of confusion. Distances
-// along the axis, in meters. Shares no code with render/thin_lens.h.
+// along the axis, in meters. Shares no code with render/lens/thin_lens.h.
 
 struct ThinLens {
     double focal_length = 0.05;

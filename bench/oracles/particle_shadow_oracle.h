@@ -10,8 +10,8 @@
 namespace limn::oracle {
 
 // What soft discs without an image leave of directional light, by adding up the optical depth of
-// each: what render/passes/particle_shadow_pass.h has as a series. A disc faces the light and is a
-// slab as thick as its diameter.
+// each: what render/particles/particle_shadow_pass.h has as a series. A disc faces the light and is
+// a slab as thick as its diameter.
 
 struct ShadowDisc {
     glm::dvec3 middle;   ///< [m]

@@ -2,14 +2,14 @@
 
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
+#include "render/geometry/mesh_pool.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/graph/frame_graph.h"
-#include "render/mesh_pool.h"
-#include "render/passes/deform_pass.h"
-#include "render/passes/wrinkle_pass.h"
+#include "render/material/surface_features.h"
+#include "render/material/wrinkle_pass.h"
 #include "render/render_frame.h"
+#include "render/skinning/deform_pass.h"
 #include "render/skinning/deformed_list.h"
-#include "render/surface_features.h"
 
 #include <glm/gtc/packing.hpp>
 

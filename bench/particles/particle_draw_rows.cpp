@@ -14,7 +14,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/shader_library.h"
-#include "render/gpu_particle_pools.h"
+#include "render/particles/gpu_particle_pools.h"
 #include "render/render_frame.h"
 #include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/particle_obstacles.h"

@@ -1,7 +1,7 @@
 #include "bench/particles/hand_written_particles.h"
 #include "bench/particles/particle_race.h"
 #include "bench/particles/particle_rows.h"
-#include "render/particle_list.h"
+#include "render/particles/particle_list.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_contacts.h"
 #include "systems/particles/particle_deaths.h"

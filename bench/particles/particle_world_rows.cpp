@@ -10,7 +10,7 @@
 #include "ecs/components/weather.h"
 #include "ecs/snapshot.h"
 #include "ecs/world.h"
-#include "render/particle_list.h"
+#include "render/particles/particle_list.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"

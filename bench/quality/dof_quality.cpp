@@ -1,7 +1,7 @@
 #include "bench/oracles/lens_oracle.h"
 #include "bench/oracles/motion_blur_oracle.h"
 #include "bench/quality/quality_scene.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/light.h"
 
 #include <fmt/format.h>

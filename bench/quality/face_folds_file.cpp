@@ -1,7 +1,7 @@
 #include "bench/quality/face_folds_file.h"
 
 #include "bench/oracles/face_folding.h"
-#include "content/load/gltf_load.h"
+#include "content/load/gltf/gltf_load.h"
 #include "ecs/base/text.h"
 #include "ecs/components/all.h"
 

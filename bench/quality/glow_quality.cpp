@@ -3,8 +3,8 @@
 #include "bench/quality/quality_scene.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
-#include "render/passes/glare_pass.h"
-#include "render/passes/glow_pass.h"
+#include "render/lens/glare_pass.h"
+#include "render/lens/glow_pass.h"
 #include "render/render_frame.h"
 
 #include <fmt/format.h>

@@ -2,10 +2,10 @@
 
 #include "bench/parse_arguments.h"
 #include "bench/quality/quality.h"
-#include "content/app/command_values.h"
-#include "content/app/log_sink.h"
-#include "content/app/progress.h"
-#include "content/load/atomic_file.h"
+#include "content/app/commands/command_values.h"
+#include "content/app/commands/log_sink.h"
+#include "content/app/commands/progress.h"
+#include "content/load/files/atomic_file.h"
 #include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
 

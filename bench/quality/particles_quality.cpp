@@ -7,7 +7,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/weather.h"
-#include "render/gpu_particle_pools.h"
+#include "render/particles/gpu_particle_pools.h"
 #include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "content/app/headless.h"
+#include "content/app/commands/headless.h"
 #include "content/bake/image_compare.h"
 #include "ecs/base/result.h"
 

@@ -1,5 +1,5 @@
 #include "bench/quality/quality.h"
-#include "content/load/png_file.h"
+#include "content/load/files/png_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

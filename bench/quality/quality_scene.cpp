@@ -1,7 +1,7 @@
 #include "bench/quality/quality_scene.h"
 
-#include "content/make/masonry.h"
-#include "content/make/shapes.h"
+#include "content/make/models/masonry.h"
+#include "content/make/models/shapes.h"
 #include "ecs/base/text.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/environment.h"

@@ -2,14 +2,14 @@
 
 #include "bench/oracles/glow_oracle.h"
 #include "bench/quality/quality.h"
-#include "content/app/stage.h"
+#include "content/app/commands/stage.h"
 #include "ecs/components/post.h"
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
 #include "render/gpu/readback.h"
 #include "render/graph/frame_graph.h"
+#include "render/lens/tone_mapper.h"
 #include "render/render_view.h"
-#include "render/tone_mapper.h"
 
 #include <glm/vec3.hpp>
 

@@ -1,6 +1,6 @@
 #include "bench/oracles/shadow_oracle.h"
 #include "bench/quality/quality_scene.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/base/jobs.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"

@@ -1,6 +1,6 @@
 #include "bench/oracles/tone_oracle.h"
 #include "bench/quality/quality_scene.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/shadow.h"

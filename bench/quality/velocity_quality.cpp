@@ -1,7 +1,7 @@
 #include "bench/oracles/skin_shapes.h"
 #include "bench/oracles/velocity_oracle.h"
 #include "bench/quality/quality_scene.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/base/rotation.h"
 #include "ecs/components/animation.h"
 #include "systems/update_world.h"

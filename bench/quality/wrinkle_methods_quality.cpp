@@ -1,7 +1,7 @@
 #include "bench/quality/wrinkle_methods_quality.h"
 
 #include "bench/oracles/shader_values.h"
-#include "content/make/face_fold_pattern.h"
+#include "content/make/head/face_fold_pattern.h"
 #include "ecs/base/rng.h"
 #include "systems/faces/wrinkle_fold.h"
 

@@ -4,12 +4,12 @@
 #include "content/bake/furrow_field.h"
 #include "content/bake/furrow_recipe.h"
 #include "content/bake/furrow_trace.h"
-#include "content/make/furrow_patterns.h"
-#include "content/make/head.h"
-#include "content/make/shapes.h"
+#include "content/make/head/head.h"
+#include "content/make/models/shapes.h"
+#include "content/make/patterns/furrow_patterns.h"
 #include "ecs/components/surface.h"
-#include "render/furrow_maker.h"
 #include "render/gpu/readback.h"
+#include "render/material/furrow_maker.h"
 
 #include <algorithm>
 #include <cmath>

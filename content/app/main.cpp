@@ -1,4 +1,4 @@
-#include "content/app/command_line.h"
+#include "content/app/commands/command_line.h"
 
 int main(int argc, char** argv) {
     return limn::run_command_line(argc, argv);

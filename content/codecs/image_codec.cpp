@@ -1,6 +1,6 @@
 #include "content/codecs/image_codec.h"
 
-#include "content/load/image_load.h"
+#include "content/load/files/image_load.h"
 #include "ecs/components/surface.h"
 
 #include <OpenImageIO/filesystem.h>

@@ -1,6 +1,6 @@
 #include "content/load/asset_lists.h"
 
-#include "content/load/component_json.h"
+#include "content/load/level/component_json.h"
 
 #include <iterator>
 #include <utility>

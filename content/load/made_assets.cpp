@@ -1,6 +1,6 @@
 #include "content/load/made_assets.h"
 
-#include "content/load/component_json.h"
+#include "content/load/level/component_json.h"
 #include "ecs/base/hash.h"
 
 #include <fmt/format.h>

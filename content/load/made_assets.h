@@ -1,8 +1,8 @@
 #pragma once
 
-#include "content/load/asset_cache.h"
+#include "content/load/files/asset_cache.h"
 #include "content/make/make_mesh.h"
-#include "content/make/patterns.h"
+#include "content/make/patterns/patterns.h"
 #include "ecs/any_component.h"
 
 #include <map>

@@ -1,6 +1,6 @@
 #include "content/load/model_ground.h"
 
-#include "content/load/gltf_scene.h"
+#include "content/load/gltf/gltf_scene.h"
 #include "content/load/model_view.h"
 #include "content/load/scene_bounds.h"
 #include "ecs/components/animation.h"

@@ -1,7 +1,7 @@
 #include "content/load/model_view.h"
 
-#include "content/load/gltf_scene.h"
-#include "content/load/image_load.h"
+#include "content/load/files/image_load.h"
+#include "content/load/gltf/gltf_scene.h"
 #include "content/load/model_ground.h"
 #include "content/load/scene_bounds.h"
 #include "ecs/base/log.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "content/load/load_warnings.h"
+#include "content/load/files/load_warnings.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "ecs/components/surface.h"

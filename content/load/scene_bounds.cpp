@@ -1,6 +1,6 @@
 #include "content/load/scene_bounds.h"
 
-#include "content/load/gltf_scene.h"
+#include "content/load/gltf/gltf_scene.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "content/load/level_show.h"
-#include "content/load/level_update.h"
+#include "content/load/level/level_show.h"
+#include "content/load/level/level_update.h"
 #include "content/load/model_view.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"

@@ -7,5 +7,5 @@ endforeach()
 string(SHA256 hash "${hashes}")
 file(
     WRITE ${OUTPUT}
-    "#include \"content/load/asset_cache.h\"\n\n"
+    "#include \"content/load/files/asset_cache.h\"\n\n"
     "std::string_view limn::generators_hash() {\n    return \"${hash}\";\n}\n")

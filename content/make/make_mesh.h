@@ -1,7 +1,7 @@
 #pragma once
 
-#include "content/make/creature.h"
 #include "content/make/find_kind.h"
+#include "content/make/models/creature.h"
 #include "ecs/components/surface.h"
 #include "ecs/reflect.h"
 

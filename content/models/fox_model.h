@@ -1,8 +1,8 @@
 #pragma once
 
-#include "content/make/creature.h"
-#include "content/make/creature_gait.h"
-#include "content/make/implicit_model.h"
+#include "content/make/models/creature.h"
+#include "content/make/models/creature_gait.h"
+#include "content/make/models/implicit_model.h"
 
 namespace limn::fox {
 

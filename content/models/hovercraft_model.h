@@ -1,6 +1,6 @@
 #pragma once
 
-#include "content/make/implicit_model.h"
+#include "content/make/models/implicit_model.h"
 
 #include <glm/common.hpp>
 

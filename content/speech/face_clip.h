@@ -1,6 +1,6 @@
 #pragma once
 
-#include "content/load/gltf_clip.h"
+#include "content/load/gltf/gltf_clip.h"
 #include "content/speech/eyes.h"
 #include "content/speech/mouth.h"
 

@@ -1,7 +1,7 @@
 #include "content/speech/speech_library.h"
 
-#include "content/load/atomic_file.h"
-#include "content/load/json_document.h"
+#include "content/load/files/atomic_file.h"
+#include "content/load/files/json_document.h"
 #include "ecs/base/math.h"
 #include "ecs/base/text.h"
 

@@ -1,6 +1,6 @@
 #include "content/speech/utterance.h"
 
-#include "content/load/atomic_file.h"
+#include "content/load/files/atomic_file.h"
 #include "ecs/base/text.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace limn {
 // sort_by_depth is what to use: a stable least-significant-digit radix sort. 16-bit keys take two
 // passes of 8 bits, 32-bit keys three of 9, or of 11 where they differ by 2^27 or more (Merrill
 // and Grimshaw, "High Performance and Scalable Radix Sorting", 2011). The GPU uses a bitonic sort
-// (Batcher 1968): render/gpu_particle_sort.h.
+// (Batcher 1968): render/particles/gpu_particle_sort.h.
 
 /// Ascends from far to near: 0 for NaN, which counts as farthest, then +infinity; -infinity, which
 /// marks the dead, comes last. Equal for 0 and -0. Any monotonic measure of depth will do.

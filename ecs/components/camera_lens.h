@@ -13,8 +13,8 @@ enum class FocusMethod : std::uint8_t {
 };
 
 /// Thin lens of the Camera on the same entity. The camera keeps its field of view; the focal length
-/// follows from it, the sensor height and the focus distance (render/thin_lens.h). Without a Lens,
-/// the camera is a pinhole and everything is in focus.
+/// follows from it, the sensor height and the focus distance (render/lens/thin_lens.h). Without a
+/// Lens, the camera is a pinhole and everything is in focus.
 struct Lens {
     float f_number = 2.8f;
     float focus_distance = 3.0f;

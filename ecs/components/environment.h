@@ -15,7 +15,7 @@ enum class SkyKind : std::uint8_t {
 };
 inline constexpr int kSkyKinds = 4;
 
-/// Projection of a Panorama (render/panorama.h).
+/// Projection of a Panorama (render/environment/panorama.h).
 enum class PanoramaMapping : std::uint8_t {
     Equirectangular,  ///< longitude and latitude, aspect ratio 2:1
     Cylindrical,      ///< a stitched strip

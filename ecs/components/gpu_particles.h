@@ -16,9 +16,9 @@ namespace limn {
 
 // Particles that the GPU moves (particle.gpu-state, particle.circular-list). The systems decide
 // when how many are born and what moves them, and write it down, step by step; the renderer lets
-// the GPU do it (render/gpu_particle_pools.h), whenever it draws, for all steps that it has not
-// done yet. Everyone alive was born in one of the steps that are kept: so the GPU may begin anew at
-// any time.
+// the GPU do it (render/particles/gpu_particle_pools.h), whenever it draws, for all steps that it
+// has not done yet. Everyone alive was born in one of the steps that are kept: so the GPU may begin
+// anew at any time.
 
 /// What moves all particles of an emitter alike in a step.
 struct ParticleStep {

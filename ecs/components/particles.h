@@ -531,7 +531,7 @@ LIMN_FIELDS(ParticlePool) {
 }
 
 /// Bytes of the particles of a full emitter: in a ParticlePool, where none sticks, or on the GPU,
-/// with what draws them there (render/gpu_particle_pools.h).
+/// with what draws them there (render/particles/gpu_particle_pools.h).
 [[nodiscard]] inline std::uint64_t particle_bytes(const ParticleEmitter& emitter) {
     constexpr std::uint64_t kPool = 8 * sizeof(float) + sizeof(std::uint32_t);
     constexpr std::uint64_t kGpu = 2 * sizeof(Vec4) + (1 + 7) * sizeof(std::uint32_t);

@@ -20,8 +20,8 @@ enum class LightMethod : std::uint8_t {
 inline constexpr int kLightMethods = 5;
 
 /// How surfaces get from lit points to lit pixels: Phong shading and what stands in for it (the
-/// fakephong entries of the specification; render/shading_rates.h). All but Pixel are forward, in
-/// ObjectMajor order.
+/// fakephong entries of the specification; render/light/shading_rates.h). All but Pixel are
+/// forward, in ObjectMajor order.
 enum class ShadingRate : std::uint8_t {
     Pixel,  ///< lit per pixel, with interpolated normals (light.phong-pixel)
 

@@ -1,5 +1,5 @@
 // Blocks: parts of a material's record that only some materials have. A kind of block is a struct in a header of its
-// own, a number here and a row in render/material_blocks.cpp; shaders read it with block_texel()
+// own, a number here and a row in render/material/material_blocks.cpp; shaders read it with block_texel()
 // (lib/material_record.glsl). Of each kind the record holds the first texel, counted from the material's first block:
 // four to a float, as an integer that a float stores exactly; so are texels, up to 2^24 of them (a million materials).
 

@@ -1,4 +1,4 @@
-// Of materials with the shading model Hair; made by render/hair_lobes.h.
+// Of materials with the shading model Hair; made by render/material/hair_lobes.h.
 
 #ifdef __cplusplus
 #pragma once

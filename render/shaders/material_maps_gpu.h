@@ -7,7 +7,7 @@
 namespace limn::layout {
 #endif
 
-// Slots, in the order of the rows of render/material_maps.cpp.
+// Slots, in the order of the rows of render/material/material_maps.cpp.
 const uint kBaseColorSlot = 0u;
 const uint kMetalRoughSlot = 1u;  // g: roughness, b: metalness, r: occlusion if OCCLUSION_SHARED
 const uint kNormalSlot = 2u;      // tangent space, green up

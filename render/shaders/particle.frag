@@ -1,7 +1,7 @@
 // A particle: an image or a soft disc. Definitions: those of lib/sprite.glsl, and
 //   SOFT  some fade where they meet a surface
 //   SIX_WAY  some have images of the light from six sides
-//   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
 //   IN_WATER  seen from above, before the water is drawn over it
 //   VEILED  only what is behind the blended surfaces of the view, or only what is not
 #version 450

@@ -6,7 +6,7 @@
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 //   VELOCITY  without light, but with where they were in the previous frame
-//   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
 //   IN_WATER  seen from above, before the water is drawn over it
 //   FOCUS  without light, for its depth where it covers enough
 #version 450

@@ -1,4 +1,4 @@
-// Particles on the GPU (render/passes/particle_pass.h). Shared by C++ and GLSL.
+// Particles on the GPU (render/particles/particle_pass.h). Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once
@@ -56,7 +56,7 @@ const uint kLookMotion = 49u;
 //  50  acceleration at rest [m/s^2]; drag [1/s]
 //  51  opacity above which the lens focuses on them, 1: never; 1: lit in the middle, by particle_light.comp
 const uint kLookFocus = 51u;
-//  52  insets of the frames of its image (render/frame_insets.h), four frames a texel: left, bottom, right and top as
+//  52  insets of the frames of its image (render/particles/frame_insets.h), four frames a texel: left, bottom, right and top as
 //      digits to the base kInsetSteps / 2, the first one counting 1
 const uint kLookInsets = 52u;
 const uint kMaxInsetFrames = 64u;
@@ -70,7 +70,7 @@ const uint kLookTexels = kLookInsets + kMaxInsetFrames / 4u;
 //            not anything casts
 const uint kParticleShadowTexels = 5u;
 
-// Particles that the GPU moves (render/gpu_particle_pools.h): texels of four floats, words as bits.
+// Particles that the GPU moves (render/particles/gpu_particle_pools.h): texels of four floats, words as bits.
 //   0  seed of the random numbers: key (2 words); subject (2 words)
 //   1  high word of the number of the oldest particle; shape, direction (words); cosine of the cone
 //   2  size of the shape; speed

@@ -1,5 +1,5 @@
 // A layer of half the resolution over the scene: between the four nearest texels, without those that are of another
-// surface than the pixel (render/particle_layer.h).
+// surface than the pixel (render/particles/particle_layer.h).
 #version 450
 #include "lib/view.glsl"
 

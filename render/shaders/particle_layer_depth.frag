@@ -1,5 +1,5 @@
 // Of each four pixels the depth in their middle where they are of one surface, else the nearest and the farthest, in turn
-// (render/particle_layer.h).
+// (render/particles/particle_layer.h).
 #version 450
 
 layout(binding = 4) uniform sampler2D scene_depth;

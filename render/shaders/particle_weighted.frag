@@ -1,4 +1,4 @@
-// The weighted mean of all layers of particles, over what is behind them (render/particle_weighted.h).
+// The weighted mean of all layers of particles, over what is behind them (render/particles/particle_weighted.h).
 #version 450
 #include "lib/radiance.glsl"
 

@@ -1,6 +1,6 @@
 #include "render/shadow/light_bounds.h"
 
-#include "render/light_list.h"
+#include "render/light/light_list.h"
 #include "render/render_view.h"
 
 #include <glm/geometric.hpp>

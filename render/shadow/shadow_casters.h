@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/instance_list.h"
+#include "render/geometry/instance_list.h"
 #include "render/shadow/shadow_view.h"
 
 #include <cstdint>

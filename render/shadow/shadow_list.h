@@ -1,9 +1,9 @@
 #pragma once
 
-#include "render/buffer_texture.h"
 #include "render/frame_data.h"
-#include "render/instance_list.h"
-#include "render/light_list.h"
+#include "render/geometry/instance_list.h"
+#include "render/gpu/buffer_texture.h"
+#include "render/light/light_list.h"
 #include "render/shadow/shadow_casters.h"
 #include "render/shadow/shadow_view.h"
 

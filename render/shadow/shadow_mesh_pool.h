@@ -1,10 +1,10 @@
 #pragma once
 
 #include "ecs/components/surface.h"
+#include "render/geometry/slot_allocator.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/vertex_array.h"
 #include "render/shadow/shadow_mesh.h"
-#include "render/slot_allocator.h"
 
 #include <optional>
 #include <vector>

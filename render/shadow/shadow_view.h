@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
-#include "render/culling.h"
+#include "render/geometry/culling.h"
 #include "render/render_view.h"
 #include "render/shaders/shadow_gpu.h"
 #include "render/shadow/shadow_atlas.h"

@@ -7,11 +7,11 @@
 #include "ecs/components/wrinkle.h"
 #include "ecs/components/wrinkle_comparison.h"
 #include "ecs/world.h"
-#include "render/buffer_texture.h"
-#include "render/mesh_pool.h"
+#include "render/geometry/mesh_pool.h"
+#include "render/gpu/buffer_texture.h"
+#include "render/material/surface_features.h"
 #include "render/skinning/deform_source.h"
 #include "render/skinning/skin_palette.h"
-#include "render/surface_features.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 #include "render/skinning/deformed_vertices.h"
 
+#include "render/geometry/mesh_pool.h"
 #include "render/graph/frame_graph.h"
-#include "render/mesh_pool.h"
 
 #include <algorithm>
 

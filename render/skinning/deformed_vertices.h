@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/slot_allocator.h"
-#include "render/vertex_streams.h"
+#include "render/geometry/slot_allocator.h"
+#include "render/geometry/vertex_streams.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "render/skinning/posed_bounds.h"
 
-#include "render/culling.h"
+#include "render/geometry/culling.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

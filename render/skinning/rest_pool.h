@@ -2,9 +2,9 @@
 
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_places.h"
+#include "render/geometry/slot_allocator.h"
 #include "render/gpu/buffer.h"
 #include "render/skinning/posed_bounds.h"
-#include "render/slot_allocator.h"
 
 #include <cstddef>
 #include <optional>

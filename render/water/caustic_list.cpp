@@ -2,7 +2,7 @@
 
 #include "ecs/base/optics.h"
 #include "ecs/components/water_frame.h"
-#include "render/culling.h"
+#include "render/geometry/culling.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/buffer_texture.h"
-#include "render/light_list.h"
+#include "render/gpu/buffer_texture.h"
+#include "render/light/light_list.h"
 #include "render/shaders/caustics_gpu.h"
 #include "render/shadow/shadow_list.h"
 #include "render/water/water_list.h"

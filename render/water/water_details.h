@@ -2,7 +2,7 @@
 
 #include "ecs/components/water_detail.h"
 #include "ecs/components/water_waves.h"
-#include "render/buffer_texture.h"
+#include "render/gpu/buffer_texture.h"
 #include "render/gpu/texture.h"
 #include "render/shaders/water_detail_gpu.h"
 

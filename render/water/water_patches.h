@@ -2,7 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/water_waves.h"
-#include "render/culling.h"
+#include "render/geometry/culling.h"
 
 #include <span>
 #include <vector>

@@ -5,7 +5,7 @@
 #include "ecs/components/water_frame.h"
 #include "ecs/components/water_look.h"
 #include "ecs/world.h"
-#include "render/culling.h"
+#include "render/geometry/culling.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "ecs/world.h"
 #include "render/gpu/device.h"
-#include "render/light_list.h"
+#include "render/light/light_list.h"
 #include "render/water/caustic_list.h"
 
 namespace limn {

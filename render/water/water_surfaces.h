@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/buffer_texture.h"
 #include "render/effect.h"
+#include "render/gpu/buffer_texture.h"
 #include "render/water/ocean_textures.h"
 #include "render/water/ripple_atlas.h"
 #include "render/water/water_list.h"

@@ -1,4 +1,4 @@
-#include "content/app/bench_command.h"
+#include "content/app/bench/bench_command.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "content/app/bench_fakephong.h"
+#include "content/app/bench/bench_fakephong.h"
 #include "tests/app/run_program.h"
 #include "tests/support.h"
 

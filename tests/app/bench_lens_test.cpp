@@ -1,5 +1,5 @@
-#include "content/app/bench_lens.h"
-#include "content/app/stage.h"
+#include "content/app/bench/bench_lens.h"
+#include "content/app/commands/stage.h"
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"

@@ -1,4 +1,4 @@
-#include "content/app/bench_lights.h"
+#include "content/app/bench/bench_lights.h"
 #include "ecs/components/light.h"
 #include "ecs/world.h"
 #include "tests/app/run_program.h"

@@ -1,4 +1,4 @@
-#include "content/app/bench_report.h"
+#include "content/app/bench/bench_report.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

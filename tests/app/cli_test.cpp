@@ -1,4 +1,4 @@
-#include "content/load/json_document.h"
+#include "content/load/files/json_document.h"
 #include "tests/app/run_program.h"
 
 #include <doctest/doctest.h>

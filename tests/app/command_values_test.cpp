@@ -1,4 +1,4 @@
-#include "content/app/command_values.h"
+#include "content/app/commands/command_values.h"
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // The prefabs of content/effects: each can be placed by itself, and what is shot once leaves
 // nothing.
 
-#include "content/app/stage.h"
-#include "content/load/json_document.h"
+#include "content/app/commands/stage.h"
+#include "content/load/files/json_document.h"
 #include "content/load/made_assets.h"
 #include "ecs/base/log.h"
 #include "ecs/components/beam.h"

@@ -1,4 +1,4 @@
-#include "content/app/frame_statistics.h"
+#include "content/app/bench/frame_statistics.h"
 
 #include <doctest/doctest.h>
 

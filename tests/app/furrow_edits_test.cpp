@@ -1,11 +1,11 @@
 // Editing furrows without a window: picking, dragging, steps, files.
 
-#include "content/app/furrow_edits.h"
-#include "content/app/undo.h"
+#include "content/app/panels/furrow_edits.h"
+#include "content/app/panels/undo.h"
 #include "content/bake/furrow_field.h"
 #include "content/bake/furrow_presets.h"
 #include "content/bake/furrow_skin.h"
-#include "content/make/furrow_patterns.h"
+#include "content/make/patterns/furrow_patterns.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/rng.h"
 #include "ecs/components/camera.h"

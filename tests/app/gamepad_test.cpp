@@ -1,4 +1,4 @@
-#include "content/app/gamepad.h"
+#include "content/app/player/gamepad.h"
 #include "content/game/game.h"
 #include "ecs/components/input.h"
 #include "tests/near.h"

@@ -1,4 +1,4 @@
-#include "content/app/hud_style.h"
+#include "content/app/panels/hud_style.h"
 
 #include <doctest/doctest.h>
 

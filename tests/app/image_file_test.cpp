@@ -1,4 +1,4 @@
-#include "content/app/image_file.h"
+#include "content/app/commands/image_file.h"
 
 #include <doctest/doctest.h>
 

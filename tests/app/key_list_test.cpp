@@ -1,5 +1,5 @@
-#include "content/app/emitter_controls.h"
-#include "content/app/key_list.h"
+#include "content/app/panels/emitter_controls.h"
+#include "content/app/panels/key_list.h"
 #include "ecs/components/all.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/world.h"

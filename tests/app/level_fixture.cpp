@@ -1,6 +1,6 @@
 #include "tests/app/level_fixture.h"
 
-#include "content/load/level_list.h"
+#include "content/load/level/level_list.h"
 #include "ecs/base/log.h"
 #include "ecs/snapshot.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "content/app/headless.h"
-#include "content/app/stage.h"
+#include "content/app/commands/headless.h"
+#include "content/app/commands/stage.h"
 #include "content/load/made_assets.h"
 
 #include <cstdint>

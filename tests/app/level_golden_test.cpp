@@ -3,11 +3,11 @@
 // roundings, so the comparison is FLIP's, not equality. The target `golden` draws them anew. With
 // the formats and definitions of a GPU it looks the same.
 
-#include "content/app/stage.h"
+#include "content/app/commands/stage.h"
 #include "content/bake/image_compare.h"
-#include "content/load/image_load.h"
-#include "content/load/level_list.h"
-#include "content/load/png_file.h"
+#include "content/load/files/image_load.h"
+#include "content/load/files/png_file.h"
+#include "content/load/level/level_list.h"
 #include "ecs/base/log.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"

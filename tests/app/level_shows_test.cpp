@@ -1,9 +1,9 @@
 // Every show of every level, on and off: the images differ, or for methods that must agree, do not.
 
-#include "content/app/render_command.h"
-#include "content/app/stage.h"
-#include "content/load/json_document.h"
-#include "content/load/level_show.h"
+#include "content/app/commands/render_command.h"
+#include "content/app/commands/stage.h"
+#include "content/load/files/json_document.h"
+#include "content/load/level/level_show.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/world.h"
 #include "render/gpu/readback.h"

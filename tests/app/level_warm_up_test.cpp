@@ -1,7 +1,7 @@
 // What a level needs is compiled when it is loaded: no frame of any level compiles a program, and a
 // warm-up leaves no trace in the image or the state.
 
-#include "content/app/stage.h"
+#include "content/app/commands/stage.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/shading_comparison.h"

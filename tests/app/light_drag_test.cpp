@@ -1,5 +1,5 @@
-#include "content/app/light_drag.h"
-#include "content/app/undo.h"
+#include "content/app/panels/undo.h"
+#include "content/app/player/light_drag.h"
 #include "ecs/components/light.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"

@@ -1,10 +1,10 @@
 // Models by themselves look right whatever light their file has.
 
-#include "content/app/headless.h"
+#include "content/app/commands/headless.h"
 #include "content/game/game.h"
 #include "content/load/model_view.h"
 #include "content/load/scene_load.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/light.h"

@@ -1,5 +1,5 @@
-#include "content/app/pick.h"
-#include "content/app/skin_drag.h"
+#include "content/app/player/pick.h"
+#include "content/app/player/skin_drag.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/skin_pull.h"

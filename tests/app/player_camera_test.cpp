@@ -1,4 +1,4 @@
-#include "content/app/player_camera.h"
+#include "content/app/player/player_camera.h"
 #include "render/render_view.h"
 #include "tests/near.h"
 

@@ -1,9 +1,9 @@
 // The level relax (wrinkle.compression.ab-evaluation): its two clips differ in nothing but
 // wrinkles.
 
-#include "content/app/headless.h"
-#include "content/app/posed_mesh.h"
-#include "content/app/stage.h"
+#include "content/app/commands/headless.h"
+#include "content/app/commands/stage.h"
+#include "content/app/player/posed_mesh.h"
 #include "content/game/wrinkle_trial.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"

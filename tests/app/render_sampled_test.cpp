@@ -1,4 +1,4 @@
-#include "content/app/exposure_samples.h"
+#include "content/app/commands/exposure_samples.h"
 #include "tests/app/read_image.h"
 #include "tests/app/run_program.h"
 #include "tests/near.h"

@@ -1,4 +1,4 @@
-#include "content/app/render_scale.h"
+#include "content/app/player/render_scale.h"
 
 #include <doctest/doctest.h>
 

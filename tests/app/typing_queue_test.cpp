@@ -1,4 +1,4 @@
-#include "content/app/typing_queue.h"
+#include "content/app/player/typing_queue.h"
 
 #include <doctest/doctest.h>
 

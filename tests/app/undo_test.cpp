@@ -1,4 +1,4 @@
-#include "content/app/undo.h"
+#include "content/app/panels/undo.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/post.h"

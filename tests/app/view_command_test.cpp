@@ -1,6 +1,6 @@
 #include "bench/oracles/tone_oracle.h"
-#include "content/load/exr_file.h"
-#include "content/load/png_file.h"
+#include "content/load/files/exr_file.h"
+#include "content/load/files/png_file.h"
 #include "tests/app/virtual_display.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-#include "content/load/action_unit_names.h"
+#include "content/load/faces/action_unit_names.h"
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
-#include "content/load/asset_cache.h"
-#include "content/load/atomic_file.h"
+#include "content/load/files/asset_cache.h"
+#include "content/load/files/atomic_file.h"
 #include "content/load/made_assets.h"
 #include "content/make/find_kind.h"
-#include "content/make/head.h"
+#include "content/make/head/head.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-#include "content/make/bar.h"
+#include "content/make/models/bar.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/skin_kernels.h"
 #include "tests/content/mesh_laws.h"

@@ -1,4 +1,4 @@
-#include "content/make/bezier_patch.h"
+#include "content/make/models/bezier_patch.h"
 #include "ecs/base/rng.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"

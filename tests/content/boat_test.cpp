@@ -1,4 +1,4 @@
-#include "content/make/boat.h"
+#include "content/make/models/boat.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
 

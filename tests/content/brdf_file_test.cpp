@@ -1,5 +1,5 @@
-#include "content/load/brdf_file.h"
-#include "content/load/level_load.h"
+#include "content/load/files/brdf_file.h"
+#include "content/load/level/level_load.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
-#include "content/load/color_names.h"
-#include "content/load/component_json.h"
+#include "content/load/level/color_names.h"
+#include "content/load/level/component_json.h"
 #include "ecs/base/rng.h"
 #include "ecs/base/rotation.h"
 #include "ecs/components/all.h"

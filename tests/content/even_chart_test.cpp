@@ -1,5 +1,5 @@
 #include "content/bake/even_chart.h"
-#include "content/make/head.h"
+#include "content/make/head/head.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>

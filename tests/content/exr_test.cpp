@@ -1,5 +1,5 @@
-#include "content/load/atomic_file.h"
-#include "content/load/exr_file.h"
+#include "content/load/files/atomic_file.h"
+#include "content/load/files/exr_file.h"
 #include "ecs/components/surface.h"
 #include "tests/support.h"
 

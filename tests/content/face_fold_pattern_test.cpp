@@ -1,6 +1,6 @@
-#include "content/make/face_fold_pattern.h"
-#include "content/make/head.h"
-#include "content/make/head_layout.h"
+#include "content/make/head/face_fold_pattern.h"
+#include "content/make/head/head.h"
+#include "content/make/head/head_layout.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>

@@ -1,8 +1,8 @@
 // Meshes that are broken into pieces.
 
-#include "content/load/level_load.h"
-#include "content/make/fragments.h"
-#include "content/make/shapes.h"
+#include "content/load/level/level_load.h"
+#include "content/make/models/fragments.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/all.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"

@@ -1,6 +1,6 @@
 #include "content/bake/furrow_field.h"
 #include "content/bake/furrow_map.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/base/rng.h"
 #include "tests/near.h"
 

@@ -2,7 +2,7 @@
 #include "content/bake/furrow_map.h"
 #include "content/bake/furrow_presets.h"
 #include "content/bake/furrow_recipe.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"

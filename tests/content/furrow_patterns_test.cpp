@@ -1,5 +1,5 @@
 #include "content/bake/furrow_map.h"
-#include "content/make/furrow_patterns.h"
+#include "content/make/patterns/furrow_patterns.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

@@ -3,7 +3,7 @@
 #include "content/bake/furrow_height.h"
 #include "content/bake/furrow_recipe.h"
 #include "content/bake/furrow_skin.h"
-#include "content/make/furrow_patterns.h"
+#include "content/make/patterns/furrow_patterns.h"
 #include "ecs/base/hash.h"
 #include "ecs/world.h"
 

@@ -1,4 +1,4 @@
-#include "content/load/gltf_load.h"
+#include "content/load/gltf/gltf_load.h"
 #include "ecs/base/rotation.h"
 #include "systems/animation/clip_sampling.h"
 #include "tests/content/gltf_samples.h"

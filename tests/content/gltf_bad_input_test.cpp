@@ -1,7 +1,7 @@
-#include "content/load/atomic_file.h"
-#include "content/load/gltf_load.h"
-#include "content/load/png_check.h"
-#include "content/load/png_file.h"
+#include "content/load/files/atomic_file.h"
+#include "content/load/files/png_check.h"
+#include "content/load/files/png_file.h"
+#include "content/load/gltf/gltf_load.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/support.h"
 

@@ -1,6 +1,6 @@
-#include "content/load/atomic_file.h"
-#include "content/load/gltf_clip.h"
-#include "content/load/gltf_load.h"
+#include "content/load/files/atomic_file.h"
+#include "content/load/gltf/gltf_clip.h"
+#include "content/load/gltf/gltf_load.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/support.h"
 

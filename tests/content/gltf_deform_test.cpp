@@ -1,5 +1,5 @@
 #include "content/bake/tangents.h"
-#include "content/load/gltf_load.h"
+#include "content/load/gltf/gltf_load.h"
 #include "systems/animation/clip_sampling.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/near.h"

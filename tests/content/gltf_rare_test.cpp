@@ -1,4 +1,4 @@
-#include "content/load/gltf_load.h"
+#include "content/load/gltf/gltf_load.h"
 #include "tests/content/gltf_samples.h"
 
 #include <doctest/doctest.h>

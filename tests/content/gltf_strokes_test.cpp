@@ -1,6 +1,6 @@
 #include "content/bake/tangents.h"
-#include "content/load/gltf_load.h"
-#include "content/load/gltf_strokes.h"
+#include "content/load/gltf/gltf_load.h"
+#include "content/load/gltf/gltf_strokes.h"
 #include "ecs/base/math.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/near.h"

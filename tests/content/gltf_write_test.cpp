@@ -1,5 +1,5 @@
-#include "content/load/gltf_load.h"
-#include "content/load/gltf_write.h"
+#include "content/load/gltf/gltf_load.h"
+#include "content/load/gltf/gltf_write.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/support.h"
 

@@ -1,6 +1,6 @@
 // A head that wears a shirt leaves out the skin below it.
 
-#include "content/make/head.h"
+#include "content/make/head/head.h"
 #include "ecs/components/surface.h"
 
 #include <doctest/doctest.h>

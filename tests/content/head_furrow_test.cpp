@@ -1,4 +1,4 @@
-#include "content/make/head_furrow_pattern.h"
+#include "content/make/head/head_furrow_pattern.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>

@@ -1,8 +1,8 @@
-#include "content/make/head.h"
-#include "content/make/head_layout.h"
-#include "content/make/head_shoulders.h"
-#include "content/make/head_surface.h"
-#include "content/make/head_wrap.h"
+#include "content/make/head/head.h"
+#include "content/make/head/head_layout.h"
+#include "content/make/head/head_shoulders.h"
+#include "content/make/head/head_surface.h"
+#include "content/make/head/head_wrap.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

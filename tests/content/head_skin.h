@@ -1,10 +1,10 @@
 #pragma once
 
-#include "content/make/head.h"
-#include "content/make/head_action_units.h"
-#include "content/make/head_expressions.h"
-#include "content/make/head_layout.h"
-#include "content/make/head_wrap.h"
+#include "content/make/head/head.h"
+#include "content/make/head/head_action_units.h"
+#include "content/make/head/head_expressions.h"
+#include "content/make/head/head_layout.h"
+#include "content/make/head/head_wrap.h"
 
 #include <vector>
 

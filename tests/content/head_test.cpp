@@ -1,9 +1,9 @@
-#include "content/make/head.h"
-#include "content/make/head_ear.h"
-#include "content/make/head_layout.h"
-#include "content/make/head_parts.h"
-#include "content/make/head_surface.h"
-#include "content/make/head_wrap.h"
+#include "content/make/head/head.h"
+#include "content/make/head/head_ear.h"
+#include "content/make/head/head_layout.h"
+#include "content/make/head/head_parts.h"
+#include "content/make/head/head_surface.h"
+#include "content/make/head/head_wrap.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

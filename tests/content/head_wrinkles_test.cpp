@@ -1,5 +1,5 @@
-#include "content/make/head.h"
-#include "content/make/head_expressions.h"
+#include "content/make/head/head.h"
+#include "content/make/head/head_expressions.h"
 #include "ecs/components/animation.h"
 #include "systems/animation/deform_mesh.h"
 #include "systems/faces/wrinkle_measure.h"

@@ -1,4 +1,4 @@
-#include "content/make/hovercraft.h"
+#include "content/make/models/hovercraft.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
 

@@ -1,8 +1,8 @@
-#include "content/load/atomic_file.h"
-#include "content/load/exr_file.h"
-#include "content/load/image_load.h"
-#include "content/load/png_check.h"
-#include "content/load/png_file.h"
+#include "content/load/files/atomic_file.h"
+#include "content/load/files/exr_file.h"
+#include "content/load/files/image_load.h"
+#include "content/load/files/png_check.h"
+#include "content/load/files/png_file.h"
 #include "ecs/components/surface.h"
 #include "tests/support.h"
 

@@ -1,4 +1,4 @@
-#include "content/load/json_document.h"
+#include "content/load/files/json_document.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // What must not be in a level, and what is said about it: one line with file, place, what was found
 // and what was expected; the world stays as it was.
 
-#include "content/load/level_load.h"
+#include "content/load/level/level_load.h"
 #include "content/load/scene_load.h"
 #include "ecs/components/all.h"
 #include "ecs/components/transform.h"

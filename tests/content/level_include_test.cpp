@@ -1,4 +1,4 @@
-#include "content/load/level_load.h"
+#include "content/load/level/level_load.h"
 #include "ecs/components/all.h"
 #include "ecs/components/name.h"
 #include "ecs/world.h"

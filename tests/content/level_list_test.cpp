@@ -1,4 +1,4 @@
-#include "content/load/level_list.h"
+#include "content/load/level/level_list.h"
 
 #include <doctest/doctest.h>
 

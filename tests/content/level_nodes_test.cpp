@@ -1,6 +1,6 @@
 // What a level changes of the nodes of a glTF file.
 
-#include "content/load/level_update.h"
+#include "content/load/level/level_update.h"
 #include "content/load/scene_load.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/light.h"

@@ -1,6 +1,6 @@
 // How a show changes a level: patches that merge, name entities, add and remove them.
 
-#include "content/load/level_show.h"
+#include "content/load/level/level_show.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-#include "content/load/level_load.h"
-#include "content/load/level_update.h"
+#include "content/load/level/level_load.h"
+#include "content/load/level/level_update.h"
 #include "ecs/components/all.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/post.h"

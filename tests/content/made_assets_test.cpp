@@ -1,7 +1,7 @@
 #include "content/load/made_assets.h"
 #include "content/make/find_kind.h"
-#include "content/make/shapes.h"
-#include "content/make/simplify_mesh.h"
+#include "content/make/models/shapes.h"
+#include "content/make/models/simplify_mesh.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "content/make/masonry_patterns.h"
+#include "content/make/patterns/masonry_patterns.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

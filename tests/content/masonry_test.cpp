@@ -1,4 +1,4 @@
-#include "content/make/masonry.h"
+#include "content/make/models/masonry.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
 

@@ -1,9 +1,9 @@
 // Material libraries and their images, from the text to the engine's materials.
 
-#include "content/load/obj_maps.h"
-#include "content/load/obj_material.h"
-#include "content/load/obj_scene.h"
-#include "content/load/png_file.h"
+#include "content/load/files/png_file.h"
+#include "content/load/obj/obj_maps.h"
+#include "content/load/obj/obj_material.h"
+#include "content/load/obj/obj_scene.h"
 #include "ecs/components/surface.h"
 #include "tests/near.h"
 #include "tests/support.h"

@@ -1,4 +1,4 @@
-#include "content/load/obj_subdivision.h"
+#include "content/load/obj/obj_subdivision.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

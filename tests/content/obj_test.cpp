@@ -1,5 +1,5 @@
-#include "content/load/obj_file.h"
-#include "content/load/obj_scene.h"
+#include "content/load/obj/obj_file.h"
+#include "content/load/obj/obj_scene.h"
 #include "content/load/scene_load.h"
 #include "ecs/base/srgb.h"
 #include "ecs/components/surface.h"

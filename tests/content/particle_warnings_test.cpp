@@ -1,7 +1,7 @@
 // Particles from what cannot give any: one line for each, and nothing is lost.
 
-#include "content/load/level_load.h"
-#include "content/load/particle_warnings.h"
+#include "content/load/level/level_load.h"
+#include "content/load/level/particle_warnings.h"
 #include "ecs/components/all.h"
 #include "ecs/components/name.h"
 #include "ecs/components/particle_surface.h"

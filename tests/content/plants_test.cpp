@@ -1,4 +1,4 @@
-#include "content/make/plants.h"
+#include "content/make/models/plants.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
 

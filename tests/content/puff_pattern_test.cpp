@@ -1,4 +1,4 @@
-#include "content/make/puff_pattern.h"
+#include "content/make/patterns/puff_pattern.h"
 #include "tests/near.h"
 #include "tests/support.h"
 

@@ -1,6 +1,6 @@
 #include "content/bake/tangents.h"
-#include "content/make/refine_mesh.h"
-#include "content/make/shapes.h"
+#include "content/make/models/refine_mesh.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/weld.h"
 #include "tests/near.h"
 

@@ -1,9 +1,9 @@
 // What a level says that has no effect, or not the one that its author expects.
 
-#include "content/load/inside_mesh.h"
-#include "content/load/level_load.h"
+#include "content/load/faces/inside_mesh.h"
+#include "content/load/level/level_load.h"
+#include "content/load/level/scene_warnings.h"
 #include "content/load/scene_load.h"
-#include "content/load/scene_warnings.h"
 #include "ecs/components/all.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"

@@ -1,6 +1,6 @@
 #include "content/bake/tangents.h"
 #include "content/make/make_mesh.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
 

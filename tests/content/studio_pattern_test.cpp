@@ -1,4 +1,4 @@
-#include "content/make/studio_pattern.h"
+#include "content/make/patterns/studio_pattern.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>

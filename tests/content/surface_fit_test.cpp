@@ -1,5 +1,5 @@
 #include "content/bake/surface_fit.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/base/rng.h"
 #include "ecs/base/triangle.h"
 #include "tests/near.h"

@@ -1,5 +1,5 @@
-#include "content/load/level_load.h"
-#include "content/make/sweep.h"
+#include "content/load/level/level_load.h"
+#include "content/make/models/sweep.h"
 #include "ecs/components/all.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"

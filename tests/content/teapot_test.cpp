@@ -1,4 +1,4 @@
-#include "content/make/teapot.h"
+#include "content/make/models/teapot.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
 

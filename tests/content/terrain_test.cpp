@@ -1,5 +1,5 @@
-#include "content/make/noise.h"
-#include "content/make/terrain.h"
+#include "content/make/models/terrain.h"
+#include "content/make/patterns/noise.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
 #include "tests/content/mesh_laws.h"

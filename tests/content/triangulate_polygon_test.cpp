@@ -1,4 +1,4 @@
-#include "content/load/triangulate_polygon.h"
+#include "content/load/obj/triangulate_polygon.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-#include "content/load/atomic_file.h"
+#include "content/load/files/atomic_file.h"
 #include "content/speech/utterance.h"
 #include "tests/support.h"
 

@@ -1,5 +1,5 @@
 #include "content/bake/wrinkle_map.h"
-#include "content/make/fold_pattern.h"
+#include "content/make/patterns/fold_pattern.h"
 #include "systems/faces/wrinkle_fold.h"
 #include "tests/near.h"
 

@@ -1,7 +1,7 @@
 // Bytes into the glTF loader, without a file system: whatever they are, there is a scene or one
 // line.
 
-#include "content/load/gltf_load.h"
+#include "content/load/gltf/gltf_load.h"
 #include "ecs/components/all.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // Text into the level loader, without a file system: whatever it is, there is a level that can be
 // spawned, or a few lines. Meshes and images are not made, so that small texts stay quick.
 
-#include "content/load/level_load.h"
-#include "content/load/set_value.h"
+#include "content/load/level/level_load.h"
+#include "content/load/level/set_value.h"
 #include "ecs/component_bytes.h"
 #include "ecs/components/all.h"
 #include "ecs/components/camera_path.h"

@@ -1,7 +1,7 @@
 // Bytes into the readers of MakeHuman's sparse targets and of its proxies: whatever they are, every
 // vertex is one of the base mesh and every number finite, or there is one line.
 
-#include "content/load/makehuman_files.h"
+#include "content/load/faces/makehuman_files.h"
 
 #include <cstdlib>
 #include <string_view>

@@ -1,8 +1,8 @@
 // Bytes into the reader of recorded markers (TRC) and the scene made of them: whatever they are,
 // there are finite motions of whole triangles, or there is one line.
 
-#include "content/load/marker_file.h"
-#include "content/load/marker_import.h"
+#include "content/load/faces/marker_file.h"
+#include "content/load/faces/marker_import.h"
 
 #include <cstdlib>
 #include <string_view>

@@ -1,8 +1,8 @@
 // Bytes into the OBJ and MTL readers and the mesh made of them: whatever they are, there is a valid
 // mesh or one line.
 
-#include "content/load/obj_material.h"
-#include "content/load/obj_scene.h"
+#include "content/load/obj/obj_material.h"
+#include "content/load/obj/obj_scene.h"
 
 #include <cmath>
 #include <cstdlib>

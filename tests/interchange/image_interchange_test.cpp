@@ -1,8 +1,8 @@
 // Files that Limn writes and reads, against OpenImageIO in its own right.
 
-#include "content/load/exr_file.h"
-#include "content/load/image_load.h"
-#include "content/load/png_file.h"
+#include "content/load/files/exr_file.h"
+#include "content/load/files/image_load.h"
+#include "content/load/files/png_file.h"
 #include "ecs/components/surface.h"
 #include "tests/support.h"
 

@@ -1,6 +1,6 @@
 #include "bench/quality/fakephong_file.h"
-#include "content/load/gltf_write.h"
-#include "content/make/shapes.h"
+#include "content/load/gltf/gltf_write.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/surface.h"
 #include "tests/support.h"
 

@@ -1,4 +1,4 @@
-#include "render/buffer_texture.h"
+#include "render/gpu/buffer_texture.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "tests/render/render_fixture.h"

@@ -1,7 +1,7 @@
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/base/triangle.h"
-#include "render/coarse_triangles.h"
-#include "render/triangle_grid.h"
+#include "render/geometry/coarse_triangles.h"
+#include "render/geometry/triangle_grid.h"
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 

@@ -1,4 +1,4 @@
-#include "render/cube_map.h"
+#include "render/environment/cube_map.h"
 #include "render/gpu/readback.h"
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"

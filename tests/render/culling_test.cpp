@@ -1,4 +1,4 @@
-#include "render/culling.h"
+#include "render/geometry/culling.h"
 #include "render/render_view.h"
 
 #include <doctest/doctest.h>

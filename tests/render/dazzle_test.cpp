@@ -1,4 +1,4 @@
-#include "render/passes/dazzle_pass.h"
+#include "render/lens/dazzle_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

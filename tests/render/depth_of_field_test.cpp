@@ -1,9 +1,9 @@
 #include "ecs/base/rng.h"
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/glow.h"
-#include "render/passes/depth_of_field_pass.h"
+#include "render/lens/depth_of_field_pass.h"
+#include "render/lens/window_depth.h"
 #include "render/shaders/depth_of_field_gpu.h"
-#include "render/window_depth.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

@@ -1,6 +1,6 @@
 #include "bench/oracles/tone_oracle.h"
 #include "render/gpu/readback.h"
-#include "render/tone_mapper.h"
+#include "render/lens/tone_mapper.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
 

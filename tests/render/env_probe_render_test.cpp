@@ -3,7 +3,7 @@
 // clang-format on
 #include "ecs/components/env_probe.h"
 #include "ecs/hierarchy.h"
-#include "render/cube_map.h"
+#include "render/environment/cube_map.h"
 #include "tests/near.h"
 
 #include <glm/geometric.hpp>

@@ -2,7 +2,7 @@
 #include "tests/render/scene_fixture.h"
 // clang-format on
 #include "ecs/components/rendering.h"
-#include "render/environment_light.h"
+#include "render/environment/environment_light.h"
 #include "tests/render/shader_eval.h"
 
 #include <glm/geometric.hpp>

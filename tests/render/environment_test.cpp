@@ -2,7 +2,7 @@
 #include "tests/render/scene_fixture.h"
 // clang-format on
 #include "bench/oracles/pbr_oracle.h"
-#include "render/environment_light.h"
+#include "render/environment/environment_light.h"
 #include "tests/near.h"
 
 #include <glm/geometric.hpp>

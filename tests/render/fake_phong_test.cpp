@@ -1,4 +1,4 @@
-#include "render/highlight_layers.h"
+#include "render/light/highlight_layers.h"
 #include "tests/near.h"
 #include "tests/render/laboratory_fixture.h"
 

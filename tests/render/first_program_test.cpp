@@ -1,6 +1,6 @@
+#include "render/geometry/mesh_pool.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/shader_library.h"
-#include "render/mesh_pool.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/support.h"

@@ -1,4 +1,4 @@
-#include "render/frame_insets.h"
+#include "render/particles/frame_insets.h"
 #include "render/shaders/particle_gpu.h"
 
 #include <doctest/doctest.h>

@@ -2,12 +2,12 @@
 
 #include "content/bake/furrow_recipe.h"
 #include "content/bake/furrow_trace.h"
-#include "content/make/furrow_patterns.h"
+#include "content/make/patterns/furrow_patterns.h"
 #include "ecs/base/repeatable_math.h"
 #include "ecs/base/rng.h"
 #include "ecs/components/surface.h"
-#include "render/furrow_maker.h"
 #include "render/gpu/readback.h"
+#include "render/material/furrow_maker.h"
 #include "tests/content/furrow_shapes.h"
 #include "tests/render/shader_eval.h"
 

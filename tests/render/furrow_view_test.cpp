@@ -1,9 +1,9 @@
 // Furrows on entities: their images reach materials, and the views of the editor show them.
 
 #include "content/bake/furrow_skin.h"
-#include "content/make/furrow_patterns.h"
-#include "render/image_pool.h"
-#include "render/passes/furrow_pass.h"
+#include "content/make/patterns/furrow_patterns.h"
+#include "render/material/furrow_pass.h"
+#include "render/material/image_pool.h"
 #include "tests/render/scene_fixture.h"
 
 #include <doctest/doctest.h>

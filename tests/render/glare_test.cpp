@@ -1,5 +1,5 @@
 #include "render/gpu/readback.h"
-#include "render/passes/glare_pass.h"
+#include "render/lens/glare_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

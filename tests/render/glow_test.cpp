@@ -1,7 +1,7 @@
 #include "bench/oracles/glow_oracle.h"
 #include "ecs/components/glow.h"
 #include "ecs/components/rendering.h"
-#include "render/passes/glow_pass.h"
+#include "render/lens/glow_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

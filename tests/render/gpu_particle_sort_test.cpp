@@ -2,8 +2,8 @@
 
 #include "ecs/base/depth_sort.h"
 #include "ecs/base/rng.h"
-#include "render/gpu_particle_sort.h"
-#include "render/particle_list.h"
+#include "render/particles/gpu_particle_sort.h"
+#include "render/particles/particle_list.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
 

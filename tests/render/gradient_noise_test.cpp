@@ -1,6 +1,6 @@
 #include "ecs/base/gradient_noise.h"
 #include "ecs/components/light.h"
-#include "render/light_list.h"
+#include "render/light/light_list.h"
 #include "tests/render/shader_eval.h"
 
 #include <glm/common.hpp>

@@ -1,6 +1,6 @@
 #include "bench/oracles/hair_oracle.h"
 #include "ecs/components/shadow.h"
-#include "render/hair_lobes.h"
+#include "render/material/hair_lobes.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"

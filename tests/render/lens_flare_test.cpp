@@ -1,5 +1,5 @@
-#include "render/lens_ghosts.h"
-#include "render/passes/lens_flare_pass.h"
+#include "render/lens/lens_flare_pass.h"
+#include "render/lens/lens_ghosts.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

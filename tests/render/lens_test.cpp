@@ -7,7 +7,7 @@
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/time.h"
 #include "render/graph/frame_graph.h"
-#include "render/thin_lens.h"
+#include "render/lens/thin_lens.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>

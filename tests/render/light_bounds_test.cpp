@@ -1,4 +1,4 @@
-#include "render/light_list.h"
+#include "render/light/light_list.h"
 #include "render/render_view.h"
 #include "render/shadow/light_bounds.h"
 #include "tests/near.h"

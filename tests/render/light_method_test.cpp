@@ -2,7 +2,7 @@
 #include "ecs/components/rendering.h"
 #include "ecs/components/shadow.h"
 #include "render/gpu/gpu_query.h"
-#include "render/light_objects.h"
+#include "render/light/light_objects.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

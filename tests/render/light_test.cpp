@@ -2,8 +2,8 @@
 #include "bench/oracles/pbr_oracle.h"
 #include "ecs/components/time.h"
 #include "render/gpu/shader_source.h"
-#include "render/light_list.h"
-#include "render/shading_models.h"
+#include "render/light/light_list.h"
+#include "render/material/shading_models.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

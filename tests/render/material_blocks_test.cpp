@@ -1,4 +1,4 @@
-#include "render/material_blocks.h"
+#include "render/material/material_blocks.h"
 #include "render/shaders/material_blocks_gpu.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"

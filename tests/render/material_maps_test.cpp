@@ -1,5 +1,5 @@
-#include "render/image_pool.h"
-#include "render/material_maps.h"
+#include "render/material/image_pool.h"
+#include "render/material/material_maps.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

@@ -1,4 +1,4 @@
-#include "render/mesh_pool.h"
+#include "render/geometry/mesh_pool.h"
 #include "tests/render/scene_fixture.h"
 
 namespace limn::test::mesh_pool_test {

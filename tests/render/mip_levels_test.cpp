@@ -1,5 +1,5 @@
+#include "render/gpu/mip_levels.h"
 #include "render/gpu/readback.h"
-#include "render/mip_levels.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
 

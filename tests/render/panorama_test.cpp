@@ -1,4 +1,4 @@
-#include "render/panorama.h"
+#include "render/environment/panorama.h"
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
 

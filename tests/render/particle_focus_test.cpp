@@ -1,7 +1,7 @@
 #include "ecs/components/all.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
-#include "render/thin_lens.h"
+#include "render/lens/thin_lens.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

@@ -1,5 +1,5 @@
 #include "ecs/base/rng.h"
-#include "render/particle_packing.h"
+#include "render/particles/particle_packing.h"
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 #include "ecs/components/shadow.h"
 #include "ecs/components/time.h"
 #include "render/graph/frame_graph.h"
-#include "render/passes/particle_shadow_pass.h"
+#include "render/particles/particle_shadow_pass.h"
 #include "tests/near.h"
 #include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"

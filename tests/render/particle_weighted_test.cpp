@@ -1,7 +1,7 @@
 #include "ecs/components/all.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
-#include "render/particle_weighted.h"
+#include "render/particles/particle_weighted.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

@@ -1,8 +1,8 @@
 #include "bench/oracles/tone_oracle.h"
 #include "ecs/base/rng.h"
 #include "render/frame_clock.h"
+#include "render/lens/tone_mapper.h"
 #include "render/shaders/tone_gpu.h"
-#include "render/tone_mapper.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
 

@@ -1,7 +1,7 @@
 #include "ecs/components/projector.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
-#include "render/projector_list.h"
+#include "render/light/projector_list.h"
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 

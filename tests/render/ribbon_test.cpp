@@ -2,7 +2,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
-#include "render/ribbon_list.h"
+#include "render/particles/ribbon_list.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"

@@ -1,7 +1,7 @@
 #include "bench/oracles/glow_oracle.h"
 #include "ecs/base/rng.h"
 #include "render/gpu/readback.h"
-#include "render/separable_blur.h"
+#include "render/lens/separable_blur.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/oracles/shadow_oracle.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/shadow.h"
 #include "tests/render/scene_fixture.h"
 

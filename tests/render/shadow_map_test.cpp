@@ -1,5 +1,5 @@
-#include "render/light_list.h"
-#include "render/mesh_pool.h"
+#include "render/geometry/mesh_pool.h"
+#include "render/light/light_list.h"
 #include "render/shadow/shadow_list.h"
 #include "render/skinning/deformed_list.h"
 #include "tests/near.h"

@@ -1,6 +1,6 @@
 #include "bench/oracles/shadow_volume_oracle.h"
-#include "content/make/shapes.h"
-#include "content/make/teapot.h"
+#include "content/make/models/shapes.h"
+#include "content/make/models/teapot.h"
 #include "ecs/base/rng.h"
 #include "ecs/components/surface.h"
 #include "render/shaders/shadow_volume_gpu.h"

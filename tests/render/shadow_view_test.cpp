@@ -1,4 +1,4 @@
-#include "render/culling.h"
+#include "render/geometry/culling.h"
 #include "render/shadow/shadow_view.h"
 #include "tests/near.h"
 

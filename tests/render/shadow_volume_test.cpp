@@ -1,5 +1,5 @@
 #include "bench/oracles/shadow_volume_oracle.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "render/gpu/framebuffer.h"

@@ -1,7 +1,7 @@
 #include "bench/oracles/pbr_oracle.h"
 #include "bench/oracles/skin_light_oracle.h"
 #include "ecs/components/rendering.h"
-#include "render/skin_tone.h"
+#include "render/material/skin_tone.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"

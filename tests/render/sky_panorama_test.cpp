@@ -2,11 +2,11 @@
 #include "tests/render/scene_fixture.h"
 // clang-format on
 #include "bench/oracles/environment_oracle.h"
-#include "render/environment_light.h"
-#include "render/environment_maps.h"
+#include "render/environment/environment_light.h"
+#include "render/environment/environment_maps.h"
+#include "render/environment/panorama.h"
 #include "render/gpu/buffer.h"
 #include "render/graph/frame_graph.h"
-#include "render/panorama.h"
 
 #include <glm/geometric.hpp>
 

@@ -1,7 +1,7 @@
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/time.h"
 #include "render/graph/frame_graph.h"
-#include "render/passes/speed_line_pass.h"
+#include "render/lens/speed_line_pass.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>

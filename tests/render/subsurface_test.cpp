@@ -1,9 +1,9 @@
 #include "bench/oracles/skin_light_oracle.h"
-#include "content/make/shapes.h"
+#include "content/make/models/shapes.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
-#include "render/diffusion_profile.h"
+#include "render/material/diffusion_profile.h"
 #include "tests/near.h"
 #include "tests/render/profile_renderer.h"
 #include "tests/render/scene_fixture.h"
@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-// Light that spreads under a surface (render/passes/subsurface_pass.h), against the profile in
+// Light that spreads under a surface (render/light/subsurface_pass.h), against the profile in
 // double precision.
 
 namespace limn::test::subsurface_test {

@@ -1,7 +1,7 @@
 #include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
 #include "render/graph/frame_graph.h"
-#include "render/passes/temporal_pass.h"
+#include "render/lens/temporal_pass.h"
 #include "tests/near.h"
 #include "tests/render/shutter_fixture.h"
 

@@ -1,8 +1,8 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/lens/thin_lens.h"
 #include "render/render_view.h"
-#include "render/thin_lens.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

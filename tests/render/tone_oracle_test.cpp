@@ -1,5 +1,5 @@
 #include "bench/oracles/tone_oracle.h"
-#include "render/passes/statistics_pass.h"
+#include "render/lens/statistics_pass.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

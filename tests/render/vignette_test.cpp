@@ -1,4 +1,4 @@
-#include "render/passes/vignette_pass.h"
+#include "render/lens/vignette_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 

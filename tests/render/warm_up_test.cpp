@@ -5,7 +5,7 @@
 #include "ecs/components/water_look.h"
 #include "render/gpu/shader_library.h"
 #include "render/image.h"
-#include "render/light_list.h"
+#include "render/light/light_list.h"
 #include "tests/render/scene_fixture.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// Diffuse light that leaves a surface around the point where it entered (render/passes/subsurface_pass.h).
+// Diffuse light that leaves a surface around the point where it entered (render/light/subsurface_pass.h).
 
 #include "lib/diffusion.glsl"
 #include "lib/material_record.glsl"

@@ -1,4 +1,4 @@
-// Fog that thins with height, from the camera on (render/fog_block.h). Include after lib/view.glsl.
+// Fog that thins with height, from the camera on (render/environment/fog_block.h). Include after lib/view.glsl.
 
 const float kMaxOpticalDepth = 80.0;
 

@@ -1,5 +1,5 @@
 // Irradiance as nine spherical harmonics of the normal, whose constants are folded into the coefficients
-// (Ramamoorthi and Hanrahan 2001); the same as render/environment_light.cpp.
+// (Ramamoorthi and Hanrahan 2001); the same as render/environment/environment_light.cpp.
 
 #include "environment_gpu.h"
 

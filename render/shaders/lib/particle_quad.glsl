@@ -40,7 +40,7 @@ Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, floa
     return Quad(half_size * right, half_size * up);
 }
 
-// Left, bottom, right and top of what a frame shows, as a quad's corners (render/frame_insets.h).
+// Left, bottom, right and top of what a frame shows, as a quad's corners (render/particles/frame_insets.h).
 vec4 frame_box(int look, float number) {
     const float kBase = float(kInsetSteps / 2u);
     const vec4 kDigits = vec4(1.0, kBase, kBase * kBase, kBase * kBase * kBase);

@@ -1,6 +1,6 @@
 // What particle.vert hands to the shaders of its fragments. Definitions: VARYING, as `out` in the former and `in` in the
 // latter; those of particle.vert and
-//   WEIGHTED  into the sums of a weighted mean (render/particle_weighted.h)
+//   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
 //   IN_WATER  seen from above, before the water is drawn over it
 // What is the same at all corners is not interpolated.
 

@@ -1,5 +1,5 @@
 // Reflection of incoming light by a surface. Lights are reduced to direction and irradiance, whatever their type
-// (light.interface). A shading model is a file shade_<model>.glsl and a row of the table in render/shading_models.h.
+// (light.interface). A shading model is a file shade_<model>.glsl and a row of the table in render/material/shading_models.h.
 // The file has
 //
 //     void prepare_<model>(inout Reflector r, SurfaceSample s)  terms that are the same for all lights

@@ -1,5 +1,5 @@
 // Radiance of the environment by direction. The same functions give the background, the reflections and the
-// ambient light; the same as render/environment_light.cpp, except for the panorama (3), which is a cube map.
+// ambient light; the same as render/environment/environment_light.cpp, except for the panorama (3), which is a cube map.
 // SKY_KIND, as numbered by SkyKind, is fixed at compile time.
 
 #include "environment_gpu.h"

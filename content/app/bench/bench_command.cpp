@@ -1,0 +1,284 @@
+#include "content/app/bench/bench_command.h"
+
+#include "content/app/bench/bench_fakephong.h"
+#include "content/app/bench/bench_lens.h"
+#include "content/app/bench/bench_lights.h"
+#include "content/app/bench/bench_report.h"
+#include "content/app/commands/headless.h"
+#include "content/app/commands/progress.h"
+#include "content/app/commands/sibling_program.h"
+#include "content/app/commands/stage.h"
+#include "content/app/panels/profiler_panel.h"
+#include "content/load/files/atomic_file.h"
+#include "ecs/base/jobs.h"
+#include "ecs/base/text.h"
+#include "render/graph/frame_graph.h"
+#include "render/render_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <limits>
+#include <utility>
+
+namespace limn {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr const char* kLightsScene =
+    "lights";  ///< by name, not by file: measured by light count and method
+constexpr int kHeapFrames =
+    600;  ///< the last ones, whose least heap memory counts; a whole camera path if it is longer
+constexpr int kHeapInterval = 60;                    ///< frames between its measurements
+constexpr const char* kParticlesName = "particles";  ///< likewise: their pools, without a scene
+constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of heads
+constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
+constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
+
+/// Whether another program measures it.
+bool is_program(const std::string& scene) {
+    return scene == kParticlesName || scene == kFacesName;
+}
+
+double ms_between(SteadyClock::time_point begin, SteadyClock::time_point end) {
+    return std::chrono::duration<double, std::milli>(end - begin).count();
+}
+
+/// To the file, or to stdout for "-".
+Status write_report(const std::string& path, const std::string& text) {
+    if (path == "-") {
+        fmt::print("{}", text);
+        return Done{};
+    }
+    return path.empty() ? Status(Done{}) : write_file(path, text);
+}
+
+/// Writes what was asked for: `json` and `csv` as text, the table unless one of them goes to
+/// stdout.
+Status write_results(
+    const BenchOptions& options, const std::string& table, const std::string& json,
+    const std::string& csv) {
+    if (options.json != "-" && options.csv != "-") {
+        fmt::print("{}", table);
+    }
+    const Status written = write_report(options.json, json);
+    return written ? write_report(options.csv, csv) : written;
+}
+
+/// Processor time of this program, the threads of a software OpenGL included [ms]: depends less
+/// on other programs than the time of a frame.
+double all_threads_ms() {
+    std::timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+/// Fails if the device cannot render images of that size.
+Result<HeadlessRenderer> create_renderer_for(const BenchOptions& options) {
+    Result<HeadlessRenderer> headless = create_headless_renderer(options.profile);
+    if (headless) {
+        if (const Status fits = check_image_size(*headless->device, options.size); !fits) {
+            return fits.error();
+        }
+    }
+    return headless;
+}
+
+Status run_lens_bench(const BenchOptions& options) {
+    Result<HeadlessRenderer> headless = create_renderer_for(options);
+    if (!headless) {
+        return headless.error();
+    }
+    const Result<LensBench> bench = measure_lens(options, *headless);
+    if (!bench) {
+        return bench.error();
+    }
+    return write_results(
+        options, lens_bench_table(*bench), lens_bench_json(*bench), lens_bench_csv(*bench));
+}
+
+Status run_fakephong_bench(const BenchOptions& options) {
+    HeadlessRenderer headless = LIMN_TRY(create_renderer_for(options));
+    const FakePhongBench bench = LIMN_TRY(measure_fakephong(options, headless));
+    return write_results(
+        options, fakephong_bench_table(bench), fakephong_bench_json(bench),
+        fakephong_bench_csv(bench));
+}
+
+/// The report's own, which it reserves with the last frame of the warm-up.
+double memory_of_samples_mib(const BenchReport& report) {
+    std::size_t bytes = 0;
+    for (const BenchSeries& series : report.series) {
+        bytes += series.samples.capacity() * sizeof(series.samples[0]);
+    }
+    return static_cast<double>(bytes) / (1 << 20);
+}
+
+/// Empties all series, with their memory in RAM: it must not count as growth of the program.
+void touch_samples(BenchReport& report) {
+    for (BenchSeries& series : report.series) {
+        series.samples.assign(static_cast<std::size_t>(report.frames), 0.0);
+        series.samples.clear();
+    }
+}
+
+}  // namespace
+
+void run_bench_frame(
+    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report) {
+    FrameGraph& graph = frame_graph(*headless.renderer);
+    const double begin_threads = all_threads_ms();
+    const SteadyClock::time_point begin = SteadyClock::now();
+    step_stage(stage);
+    const SteadyClock::time_point simulated = SteadyClock::now();
+    const RenderView view =
+        make_render_view(stage.world, stage.scene.camera, {.width = size.x, .height = size.y});
+    const FrameOutput frame = render_frame(*headless.renderer, stage.world, view);
+    const SteadyClock::time_point drawn = SteadyClock::now();
+    graph.wait_for_timings();
+    const SteadyClock::time_point end = SteadyClock::now();
+    const double threads = all_threads_ms() - begin_threads;
+    if (report == nullptr) {
+        return;
+    }
+    const auto add = [report](BenchKind kind, BenchClock clock, std::string_view name, double ms) {
+        find_series(*report, kind, clock, name).samples.push_back(ms);
+    };
+    add(BenchKind::Frame, BenchClock::Cpu, "frame", ms_between(begin, end));
+    add(BenchKind::Frame, BenchClock::Cpu, "all threads", threads);
+    add(BenchKind::Frame, BenchClock::Cpu, "simulate", ms_between(begin, simulated));
+    add(BenchKind::Frame, BenchClock::Cpu, "draw", ms_between(simulated, drawn));
+    add(BenchKind::Frame, BenchClock::Cpu, "extract", frame.statistics.extract_ms);
+    for (const SystemTiming& timing : stage.schedule.timings()) {
+        add(BenchKind::System, BenchClock::Cpu, timing.name, timing.last * 1e3);
+    }
+    double gpu_ms = 0.0;
+    for (const PassTiming& timing : graph.timings()) {
+        add(BenchKind::Pass, BenchClock::Cpu, timing.name, timing.last_cpu_ms);
+        add(BenchKind::Pass, BenchClock::Gpu, timing.name, timing.last_gpu_ms);
+        gpu_ms += timing.last_gpu_ms;
+    }
+    add(BenchKind::Frame, BenchClock::Gpu, "passes", gpu_ms);
+    report->draws = frame.statistics.draws;
+    report->triangles = frame.statistics.triangles;
+    report->programs = frame.statistics.programs;
+    report->compiled += frame.statistics.compiled;
+}
+
+BenchReport
+machine_report(const Stage& stage, const HeadlessRenderer& headless, const BenchOptions& options) {
+    return {
+        .scene = stage.scene.name,
+        .size = options.size,
+        .threads = thread_count(),
+        .gl_renderer = headless.device->caps().renderer,
+        .gl_version = headless.device->caps().version};
+}
+
+std::vector<std::string> bench_program_arguments(const BenchOptions& options) {
+    std::vector<std::string> arguments = {
+        "--repeats", std::to_string(std::min(options.frames, 400))};
+    for (const auto& [option, value] :
+         {std::pair{"--json", options.json},
+          {"--csv", options.csv},
+          {"--svg", options.svg},
+          {"--only", options.only},
+          {"--most", options.most > 0 ? std::to_string(options.most) : std::string()}}) {
+        if (!value.empty()) {
+            arguments.insert(arguments.end(), {option, value});
+        }
+    }
+    return arguments;
+}
+
+Status check_bench_options(const BenchOptions& options) {
+    if (options.most > 0 && options.scene != kParticlesName) {
+        return fail("--most is for `particles`, found `{}`", options.scene);
+    }
+    if (is_program(options.scene)) {
+        return Done{};
+    }
+    for (const auto& [option, value] :
+         {std::pair{"--svg", options.svg}, {"--only", options.only}}) {
+        if (!value.empty()) {
+            return fail("{} is for `particles` and `faces`, found `{}`", option, options.scene);
+        }
+    }
+    return Done{};
+}
+
+Status run_bench(const BenchOptions& options) {
+    if (is_program(options.scene)) {
+        return run_sibling(
+            "limn bench", "limn-bench-" + options.scene, bench_program_arguments(options));
+    }
+    if (options.scene == kLensName) {
+        return run_lens_bench(options);
+    }
+    if (options.scene == kFakePhongName) {
+        return run_fakephong_bench(options);
+    }
+    Result<std::unique_ptr<Stage>> opened =
+        open_stage(options.scene, {.assignments = options.assignments});
+    if (!opened) {
+        return opened.error();
+    }
+    Stage& stage = **opened;
+    Result<HeadlessRenderer> headless = create_renderer_for(options);
+    if (!headless) {
+        return headless.error();
+    }
+    if (options.scene == kLightsScene) {
+        const Result<LightsBench> bench = measure_lights(stage, *headless, options);
+        if (!bench) {
+            return bench.error();
+        }
+        return write_results(
+            options, lights_bench_table(*bench), lights_bench_json(*bench),
+            lights_bench_csv(*bench));
+    }
+    BenchReport report = machine_report(stage, *headless, options);
+    report.frames = options.frames;
+    report.warmup = options.warmup;
+    const SteadyClock::time_point begin = SteadyClock::now();
+    warm_up_world(*headless, stage.world, stage.scene.camera, options.size);
+    report.compile_ms = ms_between(begin, SteadyClock::now());
+    report.resident_begin_mib = resident_memory_mib();
+    report.heap_begin_mib = heap_memory_mib();
+    {
+        const int frames = options.warmup + options.frames;
+        const int path = static_cast<int>(stage.scene.duration / stage_step(stage));
+        const int heap_frames = std::max(kHeapFrames, path);
+        Progress progress("frame", frames);
+        for (int i = 0; i < frames; ++i) {
+            // The last frame of the warmup names the series.
+            const bool reported = i + 1 >= options.warmup;
+            run_bench_frame(stage, *headless, options.size, reported ? &report : nullptr);
+            const int left = (i < options.warmup ? options.warmup : frames) - (i + 1);
+            if (i == 0 || i == options.warmup) {
+                report.heap_mib = std::numeric_limits<double>::infinity();
+            }
+            if (left < heap_frames && left % kHeapInterval == 0) {
+                glFinish();  // the driver keeps more while frames are in flight
+                report.heap_mib = std::min(report.heap_mib, heap_memory_mib());
+            }
+            if (i + 1 == options.warmup) {
+                touch_samples(report);
+                report.compiled = 0;
+                report.resident_begin_mib = resident_memory_mib();
+                report.heap_begin_mib = report.heap_mib + memory_of_samples_mib(report);
+            }
+            progress.update(i + 1);
+        }
+    }
+    report.entities = static_cast<std::int64_t>(stage.world.entity_count());
+    report.resident_mib = resident_memory_mib();
+    report.gpu_mib =
+        static_cast<double>(frame_graph(*headless->renderer).stats().pool_bytes) / (1 << 20);
+    return write_results(options, bench_table(report), bench_json(report), bench_csv(report));
+}
+
+}  // namespace limn

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "content/app/commands/command_values.h"
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+#include "render/gpu/device_caps.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+struct BenchReport;
+struct HeadlessRenderer;
+struct Stage;
+
+/// `limn bench`: times frames, systems and passes of a scene.
+struct BenchOptions {
+    std::string scene;
+    int frames = 300;  ///< measured
+    int warmup = 60;   ///< run before, not measured
+    IVec2 size = {1280, 720};
+    std::vector<Assignment> assignments;  ///< --set
+    std::string json;  ///< file, or "-" for stdout instead of the table; empty = none
+    std::string csv;   ///< the same
+    std::string svg;   ///< file, of `particles` and `faces`; empty = none
+    std::string only;  ///< one part of `particles` or `faces`; empty = all
+    std::size_t most =
+        0;  ///< particles of the last point of their curves; 0 = as the program has it
+    std::optional<gpu::Profile> profile;  ///< empty = by the device
+};
+
+/// The command line of the program that measures `particles` or `faces`.
+[[nodiscard]] std::vector<std::string> bench_program_arguments(const BenchOptions& options);
+
+/// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the
+/// next frame. Adds the times to `report` unless it is null.
+void run_bench_frame(
+    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report);
+
+/// Scene, size and machine.
+[[nodiscard]] BenchReport
+machine_report(const Stage& stage, const HeadlessRenderer& headless, const BenchOptions& options);
+
+/// Fails where an option is for other scenes than that.
+[[nodiscard]] Status check_bench_options(const BenchOptions& options);
+[[nodiscard]] Status run_bench(const BenchOptions& options);
+
+}  // namespace limn

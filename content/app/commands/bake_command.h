@@ -1,0 +1,36 @@
+#pragma once
+
+#include "content/app/commands/command_values.h"
+#include "ecs/base/result.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+/// `limn bake`: makes maps from a mesh or from photographs.
+struct BakeOptions {
+    std::string kind;
+    std::string in;                       ///< .gltf or .glb; of photometric and strain_model, .json
+    std::string out;                      ///< NAME.png or NAME.exr; a kind adds to the name
+    std::string recipe;                   ///< JSON of the kind; empty = its defaults
+    std::string mesh;                     ///< name of a mesh of the file; empty = its largest
+    bool gpu = false;                     ///< compute on the GPU, to the same maps
+    std::vector<Assignment> assignments;  ///< FIELD=VALUE of the recipe
+};
+
+/// A kind of maps.
+struct BakeKind {
+    const char* name;
+    const char* doc;  ///< one line
+    Status (*run)(const BakeOptions& options);
+};
+
+/// All kinds, by name.
+[[nodiscard]] std::span<const BakeKind> bake_kinds();
+
+/// `kind` must be one of bake_kinds(). Fails with one line.
+[[nodiscard]] Status run_bake(const BakeOptions& options);
+
+}  // namespace limn

@@ -1,0 +1,643 @@
+#include "content/app/commands/command_line.h"
+
+#include "content/app/bench/bench_command.h"
+#include "content/app/commands/bake_command.h"
+#include "content/app/commands/check_command.h"
+#include "content/app/commands/command_options.h"
+#include "content/app/commands/compare_command.h"
+#include "content/app/commands/hash_command.h"
+#include "content/app/commands/image_file.h"
+#include "content/app/commands/import_command.h"
+#include "content/app/commands/info_command.h"
+#include "content/app/commands/list_commands.h"
+#include "content/app/commands/log_sink.h"
+#include "content/app/commands/render_command.h"
+#include "content/app/commands/sibling_program.h"
+#include "content/app/commands/speak_command.h"
+#include "content/app/commands/view_command.h"
+#include "content/app/player/play_command.h"
+#include "content/make/find_kind.h"
+#include "ecs/base/type_name.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+constexpr const char* kSceneDoc = "level name, .level.json, .gltf, .glb or .obj";
+
+/// A command, and the function that runs it once its options are parsed.
+struct Command {
+    CLI::App* app = nullptr;
+    std::function<Status()> run;
+};
+
+Command add_play(CLI::App& program, PlayOptions& options) {
+    CLI::App* app = program.add_subcommand("play", "Play a level in a window");
+    app->add_option("scene", options.scene, std::string(kSceneDoc) + "; default: gallery")
+        ->type_name("SCENE");
+    add_size(*app, options.size)->description("of the window");
+    app->add_flag("--fullscreen", options.fullscreen, "full screen");
+    app->add_option_function<std::string>(
+           "--scale",
+           [&options](const std::string& text) {
+               options.scale_auto = text == "auto";
+               if (options.scale_auto) {
+                   return;
+               }
+               const Result<double> scale = parse_number(text, 0.1, 2.0);
+               if (!scale) {
+                   throw CLI::ValidationError("--scale", scale.error().message + ", or auto");
+               }
+               options.scale = static_cast<float>(*scale);
+           },
+           "rendered pixels per window pixel, 0.1 to 2; auto adapts it to hold 60 frames per "
+           "second, on a processor 16, where it is the default")
+        ->type_name("auto|X");
+    app->add_option_function<std::string>(
+           "--antialiasing",
+           [&options](const std::string& text) {
+               if (text != "none" && text != "temporal") {
+                   throw CLI::ValidationError(
+                       "--antialiasing", fmt::format("found {}, expected none or temporal", text));
+               }
+               options.antialiasing = text == "none" ? Antialiasing::None : Antialiasing::Temporal;
+           },
+           "instead of the level's own; default: temporal")
+        ->type_name("none|temporal");
+    add_show(*app, options.show);
+    add_model_view(*app, options.model);
+    add_profile(*app, options.profile);
+    add_integer(
+        *app, "--headless-frames", "render N frames along the camera path, without a window",
+        options.headless_frames, 1, 10000);
+    app->add_option("-o,--out", options.out, "folder for frames and screenshots")
+        ->type_name("FOLDER");
+    app->footer(
+        "Without a display, renders frames along the camera path and prints where they are.\n"
+        "F1 in the window lists the keys.\n\n"
+        "Examples:\n"
+        "  limn play\n"
+        "  limn play gallery --size 1920x1080 --scale auto\n"
+        "  limn play model.glb --backdrop sky\n"
+        "  limn play --show water.fresnel\n"
+        "  limn play gallery --headless-frames 12 -o frames");
+    return {app, [&options] { return run_play(options); }};
+}
+
+Command add_render(CLI::App& program, RenderOptions& options) {
+    CLI::App* app = program.add_subcommand("render", "Render an image or a range of frames");
+    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE");
+    app->add_option("-o,--out", options.out, "OUT.png, OUT.exr, or frame_%04d.png for --frames")
+        ->type_name("FILE")
+        ->required();
+    add_size(*app, options.size);
+    CLI::Option* time = add_number(
+        *app, "--time",
+        "simulation time of the image [s]; the simulation starts at 0; default: the show's, or 0",
+        options.time, 0, 86400);
+    add_parsed(
+        *app, "--frames", "first and last frame, inclusive", options.frames, parse_frame_range)
+        ->type_name("A:B")
+        ->excludes(time);
+    add_number(*app, "--fps", "frame n of --frames is at time n / fps", options.fps, 0.001, 10000)
+        ->default_str("60");
+    add_seed(*app, options.seed);
+    add_integer(
+        *app, "--spp",
+        "samples per pixel, over lens and shutter, for final images; default: effects as played",
+        options.samples, 1, 65536);
+    add_parsed(*app, "--aov", "layers to add to an EXR", options.aovs, parse_list)
+        ->type_name("A,B");
+    add_show(*app, options.show.technique);
+    app->add_flag("--off", options.show.off, "with --show: without the technique");
+    add_assignments(*app, options.assignments);
+    add_model_view(*app, options.model);
+    add_profile(*app, options.profile);
+    app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
+        ->type_name("NAME");
+    app->add_flag("--quiet", options.quiet, "print nothing but errors and warnings");
+    app->footer("Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
+                "shadow_texels (shadow map texels per pixel), volume_layers (of shadow volumes).\n"
+                "An EXR holds linear radiance, a PNG the tone-mapped image.\n"
+                "PATH of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD;\n"
+                "a name may contain dots, as in glTF files: the longest that fits is meant.\n"
+                "VALUE is JSON or a bare word: '[1, 2, 3]', 40deg, orange.\n"
+                "Files are written under a temporary name and renamed when complete.\n\n"
+                "Examples:\n"
+                "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
+                "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
+                "  limn render helmet.glb -o 'turn_%04d.png' --frames 0:119 --turntable 2\n"
+                "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
+                "  limn render --show water.fresnel --off -o without.png\n"
+                "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
+                "materials.gilt.roughness=0.4");
+    app->callback([&options] {
+        if (const Status status = check_render_options(options); !status) {
+            throw CLI::ValidationError(status.error().message);
+        }
+    });
+    return {app, [&options] { return run_render(options); }};
+}
+
+Command add_bench(CLI::App& program, BenchOptions& options) {
+    CLI::App* app =
+        program.add_subcommand("bench", "Measure systems, passes and frames of a scene");
+    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
+    add_integer(*app, "--frames", "frames to measure", options.frames, 1, kMaxFrames)
+        ->default_str(std::to_string(options.frames));
+    add_integer(*app, "--warmup", "frames run first, not measured", options.warmup, 0, kMaxFrames)
+        ->default_str(std::to_string(options.warmup));
+    add_size(*app, options.size);
+    add_assignments(*app, options.assignments);
+    add_profile(*app, options.profile);
+    app->add_option("--json", options.json, "write the numbers as JSON; - is stdout")
+        ->type_name("FILE");
+    app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
+        ->type_name("FILE");
+    app->add_option(
+           "--svg", options.svg, "of `particles`, `faces`: draw the cost over their number")
+        ->type_name("FILE");
+    app->add_option("--only", options.only, "of `particles`, `faces`: one part")->type_name("PART");
+    add_integer(
+        *app, "--most", "of `particles`: of the last point of the curves; default: 10000000",
+        options.most, 1000, 100'000'000);
+    app->callback([&options] {
+        if (const Status fits = check_bench_options(options); !fits) {
+            throw CLI::ValidationError(fits.error().message);
+        }
+    });
+    app->footer(
+        R"(Every frame simulates one step and renders off screen. Times are in milliseconds; "all threads" is
+processor time, which depends less on other programs. Shaders are compiled before the first frame
+("compile_ms"); "compiled" counts those that a measured frame had to compile.
+
+JSON: {"scene", "size": [w, h], "frames", "warmup", "threads", "gl": {"renderer", "version"},
+"memory": {"resident_begin_mib", "resident_mib", "heap_begin_mib", "heap_mib", "gpu_mib"},
+"counts": {"entities", "draws", "triangles", "programs", "compiled"}, "compile_ms", and arrays
+"frame", "systems", "passes" of {"name", "clock": "cpu" or "gpu", "median_ms", "p95_ms", "max_ms"}}
+CSV: kind,name,clock,median_ms,p95_ms,max_ms
+
+The scene `lights` is measured with 16, 64 ... 4096 lights, with every method of rendering.lights,
+each for at most --frames frames or a few seconds; a method stops where a frame would take longer
+than 12 s. JSON: {"scene", "size", "threads", "gl", "methods": [{"name", "points": [{"lights",
+"frames", "median_ms", "p95_ms", "max_ms", "passes"} or {"lights", "left_out"}]}],
+"full_screen_over_clustered": [{"lights", "ratio"}]}
+CSV: method,lights,frames,median_ms,p95_ms,max_ms
+
+`limn bench lens` measures the level `stilllife` without lens effects, with each alone, and with
+ripple, motion blur, depth of field and glow together. "added" is the increase over a frame without
+effects, "passes" the sum of the passes that such a frame lacks.
+JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"effects", "median_ms",
+"p95_ms", "added_ms", "passes_ms", "passes"}]}
+CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms
+
+`limn bench fakephong` draws each model of the level `phonglab` under 1, 4 and 16 lights by every
+method of rendering.shading, in turns, --frames times each; the best counts. Beside these times
+stand the operations that the methods take on a processor: lightings per facet, all else per pixel,
+and the work of a frame over that of Phong shading.
+JSON: {"scene", "size", "frames", "threads", "gl", "points": [{"model", "lights",
+"methods": [{"shading", "best_ms", "ratio"}]}], "counts": [{"model", "method", "lightings",
+"additions", "multiplications", "divisions", "roots", "powers", "fetches", "work"}]}
+CSV: model,lights,shading,frames,best_ms,ratio and, after an empty line,
+model,method,lightings,additions,multiplications,divisions,roots,powers,fetches,work
+
+`limn bench particles` holds particles to their gates, ratios to loops that people write by hand,
+and shows what a particle costs among a thousand to ten million. It draws nothing; --frames is how
+often each is run at most, and the best counts. --only update, sort, collision, world, draw or growth
+measures that part.
+JSON: {"threads", "gates": [{"gate", "name", "ours", "other", "against", "unit", "ratio", "limit",
+"met"}], "growth": [{"curve", "points": [{"count", "ns"}]}], "notes"}
+CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, curve,count,ns
+
+`limn bench faces` moves a hundred heads and measures how their skin is compressed, beside scalar
+versions of the same, draws skin that wrinkles beside plain PBR, and shows what a face
+costs among 1 to 100. --frames is how often each is run at most, and the best counts.
+JSON: {"threads", "rows": [{"name", "ours_ms", "reference_ms", "against", "ratio", "limit", "met"}],
+"growth": [{"curve", "faces", "ns"}]}
+CSV: name,ours_ms,reference_ms,against,ratio,limit,met and, after an empty line, curve,faces,ns
+
+Examples:
+  limn bench lights --size 640x360
+  limn bench lens --size 640x360 --frames 100
+  limn bench fakephong --size 640x360 --frames 9
+  limn bench gallery --size 640x360 --set glow.strength=0.1
+  limn bench stress-instances --frames 600 --json numbers.json
+  limn bench particles --csv particles.csv --svg particles.svg
+  limn bench particles --only growth --most 100000
+  limn bench faces --csv faces.csv --svg faces.svg)");
+    return {app, [&options] { return run_bench(options); }};
+}
+
+Command add_view(CLI::App& program, ViewOptions& options) {
+    CLI::App* app =
+        program.add_subcommand("view", "Show an image; tone map an HDR image, interactively");
+    app->add_option("file", options.file, ".exr, .hdr, .png, .jpg ...")
+        ->type_name("FILE")
+        ->required();
+    add_parsed(*app, "-o,--out", "write the image, without a window", options.out, parse_png_path)
+        ->type_name("FILE.png");
+    add_size(*app, options.size)->description("of the window");
+    struct Field {
+        const char* name;
+        const char* doc;
+    };
+    // Fields of the resource exposure, with its ranges and defaults but for the curve.
+    constexpr Field kFields[] = {
+        {"curve", "neutral, aces, linear, reinhard, local or knee; default: the image's, or knee"},
+        {"metering", "manual, or key: from the log-average luminance"},
+        {"ev", "exposure compensation [stops]"},
+        {"key", "log-average luminance after metering; default: 0.18"},
+        {"defog", "fraction of the mean color subtracted, 0 to 0.01"},
+        {"contrast", "contrast of knee; 0 = none"},
+        {"white", "white point of reinhard (luminance); 0 = none"},
+        {"encoding", "srgb or power; knee always uses power"},
+        {"gamma", "gamma of power and knee; default: 2.2"},
+        {"dither", "true or false"}};
+    for (const Field& field : kFields) {
+        const std::string name = std::string("--") + field.name;
+        app->add_option_function<std::string>(
+               name,
+               [&options, field, name](const std::string& value) {
+                   Exposure checked;
+                   const Status status = set_exposure(checked, field.name, value);
+                   if (!status) {
+                       throw CLI::ValidationError(name, status.error().message);
+                   }
+                   options.settings.emplace_back(field.name, value);
+               },
+               field.doc)
+            ->type_name("X");
+    }
+    app->footer(
+        "An EXR of `limn render` is shown with the exposure of its scene, as the PNG would be;\n"
+        "an image of 8 bits as it is.\n"
+        "Prints log-average luminance, mean color and dynamic range. Pixels with NaN or infinity\n"
+        "are counted, left out of the statistics and shown black or white.\n"
+        "Knee is 0.3333 (ln(contrast c + 1) / contrast)^(1 / gamma) with c = 2^ev (light - "
+        "defog).\n"
+        "In the window, Up and Down change the exposure, C the curve; F9 saves the image.\n\n"
+        "Examples:\n"
+        "  limn view memorial.exr\n"
+        "  limn view memorial.exr -o shown.png --ev 3 --defog 0.005 --contrast 1\n"
+        "  limn view memorial.exr -o shown.png --curve local --metering key");
+    return {app, [&options] { return run_view(options); }};
+}
+
+Command add_hash(CLI::App& program, HashOptions& options) {
+    CLI::App* app = program.add_subcommand("hash", "Print a hash of the state after every step");
+    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
+    add_integer(*app, "--frames", "steps to run", options.frames, 1, kMaxFrames)->required();
+    add_integer(
+        *app, "--threads", "threads to use; default: all hardware threads", options.threads, 1,
+        256);
+    add_seed(*app, options.seed);
+    app->footer("Prints one line per step: frame number, then 16 hex digits. The hashes are the "
+                "same in every\n"
+                "run and for every number of threads.\n\n"
+                "Example:\n"
+                "  limn hash stress-instances --frames 600 --threads 2");
+    return {app, [&options] { return run_hash(options); }};
+}
+
+Command add_check(CLI::App& program, std::string& scene) {
+    CLI::App* app = program.add_subcommand("check", "Check a level: load, step, draw, warn");
+    app->add_option("scene", scene, kSceneDoc)->type_name("SCENE")->required();
+    app->footer(
+        "Prints what is wrong or has no effect, and ends with 1 where there is an error.\n\n"
+        "Example:\n"
+        "  limn check my.level.json");
+    return {app, [&scene] { return run_check(scene); }};
+}
+
+Command add_quality(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("quality", "Compare the effects with their oracles");
+    app->set_help_flag();  // everything behind the name is for the other program, --help as well
+    app->prefix_command();
+    return {app, [app] { return run_sibling("limn quality", "limn-quality", app->remaining()); }};
+}
+
+Command add_compare(CLI::App& program, CompareOptions& options) {
+    CLI::App* app = program.add_subcommand("compare", "Compare two images");
+    app->add_option("a", options.a, "reference image")->type_name("A")->required();
+    app->add_option("b", options.b, "image to compare, of the same size")
+        ->type_name("B")
+        ->required();
+    app->add_flag("--json", options.json, "print JSON");
+    add_parsed(*app, "--diff", "write a difference image", options.diff, parse_png_path)
+        ->type_name("FILE.png");
+    app->footer(
+        "Prints PSNR [dB], SSIM, FLIP (mean and 99th percentile), the largest difference of a\n"
+        "channel, color correctness and the scanline through A's brightest pixel; for two EXR "
+        "files also\n"
+        "the relative mean square error. --diff raises differences to the power 1/10: one step of\n"
+        "255 shows as 57 % gray. In JSON, \"psnr\" is null for equal images.\n\n"
+        "Example:\n"
+        "  limn compare before.png after.png --diff difference.png");
+    return {app, [&options] { return run_compare(options); }};
+}
+
+Command add_bake(CLI::App& program, BakeOptions& options) {
+    CLI::App* app = program.add_subcommand("bake", "Make maps from a mesh or from photographs");
+    std::string kinds;
+    for (const BakeKind& kind : bake_kinds()) {
+        kinds += fmt::format("  {:<12} {}\n", kind.name, kind.doc);
+    }
+    add_parsed(
+        *app, "kind", "of maps", options.kind,
+        [](const std::string& text) {
+            return find_kind(bake_kinds(), text) != nullptr
+                       ? Result<std::string>(text)
+                       : Error{fmt::format(
+                           "found \"{}\", expected {}{}", text, kind_names(bake_kinds()),
+                           kind_suggestion(bake_kinds(), text))};
+        })
+        ->type_name("KIND")
+        ->required();
+    app->add_option("in", options.in, ".gltf or .glb; of photometric and strain_model: .json")
+        ->type_name("IN")
+        ->required();
+    add_parsed(
+        *app, "-o,--out", "NAME.png or NAME.exr", options.out,
+        [](const std::string& text) {
+            const Result<ImageFileKind> kind = image_file_kind(text);
+            return kind ? Result<std::string>(text) : kind.error();
+        })
+        ->type_name("FILE")
+        ->required();
+    app->add_option("--recipe", options.recipe, "settings of the kind")->type_name("FILE.json");
+    app->add_option("--mesh", options.mesh, "name of the mesh; default: the largest of the file")
+        ->type_name("NAME");
+    app->add_flag("--gpu", options.gpu, "compute on the GPU, to the same maps");
+    add_assignments(*app, options.assignments);
+    app->footer(fmt::format(
+        "KIND is one of\n{}\n"
+        "PATH of --set is a field of the recipe, VALUE is JSON or a bare word.\n"
+        "furrows writes NAME_height.png, 16 bits gray, white is skin without a furrow, or\n"
+        "NAME_height.exr with both fields apart as first.Y and second.Y; and NAME_normal.png, "
+        "green up.\n"
+        "Its recipe has the fields of the image kind furrows (limn components furrows), as\n"
+        "  {{\"preset\": \"hand\", \"projection\": \"uv\", \"arrows\": [\n"
+        "    {{\"at\": [0, 1, 0], \"first\": [0, 1, 0], \"second\": [1, 0, 0], \"weight\": 1}}]}}\n"
+        "photometric reads a file that says\n"
+        "  {{\"shots\": [{{\"image\": \"a.png\", \"to_light\": [1, 0, 1]}}, ...], \"shadow\": "
+        "0.02}}\n"
+        "of at least three photographs of a matt surface from one place, each in one of equally\n"
+        "bright lights, and writes NAME_normal.png and NAME_albedo.png.\n"
+        "strain_model reads a file that says\n"
+        "  {{\"face\": \"face.glb\", \"rest\": \"rest.png\", \"poses\": [\n"
+        "    {{\"image\": \"smile.png\", \"shapes\": [{{\"name\": \"mouthSmile_L\"}}, ...]}}, "
+        "...]}}\n"
+        "of normal maps of the face in expressions, and writes NAME.exr, the wrinkle texture of a\n"
+        "wrinkle_surface with the method model.\n"
+        "Files are written under a temporary name and renamed when complete.\n\n"
+        "Examples:\n"
+        "  limn bake photometric shots.json -o face.png\n"
+        "  limn bake strain_model poses.json -o wrinkles.exr\n"
+        "  limn bake furrows model.glb -o skin.png --set projection=cylinder\n"
+        "  limn bake furrows model.glb -o skin.exr --set projection=planar --set preset=hand",
+        kinds));
+    return {app, [&options] { return run_bake(options); }};
+}
+
+Command add_info(CLI::App& program, std::string& file) {
+    CLI::App* app = program.add_subcommand(
+        "info", "Print the contents of a file; for a scene, the number of shader programs, too");
+    app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .png, .exr ...")
+        ->type_name("FILE")
+        ->required();
+    app->footer(
+        "A .csv with the answers of viewers to the level relax: their counts beside those of the "
+        "test's source.\n\nExample:\n  limn info model.glb");
+    return {app, [&file] { return run_info(file); }};
+}
+
+Command add_import(CLI::App& program, ImportOptions& options) {
+    CLI::App* app = program.add_subcommand("import", "Convert outside data to glTF");
+    app->add_option("kind", options.kind, "of the data: ict-facekit, makehuman or markers")
+        ->type_name("KIND")
+        ->required()
+        ->check(CLI::IsMember({"ict-facekit", "makehuman", "markers"}));
+    app->add_option("in", options.in, "folder with the data, or the .trc file of markers")
+        ->type_name("IN")
+        ->required();
+    app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
+    app->add_flag(
+        "--head", options.head, "markers: by name those of the head that is made here, see below");
+    app->footer(
+        "ict-facekit: the neutral face of ICT FaceKit with all expressions in its folder "
+        "FaceXModel;\n"
+        "where one half of an expression is missing, the other is mirrored.\n"
+        "makehuman: the base mesh of MakeHuman with its expression units, the mean of the young\n"
+        "builds, the default rig and eyes, from base.obj, targets, rigs and proxies.\n"
+        "Shapes keep their names and know their FACS action units; skin has regions that wrinkle,\n"
+        "with the direction across the folds.\n"
+        "markers: recorded markers of a face, a TRC file whose first frame is the face at rest;\n"
+        "those called head... take the head's motion out, gaps are filled. A face follows it by\n"
+        "\"surface_binding\": {\"surface\": \"take\", \"method\": \"patches\"}, where the entity "
+        "take\n"
+        "has the file as its gltf. With --head, names are those of the head's own surface, a mesh\n"
+        "of part \"markers\": mouth9_90_M is on its loop 9, at 90 degrees, in the middle; the\n"
+        "face may be another, and markers that it lacks go with their neighbors.\n\n"
+        "Examples:\n"
+        "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
+        "  limn import makehuman makehuman -o person.glb\n"
+        "  limn import markers take.trc -o take.glb\n"
+        "  limn import markers take.trc --head -o take.glb\n"
+        "  limn play face.glb");
+    return {app, [&options] { return run_import(options); }};
+}
+
+Command add_speak(CLI::App& program, SpeakOptions& options) {
+    CLI::App* app = program.add_subcommand("speak", "Make a face say a text, with its sound");
+    app->add_option("text", options.text, "what it says, English")->required();
+    app->add_option("--face", options.face, "face whose shapes have FACS action units")
+        ->type_name("FILE.glb")
+        ->required();
+    app->add_option("-o,--out", options.out, "file to write; sound goes beside it as .wav")
+        ->type_name("FILE.glb")
+        ->required();
+    app->add_option("--voice", options.voice, "of espeak-ng (en, en-us, en-gb-scotland ...)")
+        ->capture_default_str();
+    add_assignments(
+        *app, options.expression, "--express",
+        "weight of a shape or action unit while speaking, as AU12=0.5");
+    app->add_option("--fragments", options.fragments, "move as these recordings do, not by rules")
+        ->type_name("FILE.json");
+    app->add_option("--record", options.record, "add the utterance to these recordings")
+        ->type_name("FILE.json");
+    app->add_flag("--silent", options.silent, "spell by rules, without espeak-ng and sound");
+    app->add_option("--seed", options.seed, "of blinks, gaze and the head")->capture_default_str();
+    app->footer(
+        "The clip comes first in a copy of the face: mouth, blinks, gaze, and the head where a\n"
+        "node is named so. Sounds and their times come from the program espeak-ng; without it,\n"
+        "from spelling rules and mean durations. Neighboring sounds shape each other\n"
+        "(dominance functions of Cohen and Massaro 1993).\n\n"
+        "Examples:\n"
+        "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
+        "  limn speak \"The time is exactly one.\" --face face.glb -o clock.glb\n"
+        "  limn speak \"Hello!\" --face face.glb -o hello.glb --express AU12=0.4 --express "
+        "AU2=0.5\n"
+        "  limn play clock.glb");
+    return {app, [&options] { return run_speak(options); }};
+}
+
+Command add_levels(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("levels", "List the levels");
+    app->footer("Example:\n  limn levels");
+    return {app, [] { return run_levels(); }};
+}
+
+Command add_shows(CLI::App& program, std::string& id) {
+    CLI::App* app =
+        program.add_subcommand("shows", "List the techniques that levels show, on and off");
+    app->add_option("id", id, "of a technique: print how to see it; default: list all")
+        ->type_name("ID");
+    app->footer("Examples:\n"
+                "  limn shows\n"
+                "  limn shows water.fresnel");
+    return {app, [&id] { return run_shows(id); }};
+}
+
+struct ComponentsOptions {
+    std::string name;
+    bool schema = false;
+    bool all = false;
+};
+
+Command add_components(CLI::App& program, ComponentsOptions& options) {
+    CLI::App* app = program.add_subcommand(
+        "components", "List what levels are made of, with fields, units, ranges and defaults");
+    CLI::Option* name = app->add_option(
+                               "name", options.name,
+                               "of a component, resource, \"material\", \"path\", or what meshes "
+                               "and images are made by; default: list all")
+                            ->type_name("NAME");
+    app->add_flag("--schema", options.schema, "print the JSON Schema of a level file instead")
+        ->excludes(name);
+    app->add_flag("--all", options.all, "with those that systems keep for themselves");
+    app->footer("Examples:\n"
+                "  limn components\n"
+                "  limn components point_light\n"
+                "  limn components --schema > level.schema.json");
+    return {app, [&options] { return run_components(options.name, options.schema, options.all); }};
+}
+
+/// The options of all commands, at their defaults.
+struct AllOptions {
+    PlayOptions play;
+    RenderOptions render;
+    ViewOptions view;
+    BenchOptions bench;
+    HashOptions hash;
+    CompareOptions compare;
+    BakeOptions bake;
+    std::string info_file;
+    ImportOptions import_options;
+    SpeakOptions speak;
+    std::string show;
+    std::string checked;
+    ComponentsOptions components;
+};
+
+std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
+    return {
+        add_play(program, options.play),
+        add_render(program, options.render),
+        add_view(program, options.view),
+        add_bench(program, options.bench),
+        add_check(program, options.checked),
+        add_hash(program, options.hash),
+        add_quality(program),
+        add_compare(program, options.compare),
+        add_bake(program, options.bake),
+        add_info(program, options.info_file),
+        add_import(program, options.import_options),
+        add_speak(program, options.speak),
+        add_levels(program),
+        add_shows(program, options.show),
+        add_components(program, options.components)};
+}
+
+/// "limn render" for a parsed subcommand, else "limn".
+std::string command_name(const std::vector<Command>& commands) {
+    for (const Command& command : commands) {
+        if (command.app->parsed()) {
+            return "limn " + command.app->get_name();
+        }
+    }
+    return "limn";
+}
+
+/// If the first word is neither an option nor a command, prints an error with the nearest command.
+bool explain_unknown_command(std::string_view word, const std::vector<Command>& commands) {
+    std::vector<std::string> names;
+    for (const Command& command : commands) {
+        names.push_back(command.app->get_name());
+    }
+    if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) {
+        return false;
+    }
+    const std::string nearest = nearest_name(word, names);
+    const std::string hint = nearest.empty() ? "" : fmt::format(" (did you mean {}?)", nearest);
+    fmt::print(
+        stderr, "limn: found command \"{}\", expected one of {}{}\n", word, fmt::join(names, " "),
+        hint);
+    return true;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+    log_through_spdlog();
+    CLI::App program("Limn: a data-oriented ECS engine for game effects.", "limn");
+    program.get_formatter()->column_width(28);
+    program.set_version_flag("--version", "limn " LIMN_VERSION);
+    program.footer("limn COMMAND --help shows details and examples. Start with: limn play");
+    AllOptions options;
+    const std::vector<Command> commands = add_commands(program, options);
+    program.require_subcommand(0, 1);
+
+    if (argc < 2) {
+        fmt::print("{}", program.help());
+        return kDone;
+    }
+    if (explain_unknown_command(argv[1], commands)) {
+        return kWrongUsage;
+    }
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::Success& wanted) {  // --help, --version
+        return program.exit(wanted);
+    } catch (const CLI::Error& error) {
+        const std::string name = command_name(commands);
+        fmt::print(stderr, "{}: {} ({} --help)\n", name, one_line(error.what()), name);
+        return kWrongUsage;
+    }
+    for (const Command& command : commands) {
+        if (!command.app->parsed()) {
+            continue;
+        }
+        const Status status = command.run();
+        if (!status) {
+            fmt::print(stderr, "{}\n", printable_lines(status.error().message));
+            return kFailed;
+        }
+        return std::fflush(stdout) == 0 ? kDone : kFailed;
+    }
+    return kDone;
+}
+
+}  // namespace limn

@@ -1,0 +1,421 @@
+#include "content/app/commands/info_command.h"
+
+#include "content/app/commands/headless.h"
+#include "content/app/commands/trial_file.h"
+#include "content/game/game.h"
+#include "content/game/wrinkle_trial_system.h"
+#include "content/load/files/exr_file.h"
+#include "content/load/files/image_load.h"
+#include "content/load/level/level_hints.h"
+#include "content/load/scene_load.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/path.h"
+#include "ecs/components/skeleton.h"
+#include "ecs/components/surface.h"
+#include "ecs/field_access.h"
+#include "ecs/hierarchy.h"
+#include "ecs/reflect.h"
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kMaxLines = 40;         // of a list; the rest is only counted
+constexpr IVec2 kProgramsSize = {1280, 720};  // of the images that the programs are for
+
+/// The file name's extension in lower case: ".png".
+std::string extension_of(const std::string& path) {
+    const std::size_t dot = path.rfind('.');
+    std::string extension = dot == std::string::npos ? "" : path.substr(dot);
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    return extension;
+}
+
+void print_rest(std::size_t count) {
+    if (count > kMaxLines) {
+        fmt::print("    ... and {} more\n", count - kMaxLines);
+    }
+}
+
+/// "1 mesh", "2 meshes", "3 entities".
+std::string counted(std::size_t count, std::string_view what) {
+    if (count == 1) {
+        return fmt::format("1 {}", what);
+    }
+    if (what.ends_with('y')) {
+        return fmt::format("{} {}ies", count, what.substr(0, what.size() - 1));
+    }
+    return fmt::format("{} {}{}", count, what, what.ends_with("sh") ? "es" : "s");
+}
+
+/// Entities of the file, without what a model gets to be looked at.
+std::vector<Entity> own_entities(const World& world, const LoadedScene& scene) {
+    std::vector<Entity> own;
+    world.each_entity([&](Entity entity) {
+        if (!scene.model
+            || std::find(scene.model->added.begin(), scene.model->added.end(), entity)
+                   == scene.model->added.end()) {
+            own.push_back(entity);
+        }
+    });
+    std::sort(own.begin(), own.end(), [](Entity a, Entity b) { return a.index < b.index; });
+    return own;
+}
+
+std::string name_of_shape(const World& world, Entity entity) {
+    const auto* const name = world.find<Name>(entity);
+    return name != nullptr ? name->text : "(no name)";
+}
+
+void print_components(const World& world, std::span<const Entity> entities) {
+    std::map<std::string, std::size_t> counts;
+    for (const Entity entity : entities) {
+        for (const ComponentId id : world.components_of(entity)) {
+            if (!is_internal(component_info(id))) {
+                ++counts[component_info(id).name];
+            }
+        }
+    }
+    fmt::print("{}\n", counted(entities.size(), "entity"));
+    for (const auto& [name, count] : counts) {
+        fmt::print("    {:>8}  {}\n", count, name);
+    }
+}
+
+/// A heading and a line for each; nothing where there are none.
+void print_list(const char* what, const std::vector<std::string>& lines) {
+    if (lines.empty()) {
+        return;
+    }
+    fmt::print("{}\n", counted(lines.size(), what));
+    for (std::size_t i = 0; i < std::min(lines.size(), kMaxLines); ++i) {
+        fmt::print("    {}\n", lines[i]);
+    }
+    print_rest(lines.size());
+}
+
+void print_cameras_and_lights(const World& world, std::span<const Entity> entities) {
+    std::vector<std::string> cameras;
+    std::vector<std::string> lights;
+    for (const Entity entity : entities) {
+        const std::string name = name_of_shape(world, entity);
+        if (const auto* const camera = world.find<Camera>(entity)) {
+            cameras.push_back(fmt::format("{:>6.1f} deg  {}", degrees(camera->fov_y), name));
+        }
+        if (const auto* const light = world.find<DirectionalLight>(entity)) {
+            lights.push_back(fmt::format("directional  {:>8.4g} lx  {}", light->illuminance, name));
+        }
+        if (const auto* const light = world.find<PointLight>(entity)) {
+            lights.push_back(fmt::format("point        {:>8.4g} cd  {}", light->intensity, name));
+        }
+        if (const auto* const light = world.find<SpotLight>(entity)) {
+            lights.push_back(fmt::format("spot         {:>8.4g} cd  {}", light->intensity, name));
+        }
+    }
+    print_list("camera", cameras);
+    print_list("light", lights);
+}
+
+/// Capacity, bytes and executor of each emitter, those of copies in one line, and the sums.
+void print_particles(const World& world, std::span<const Entity> entities) {
+    struct Budget {
+        std::size_t emitters = 0;
+        std::uint64_t capacity = 0;
+        std::uint64_t bytes = 0;
+    };
+    std::map<std::string, std::size_t> lines;  // to their places in `budgets`
+    std::vector<std::pair<std::string, Budget>> budgets;
+    Budget sums[2];
+    for (const Entity entity : entities) {
+        const auto* const emitter = world.find<ParticleEmitter>(entity);
+        if (emitter == nullptr) {
+            continue;
+        }
+        const bool gpu = runs_on_gpu(*emitter);
+        std::string name = name_of_shape(world, entity);
+        name = fmt::format("{}  {}", gpu ? "gpu" : "cpu", name.substr(0, name.find('[')));
+        const auto [line, is_new] = lines.try_emplace(name, budgets.size());
+        if (is_new) {
+            budgets.emplace_back(name, Budget{});
+        }
+        for (Budget* const budget : {&budgets[line->second].second, &sums[gpu ? 1 : 0]}) {
+            ++budget->emitters;
+            budget->capacity += emitter->capacity;
+            budget->bytes += particle_bytes(*emitter);
+        }
+    }
+    const auto text = [](const Budget& budget) {
+        return fmt::format(
+            "{:>4}  {:>8} particles  {:>9.1f} KiB", budget.emitters, budget.capacity,
+            static_cast<double>(budget.bytes) / 1024);
+    };
+    std::vector<std::string> rows;
+    for (const auto& [name, budget] : budgets) {
+        rows.push_back(fmt::format("{}  {}", text(budget), name));
+    }
+    if (rows.empty()) {
+        return;
+    }
+    fmt::print("{}\n", counted(sums[0].emitters + sums[1].emitters, "particle emitter"));
+    for (std::size_t i = 0; i < std::min(rows.size(), kMaxLines); ++i) {
+        fmt::print("    {}\n", rows[i]);
+    }
+    print_rest(rows.size());
+    fmt::print("    {}  cpu, in all\n    {}  gpu, in all\n", text(sums[0]), text(sums[1]));
+}
+
+/// Names, children indented below their parents.
+void print_hierarchy(World& world, std::span<const Entity> entities) {
+    struct Open {
+        Entity entity;
+        std::size_t depth = 0;
+    };
+    std::vector<Open> open;
+    for (const Entity entity : entities) {
+        if (parent_of(world, entity).is_null()) {
+            open.push_back({entity});
+        }
+    }
+    std::reverse(open.begin(), open.end());
+    if (!entities.empty()) {
+        fmt::print("hierarchy\n");
+    }
+    for (std::size_t i = 0; i < kMaxLines && !open.empty(); ++i) {
+        const auto [entity, depth] = open.back();
+        open.pop_back();
+        fmt::print("    {:{}}{}\n", "", 2 * depth, name_of_shape(world, entity));
+        const std::span<const Entity> children = children_of(world, entity);
+        for (auto child = children.rbegin(); child != children.rend(); ++child) {
+            open.push_back({*child, depth + 1});
+        }
+    }
+    print_rest(entities.size());
+}
+
+/// Length, and how many of its joins are smooth: in direction and speed, in direction alone, or
+/// not.
+void print_path(const PathData& path) {
+    std::array<int, 4> joins = {};
+    for (const BezierJoin join : path_joins(path)) {
+        ++joins[static_cast<std::size_t>(join)];
+    }
+    fmt::print(
+        "path of {:.1f} m, {}; joins: {} of one speed, {} of one direction, {}  {}\n",
+        path.length(), counted(path.segments.size(), "curve"),
+        joins[static_cast<std::size_t>(BezierJoin::Speed)],
+        joins[static_cast<std::size_t>(BezierJoin::Direction)],
+        counted(
+            static_cast<std::size_t>(joins[static_cast<std::size_t>(BezierJoin::Position)]),
+            "corner"),
+        path.name);
+}
+
+/// A factor of a texture is rarely what one sees.
+std::string factor_text(float factor, const TextureSlot& texture) {
+    return texture.image.index != kNoAsset && factor > 0 ? "mapped" : fmt::format("{:.2f}", factor);
+}
+
+/// `meshes` and `materials`: those of the file.
+void print_assets(
+    const Assets& assets, std::span<const MeshData> meshes, std::span<const Material> materials) {
+    std::size_t triangles = 0;
+    std::size_t vertices = 0;
+    for (const MeshData& mesh : meshes) {
+        triangles += mesh.indices.size() / 3;
+        vertices += mesh.positions.size();
+    }
+    fmt::print(
+        "{}, {}, {} vertices\n", counted(meshes.size(), "mesh"), counted(triangles, "triangle"),
+        vertices);
+    for (std::size_t i = 0; i < std::min(meshes.size(), kMaxLines); ++i) {
+        const MeshData& mesh = meshes[i];
+        const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
+        fmt::print(
+            "    {:>8} triangles  {:.3g} x {:.3g} x {:.3g} m  {}\n", mesh.indices.size() / 3,
+            size.x, size.y, size.z, mesh.name);
+    }
+    print_rest(meshes.size());
+
+    const FieldInfo& shading = *find_field(component_info<Material>().fields, "shading");
+    fmt::print("{}\n", counted(materials.size(), "material"));
+    for (std::size_t i = 0; i < std::min(materials.size(), kMaxLines); ++i) {
+        const Material& material = materials[i];
+        const std::string clear = material.transmission > 0
+                                      ? fmt::format("transmission {:.2f}  ", material.transmission)
+                                      : "";
+        fmt::print(
+            "    {:<5}  metalness {:<6}  roughness {:<6}  {}{}\n",
+            shading.values[static_cast<std::size_t>(material.shading)],
+            factor_text(material.metalness, material.metal_rough_texture),
+            factor_text(material.roughness, material.metal_rough_texture), clear, material.name);
+    }
+    print_rest(materials.size());
+
+    fmt::print("{}\n", counted(assets.images.size(), "image"));
+    for (std::size_t i = 0; i < std::min(assets.images.size(), kMaxLines); ++i) {
+        const ImageData& image = assets.images[i];
+        fmt::print("    {:>5} x {:<5}  {}\n", image.width, image.height, image.name);
+    }
+    print_rest(assets.images.size());
+
+    for (const PathData& path : assets.paths) {
+        print_path(path);
+    }
+    for (const SkeletonData& skeleton : assets.skeletons) {
+        fmt::print("skeleton of {}  {}\n", counted(skeleton.joints.size(), "joint"), skeleton.name);
+        for (std::size_t i = 0; i < std::min(skeleton.joints.size(), kMaxLines); ++i) {
+            fmt::print("    {}\n", skeleton.joints[i].empty() ? "(no name)" : skeleton.joints[i]);
+        }
+        print_rest(skeleton.joints.size());
+    }
+    std::vector<std::string> skins;
+    for (const SkinData& skin : assets.skins) {
+        skins.push_back(fmt::format("{:>8} joints  {}", skin.joints.size(), skin.name));
+    }
+    print_list("skin", skins);
+    if (!assets.clips.empty()) {
+        fmt::print("{}\n", counted(assets.clips.size(), "clip"));
+    }
+    for (std::size_t i = 0; i < std::min(assets.clips.size(), kMaxLines); ++i) {
+        const ClipData& clip = assets.clips[i];
+        fmt::print("    {:>8.2f} s  {} numbers  {}\n", clip.duration, clip_size(clip), clip.name);
+    }
+    print_rest(assets.clips.size());
+}
+
+/// Needs OpenGL, which need not be there.
+void print_programs(World& world, Entity camera) {
+    Result<HeadlessRenderer> headless = create_headless_renderer();
+    if (!headless) {
+        fmt::print("shader programs not counted: {}\n", headless.error().message);
+        return;
+    }
+    start_world(world, add_game_systems);
+    const int programs = warm_up_world(*headless, world, camera, kProgramsSize);
+    fmt::print("{}\n", counted(static_cast<std::size_t>(programs), "shader program"));
+}
+
+Status print_scene(const std::string& file) {
+    World world;
+    register_game_components();
+    const Result<LoadedScene> scene = load_scene(world, file);
+    if (!scene) {
+        return scene.error();
+    }
+    fmt::print(
+        "{}{}{}\n{}\n", scene->name, scene->title.empty() ? "" : ": ", scene->title, scene->path);
+    if (!is_empty(scene->bounds)) {
+        const Vec3 size = 2.0f * half_extent(scene->bounds);
+        const Vec3 middle = center(scene->bounds);
+        fmt::print(
+            "{:.3g} x {:.3g} x {:.3g} m about ({:.3g}, {:.3g}, {:.3g})\n", size.x, size.y, size.z,
+            middle.x, middle.y, middle.z);
+    }
+    if (scene->duration > 0.0) {
+        fmt::print("camera path of {:.1f} s\n", scene->duration);
+    }
+    const std::vector<Entity> entities = own_entities(world, *scene);
+    print_components(world, entities);
+    print_cameras_and_lights(world, entities);
+    print_particles(world, entities);
+    print_hierarchy(world, entities);
+    const Assets& assets = world.resource<Assets>();
+    const ModelView view = scene->model.value_or(ModelView{});
+    print_assets(
+        assets, std::span(assets.meshes).first(assets.meshes.size() - view.meshes),
+        std::span(assets.materials).first(assets.materials.size() - view.materials));
+    print_programs(world, scene->camera);
+    return Done{};
+}
+
+Status print_exr(const std::string& file) {
+    const Result<ExrImage> image = read_exr(file);
+    if (!image) {
+        return image.error();
+    }
+    fmt::print(
+        "{}\nOpenEXR, {} x {} pixels, {}\n", file, image->width, image->height,
+        counted(image->channels.size(), "channel"));
+    const ExrWindow& display = image->display;
+    if (display.x != image->x || display.y != image->y || display.width != image->width
+        || display.height != image->height) {
+        fmt::print(
+            "shown: {} x {} pixels from ({}, {}), of which there are {} x {} from ({}, {})\n",
+            display.width, display.height, display.x, display.y, image->width, image->height,
+            image->x, image->y);
+    }
+    if (const std::string shown = describe_shown(*image); !shown.empty()) {
+        fmt::print("{}\n", shown);
+    }
+    for (const ExrChannel& channel : image->channels) {
+        float smallest = INFINITY;
+        float largest = -INFINITY;
+        for (const float value : channel.values) {
+            smallest = std::min(smallest, value);
+            largest = std::max(largest, value);
+        }
+        fmt::print(
+            "    {:<16} {:<5} {:.6g} .. {:.6g}\n", channel.name, channel.half ? "half" : "float",
+            smallest, largest);
+    }
+    for (const auto& [name, value] : image->metadata) {
+        fmt::print("    {} = {}\n", name, value);
+    }
+    return Done{};
+}
+
+Status print_image(const std::string& file) {
+    const Result<ImageData> image = load_image(file, true);
+    if (!image) {
+        return image.error();
+    }
+    static constexpr const char* kFormats[] = {"8 bit", "half", "float"};
+    fmt::print(
+        "{}\n{} x {} pixels, {}\n", file, image->width, image->height,
+        kFormats[static_cast<std::size_t>(image->format)]);
+    return Done{};
+}
+
+/// Answers of viewers to the level relax.
+Status print_trials(const std::string& file) {
+    const std::vector<TrialRecord> records = LIMN_TRY(load_trials(file));
+    fmt::print("{} viewers\n{}", records.size(), describe_tally(tally_trials(records)));
+    return Done{};
+}
+
+}  // namespace
+
+Status run_info(const std::string& file) {
+    const std::string extension = extension_of(file);
+    if (extension == ".exr") {
+        return print_exr(file);
+    }
+    if (extension == ".csv") {
+        return print_trials(file);
+    }
+    static constexpr std::array<std::string_view, 6> kImages = {".png", ".jpg",  ".jpeg",
+                                                                ".bmp", ".webp", ".hdr"};
+    if (std::find(kImages.begin(), kImages.end(), extension) != kImages.end()) {
+        return print_image(file);
+    }
+    return print_scene(file);
+}
+
+}  // namespace limn

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "content/app/commands/command_values.h"
+#include "content/app/commands/stage.h"
+#include "content/load/level/level_show.h"
+#include "content/load/model_view.h"
+#include "render/gpu/device_caps.h"
+#include "render/render_frame.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+/// `limn render`: renders images without a window.
+struct RenderOptions {
+    std::string scene;  ///< level name, level file or glTF; empty: the first level with the show
+    std::string out;    ///< .png, .exr; with %04d in the name for a range
+    IVec2 size = {1280, 720};
+    std::optional<double> time;        ///< of a single image [s]; default: the show's, or 0
+    std::optional<FrameRange> frames;  ///< frame n shows time n / fps
+    double fps = 60.0;
+    std::optional<std::uint64_t> seed;    ///< overrides the level's
+    int samples = 0;                      ///< per pixel; 0: effects as played, antialiased
+    int edge_samples = 16;                ///< antialiasing samples of effects as played
+    std::vector<std::string> aovs;        ///< additional EXR layers
+    std::vector<Assignment> assignments;  ///< applied after loading, in order
+    std::string camera;                   ///< by name; empty = the level's
+    ShowChoice show;                      ///< what to show of the level
+    std::optional<gpu::Profile> profile;  ///< empty = by the device
+    ModelViewOptions model;               ///< of a model by itself
+    bool quiet = false;                   ///< prints nothing but errors and warnings
+};
+
+/// One frame at `time` as `limn play` shows it, antialiased. Draws first what it depends on: the
+/// first frame where probes remember what they saw, and the frames before it that motion blur
+/// averages or temporal antialiasing accumulates.
+[[nodiscard]] FrameOutput draw_still(
+    Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options, double time);
+
+/// Rejects options that exclude each other and invalid output names; errors are wrong usage.
+[[nodiscard]] Status check_render_options(const RenderOptions& options);
+
+/// Writes every image under a temporary name and renames it, so an interrupted run leaves only
+/// complete files. On a terminal shows what goes on; at last prints a line with the file, its size
+/// and the time it took.
+[[nodiscard]] Status run_render(const RenderOptions& options);
+
+}  // namespace limn

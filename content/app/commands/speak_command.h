@@ -1,0 +1,29 @@
+#pragma once
+
+#include "content/app/commands/command_values.h"
+#include "ecs/base/result.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+struct SpeakOptions {
+    std::string text;
+    std::string face;          ///< .gltf or .glb with shapes that have action units
+    std::string out;           ///< .glb; sound goes to the same name as .wav
+    std::string voice = "en";  ///< of espeak-ng
+    std::string fragments;     ///< library of recordings whose motion is used; empty: by rules
+    std::string record;        ///< library to which the utterance is added; empty: none
+    std::vector<Assignment> expression;  ///< shapes or action units and their weights
+    bool silent = false;                 ///< by the rules, without espeak-ng and sound
+    std::uint64_t seed = 1;              ///< of blinks, gaze and head
+};
+
+/// `limn speak`: a face that says a text, as a clip of a copy of its file, with the sound beside.
+/// Without espeak-ng the text is spelled by rules, without sound. Every file appears complete or
+/// not at all.
+[[nodiscard]] Status run_speak(const SpeakOptions& options);
+
+}  // namespace limn

@@ -1,0 +1,351 @@
+#include "content/app/panels/edit_json.h"
+
+#include "content/load/files/json_document.h"
+#include "content/load/level/level_hints.h"
+#include "content/load/level/set_value.h"
+#include "ecs/components/gltf_source.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+namespace limn {
+namespace {
+
+/// The member `key` of an object, added as an empty object where it has none.
+JsonValue& member(JsonValue& object, const std::string& key) {
+    const auto found =
+        std::find_if(object.members.begin(), object.members.end(), [&](const JsonMember& m) {
+            return m.key == key;
+        });
+    return found != object.members.end()
+               ? found->value
+               : object.members.emplace_back(JsonMember{key, {}, json_object()}).value;
+}
+
+void set_member(JsonValue& object, const std::string& key, JsonValue value) {
+    member(object, key) = std::move(value);
+}
+
+const Name* name_of(const World& world, Entity entity) {
+    const Name* const name = world.alive(entity) ? world.find<Name>(entity) : nullptr;
+    return name != nullptr && !name->text.empty() ? name : nullptr;
+}
+
+/// `object` without the members that are equal in `base`.
+JsonValue without_equal(JsonValue object, const JsonValue& base) {
+    std::erase_if(object.members, [&](const JsonMember& m) {
+        const JsonValue* const other = base.find(m.key);
+        return other != nullptr && write_json(*other) == write_json(m.value);
+    });
+    return object;
+}
+
+/// The member of an array of entities with this name, added where it has none.
+JsonValue& named(JsonValue& entities, std::string_view name) {
+    for (JsonValue& entity : entities.items) {
+        if (entity["name"].text == name) {
+            return entity;
+        }
+    }
+    JsonValue& added = entities.items.emplace_back(json_object());
+    set_member(added, "name", json_of(name));
+    return added;
+}
+
+/// The entity of a level that placed the file of a node, or the root of a file by itself.
+Entity source_of(const World& world, Entity node) {
+    while (!node.is_null() && !world.has<GltfSource>(node)) {
+        node = parent_of(world, node);
+    }
+    return node;
+}
+
+/// Whether there are assets or entities among the fields: those of a glTF file have no names in a
+/// level.
+bool names_others(const std::vector<FieldInfo>& fields) {
+    return std::any_of(fields.begin(), fields.end(), [](const FieldInfo& field) {
+        return field.type == FieldType::Asset || field.type == FieldType::Entity
+               || names_others(field.fields);
+    });
+}
+
+/// {"name": ..., "gltf": ..., "nodes": {NODE: components}}: how a level changes a node of a file.
+std::string node_as_json(const World& world, Entity node, JsonValue components) {
+    const Entity source = source_of(world, node);
+    JsonValue object = json_object();
+    if (source.is_null()) {
+        return write_json(components);
+    }
+    const Name* const owner = name_of(world, source);
+    if (owner != nullptr && !world.has<FromGltf>(source)) {
+        set_member(object, "name", json_of(std::string_view(owner->text)));
+    }
+    set_member(object, "gltf", json_of(std::string_view(world.get<const GltfSource>(source).file)));
+    const Name* const name = name_of(world, node);
+    if (name == nullptr) {
+        return write_json(object) + "  // this node has no name, by which a level could change it";
+    }
+    set_member(member(object, "nodes"), name->text, std::move(components));
+    return write_json(object);
+}
+
+/// Whether `repeat` made the entity.
+bool is_copy(const Name& name) {
+    const std::size_t open = name.text.rfind('[');
+    return open != std::string::npos && open > 0 && name.text.ends_with(']');
+}
+
+/// "post" of its copy "post[2]".
+std::string_view repeated_name(const Name& copy) {
+    return std::string_view(copy.text).substr(0, copy.text.rfind('['));
+}
+
+/// The entity itself or the nearest ancestor that `repeat` made; null where there is none.
+Entity nearest_copy(const World& world, Entity entity) {
+    for (; !entity.is_null(); entity = parent_of(world, entity)) {
+        const Name* const name = name_of(world, entity);
+        if (name != nullptr && is_copy(*name)) {
+            break;
+        }
+    }
+    return entity;
+}
+
+/// The entity in whose "nodes" a level changes this one: the one that placed a node of a file, or
+/// the outermost parent below one that placed a file.
+Entity owner_of(const World& world, Entity entity) {
+    for (Entity parent = parent_of(world, entity); !parent.is_null();
+         parent = parent_of(world, entity)) {
+        if (world.has<FromGltf>(entity) && !world.has<FromGltf>(parent)) {
+            return parent;
+        }
+        if (!world.has<FromGltf>(entity) && world.has<GltfSource>(parent)) {
+            return entity;
+        }
+        entity = parent;
+    }
+    return entity;
+}
+
+/// Where the components of an entity are in a patch of a level; null where a level has no words for
+/// it. A copy is changed when it begins to play.
+JsonValue* patched(
+    const World& world, JsonValue& entities, JsonValue& copies, Entity entity, const Name& name) {
+    if (!nearest_copy(world, parent_of(world, entity)).is_null()) {
+        return nullptr;
+    }
+    const Entity owner = owner_of(world, entity);
+    const Name* const outer = name_of(world, owner);
+    if (owner == entity) {
+        return is_copy(name) ? &member(copies, name.text) : &named(entities, name.text);
+    }
+    if (outer == nullptr || world.has<FromGltf>(owner)) {
+        return &named(entities, name.text);
+    }
+    return is_copy(name) ? nullptr
+                         : &member(member(named(entities, outer->text), "nodes"), name.text);
+}
+
+/// An entity and its children, as a level has them.
+class CopiedTree {
+  public:
+    CopiedTree(const World& world, const Hierarchy& tree, Entity root)
+        : world_(world), tree_(tree), provider_(make_name_provider(world)) {
+        add_names(root);
+        provider_.entity = [this, others = provider_.entity](Entity entity) {
+            const auto own = names_.find(entity);
+            return own != names_.end() ? own->second : others(entity);
+        };
+    }
+    CopiedTree(const CopiedTree&) = delete;
+    CopiedTree& operator=(const CopiedTree&) = delete;
+
+    /// Of a node of a glTF file, only its components.
+    [[nodiscard]] JsonValue object_of(Entity entity) const {
+        JsonValue object = json_object();
+        const bool is_node = world_.has<FromGltf>(entity);
+        if (const auto name = names_.find(entity); name != names_.end()) {
+            set_member(object, "name", json_of(std::string_view(name->second)));
+        }
+        if (const auto* const source = world_.find<GltfSource>(entity);
+            source != nullptr && !is_node) {
+            set_member(object, "gltf", json_of(std::string_view(source->file)));
+        }
+        for (const ComponentId id : world_.components_of(entity)) {
+            const ComponentInfo& info = component_info(id);
+            if (!info.is_registered || !info.saved || is_internal(info)
+                || info.id
+                       == component_id<
+                           Name> || info.id == component_id<Parent> || (is_node && names_others(info.fields))) {
+                continue;
+            }
+            const AnyComponent value = AnyComponent::read(world_, entity, info);
+            JsonValue json = write_component(info, value.data(), provider_);
+            if (info.defaults != nullptr && !is_node) {  // a file may have others than the defaults
+                json = without_equal(std::move(json), write_component(info, info.defaults, {}));
+            }
+            set_member(object, info.name, std::move(json));
+        }
+        JsonValue children = json_array();
+        for (const Entity child : children_of(entity)) {
+            children.items.push_back(object_of(child));
+        }
+        if (!children.items.empty()) {
+            set_member(object, "children", std::move(children));
+        }
+        return object;
+    }
+
+  private:
+    /// Those that a level has to say, in order: what a glTF file brings is in that.
+    [[nodiscard]] std::vector<Entity> children_of(Entity entity) const {
+        std::vector<Entity> children;
+        for (const Entity child : tree_.children_of(entity)) {
+            if (!world_.has<FromGltf>(entity) && !world_.has<FromGltf>(child)) {
+                children.push_back(child);
+            }
+        }
+        return children;
+    }
+
+    /// Two instances of a prefab have children of the same names, which one level cannot: "glow"
+    /// and "glow 2".
+    void add_names(Entity entity) {
+        const Name* const name = name_of(world_, entity);
+        if (name != nullptr && !world_.has<FromGltf>(entity)) {
+            std::string own = name->text;
+            for (int i = 2; !used_.insert(own).second; ++i) {
+                own = fmt::format("{} {}", name->text, i);
+            }
+            names_[entity] = std::move(own);
+        }
+        for (const Entity child : children_of(entity)) {
+            add_names(child);
+        }
+    }
+
+    const World& world_;
+    const Hierarchy& tree_;
+    NameProvider provider_;
+    std::unordered_map<Entity, std::string> names_;
+    std::unordered_set<std::string> used_;
+};
+
+/// What the value was before the first of its edits.
+const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
+    const auto same = [&](const Edit& other) {
+        const auto info = [](const Edit& e) {
+            return &(e.before.is_empty() ? e.after.info() : e.before.info());
+        };
+        return other.part == edit.part && other.entity == edit.entity
+               && other.material == edit.material && info(other) == info(edit);
+    };
+    return *std::find_if(edits.begin(), edits.end(), same);
+}
+
+}  // namespace
+
+std::string component_as_json(const World& world, const ComponentInfo& info, const void* value) {
+    return '"' + info.name
+           + "\": " + write_json(write_component(info, value, make_name_provider(world)));
+}
+
+std::string entity_as_json(World& world, Entity entity) {
+    JsonValue object = CopiedTree(world, hierarchy(world), entity).object_of(entity);
+    return world.has<FromGltf>(entity) ? node_as_json(world, entity, std::move(object))
+                                       : write_json(object);
+}
+
+std::string edit_note(const World& world, Entity entity) {
+    const Entity copy = nearest_copy(world, entity);
+    const Name* const name = name_of(world, copy);
+    if (name == nullptr) {
+        return name_of(world, entity) == nullptr
+                   ? "has no name: its edits cannot be saved, name it in its file"
+                   : "";
+    }
+    const std::string_view repeated = repeated_name(*name);
+    std::size_t copies = 0;
+    world.query<const Name>().each([&](Entity one, const Name& other) {
+        copies += is_copy(other) && repeated_name(other) == repeated
+                          && parent_of(world, one) == parent_of(world, copy)
+                      ? 1
+                      : 0;
+    });
+    const bool is_saved = copy == entity && nearest_copy(world, parent_of(world, copy)).is_null()
+                          && owner_of(world, copy) == copy;
+    return fmt::format(
+        "{} of {} copies of {} by repeat: {}", copy == entity ? "one" : "part of one", copies,
+        repeated,
+        is_saved ? "its edits are saved as an event, to edit all copies edit the level's file"
+                 : "its edits cannot be saved, edit the prefab or the repeat in the level's file");
+}
+
+std::string edits_as_json(const World& world, std::span<const Edit> edits) {
+    JsonValue patch = json_object();
+    JsonValue entities = json_array();
+    JsonValue copies = json_object();
+    bool left_out = false;
+    const NameProvider names = make_name_provider(world);
+    for (const Edit& edit : edits) {
+        const ComponentInfo& info = edit.before.is_empty() ? edit.after.info() : edit.before.info();
+        const AnyComponent& first = first_edit_of(edits, edit).before;
+        const JsonValue before =
+            first.is_empty() ? json_object() : write_component(info, first.data(), names);
+        const auto edited = [&](const void* now) {
+            return without_equal(write_component(info, now, names), before);
+        };
+        switch (edit.part) {
+        case LevelPart::Component:
+            if (const Name* const name = name_of(world, edit.entity)) {
+                JsonValue value;
+                if (world.has(edit.entity, info.id)) {
+                    value = edited(AnyComponent::read(world, edit.entity, info).data());
+                }
+                if (JsonValue* const place = patched(world, entities, copies, edit.entity, *name)) {
+                    set_member(*place, info.name, std::move(value));
+                } else {
+                    left_out = true;
+                }
+            }
+            break;
+        case LevelPart::Resource:
+            if (const void* const now = world.find_resource(info.id)) {
+                set_member(member(patch, "resources"), info.name, edited(now));
+            }
+            break;
+        case LevelPart::Material: {
+            const auto* const assets = world.find_resource<Assets>();
+            if (assets != nullptr && edit.material < assets->materials.size()) {
+                const Material& now = assets->materials[edit.material];
+                set_member(member(patch, "materials"), now.name, edited(&now));
+            }
+            break;
+        }
+        }
+    }
+    if (!entities.items.empty()) {
+        set_member(patch, "entities", std::move(entities));
+    }
+    if (!copies.members.empty()) {
+        JsonValue event = json_object();
+        set_member(event, "at", json_of(0.0));
+        set_member(event, "set", std::move(copies));
+        set_member(patch, "events", json_array({std::move(event)}));
+    }
+    return write_json(patch)
+           + (left_out ? "  // without edits of children of copies: no level can name those" : "");
+}
+
+}  // namespace limn

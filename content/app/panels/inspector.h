@@ -1,0 +1,103 @@
+#pragma once
+
+#include "content/app/panels/field_widgets.h"
+#include "content/app/panels/storage_panel.h"
+#include "content/app/panels/undo.h"
+#include "ecs/any_component.h"
+#include "ecs/entity.h"
+
+#include <cstdint>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+namespace limn {
+
+class Hierarchy;
+struct HudStyle;
+class Schedule;
+class World;
+
+// F2: inspects and edits the world. Entities as a searchable tree, every component of the selected
+// one, resources, materials and ECS storage. Nothing is written until a value really changes, so
+// that inspecting bumps no change versions and causes no uploads.
+
+class Inspector {
+  public:
+    /// Draws the panel; edits are applied to `world` at once and recorded on the undo stack.
+    void draw(const HudStyle& style, World& world, const Schedule& schedule);
+
+    void select(Entity entity) {
+        selected_ = entity;
+        reveal_ = true;
+    }
+    [[nodiscard]] Entity selected() const { return selected_; }
+    [[nodiscard]] UndoStack& undo_stack() { return undo_; }
+    [[nodiscard]] const UndoStack& undo_stack() const { return undo_; }
+    /// Edits that leaving the level would lose.
+    [[nodiscard]] std::size_t edit_count() const { return undo_.undo_count(); }
+    /// What they changed, as a patch of the level (edit_json.h).
+    [[nodiscard]] std::string edits_as_json(const World& world) const;
+    /// Whether "Focus" was pressed since the last call.
+    [[nodiscard]] bool take_focus() { return std::exchange(focus_, false); }
+    /// Whether "Step" of an emitter was pressed since the last call.
+    [[nodiscard]] bool take_step() { return std::exchange(step_, false); }
+    /// Whether "Edit furrows" of the selected entity was pressed since the last call.
+    [[nodiscard]] bool take_furrows() { return std::exchange(furrows_, false); }
+    /// For a new world: clears the selection and the undo stack.
+    void reset();
+
+    bool open = false;
+
+  private:
+    struct Row {
+        Entity entity;
+        int depth = 0;
+        bool has_children = false;
+        bool collapsed = false;
+    };
+
+    void draw_entities(const HudStyle& style, World& world);
+    void draw_tree(const HudStyle& style, World& world);
+    void draw_selected(const HudStyle& style, World& world);
+    /// How many edits there are, and a button that copies them.
+    void draw_edits(const World& world);
+    void draw_component(const HudStyle& style, World& world, const ComponentInfo& info);
+    void draw_add_button(World& world);
+    /// Buttons and counts above the fields of a selected particle emitter.
+    void draw_emitter(World& world);
+    void draw_resources(const HudStyle& style, World& world);
+    void draw_materials(const HudStyle& style, World& world);
+
+    void rebuild_rows(World& world);
+    void add_rows(const Hierarchy& tree, Entity entity, int depth);
+    /// Edits a copy of the value; on a change, records it under the label `place` and applies it to
+    /// the world.
+    void edit_copy(
+        const HudStyle& style, World& world, Edit edit, const ComponentInfo& info,
+        const void* value, const std::string& place, const FoldedFields& folded = {});
+
+    UndoStack undo_;
+    Entity selected_;
+    Entity copied_;     ///< whose JSON was copied last
+    Entity noted_;      ///< of note_
+    std::string note_;  ///< what to know before editing the selected entity (edit_json.h)
+    std::string search_;
+    std::string resource_search_;
+    std::string material_search_;
+    bool focus_ = false;
+    bool step_ = false;
+    bool furrows_ = false;
+    std::vector<Row> rows_;
+    std::unordered_set<Entity> collapsed_;
+    double rows_built_at_ = -1.0;  // [s]
+    bool reveal_ = false;          // scroll to the selected entity
+    std::uint32_t material_ = 0;
+    Entity material_of_;              // whose material was shown when it was selected
+    std::uint64_t copied_edits_ = 0;  // revision of the edits that were copied last
+    StoragePanel storage_;
+    std::string dragging_;  // label of the edit that a drag extends
+};
+
+}  // namespace limn

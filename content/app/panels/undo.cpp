@@ -1,0 +1,149 @@
+#include "content/app/panels/undo.h"
+
+#include "ecs/components/surface.h"
+#include "ecs/world.h"
+
+#include <utility>
+
+namespace limn {
+namespace {
+
+bool apply_to_component(World& world, const Edit& edit, const AnyComponent& value) {
+    if (!world.alive(edit.entity)) {
+        return false;
+    }
+    if (value.is_empty()) {
+        const AnyComponent& other = edit.before.is_empty() ? edit.after : edit.before;
+        world.remove(edit.entity, other.info().id);
+    } else {
+        // Adding enables the component, but replacing its value must keep it disabled.
+        const ComponentId id = value.info().id;
+        const bool is_disabled = world.has(edit.entity, id) && !world.is_enabled(edit.entity, id);
+        world.add_copy(edit.entity, id, value.data());
+        if (is_disabled) {
+            world.set_enabled(edit.entity, id, false);
+        }
+    }
+    return true;
+}
+
+bool apply_to_resource(World& world, const AnyComponent& value) {
+    if (value.is_empty()) {
+        return false;
+    }
+    const ComponentInfo& info = value.info();
+    void* const resource = world.find_resource(info.id);
+    if (resource == nullptr) {
+        return false;
+    }
+    info.ops.destroy(resource, 1);
+    info.ops.construct_copy(resource, value.data(), 1);
+    return true;
+}
+
+bool apply_to_material(World& world, std::uint32_t index, const AnyComponent& value) {
+    Assets* const assets = world.find_resource<Assets>();
+    if (assets == nullptr || index >= assets->materials.size() || value.is_empty()) {
+        return false;
+    }
+    assets->materials[index] = value.as<Material>();
+    ++assets->material_version;
+    return true;
+}
+
+bool is_target(const Edit& edit, const LevelChange& change) {
+    const AnyComponent& value = edit.before.is_empty() ? edit.after : edit.before;
+    return edit.part == change.part && edit.entity == change.entity
+           && edit.material == change.material && &value.info() == &change.now.info();
+}
+
+}  // namespace
+
+bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value) {
+    switch (edit.part) {
+    case LevelPart::Component:
+        return apply_to_component(world, edit, value);
+    case LevelPart::Resource:
+        return apply_to_resource(world, value);
+    case LevelPart::Material:
+        return apply_to_material(world, edit.material, value);
+    }
+    return false;
+}
+
+void UndoStack::record(Edit edit) {
+    ++revision_;
+    edits_.resize(done_);
+    edits_.push_back(std::move(edit));
+    if (edits_.size() > kMaxEdits) {
+        edits_.erase(edits_.begin());
+    }
+    done_ = edits_.size();
+}
+
+void UndoStack::extend(AnyComponent after) {
+    ++revision_;
+    LIMN_CHECK(done_ > 0 && done_ == edits_.size());
+    edits_.back().after = std::move(after);
+}
+
+std::string UndoStack::undo(World& world) {
+    ++revision_;
+    while (done_ > 0) {
+        const Edit& edit = edits_[done_ - 1];
+        if (apply_edit_value(world, edit, edit.before)) {
+            --done_;
+            return edit.label;
+        }
+        --done_;
+        edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(done_));
+    }
+    return {};
+}
+
+std::string UndoStack::redo(World& world) {
+    ++revision_;
+    while (done_ < edits_.size()) {
+        const Edit& edit = edits_[done_];
+        if (apply_edit_value(world, edit, edit.after)) {
+            ++done_;
+            return edit.label;
+        }
+        edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(done_));
+    }
+    return {};
+}
+
+void UndoStack::adopt(std::span<const LevelChange> changes) {
+    ++revision_;
+    std::vector<Edit> kept;
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < edits_.size(); ++i) {
+        Edit& edit = edits_[i];
+        for (const LevelChange& change : changes) {
+            if (is_target(edit, change)) {
+                for (AnyComponent* const value : {&edit.before, &edit.after}) {
+                    if (!value->is_empty()) {
+                        adopt_change(change, *value);
+                    }
+                }
+            }
+        }
+        const bool has_effect =
+            edit.before.is_empty() || edit.after.is_empty() || !same_value(edit.before, edit.after);
+        if (has_effect) {
+            kept.push_back(std::move(edit));
+            done += i < done_ ? 1 : 0;
+        }
+    }
+    edits_ = std::move(kept);
+    done_ = done;
+}
+
+void UndoStack::clear() {
+    ++revision_;
+    edits_.clear();
+    done_ = 0;
+}
+
+}  // namespace limn

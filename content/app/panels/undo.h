@@ -1,0 +1,66 @@
+#pragma once
+
+#include "content/load/level/level_update.h"
+#include "ecs/any_component.h"
+#include "ecs/entity.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+class World;
+
+// Undo and redo of the inspector's edits. An edit holds one component of one entity (or a resource,
+// or a material of Assets) before and after; these are small, so whole values are kept. Dragging a
+// slider is one edit, however many frames it takes.
+
+struct Edit {
+    LevelPart part = LevelPart::Component;
+    Entity entity;               ///< of a Component
+    std::uint32_t material = 0;  ///< index into Assets
+    AnyComponent before;         ///< empty: the entity did not have it
+    AnyComponent after;          ///< empty: it was removed
+    std::string label;           ///< "lamp: point_light.intensity"
+};
+
+class UndoStack {
+  public:
+    static constexpr std::size_t kMaxEdits = 1000;  ///< older ones are dropped
+
+    /// Records an edit already applied. Clears the redo history.
+    void record(Edit edit);
+    /// Extends the last recorded edit: its final value is now `after`.
+    void extend(AnyComponent after);
+
+    /// Undoes the last edit and returns its label, or "" if there is none. Edits of destroyed
+    /// entities are dropped and skipped.
+    std::string undo(World& world);
+    /// Redoes the next edit, likewise.
+    std::string redo(World& world);
+
+    [[nodiscard]] std::size_t undo_count() const { return done_; }
+    /// Those that can be undone, oldest first.
+    [[nodiscard]] std::span<const Edit> done() const { return {edits_.data(), done_}; }
+    [[nodiscard]] std::size_t redo_count() const { return edits_.size() - done_; }
+    /// Changes whenever the world may have been edited.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    void clear();
+    /// After the level's files have changed: undo and redo keep what they say now. Drops the edits
+    /// that change nothing then, as those whose values were written into the files.
+    void adopt(std::span<const LevelChange> changes);
+
+  private:
+    std::vector<Edit> edits_;  // the first done_ are done, the others undone
+    std::size_t done_ = 0;
+    std::uint64_t revision_ = 0;
+};
+
+/// Sets the edit's target to the value, or removes the component if the value is empty. Returns
+/// false if the target no longer exists.
+bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value);
+
+}  // namespace limn

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "content/app/panels/hud.h"
+#include "content/app/player/player_camera.h"
+#include "ecs/components/input.h"
+#include "ecs/entity.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+class Player;
+class World;
+
+// The keys of the window, one table for what they do and for the help (F1), which lists those of
+// this level and of what is on screen, no others.
+
+/// What the player is doing.
+struct HelpState {
+    CameraMode camera = CameraMode::Level;
+    Entity level_camera = {};
+    bool drives = false;     ///< the level's camera follows something that the keys drive
+    bool throws = false;     ///< a click throws a stone
+    bool paths = false;      ///< there are paths to show
+    bool model = false;      ///< a model by itself
+    bool show = false;       ///< a technique with and without is loaded
+    bool selected = false;   ///< an entity is
+    bool edited = false;     ///< there is something to undo or to redo
+    bool inspector = false;  ///< its panel is open
+    bool furrows = false;    ///< the editor of furrows is open
+    bool skin = false;       ///< some skin can be pulled
+    bool panel = false;      ///< some panel is open
+};
+
+/// A key of the window: what it does and, for the help, when that is of use.
+struct PlayerKey {
+    const char* heading = "";
+    const char* label = "";  ///< "Ctrl Z"; empty: another key for the same, which no help lists
+    const char* text = "";   ///< neighbors with the same share a line
+    int key = 0;             ///< GLFW's code; 0: of the mouse, only listed
+    int modifiers = 0;       ///< GLFW_MOD_CONTROL, GLFW_MOD_SHIFT
+    void (*act)(Player& player) = nullptr;
+    bool (*shown)(const HelpState& state) = nullptr;  ///< nullptr: always
+    bool repeats = false;                             ///< while it is held
+};
+
+/// What a press does: the row with its modifiers, or else, as Shift also flies faster, the one
+/// without Shift; nullptr: nothing.
+[[nodiscard]] const PlayerKey* find_key(std::span<const PlayerKey> keys, int key, int modifiers);
+
+/// The group of actions that moves something else than the player's own camera; nullptr: none.
+[[nodiscard]] const ActionGroup* driving_group(const World& world, Entity camera);
+
+/// The keys of an action. Those that the level has given to actions of its own are not among them.
+[[nodiscard]] std::vector<std::string>
+free_keys(const ActionInfo& action, const Bindings* bindings);
+
+/// Headings and lines, in reading order: the level's actions, then `keys`.
+[[nodiscard]] std::vector<KeyHelp>
+player_help(const World& world, const HelpState& state, std::span<const PlayerKey> keys);
+
+/// "drive: W S accelerate, brake; A D steer ..." of the actions of a group.
+[[nodiscard]] std::string describe_group(const ActionGroup& group, const Bindings* bindings);
+
+}  // namespace limn

@@ -1,0 +1,255 @@
+// What the window of `limn play` shows: the level, of a show with and without, and the HUD.
+
+#include "content/app/panels/emitter_controls.h"
+#include "content/app/player/comparison_overlay.h"
+#include "content/app/player/outline.h"
+#include "content/app/player/path_overlay.h"
+#include "content/app/player/player.h"
+#include "content/bake/furrow_skin.h"
+#include "content/game/stones.h"
+#include "ecs/base/log.h"
+#include "ecs/components/rendering.h"
+#include "ecs/components/skin_pull.h"
+#include "ecs/components/transform.h"
+#include "ecs/components/weather.h"
+#include "render/graph/frame_graph.h"
+#include "render/particles/gpu_particle_pools.h"
+#include "systems/transform_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace limn {
+namespace {
+
+/// "wind 7.0 m/s from SW, rain 30 %"; nothing where a level has no weather. -z is north.
+std::string describe_weather(const World& world) {
+    const auto* settings = world.find_resource<Weather>();
+    const auto* state = world.find_resource<WeatherState>();
+    if (settings == nullptr || state == nullptr) {
+        return {};
+    }
+    const Weather weather = current_weather(*settings, *state);
+    constexpr std::array kPoints = {"E", "SE", "S", "SW", "W", "NW", "N", "NE"};
+    const float from = weather.wind_direction + kPi;
+    const int point = static_cast<int>(std::lround(from / (kPi / 4))) % 8;
+    std::string line = fmt::format(
+        "wind {:.1f} m/s from {}", weather.wind_speed,
+        kPoints[static_cast<std::size_t>((point + 8) % 8)]);
+    if (weather.rain > 0) {
+        line += fmt::format(", rain {:.0f} %", 100 * weather.rain);
+    }
+    return line;
+}
+
+/// Detail that suits the image. The world has Rendering, as each that is played.
+void fit_detail(World& world, float particle_share, int rows) {
+    Rendering& rendering = world.resource<Rendering>();
+    rendering.particle_share = std::min(rendering.particle_share, particle_share);
+    rendering.level_rows = static_cast<float>(std::clamp(rows, 16, 16384));
+}
+
+}  // namespace
+
+void Player::draw_frame(float dt, const Input& input) {
+    const IVec2 window_size = window_->framebuffer_size();
+    if (window_size != last_window_size_) {
+        last_window_size_ = window_size;
+        if (!scale_.automatic) {
+            scale_ =
+                make_render_scale(options_.scale, false, device_->caps().software, window_size);
+        }
+    }
+    const Clock::time_point begin = Clock::now();
+    if (furrows_.is_open()) {
+        stage_->world.run(update_furrow_skins);  // also while time stands
+    }
+    show_edits();
+    const IVec2 size = render_size(scale_, window_size);
+    for (Stage* const played : {stage_.get(), off_stage_.get()}) {
+        if (played != nullptr) {
+            fit_detail(played->world, scale_.particle_share, size.y);
+        }
+    }
+    view_ = move_camera(dt, input, size);
+    if (exr_wanted_) {
+        exr_wanted_ = false;
+        save_exr(view_);
+    }
+    draw_stages(window_size);
+    cost_.render_ms = seconds_between(begin, Clock::now()) * 1e3;
+    if (screenshot_wanted_ && !screenshot_with_hud_) {
+        screenshot_wanted_ = false;
+        save_screenshot(window_size);
+    }
+    draw_hud(view_, window_size, dt);
+}
+
+/// What was edited since the last frame shows at once, also while time stands.
+void Player::show_edits() {
+    const std::uint64_t revision = inspector_.undo_stack().revision();
+    const bool inspected = std::exchange(shown_revision_, revision) != revision;
+    if (!std::exchange(files_changed_, false) && !inspected) {
+        return;
+    }
+    for (Stage* const played : {stage_.get(), off_stage_.get()}) {
+        if (played != nullptr && paused_) {
+            played->world.run(update_furrow_skins);
+            // Twice: what was moved has not moved since the last frame.
+            played->world.run(update_transforms);
+            played->world.run(update_transforms);
+        }
+    }
+    for (Renderer* const renderer : {renderer_.get(), off_renderer_.get()}) {
+        if (renderer != nullptr) {
+            cut(*renderer);
+        }
+    }
+}
+
+/// The level, or of a show what is chosen of it.
+void Player::draw_stages(const IVec2& window_size) {
+    const ShowSide side = off_stage_ != nullptr ? shows_.side : ShowSide::On;
+    if (side != ShowSide::Off) {
+        FrameGraph& graph = frame_graph(*renderer_);
+        buffers_->before_frame(graph, request_);
+        const FrameOutput frame = render_frame(*renderer_, stage_->world, view_, request_);
+        buffers_->after_frame(*device_, graph, frame);
+        gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y);
+        cost_.statistics = frame.statistics;
+    }
+    if (side != ShowSide::On) {
+        const float share = side == ShowSide::Both ? shows_.divider : 1.0f;
+        draw_off_stage(
+            window_size, static_cast<int>(std::lround(share * static_cast<float>(window_size.x))));
+    }
+}
+
+/// Draws the first `columns` of the window from the level without the technique.
+void Player::draw_off_stage(const IVec2& window_size, int columns) {
+    if (off_renderer_ == nullptr) {
+        Result<RendererPtr> renderer = create_renderer(*device_);
+        if (!renderer) {
+            log_error("{}", renderer.error().message);
+            off_stage_ = nullptr;
+            return;
+        }
+        off_renderer_ = *std::move(renderer);
+    }
+    const World& world = off_stage_->world;
+    const Entity camera = off_stage_->scene.camera;
+    RenderView view = view_;
+    if (camera_.mode == CameraMode::Level) {
+        view = make_render_view(world, camera, view_request_);
+    } else {
+        view.lens = lens_view(world, camera);
+        view.entity = camera;
+    }
+    const FrameOutput frame = render_frame(*off_renderer_, world, view);
+    gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y, columns);
+    cost_.statistics = frame.statistics;
+}
+
+void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt) {
+    FrameGraph& graph = frame_graph(*renderer_);
+    device_->bind_window(window_size.x, window_size.y);
+    hud_->begin_frame(dt);
+    if (inspector_.open || (camera_.mode == CameraMode::Orbit && !stage_->scene.model)) {
+        draw_outline(view);
+    }
+    if (paths_shown_) {
+        draw_path_overlay(view, stage_->world);
+    }
+    draw_comparison_overlay(hud_->style(), stage_->world);
+    const std::string weather = describe_weather(stage_->world);
+    const std::string motion = describe_motion();
+    const std::string drops = describe_drops(stage_->world);
+    hud_->draw_status(
+        {.level = (stage_->scene.title.empty() ? stage_->scene.name : stage_->scene.title).c_str(),
+         .camera = camera_mode_name(camera_.mode),
+         .weather = weather.c_str(),
+         .drops = drops.c_str(),
+         .time = shown_time_,
+         .rate = rate_,
+         .motion = motion.c_str(),
+         .frame_ms = profiler_.median_frame_ms(),
+         .render_size = {view.width, view.height},
+         .window_size = window_size,
+         .software_gl = device_->caps().software,
+         .scale_auto = scale_.automatic,
+         .particle_stride =
+             static_cast<int>(particle_stride(stage_->world.resource<Rendering>().particle_share)),
+         .paused = paused_,
+         .error = (shader_error_.empty() ? level_error_ : shader_error_).c_str()});
+    if (hud_->help_open) {
+        hud_->help = player_help(stage_->world, help_state(), keys());
+    }
+    if (off_stage_ != nullptr && shows_.side == ShowSide::Both) {
+        shows_.draw_divider(hud_->style());
+    }
+    shows_.draw(hud_->style(), options_.show);
+    furrows_.draw(hud_->style(), stage_->world, inspector_.undo_stack());
+    if (const std::string message = furrows_.take_message(); !message.empty()) {
+        hud_->toast(message);
+    }
+    model_panel_.draw(hud_->style(), stage_->world, level_cameras(), stage_->scene.camera);
+    inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
+    profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
+    buffers_->draw(hud_->style(), graph);
+    leave_.draw(hud_->style(), inspector_, stage_->world);
+    hud_->end_frame();
+    device_->invalidate_state();
+}
+
+void Player::draw_outline(const RenderView& view) const {
+    const World& world = stage_->world;
+    const Bounds box = local_bounds(world, inspector_.selected());
+    const WorldTransform* transform = world.find<WorldTransform>(inspector_.selected());
+    if (is_empty(box) || transform == nullptr) {
+        return;
+    }
+    const PreviousWorldTransform* previous =
+        world.find<PreviousWorldTransform>(inspector_.selected());
+    const Affine shown = world_at(
+        world.find_resource<StepJumps>(), inspector_.selected(), *transform, previous,
+        {view.alpha, view.alpha});
+    draw_box_outline(view, shown, box);
+}
+
+/// "3.2 m/s  at 1.2, 0.5, -3.4"
+std::string Player::describe_motion() const {
+    const Vec3 place = transform_point(camera_.pose, {0, 0, 0});
+    std::string text = fmt::format("at {:.1f}, {:.1f}, {:.1f} m", place.x, place.y, place.z);
+    if (camera_.mode == CameraMode::Fly) {
+        text += fmt::format("   flies {:.1f} m/s", camera_.fly.speed);
+    } else if (camera_.mode == CameraMode::Orbit) {
+        text += fmt::format("   {:.1f} m from the target", camera_.orbit.distance);
+    }
+    return text;
+}
+
+HelpState Player::help_state() const {
+    const UndoStack& undo = inspector_.undo_stack();
+    return {
+        .camera = camera_.mode,
+        .level_camera = stage_->scene.camera,
+        .drives = driving_group(stage_->world, stage_->scene.camera) != nullptr,
+        .throws = !std::as_const(stage_->world).query<const StoneThrower>().empty(),
+        .paths = has_paths(stage_->world),
+        .model = stage_->scene.model.has_value(),
+        .show = off_stage_ != nullptr,
+        .selected = stage_->world.alive(inspector_.selected()),
+        .edited = undo.undo_count() + undo.redo_count() > 0,
+        .inspector = inspector_.open,
+        .furrows = furrows_.is_open(),
+        .skin = !std::as_const(stage_->world).query<const PullableSkin>().empty(),
+        .panel = inspector_.open || profiler_.open || buffers_->open || shows_.open
+                 || model_panel_.open};
+}
+
+}  // namespace limn

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "content/app/player/pick.h"
+#include "content/app/player/press_edge.h"
+
+namespace limn {
+
+class World;
+
+/// Whether the ray meets skin that can be pulled first: a mesh with PullableSkin, or one that
+/// follows it.
+[[nodiscard]] bool is_pullable(const World& world, const Ray& ray);
+
+/// A drag by the left button that begins on such skin: it pulls the skin, and moves no camera.
+class SkinDrag {
+  public:
+    /// Of each frame; `left`: the button is down, `blocked`: over a panel.
+    void follow(const World& world, const Ray& ray, bool left, bool blocked);
+    [[nodiscard]] bool pulls() const { return pulls_; }
+
+  private:
+    PressEdge left_;
+    bool pulls_ = false;
+};
+
+}  // namespace limn

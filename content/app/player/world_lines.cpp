@@ -1,0 +1,56 @@
+#include "content/app/player/world_lines.h"
+
+#include "render/render_view.h"
+
+#include <imgui.h>
+
+namespace limn {
+namespace {
+
+/// Clips the edge a b, in clip space, to the part in front of the near plane; false if there is
+/// none.
+bool clip_to_near_plane(Vec4& a, Vec4& b, float near) {
+    if (a.w < near && b.w < near) {
+        return false;
+    }
+    if (a.w < near) {
+        a = glm::mix(a, b, (near - a.w) / (b.w - a.w));
+    } else if (b.w < near) {
+        b = glm::mix(b, a, (near - b.w) / (a.w - b.w));
+    }
+    return true;
+}
+
+ImVec2 to_screen(const Vec4& clip) {
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    return {
+        (0.5f + 0.5f * clip.x / clip.w) * display.x, (0.5f - 0.5f * clip.y / clip.w) * display.y};
+}
+
+}  // namespace
+
+WorldLines::WorldLines(const RenderView& view, const Vec3& color)
+    : view_(view), color_(ImGui::GetColorU32({color.x, color.y, color.z, 0.9f})) {}
+
+void WorldLines::draw_line(const Vec3& from, const Vec3& to, float width) {
+    Vec4 a = view_.unjittered_from_world * Vec4(from, 1.0f);
+    Vec4 b = view_.unjittered_from_world * Vec4(to, 1.0f);
+    if (clip_to_near_plane(a, b, view_.near)) {
+        ImGui::GetBackgroundDrawList()->AddLine(to_screen(a), to_screen(b), color_, width);
+    }
+}
+
+void WorldLines::draw_point(const Vec3& at, float radius, const std::string& label) {
+    const Vec4 clip = view_.unjittered_from_world * Vec4(at, 1.0f);
+    if (clip.w < view_.near) {
+        return;
+    }
+    const ImVec2 place = to_screen(clip);
+    ImDrawList* const list = ImGui::GetBackgroundDrawList();
+    list->AddCircleFilled(place, radius, color_);
+    if (!label.empty()) {
+        list->AddText({place.x + 2 * radius, place.y - 2 * radius}, color_, label.c_str());
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "content/make/patterns/pattern_maps.h"
+#include "ecs/components/surface.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace limn {
+
+// Keeps generated images and meshes in files, so that a level that any program has loaded before
+// loads fast. The key of an asset contains everything that it is generated from. A file stores its
+// key and is used only if the key is equal. A file that is missing, damaged, or cannot be read
+// counts as a miss: the asset is generated again.
+
+/// A hash of the source files of all generators: assets of older generators are misses. The build
+/// generates this function.
+[[nodiscard]] std::string_view generators_hash();
+
+class AssetCache {
+  public:
+    /// Keeps up to `max_bytes` in `folder`, the newest; nothing where it is empty.
+    explicit AssetCache(std::string folder, std::uint64_t max_bytes = std::uint64_t{1} << 30)
+        : folder_(std::move(folder)), max_bytes_(max_bytes) {}
+    /// The folder that LIMN_CACHE names ("off": none), else XDG_CACHE_HOME/limn or
+    /// HOME/.cache/limn.
+    [[nodiscard]] static AssetCache of_user();
+
+    [[nodiscard]] std::optional<PatternMaps> find_pattern(std::string_view key) const;
+    [[nodiscard]] std::optional<MeshData> find_mesh(std::string_view key) const;
+    void keep(std::string_view key, const PatternMaps& maps) const;
+    void keep(std::string_view key, const MeshData& mesh) const;
+
+  private:
+    std::string folder_;
+    std::uint64_t max_bytes_ = 0;
+};
+
+}  // namespace limn

@@ -1,0 +1,546 @@
+#include "content/load/gltf/gltf_file.h"
+
+#include "content/load/files/file_uri.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <utility>
+
+// What stands in the way in tinygltf 2.7, and what is done about it before and after it runs:
+//
+// - It ignores values of a wrong type, names no position, and recurses as deep as the JSON is
+//   nested: parse_json and check_gltf_schema come first.
+// - It takes + in a URI for a space, knows seven media types of data: URIs, skips what is not
+//   base64, wants buffers of exactly byteLength, and decodes images that nothing uses: each URI is
+//   replaced by the number of its buffer, whose bytes we have, and images are taken out.
+// - A buffer without data, an accessor of unknown type and indices without a buffer view end the
+//   whole file, also where nothing reads them; channels without a node vanish. They get stand-ins.
+// - Its errors are those of everything so far, fatal or not: the last line is the cause.
+
+namespace limn {
+
+namespace {
+
+constexpr std::array kExtensions = {
+    std::string_view("KHR_lights_punctual"),   std::string_view("KHR_materials_emissive_strength"),
+    std::string_view("KHR_materials_ior"),     std::string_view("KHR_materials_transmission"),
+    std::string_view("KHR_materials_unlit"),   std::string_view("KHR_materials_volume"),
+    std::string_view("KHR_mesh_quantization"), std::string_view("KHR_texture_transform"),
+};
+
+constexpr std::uint32_t kGlbMagic = 0x46546c67;   // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4e4f534a;  // "JSON"
+constexpr std::uint32_t kBinChunk = 0x004e4942;   // "BIN"
+
+std::uint32_t little_endian(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
+    }
+    return value;
+}
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string& file) {
+    if (bytes.size() < 20) {
+        return fail("{}: found a GLB of {} bytes, expected at least 20", file, bytes.size());
+    }
+    const std::uint32_t version = little_endian(bytes, 4);
+    if (version != 2) {
+        return fail("{}: found GLB version {}, expected 2", file, version);
+    }
+    const std::uint32_t length = little_endian(bytes, 8);
+    if (length > bytes.size()) {
+        return fail(
+            "{}: found {} bytes, expected {} as in the GLB header", file, bytes.size(), length);
+    }
+    GltfChunks chunks;
+    chunks.trailing = bytes.size() - length;
+    bytes = bytes.first(length);
+    bool has_json = false;
+    for (std::size_t at = 12; at < bytes.size();) {
+        if (bytes.size() - at < 8) {
+            chunks.trailing += bytes.size() - at;
+            break;
+        }
+        const std::uint32_t size = little_endian(bytes, at);
+        const std::uint32_t type = little_endian(bytes, at + 4);
+        at += 8;
+        if (size > bytes.size() - at) {
+            return fail(
+                "{}: found a GLB chunk of {} bytes, expected at most the {} left in the file", file,
+                size, bytes.size() - at);
+        }
+        const std::span<const std::byte> data = bytes.subspan(at, size);
+        if (!has_json && type != kJsonChunk) {
+            return fail(
+                "{}: found chunk type {}, expected JSON as the first chunk", file,
+                fmt::format("{:#010x}", type));
+        }
+        if (!has_json) {
+            chunks.json = as_text(data);
+            has_json = true;
+        } else if (type == kBinChunk && !chunks.has_binary) {
+            chunks.binary = data;
+            chunks.has_binary = true;
+        }
+        at += size;
+    }
+    if (!has_json) {
+        return fail("{}: found a GLB without chunks, expected JSON", file);
+    }
+    // The standard pads with spaces, some exporters with zeros.
+    chunks.json = chunks.json.substr(0, chunks.json.find_last_not_of('\0') + 1);
+    return chunks;
+}
+
+bool has_extension(std::string_view name) {
+    return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
+}
+
+/// Names of the extensions in `json`, whether the file lists them or not.
+void find_extensions(const JsonValue& json, std::set<std::string_view>& names) {
+    for (const JsonValue& item : json.items) {
+        find_extensions(item, names);
+    }
+    for (const JsonMember& member : json.members) {
+        if (member.key == "extensions") {
+            for (const JsonMember& extension : member.value.members) {
+                names.insert(extension.key);
+            }
+        } else if (member.key != "extras") {
+            find_extensions(member.value, names);
+        }
+    }
+}
+
+void warn_of_extensions(GltfDocument& document) {
+    std::set<std::string_view> used;
+    for (const JsonValue& name : document.json["extensionsUsed"].items) {
+        used.insert(name.text);
+    }
+    find_extensions(document.json, used);
+    for (const std::string_view name : used) {
+        if (!has_extension(name)) {
+            document.warnings.push_back(
+                fmt::format("{}: the extension {} is ignored", document.file, in_quotes(name)));
+        }
+    }
+}
+
+Status check_version(const JsonValue& json, const std::string& file) {
+    const std::string& version = json["asset"]["version"].text;
+    if (!version.starts_with("2.")) {
+        return fail("{}: asset.version: found {}, expected 2.x", file, in_quotes(version));
+    }
+    const std::vector<JsonValue>& required = json["extensionsRequired"].items;
+    for (std::size_t i = 0; i < required.size(); ++i) {
+        const std::string& name = required[i].text;
+        if (!has_extension(name)) {
+            return fail(
+                "{}: extensionsRequired[{}]: found {}, expected one of {}", file, i,
+                in_quotes(name), join_text(kExtensions, ", "));
+        }
+    }
+    return Done{};
+}
+
+JsonValue* find_member(JsonValue& object, std::string_view key) {
+    return const_cast<JsonValue*>(object.find(key));
+}
+
+/// Items of the array at `key`; none if there is no such member.
+std::span<JsonValue> items_of(JsonValue& object, std::string_view key) {
+    JsonValue* const array = find_member(object, key);
+    return array != nullptr ? std::span(array->items) : std::span<JsonValue>();
+}
+
+void set_member(JsonValue& object, std::string_view key, JsonValue value) {
+    if (JsonValue* const member = find_member(object, key)) {
+        *member = std::move(value);
+    } else {
+        object.members.push_back({std::string(key), {}, std::move(value)});
+    }
+}
+
+std::optional<JsonValue> take_member(JsonValue& object, std::string_view key) {
+    const auto found = std::ranges::find(object.members, key, &JsonMember::key);
+    if (found == object.members.end()) {
+        return std::nullopt;
+    }
+    JsonValue value = std::move(found->value);
+    object.members.erase(found);
+    return value;
+}
+
+/// What tinygltf asks for through its callbacks.
+using BufferBytes = std::vector<std::vector<std::byte>>;
+
+/// Fetches the bytes of all buffers, and replaces their URIs by their numbers.
+Result<BufferBytes> take_buffers(GltfDocument& document, const GltfChunks& chunks) {
+    BufferBytes all;
+    std::uint64_t total = 0;
+    for (JsonValue& buffer : items_of(document.json, "buffers")) {
+        const std::string place = fmt::format("{}: buffers[{}]", document.file, all.size());
+        const auto length = static_cast<std::uint64_t>(buffer["byteLength"].number);
+        const std::optional<JsonValue> uri = take_member(buffer, "uri");
+        set_member(buffer, "uri", json_of(std::to_string(all.size())));
+        std::vector<std::byte>& bytes = all.emplace_back();
+        if (uri) {
+            bytes = LIMN_TRY(
+                fetch_uri(uri->text, document.folder, place + ".uri", document.limits.max_bytes));
+        } else if (all.size() == 1 && chunks.has_binary) {
+            bytes.assign(chunks.binary.begin(), chunks.binary.end());
+        } else {
+            // An extension that Limn does not have may tell where the data are.
+            document.warnings.push_back(place + ": it has no data");
+            set_member(buffer, "byteLength", json_of(std::uint64_t{1}));
+            continue;
+        }
+        if (length > bytes.size()) {
+            return fail(
+                "{}.byteLength: found {}, expected at most the {} bytes available", place, length,
+                bytes.size());
+        }
+        bytes.resize(length);
+        total += length;
+        if (total > document.limits.max_bytes) {
+            return fail(
+                "{}: found {} bytes in buffers, expected at most {}", place, total,
+                document.limits.max_bytes);
+        }
+    }
+    return all;
+}
+
+void take_images(GltfDocument& document) {
+    for (JsonValue& image : items_of(document.json, "images")) {
+        std::optional<JsonValue> uri = take_member(image, "uri");
+        const std::optional<JsonValue> view = take_member(image, "bufferView");
+        GltfImage& taken = document.images.emplace_back();
+        if (uri) {
+            taken.uri = std::move(uri->text);
+        }
+        if (view) {
+            taken.view = static_cast<std::int32_t>(view->number);
+        }
+        set_member(image, "uri", json_of(std::string_view("image")));
+    }
+}
+
+/// Names what glTF does not have, in parts that may go unused: what reads it fails.
+void take_unknown_types(GltfDocument& document) {
+    constexpr std::array<std::string_view, 7> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4",
+                                                        "MAT2",   "MAT3", "MAT4"};
+    constexpr std::array<int, 6> kComponents = {
+        TINYGLTF_COMPONENT_TYPE_BYTE,  TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+        TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+        TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT};
+    for (JsonValue& accessor : items_of(document.json, "accessors")) {
+        std::string& unknown = document.unknown_types.emplace_back();
+        const std::string& type = accessor["type"].text;
+        const int component = static_cast<int>(accessor["componentType"].number);
+        if (std::ranges::find(kTypes, type) == kTypes.end()) {
+            unknown = fmt::format("type: found {}, expected a type of glTF", in_quotes(type));
+        } else if (std::ranges::find(kComponents, component) == kComponents.end()) {
+            unknown = fmt::format(
+                "componentType: found {}, expected 5120 to 5123, 5125 or 5126", component);
+        }
+        if (!unknown.empty()) {
+            document.warnings.push_back(fmt::format(
+                "{}: accessors[{}].{}", document.file, document.unknown_types.size() - 1, unknown));
+            set_member(accessor, "type", json_of(kTypes[0]));
+            set_member(accessor, "componentType", json_of(std::int64_t{kComponents[0]}));
+        }
+    }
+}
+
+void add_missing_targets(JsonValue& json) {
+    for (JsonValue& animation : items_of(json, "animations")) {
+        for (JsonValue& channel : items_of(animation, "channels")) {
+            JsonValue& target = *find_member(channel, "target");
+            if (target.find("node") == nullptr) {
+                set_member(target, "node", json_of(std::int64_t{-1}));
+            }
+        }
+    }
+}
+
+/// Indices of a primitive whose accessor has no buffer view.
+struct LooseIndices {
+    std::size_t mesh = 0;
+    std::size_t primitive = 0;
+    int accessor = -1;
+};
+
+std::vector<LooseIndices> take_loose_indices(JsonValue& json) {
+    std::vector<LooseIndices> taken;
+    const std::span<JsonValue> meshes = items_of(json, "meshes");
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        const std::span<JsonValue> primitives = items_of(meshes[m], "primitives");
+        for (std::size_t p = 0; p < primitives.size(); ++p) {
+            const JsonValue* const indices = primitives[p].find("indices");
+            const auto accessor = static_cast<int>(indices != nullptr ? indices->number : -1);
+            if (accessor >= 0
+                && json["accessors"].items[static_cast<std::size_t>(accessor)].find("bufferView")
+                       == nullptr) {
+                taken.push_back({m, p, accessor});
+                (void)take_member(primitives[p], "indices");
+            }
+        }
+    }
+    return taken;
+}
+
+const std::vector<std::byte>* find_buffer(const std::string& path, void* buffers) {
+    const auto& all = *static_cast<const BufferBytes*>(buffers);
+    std::size_t number = all.size();
+    const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
+    const bool is_number = error == std::errc() && end == path.data() + path.size();
+    return is_number && number < all.size() ? &all[number] : nullptr;
+}
+
+/// Callbacks that know the buffers and no file.
+tinygltf::FsCallbacks make_callbacks(BufferBytes& buffers) {
+    tinygltf::FsCallbacks callbacks{};
+    callbacks.user_data = &buffers;
+    callbacks.FileExists = [](const std::string& path, void* all) {
+        return find_buffer(path, all) != nullptr;
+    };
+    callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* target, std::string*,
+                                 const std::string& path, void* all) {
+        const std::vector<std::byte>& bytes = *find_buffer(path, all);
+        target->resize(std::max<std::size_t>(bytes.size(), 1));  // one byte: none are an error
+        if (!bytes.empty()) {
+            std::memcpy(target->data(), bytes.data(), bytes.size());
+        }
+        return true;
+    };
+    callbacks.WriteWholeFile = [](std::string*, const std::string&,
+                                  const std::vector<unsigned char>&, void*) { return false; };
+    return callbacks;
+}
+
+std::string last_line(std::string text) {
+    text.erase(text.find_last_not_of("\n. ") + 1);
+    return text.substr(text.find_last_of('\n') + 1);
+}
+
+Status load_model(GltfDocument& document, BufferBytes buffers) {
+    const std::vector<LooseIndices> loose = take_loose_indices(document.json);
+    const std::string text = write_json(document.json);
+    tinygltf::TinyGLTF loader;
+    loader.SetFsCallbacks(make_callbacks(buffers));
+    loader.SetImageLoader(
+        [](tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
+           int, void*) { return true; },
+        nullptr);
+    std::string error;
+    std::string warning;
+    bool is_loaded = false;
+    try {
+        is_loaded = loader.LoadASCIIFromString(
+            &document.model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), "");
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    if (!is_loaded) {
+        return fail("{}: {}", document.file, last_line(error));
+    }
+    for (const LooseIndices& indices : loose) {
+        document.model.meshes[indices.mesh].primitives[indices.primitive].indices =
+            indices.accessor;
+    }
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        if (buffers[i].empty()) {
+            document.model.buffers[i].data.clear();
+        }
+    }
+    return Done{};
+}
+
+Status check_views(const GltfDocument& document) {
+    const std::vector<tinygltf::BufferView>& views = document.model.bufferViews;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const tinygltf::BufferView& view = views[i];
+        const std::size_t size = item_at(document.model.buffers, view.buffer).data.size();
+        if (size > 0 && (view.byteOffset > size || view.byteLength > size - view.byteOffset)) {
+            return fail(
+                "{}: bufferViews[{}]: found {} bytes from byte {}, expected to stay within the {} "
+                "of buffers[{}]",
+                document.file, i, view.byteLength, view.byteOffset, size, view.buffer);
+        }
+    }
+    return Done{};
+}
+
+Status check_strides(const GltfDocument& document) {
+    const std::vector<JsonValue>& views = document.json["bufferViews"].items;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const double stride = views[i]["byteStride"].number;
+        if (static_cast<std::uint64_t>(stride) % 4 != 0) {
+            return fail(
+                "{}: bufferViews[{}].byteStride: found {}, expected a multiple of 4", document.file,
+                i, stride);
+        }
+    }
+    return Done{};
+}
+
+/// The sizes of a GLB have 32 bits.
+Status check_glb_size(std::size_t size, const std::string& name) {
+    constexpr std::size_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();
+    if (size > kMaxBytes) {
+        return fail("{}: found {} bytes, expected at most {}", name, size, kMaxBytes);
+    }
+    return Done{};
+}
+
+}  // namespace
+
+Result<GltfChunks> split_gltf(std::span<const std::byte> bytes, const std::string& file) {
+    if (bytes.empty()) {
+        return fail("{}: found an empty file, expected glTF", file);
+    }
+    if (bytes.size() >= 4 && little_endian(bytes, 0) == kGlbMagic) {
+        return split_glb(bytes, file);
+    }
+    GltfChunks chunks;
+    chunks.json = as_text(bytes);
+    return chunks;
+}
+
+Result<GltfDocument> open_gltf(
+    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
+    const GltfLimits& limits) {
+    if (bytes.size() > limits.max_bytes) {
+        return fail(
+            "{}: found {} bytes, expected at most {}", file, bytes.size(), limits.max_bytes);
+    }
+    const GltfChunks chunks = LIMN_TRY(split_gltf(bytes, file));
+    GltfDocument document;
+    document.file = file;
+    document.folder = folder;
+    document.limits = limits;
+    document.values_left = limits.max_values;
+    document.json = LIMN_TRY(parse_json(
+        chunks.json, file,
+        {.max_bytes = limits.max_bytes, .max_values = limits.max_json_values, .max_depth = 64}));
+    LIMN_TRY(check_gltf_schema(document.json, file));
+    LIMN_TRY(check_version(document.json, file));
+    if (chunks.trailing > 0) {
+        document.warnings.push_back(
+            fmt::format("{}: {} bytes after the GLB are ignored", file, chunks.trailing));
+    }
+    warn_of_extensions(document);
+    take_unknown_types(document);
+    take_images(document);
+    add_missing_targets(document.json);
+    LIMN_TRY(check_strides(document));
+    BufferBytes buffers = LIMN_TRY(take_buffers(document, chunks));
+    LIMN_TRY(load_model(document, std::move(buffers)));
+    LIMN_TRY(check_views(document));
+    return document;
+}
+
+int append_view(tinygltf::Model& model, std::span<const std::byte> bytes) {
+    model.buffers.resize(std::max<std::size_t>(model.buffers.size(), 1));
+    std::vector<unsigned char>& all = model.buffers[0].data;
+    tinygltf::BufferView& view = model.bufferViews.emplace_back();
+    view.buffer = 0;
+    view.byteOffset = all.size();
+    view.byteLength = bytes.size();
+    all.resize(all.size() + (bytes.size() + 3) / 4 * 4);
+    std::ranges::copy(
+        bytes, std::as_writable_bytes(std::span(all)).subspan(view.byteOffset).begin());
+    return static_cast<int>(model.bufferViews.size()) - 1;
+}
+
+int append_accessor(
+    tinygltf::Model& model, int type, int component, std::size_t count,
+    std::span<const std::byte> values) {
+    const int view = values.empty() ? -1 : append_view(model, values);
+    tinygltf::Accessor& accessor = model.accessors.emplace_back();
+    accessor.bufferView = view;
+    accessor.type = type;
+    accessor.componentType = component;
+    accessor.count = count;
+    return static_cast<int>(model.accessors.size()) - 1;
+}
+
+int append_times(tinygltf::Model& model, std::span<const float> times) {
+    const int added = append_accessor(
+        model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, times.size(),
+        std::as_bytes(times));
+    model.accessors.back().minValues = {times.front()};
+    model.accessors.back().maxValues = {times.back()};
+    return added;
+}
+
+void append_channel(
+    tinygltf::Animation& animation, int node, const char* path, int times, int values) {
+    tinygltf::AnimationChannel& channel = animation.channels.emplace_back();
+    channel.target_node = node;
+    channel.target_path = path;
+    channel.sampler = static_cast<int>(animation.samplers.size());
+    tinygltf::AnimationSampler& sampler = animation.samplers.emplace_back();
+    sampler.input = times;
+    sampler.output = values;
+}
+
+Result<std::vector<std::byte>>
+pack_json(const JsonValue& json, std::span<const std::byte> binary, const std::string& name) {
+    std::string text = write_json(json);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::size_t size = 20 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
+    LIMN_TRY(check_glb_size(size, name));
+    std::vector<std::byte> glb;
+    const auto append = [&glb](std::span<const std::byte> bytes) {
+        glb.insert(glb.end(), bytes.begin(), bytes.end());
+    };
+    const auto append_words = [&](std::initializer_list<std::size_t> words) {
+        for (const std::size_t word : words) {
+            const auto small = static_cast<std::uint32_t>(word);
+            append(std::as_bytes(std::span(&small, 1)));
+        }
+    };
+    append_words({kGlbMagic, 2, size, text.size(), kJsonChunk});
+    append(std::as_bytes(std::span(text)));
+    if (!binary.empty()) {
+        append_words({binary.size(), kBinChunk});
+        append(binary);
+    }
+    return glb;
+}
+
+Result<std::vector<std::byte>> pack_model(const tinygltf::Model& model, const std::string& name) {
+    std::ostringstream stream;
+    tinygltf::TinyGLTF writer;
+    writer.SetImageWriter(nullptr, nullptr);
+    try {
+        if (!writer.WriteGltfSceneToStream(&model, stream, false, true)) {
+            return fail("{}: cannot be written as glTF", name);
+        }
+    } catch (const std::exception& exception) {  // strings that are not UTF-8
+        return fail("{}: cannot be written as glTF: {}", name, exception.what());
+    }
+    const std::string_view text = stream.view();
+    LIMN_TRY(check_glb_size(text.size(), name));  // tinygltf does not look
+    const auto bytes = std::as_bytes(std::span(text));
+    return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+}  // namespace limn

@@ -1,0 +1,233 @@
+#include "content/load/files/file_uri.h"
+#include "content/load/files/image_load.h"
+#include "content/load/gltf/gltf_document.h"
+#include "ecs/base/jobs.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <optional>
+
+namespace limn {
+
+namespace {
+
+/// An image that a material uses.
+struct UsedImage {
+    std::size_t source = 0;  ///< index in the file
+    bool srgb = false;
+};
+
+constexpr float kIndex = 1.5f;  ///< of refraction, by default; of every opaque material
+constexpr float kMaxIndex = 3;
+constexpr float kMaxThickness = 1000;  // [m]
+
+Wrap to_wrap(std::int32_t mode) {
+    switch (mode) {
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+        return Wrap::Clamp;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+        return Wrap::Mirror;
+    default:
+        return Wrap::Repeat;
+    }
+}
+
+class MaterialBuilder {
+  public:
+    explicit MaterialBuilder(GltfDocument& document)
+        : document_(document), number_(2 * document.images.size(), kNoAsset) {}
+
+    Material build(std::size_t index) {
+        const tinygltf::Material& source = document_.model.materials[index];
+        const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+        place_ = fmt::format("{}: materials[{}]", document_.file, index);
+
+        Material material;
+        material.name = source.name;
+        material.double_sided = source.doubleSided;
+        material.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::Mask
+                              : source.alphaMode == "BLEND" ? AlphaMode::Blend
+                                                            : AlphaMode::Opaque;
+        material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+        material.base_color = vector_of(pbr.baseColorFactor, Vec4(1));
+        material.metalness = static_cast<float>(pbr.metallicFactor);
+        material.roughness = static_cast<float>(pbr.roughnessFactor);
+        material.normal_scale = static_cast<float>(source.normalTexture.scale);
+        material.occlusion_strength = static_cast<float>(source.occlusionTexture.strength);
+        const tinygltf::Value& emission =
+            extension_of(source.extensions, "KHR_materials_emissive_strength");
+        material.emission =
+            number_of(emission, "emissiveStrength", 1) * vector_of(source.emissiveFactor, Vec3(0));
+        if (source.extensions.contains("KHR_materials_unlit")) {
+            material.shading = ShadingModel::Unlit;
+            material.metalness = 0;  // no reflections, whatever the fallback is
+        }
+        material.base_color_texture = slot(pbr.baseColorTexture, true);
+        if (material.shading != ShadingModel::Unlit) {
+            material.metal_rough_texture = slot(pbr.metallicRoughnessTexture, false);
+        }
+        material.normal_texture = slot(source.normalTexture, false);
+        material.occlusion_texture = slot(source.occlusionTexture, false);
+        material.emission_texture = slot(source.emissiveTexture, true);
+        transmit(source.extensions, material);
+        return material;
+    }
+
+    [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
+
+  private:
+    void transmit(const tinygltf::ExtensionMap& extensions, Material& material) {
+        const tinygltf::Value& transmission =
+            extension_of(extensions, "KHR_materials_transmission");
+        const float factor = number_of(transmission, "transmissionFactor", 0);
+        const float index = number_of(extension_of(extensions, "KHR_materials_ior"), "ior", kIndex);
+        if (factor <= 0 || material.alpha_mode == AlphaMode::Mask) {
+            if (std::abs(index - kIndex) > 0.01f) {
+                warn(fmt::format("ior {:.3g} of an opaque material is drawn as {}", index, kIndex));
+            }
+            return;
+        }
+        if (transmission.Has("transmissionTexture")) {
+            warn("transmissionTexture is unsupported, it is drawn opaque");
+            return;
+        }
+        const tinygltf::Value& volume = extension_of(extensions, "KHR_materials_volume");
+        material.transmission = factor;
+        material.refractive_index = std::clamp(index, 1.0f, kMaxIndex);
+        material.thickness = std::min(number_of(volume, "thicknessFactor", 0), kMaxThickness);
+        const float distance = number_of(volume, "attenuationDistance", 0);
+        if (distance > 0) {
+            material.attenuation_distance = distance;
+            material.attenuation_color = vector_of(volume, "attenuationColor", Vec3(1));
+        }
+    }
+
+    template <typename TextureInfo>
+    TextureSlot slot(const TextureInfo& info, bool srgb) {
+        TextureSlot result;
+        if (info.index < 0) {
+            return result;
+        }
+        const tinygltf::Texture& texture = item_at(document_.model.textures, info.index);
+        if (texture.source < 0) {
+            warn(fmt::format("textures[{}] has no image in a supported format", info.index));
+            return result;
+        }
+        result.image.index = use_image(static_cast<std::size_t>(texture.source), srgb);
+        if (texture.sampler >= 0) {
+            const tinygltf::Sampler& sampler = item_at(document_.model.samplers, texture.sampler);
+            result.wrap_u = to_wrap(sampler.wrapS);
+            result.wrap_v = to_wrap(sampler.wrapT);
+            result.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+        }
+        const tinygltf::Value& transform = extension_of(info.extensions, "KHR_texture_transform");
+        result.offset = vector_of(transform, "offset", Vec2(0));
+        result.scale = vector_of(transform, "scale", Vec2(1));
+        result.rotation = number_of(transform, "rotation", 0);
+        const tinygltf::Value& uv_set = member_of(transform, "texCoord");
+        const int set = uv_set.IsNumber() ? uv_set.GetNumberAsInt() : info.texCoord;
+        if (set > 1) {
+            warn(fmt::format("uv set {} is unsupported, 0 is used instead", set));
+        }
+        result.uv_set = set == 1 ? 1 : 0;
+        return result;
+    }
+
+    void warn(const std::string& what) {
+        document_.warnings.push_back(fmt::format("{}: {}", place_, what));
+    }
+
+    std::uint32_t use_image(std::size_t source, bool srgb) {
+        std::uint32_t& number = number_[2 * source + (srgb ? 1 : 0)];
+        if (number == kNoAsset) {
+            number = static_cast<std::uint32_t>(used_.size());
+            used_.push_back({source, srgb});
+        }
+        return number;
+    }
+
+    GltfDocument& document_;
+    std::string place_;
+    std::vector<UsedImage> used_;
+    std::vector<std::uint32_t> number_;  ///< index into used_ of image i as data, as color
+};
+
+Result<ImageData>
+load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits& limits) {
+    const GltfImage& source = document.images[used.source];
+    std::string place = fmt::format("{}: images[{}]", document.file, used.source);
+    if (source.uri.has_value() == (source.view >= 0)) {
+        return fail(
+            "{}: found {} uri and bufferView, expected one of them", place,
+            source.uri ? "both" : "neither");
+    }
+    std::vector<std::byte> fetched;
+    std::span<const std::byte> bytes;
+    if (source.uri) {
+        fetched = LIMN_TRY(
+            fetch_uri(*source.uri, document.folder, place + ".uri", document.limits.max_bytes));
+        bytes = fetched;
+        if (!source.uri->starts_with("data:")) {
+            place += " (" + source.uri->substr(0, 200) + ")";
+        }
+    } else {
+        bytes = view_bytes(document, source.view);
+    }
+    ImageData image = LIMN_TRY(decode_image(bytes, place, used.srgb, limits));
+    const std::string& name = document.model.images[used.source].name;
+    image.name = !name.empty() ? name
+                 : source.uri  ? source.uri->substr(0, 200)
+                               : fmt::format("image {}", used.source);
+    return image;
+}
+
+}  // namespace
+
+Status build_materials(GltfDocument& document, GltfScene& scene) {
+    MaterialBuilder builder(document);
+    for (std::size_t i = 0; i < document.model.materials.size(); ++i) {
+        scene.materials.push_back(builder.build(i));
+    }
+    Material fallback;  // specified for primitives without a material
+    fallback.name = "default";
+    fallback.base_color = {1, 1, 1, 1};
+    fallback.metalness = 1.0f;
+    fallback.roughness = 1.0f;
+    scene.materials.push_back(fallback);
+
+    // Decoding dominates the load time, so it is parallel; batches limit what is decoded before the
+    // total is checked.
+    const std::vector<UsedImage>& used = builder.used();
+    constexpr std::size_t kBatch = 8;
+    std::uint64_t pixels_left = document.limits.max_pixels;
+    for (std::size_t first = 0; first < used.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, used.size() - first);
+        ImageLimits limits = document.limits.image;
+        limits.max_pixels = std::min(limits.max_pixels, static_cast<std::int64_t>(pixels_left));
+        std::vector<std::optional<Result<ImageData>>> images(count);
+        parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                images[i] = load_used(document, used[first + i], limits);
+            }
+        });
+        for (std::optional<Result<ImageData>>& image : images) {
+            ImageData data = LIMN_TRY(*std::move(image));
+            const auto pixels =
+                static_cast<std::uint64_t>(data.width) * static_cast<std::uint64_t>(data.height);
+            if (pixels > pixels_left) {
+                return fail(
+                    "{}: found more pixels, expected at most {} in all images", document.file,
+                    document.limits.max_pixels);
+            }
+            pixels_left -= pixels;
+            scene.images.push_back(std::move(data));
+        }
+    }
+    return Done{};
+}
+
+}  // namespace limn

@@ -1,0 +1,292 @@
+#include "content/load/level/level_show.h"
+
+#include "content/load/level/component_json.h"
+#include "ecs/base/text.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/camera_lens.h"
+#include "ecs/components/camera_path.h"
+#include "ecs/components/lens_flare.h"
+#include "ecs/components/name.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace limn {
+namespace {
+
+constexpr double kMaxShowTime = 3600;  // [s]
+constexpr std::string_view kShowKeys[] = {"technique", "text",   "set",  "off",
+                                          "time",      "camera", "equal"};
+
+Status
+read_text(const JsonValue& json, const char* key, const JsonPlace& place, std::string& text) {
+    LIMN_TRY(expect(json[key], JsonKind::String, place_in(place, key), "a string"));
+    text = json[key].text;
+    return Done{};
+}
+
+Status
+read_patch(const JsonValue& json, const char* key, const JsonPlace& place, JsonValue& patch) {
+    if (const JsonValue* const value = json.find(key)) {
+        LIMN_TRY(expect(*value, JsonKind::Object, place_in(place, key), "a patch (an object)"));
+        patch = *value;
+    }
+    return Done{};
+}
+
+Status read_camera(const JsonValue& json, const JsonPlace& place, LevelShow& show) {
+    if (json.kind == JsonKind::String) {
+        show.camera_name = json.text;
+        return Done{};
+    }
+    return read_struct(json, show.camera.emplace(), place, {});
+}
+
+Result<LevelShow> read_show(const JsonValue& json, const JsonPlace& place) {
+    LIMN_TRY(expect_keys(json, place, kShowKeys, "a show (an object)"));
+    LevelShow show;
+    LIMN_TRY(read_text(json, "technique", place, show.technique));
+    LIMN_TRY(read_text(json, "text", place, show.text));
+    LIMN_TRY(read_patch(json, "set", place, show.set));
+    LIMN_TRY(read_patch(json, "off", place, show.off));
+    if (show.set.kind == JsonKind::Null && show.off.kind == JsonKind::Null) {
+        return unexpected(json, place, "\"set\", \"off\" or both");
+    }
+    if (const JsonValue* const time = json.find("time")) {
+        show.time = LIMN_TRY(expect_number(*time, 0, kMaxShowTime, place_in(place, "time"), "s"));
+    }
+    if (const JsonValue* const camera = json.find("camera")) {
+        LIMN_TRY(read_camera(*camera, place_in(place, "camera"), show));
+    }
+    if (const JsonValue* const equal = json.find("equal")) {
+        LIMN_TRY(expect(*equal, JsonKind::Bool, place_in(place, "equal"), "true or false"));
+        show.equal = equal->truth;
+    }
+    return show;
+}
+
+JsonMember* find_show_member(JsonValue& json, std::string_view key) {
+    const auto found =
+        std::find_if(json.members.begin(), json.members.end(), [key](const JsonMember& member) {
+            return member.key == key;
+        });
+    return found != json.members.end() ? &*found : nullptr;
+}
+
+Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& place);
+
+/// The first of the nodes and their descendants with that name. Collects the names it passes.
+JsonValue*
+find_node(JsonValue& nodes, std::string_view name, std::vector<std::string_view>& names) {
+    for (JsonValue& node : nodes.items) {
+        const JsonValue& own = node["name"];
+        names.push_back(own.text);
+        if (own.kind == JsonKind::String && own.text == name) {
+            return &node;
+        }
+        JsonMember* const children = find_show_member(node, "children");
+        JsonValue* const found =
+            children != nullptr ? find_node(children->value, name, names) : nullptr;
+        if (found != nullptr) {
+            return found;
+        }
+    }
+    return nullptr;
+}
+
+/// Changes nodes by name; the key "+" adds nodes.
+Status patch_nodes(JsonValue& nodes, const JsonValue& patch, const JsonPlace& place) {
+    LIMN_TRY(expect(patch, JsonKind::Object, place, "the names of entities (an object)"));
+    for (const JsonMember& member : patch.members) {
+        if (member.key == "+") {
+            const std::vector<JsonValue>& added = member.value.items;
+            LIMN_TRY(
+                expect(member.value, JsonKind::Array, place_in(place, "+"), "entities (an array)"));
+            nodes.items.insert(nodes.items.end(), added.begin(), added.end());
+            continue;
+        }
+        std::vector<std::string_view> names;
+        JsonValue* const node = find_node(nodes, member.key, names);
+        if (node == nullptr) {
+            return error_at(
+                place, member.at, "the entity " + in_quotes(member.key),
+                "the name of one in this level" + did_you_mean(member.key, names));
+        }
+        if (member.value.kind == JsonKind::Null) {
+            const auto is_named = [&](const JsonValue& other) {
+                return other["name"].text == member.key;
+            };
+            if (std::erase_if(nodes.items, is_named) == 0) {
+                return error_at(
+                    place, member.at, "null for the child " + in_quotes(member.key),
+                    "an entity that has no parent, or a patch");
+            }
+            continue;
+        }
+        LIMN_TRY(patch_object(*node, member.value, place_in(place, member.key)));
+    }
+    return Done{};
+}
+
+Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& place) {
+    if (target.kind != JsonKind::Object) {
+        target = json_object();
+        target.at = patch.at;
+    }
+    for (const JsonMember& member : patch.members) {
+        JsonMember* own = find_show_member(target, member.key);
+        if (member.value.kind == JsonKind::Null && own != nullptr) {
+            std::erase_if(
+                target.members, [&](const JsonMember& other) { return other.key == member.key; });
+            continue;
+        }
+        const bool is_list = member.key == "entities" || member.key == "children";
+        if (own == nullptr) {
+            // A null where nothing is: it removes a prefab's component.
+            const JsonKind kind =
+                member.value.kind == JsonKind::Object ? JsonKind::Object : member.value.kind;
+            target.members.push_back({member.key, member.at, {}});
+            own = &target.members.back();
+            own->value.kind = is_list ? JsonKind::Array : kind;
+            own->value.at = member.value.at;
+        }
+        const JsonPlace inner = place_in(place, member.key);
+        if (is_list) {
+            LIMN_TRY(patch_nodes(own->value, member.value, inner));
+        } else if (member.value.kind == JsonKind::Object) {
+            LIMN_TRY(patch_object(own->value, member.value, inner));
+        } else {
+            own->value = member.value;
+        }
+    }
+    return Done{};
+}
+
+}  // namespace
+
+std::vector<LevelShow>
+read_shows(const JsonValue& level, std::string_view file, ErrorList& errors) {
+    std::vector<LevelShow> shows;
+    const JsonValue& list = level["shows"];
+    for (std::size_t i = 0; i < list.items.size() && errors.has_room(); ++i) {
+        const JsonPlace place{file, fmt::format("shows[{}]", i)};
+        Result<LevelShow> show = read_show(list.items[i], place);
+        if (!show) {
+            errors.keep(show.error());
+            continue;
+        }
+        const bool is_new = std::none_of(shows.begin(), shows.end(), [&](const LevelShow& other) {
+            return other.technique == show->technique;
+        });
+        if (!is_new) {
+            errors.keep(error_at(
+                place, list.items[i].at, "a second show of " + show->technique,
+                "one of each technique"));
+            continue;
+        }
+        shows.push_back(*std::move(show));
+    }
+    return shows;
+}
+
+Result<std::vector<LevelShow>> read_shows(const JsonValue& level, std::string_view file) {
+    ErrorList errors{std::string(file)};
+    std::vector<LevelShow> shows = read_shows(level, file, errors);
+    LIMN_TRY(errors.status());
+    return shows;
+}
+
+Status apply_show(const LevelShow& show, bool off, std::string_view file, JsonValue& level) {
+    const JsonPlace place{file, "show " + show.technique};
+    const bool has_off = show.off.kind == JsonKind::Object;
+    if (show.set.kind == JsonKind::Object && (!off || has_off)) {
+        LIMN_TRY(patch_object(level, show.set, place_in(place, "set")));
+    }
+    if (off && has_off) {
+        LIMN_TRY(patch_object(level, show.off, place_in(place, "off")));
+    }
+    return Done{};
+}
+
+Result<std::optional<LevelShow>>
+choose_show(const ShowChoice& choice, std::string_view file, JsonValue& level) {
+    if (choice.technique.empty()) {
+        return std::optional<LevelShow>();
+    }
+    std::vector<LevelShow> shows = LIMN_TRY(read_shows(level, file));
+    std::vector<std::string_view> names;
+    for (LevelShow& show : shows) {
+        if (show.technique == choice.technique) {
+            LIMN_TRY(apply_show(show, choice.off, file, level));
+            return std::optional(std::move(show));
+        }
+        names.emplace_back(show.technique);
+    }
+    return fail(
+        "{}: found no show of {}, expected one of the level's{}", file, choice.technique,
+        did_you_mean(choice.technique, names));
+}
+
+Result<Entity> place_show_camera(World& world, const LevelShow& show, Entity camera) {
+    Entity chosen;
+    if (show.camera) {
+        const Camera* const own = std::as_const(world).find<Camera>(camera);
+        Camera lens = own != nullptr ? *own : Camera{};
+        lens.fov_y = show.camera->fov_y > 0 ? show.camera->fov_y : lens.fov_y;
+        const Quat rotation = look_along(show.camera->look_at - show.camera->position);
+        chosen = world.create(
+            Name{"show"}, Transform{.position = show.camera->position, .rotation = rotation}, lens);
+        if (const Lens* const focus = std::as_const(world).find<Lens>(camera)) {
+            world.add(chosen, Lens(*focus));
+        }
+        if (const LensFlare* const flare = std::as_const(world).find<LensFlare>(camera)) {
+            world.add(chosen, LensFlare(*flare));
+        }
+    } else if (!show.camera_name.empty()) {
+        world.query<const Name, const Camera>().each(
+            [&](Entity entity, const Name& name, const Camera&) {
+                chosen = name.text == show.camera_name ? entity : chosen;
+            });
+        if (chosen.is_null()) {
+            return fail(
+                "show {}: found no camera \"{}\", expected the name of one in the level",
+                show.technique, show.camera_name);
+        }
+    } else {
+        return camera;
+    }
+    world.query<Camera>().each(
+        [&](Entity entity, Camera& other) { other.active = entity == chosen; });
+    return chosen;
+}
+
+Result<std::vector<FoundShow>> list_shows() {
+    std::vector<FoundShow> all;
+    for (const LevelEntry& level : list_levels()) {
+        const JsonValue json = LIMN_TRY(load_json(level.path));
+        for (LevelShow& show : LIMN_TRY(read_shows(json, level.path))) {
+            all.push_back({level, std::move(show)});
+        }
+    }
+    return all;
+}
+
+Result<FoundShow> find_show(std::string_view technique) {
+    std::vector<FoundShow> all = LIMN_TRY(list_shows());
+    std::vector<std::string_view> names;
+    for (FoundShow& found : all) {
+        if (found.show.technique == technique) {
+            return std::move(found);
+        }
+        names.emplace_back(found.show.technique);
+    }
+    return fail(
+        "found no level that shows {}, expected one of `limn shows`{}; of a level of your own, "
+        "`limn play FILE --show {}`",
+        technique, did_you_mean(technique, names), technique);
+}
+
+}  // namespace limn

@@ -1,0 +1,255 @@
+#include "content/load/level/level_update.h"
+
+#include "content/load/level/level_load.h"
+#include "ecs/base/text.h"
+#include "ecs/component_bytes.h"
+#include "ecs/field_access.h"
+#include "ecs/world.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kMaxFollowed = 20000;
+
+bool same_field(const FieldInfo& field, const void* a, const void* b) {
+    const std::size_t count = element_count(field, a);
+    bool same = count == element_count(field, b);
+    for (std::size_t i = 0; same && i < count; ++i) {
+        same = equal_elements(field, element_ptr(field, a, i), element_ptr(field, b, i));
+    }
+    return same;
+}
+
+/// The fields of `a` that are others in `b`.
+std::vector<const FieldInfo*> changed_fields(const AnyComponent& a, const AnyComponent& b) {
+    std::vector<const FieldInfo*> changed;
+    for (const FieldInfo& field : a.info().fields) {
+        if (!same_field(field, field_ptr(a.data(), field), field_ptr(b.data(), field))) {
+            changed.push_back(&field);
+        }
+    }
+    return changed;
+}
+
+void add_change(std::vector<LevelChange>& changes, const AnyComponent& before, LevelChange change) {
+    change.fields = changed_fields(before, change.now);
+    if (!change.fields.empty()) {
+        changes.push_back(std::move(change));
+    }
+}
+
+/// What the files say of a resource; its defaults, where they say nothing.
+AnyComponent resource_in(const std::vector<AnyComponent>& resources, const ComponentInfo& info) {
+    const auto found = std::ranges::find_if(
+        resources, [&](const AnyComponent& one) { return &one.info() == &info; });
+    return found != resources.end() ? *found : AnyComponent(info);
+}
+
+std::vector<LevelChange>
+find_changes(const World& world, const LevelFields& before, const LevelFields& now) {
+    std::vector<LevelChange> changes;
+    for (std::size_t i = 0; i < now.components.size(); ++i) {
+        const Entity entity = before.entities[i];
+        for (std::size_t c = 0; c < now.components[i].size(); ++c) {
+            const AnyComponent& value = now.components[i][c];
+            if (world.alive(entity) && world.has(entity, value.info().id)) {
+                add_change(
+                    changes, before.components[i][c], {LevelPart::Component, entity, 0, value, {}});
+            }
+        }
+    }
+    std::vector<const ComponentInfo*> infos;
+    for (const auto* const resources : {&before.resources, &now.resources}) {
+        for (const AnyComponent& one : *resources) {
+            if (std::ranges::find(infos, &one.info()) == infos.end()) {
+                infos.push_back(&one.info());
+            }
+        }
+    }
+    for (const ComponentInfo* const info : infos) {
+        add_change(
+            changes, resource_in(before.resources, *info),
+            {LevelPart::Resource, {}, 0, resource_in(now.resources, *info), {}});
+    }
+    for (std::uint32_t i = 0; i < now.materials.size(); ++i) {
+        add_change(
+            changes, AnyComponent::of(before.materials[i]),
+            {LevelPart::Material, {}, i, AnyComponent::of(now.materials[i]), {}});
+    }
+    return changes;
+}
+
+void apply_change(World& world, const LevelChange& change) {
+    const ComponentInfo& info = change.now.info();
+    switch (change.part) {
+    case LevelPart::Component: {
+        AnyComponent value = AnyComponent::read(world, change.entity, info);
+        adopt_change(change, value);
+        world.write(change.entity, info.id, value.data());
+        break;
+    }
+    case LevelPart::Resource: {
+        void* resource = world.find_resource(info.id);
+        resource = resource != nullptr ? resource : world.insert_default_resource(info.id);
+        for (const FieldInfo* const field : change.fields) {
+            copy_field(*field, field_ptr(resource, *field), field_ptr(change.now.data(), *field));
+        }
+        break;
+    }
+    case LevelPart::Material: {
+        auto& assets = world.resource<Assets>();
+        AnyComponent value = AnyComponent::of(assets.materials[change.material]);
+        adopt_change(change, value);
+        assets.materials[change.material] = value.as<Material>();
+        ++assets.material_version;
+        break;
+    }
+    }
+}
+
+bool same_kinds(const std::vector<AnyComponent>& a, const std::vector<AnyComponent>& b) {
+    bool same = a.size() == b.size();
+    for (std::size_t i = 0; same && i < a.size(); ++i) {
+        same = &a[i].info() == &b[i].info();
+    }
+    return same;
+}
+
+/// Of one type of component.
+bool same_edits(const ScriptAction& a, const ScriptAction& b) {
+    const auto offset = [](const FieldEdit& edit) { return edit.offset; };
+    return a.value.is_empty() == b.value.is_empty()
+           && std::ranges::equal(a.edits, b.edits, {}, offset, offset)
+           && (a.value.is_empty() || same_value(a.value, b.value));
+}
+
+bool same_change(const NodeChange& a, const NodeChange& b) {
+    return a.entity == b.entity && a.node == b.node && a.info == b.info && same_edits(a.set, b.set);
+}
+
+/// Calls `visit` with what events set in components as the level starts.
+template <typename Visit>
+void each_first_set(const EventList& list, Visit&& visit) {
+    for (const ScriptEvent& event : list.events) {
+        for (const ScriptAction& action : event.actions) {
+            if (event.time == 0 && event.key.empty() && action.action == EventAction::Set
+                && !action.is_resource) {
+                visit(action);
+            }
+        }
+    }
+}
+
+/// What events set as the level starts that did not `before`: it has started.
+std::vector<LevelChange> find_first_sets(const World& world, const EventList& before) {
+    std::vector<LevelChange> changes;
+    each_first_set(world.resource<EventList>(), [&](const ScriptAction& action) {
+        const ComponentInfo& info = action.value.info();
+        bool is_new = world.alive(action.entity) && world.has(action.entity, info.id);
+        each_first_set(before, [&](const ScriptAction& other) {
+            is_new = is_new
+                     && !(
+                         other.entity == action.entity && &other.value.info() == &info
+                         && same_edits(other, action));
+        });
+        if (!is_new) {
+            return;
+        }
+        LevelChange change{
+            LevelPart::Component,
+            action.entity,
+            0,
+            AnyComponent::read(world, action.entity, info),
+            {}};
+        for (const FieldEdit& edit : action.edits) {
+            copy_field(
+                *edit.field, static_cast<std::byte*>(change.now.data()) + edit.offset,
+                static_cast<const std::byte*>(action.value.data()) + edit.offset);
+            const auto outer = std::ranges::find_if(info.fields, [&](const FieldInfo& field) {
+                return edit.offset >= field.offset && edit.offset < field.offset + field.size;
+            });
+            change.fields.push_back(&*outer);
+        }
+        changes.push_back(std::move(change));
+    });
+    return changes;
+}
+
+}  // namespace
+
+bool same_value(const AnyComponent& a, const AnyComponent& b) {
+    return changed_fields(a, b).empty();
+}
+
+void adopt_change(const LevelChange& change, AnyComponent& value) {
+    for (const FieldInfo* const field : change.fields) {
+        copy_field(*field, field_ptr(value.data(), *field), field_ptr(change.now.data(), *field));
+    }
+}
+
+LevelFields remember_fields(const Level& level, const std::string& path) {
+    LevelFields fields;
+    if (level.entities.entities.size() > kMaxFollowed) {
+        return fields;
+    }
+    fields.files.push_back(path);
+    for (const auto& file : level.included) {
+        fields.files.push_back(*file);
+    }
+    for (const PrefabEntity& entity : level.entities.entities) {
+        fields.components.push_back(entity.components);
+    }
+    fields.node_changes = level.node_changes;
+    fields.resources = level.resources;
+    fields.materials = level.assets.materials;
+    const Assets& assets = level.assets;
+    const auto add_names = [&](const auto& list) {
+        for (const auto& asset : list) {
+            fields.assets.push_back(asset.name);
+        }
+        fields.assets.emplace_back();
+    };
+    add_names(assets.images);
+    add_names(assets.materials);
+    add_names(assets.meshes);
+    add_names(assets.paths);
+    return fields;
+}
+
+Result<std::vector<LevelChange>>
+update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAssets* made) {
+    const std::string path = fields.files.empty() ? "" : fields.files.front();
+    Level level = LIMN_TRY(load_level(path, {}, choice, made));
+    LevelFields now = remember_fields(level, path);
+    bool same = now.components.size() == fields.components.size() && now.assets == fields.assets;
+    for (std::size_t i = 0; same && i < now.components.size(); ++i) {
+        same = same_kinds(now.components[i], fields.components[i]);
+    }
+    if (!same) {
+        return fail(
+            "{}: entities, components or assets were added or removed: load it again", path);
+    }
+    if (!std::ranges::equal(now.node_changes, fields.node_changes, same_change)) {
+        return fail("{}: nodes of a glTF file are changed otherwise: load it again", path);
+    }
+    std::vector<LevelChange> changes = find_changes(world, fields, now);
+    for (LevelChange& change : changes) {
+        localize_component(change.now, fields.entities);
+        apply_change(world, change);
+    }
+    const EventList before = world.resource<EventList>();
+    replace_events(world, std::move(level.events), fields.entities);
+    for (LevelChange& change : find_first_sets(world, before)) {
+        apply_change(world, change);
+        changes.push_back(std::move(change));
+    }
+    now.entities = std::move(fields.entities);
+    fields = std::move(now);
+    return changes;
+}
+
+}  // namespace limn

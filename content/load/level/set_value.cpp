@@ -1,0 +1,254 @@
+#include "content/load/level/set_value.h"
+
+#include "content/load/asset_lists.h"
+#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/field_access.h"
+#include "ecs/world.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+std::vector<Entity> find_entities(const World& world, std::string_view name) {
+    std::vector<Entity> entities;
+    world.query<const Name>().each([&](Entity entity, const Name& candidate) {
+        if (candidate.text == name) {
+            entities.push_back(entity);
+        }
+    });
+    return entities;
+}
+
+JsonValue parse_value(std::string_view text) {
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+    while (!text.empty() && is_blank(text.front())) {
+        text.remove_prefix(1);
+    }
+    while (!text.empty() && is_blank(text.back())) {
+        text.remove_suffix(1);
+    }
+    Result<JsonValue> json = parse_json(text, "");
+    return json ? *std::move(json) : json_of(text);
+}
+
+/// Sets the field in a copy and assigns that to `object` on success. A struct can be set as a
+/// whole; its fields that the value does not name are kept.
+Status set_field(
+    const ComponentInfo& info, void* object, std::string_view field_path, const JsonValue& value,
+    const JsonPlace& place, const NameResolver& names) {
+    AnyComponent copy(info, object);
+    const Result<FieldRef> field = field_at(info, copy.data(), field_path);
+    if (!field) {
+        return fail("{}: {}", place.file, field.error().message);
+    }
+    FieldInfo target = *field->field;
+    void* data = field->element;
+    const bool is_indexed = field_path.back() >= '0' && field_path.back() <= '9';
+    if (target.shape == FieldShape::List && field_path == target.name) {
+        data = field_ptr(copy.data(), target);  // the list itself, which may be empty
+    } else if (target.shape == FieldShape::List && !is_indexed) {
+        return fail("{}: found a list inside a list, expected the index of an element", place.file);
+    } else if (is_indexed) {
+        target.shape = FieldShape::One;
+    }
+    LIMN_TRY(read_field(value, target, data, place, names));
+    for (const FieldInfo& changed : info.fields) {
+        copy_field(changed, field_ptr(object, changed), field_ptr(copy.data(), changed));
+    }
+    return Done{};
+}
+
+/// To entities that lack the component: adds it first, with defaults.
+Status add_to_entities(
+    World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
+    std::string_view field_path, const JsonValue& value, const JsonPlace& place) {
+    if (info.ops.construct_default == nullptr) {
+        return fail("{}: found no component {} on the entity, expected one", place.file, info.name);
+    }
+    AnyComponent fresh(info);
+    LIMN_TRY(set_field(info, fresh.data(), field_path, value, place, make_name_resolver(world)));
+    for (const Entity entity : entities) {
+        world.add(entity, info.id);
+        world.write(entity, info.id, fresh.data());
+    }
+    log_warn("{}: the entity has no {}; it is added, with defaults", place.file, info.name);
+    return Done{};
+}
+
+Status set_in_entities(
+    World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
+    std::string_view field_path, const JsonValue& value, const JsonPlace& place) {
+    bool is_set = false;
+    for (const Entity entity : entities) {
+        AnyComponent component = AnyComponent::read(world, entity, info);
+        if (component.is_empty()) {
+            continue;
+        }
+        LIMN_TRY(
+            set_field(info, component.data(), field_path, value, place, make_name_resolver(world)));
+        world.write(entity, info.id, component.data());
+        is_set = true;
+    }
+    return is_set ? Status(Done{})
+                  : add_to_entities(world, entities, info, field_path, value, place);
+}
+
+/// Creates the resource with default values first if the scene has none.
+Status set_in_resource(
+    World& world, const ComponentInfo& info, std::string_view field_path, const JsonValue& value,
+    const JsonPlace& place) {
+    const NameResolver names = make_name_resolver(world);
+    if (void* const object = world.find_resource(info.id)) {
+        return set_field(info, object, field_path, value, place, names);
+    }
+    AnyComponent fresh(info);
+    LIMN_TRY(set_field(info, fresh.data(), field_path, value, place, names));
+    void* const made = world.insert_default_resource(info.id);
+    for (const FieldInfo& field : info.fields) {
+        copy_field(field, field_ptr(made, field), field_ptr(fresh.data(), field));
+    }
+    return Done{};
+}
+
+Status set_in_material(
+    World& world, std::string_view rest, const JsonValue& value, const JsonPlace& place) {
+    Assets* const assets = world.find_resource<Assets>();
+    std::vector<std::string_view> names;
+    Material* named = nullptr;
+    for (std::size_t i = 0; assets != nullptr && i < assets->materials.size(); ++i) {
+        Material& material = assets->materials[i];
+        names.emplace_back(material.name);
+        // Names of glTF materials may contain dots: the longest that fits is meant.
+        if (rest.starts_with(material.name + '.')
+            && (named == nullptr || material.name.size() > named->name.size())) {
+            named = &material;
+        }
+    }
+    if (named != nullptr) {
+        ++assets->material_version;
+        return set_field(
+            component_info<Material>(), named, rest.substr(named->name.size() + 1), value, place,
+            make_name_resolver(world));
+    }
+    const std::string_view name = rest.substr(0, rest.find('.'));
+    return fail(
+        "{}: found the material {}, expected one of the scene and a field{}", place.file,
+        in_quotes(name), did_you_mean(name, names));
+}
+
+/// What to set, where no entity's name begins `path`: the longest of its beginnings that is similar
+/// to a name.
+Error unknown_target(const World& world, std::string_view path, const JsonPlace& place) {
+    std::vector<std::string_view> known = make_name_resolver(world).all("entity");
+    for (const ComponentInfo* const resource : all_resources()) {
+        known.emplace_back(resource->name);
+    }
+    std::string_view name = path;
+    std::string hint;
+    while (hint.empty() && name.find('.') != std::string_view::npos) {
+        name = name.substr(0, name.rfind('.'));
+        hint = did_you_mean(name, known);
+    }
+    return fail(
+        "{}: found {}, expected an entity, a resource or materials before a dot{}", place.file,
+        in_quotes(name), hint);
+}
+
+/// Splits `path` at the last dot that an entity's name comes before: names of glTF nodes may
+/// contain dots.
+Status
+set_in_named(World& world, std::string_view path, const JsonValue& value, const JsonPlace& place) {
+    for (std::size_t dot = path.rfind('.'); dot != std::string_view::npos && dot > 0;
+         dot = path.rfind('.', dot - 1)) {
+        const std::vector<Entity> entities = find_entities(world, path.substr(0, dot));
+        if (entities.empty()) {
+            continue;
+        }
+        const std::string_view rest = path.substr(dot + 1);
+        const std::size_t end = std::min(rest.find('.'), rest.size());
+        const std::string_view component = rest.substr(0, end);
+        const ComponentInfo* const info = find_component(component);
+        if (info == nullptr) {
+            return fail(
+                "{}: found the component {}, expected one of `limn components`{}", place.file,
+                in_quotes(component), component_suggestion(component));
+        }
+        if (end + 1 >= rest.size()) {
+            return fail("{}: found no field after {}, expected one", place.file, info->name);
+        }
+        return set_in_entities(world, entities, *info, rest.substr(end + 1), value, place);
+    }
+    if (!find_entities(world, path).empty()) {
+        return fail("{}: found no component, expected ENTITY.COMPONENT.FIELD", place.file);
+    }
+    return unknown_target(world, path, place);
+}
+
+}  // namespace
+
+Status set_value(World& world, std::string_view path, std::string_view value) {
+    const std::string name = "--set " + std::string(path);
+    const JsonPlace place{name, ""};
+    JsonValue json = parse_value(value);
+    json.at = {};
+    const std::size_t dot = path.find('.');
+    if (dot == std::string_view::npos || dot + 1 >= path.size()) {
+        return fail("{}: found no field, expected ENTITY.COMPONENT.FIELD or RESOURCE.FIELD", name);
+    }
+    const std::string_view first = path.substr(0, dot);
+    if (first == "materials") {
+        return set_in_material(world, path.substr(dot + 1), json, place);
+    }
+    const ComponentInfo* const resource = find_resource(first);
+    if (resource != nullptr && find_entities(world, first).empty()) {
+        return set_in_resource(world, *resource, path.substr(dot + 1), json, place);
+    }
+    return set_in_named(world, path, json, place);
+}
+
+NameResolver make_name_resolver(const World& world) {
+    NameResolver names;
+    names.asset = [&world](std::string_view kind, std::string_view name, SourcePosition) {
+        const Assets* const assets = world.find_resource<Assets>();
+        return assets != nullptr ? find_asset(*assets, kind, name) : std::nullopt;
+    };
+    names.entity = [&world](std::string_view name, SourcePosition) -> std::optional<Entity> {
+        const std::vector<Entity> entities = find_entities(world, name);
+        return entities.empty() ? std::nullopt : std::optional(entities.front());
+    };
+    names.all = [&world](std::string_view kind) {
+        std::vector<std::string_view> all;
+        if (kind == "entity") {
+            world.query<const Name>().each([&](const Name& name) { all.emplace_back(name.text); });
+        } else if (const Assets* const assets = world.find_resource<Assets>()) {
+            all = asset_names(*assets, kind);
+        }
+        return all;
+    };
+    return names;
+}
+
+NameProvider make_name_provider(const World& world) {
+    NameProvider names;
+    names.asset = [&world](std::string_view kind, std::uint32_t index) {
+        std::string found;
+        if (const Assets* const assets = world.find_resource<Assets>()) {
+            visit_asset_list(*assets, kind, [&](const auto& list) {
+                found = index < list.size() ? list[index].name : "";
+            });
+        }
+        return found;
+    };
+    names.entity = [&world](Entity entity) {
+        const Name* const name = world.find<Name>(entity);
+        return name != nullptr ? name->text : std::string();
+    };
+    return names;
+}
+
+}  // namespace limn

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "content/load/level/scene_warnings.h"
+
+#include <vector>
+
+namespace limn {
+
+/// Of find_scene_warnings: regions and shapes of a wrinkle_surface that its mesh does not have, and
+/// wrinkle maps and masks that do not lie over each other.
+void find_wrinkle_warnings(const World& world, std::vector<SceneWarning>& warnings);
+
+}  // namespace limn

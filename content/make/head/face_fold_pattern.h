@@ -1,0 +1,25 @@
+#pragma once
+
+#include "content/make/patterns/patterns.h"
+
+namespace limn {
+
+/// Folds of a face as a wrinkle map for the skin of the mesh "head", and of others by face_chart.h:
+/// lines of the forehead, of the glabella and the root of the nose, crow's feet, folds of the lower
+/// lid, nasolabial fold, lines around the mouth and a dimpled chin. Where they show, and how deep,
+/// is up to a wrinkle_surface.
+struct FaceFoldsPattern {
+    PatternSize image;
+    float depth = 1;
+    float wander = 0.35f;
+};
+
+LIMN_FIELDS(FaceFoldsPattern) {
+    visit_fields(self.image, visit);
+    LIMN_FIELD(depth, "of all folds; 1: as steep as of a face of middle age", "", 0, 4);
+    LIMN_FIELD(wander, "of folds to the sides", "mm", 0, 5);
+}
+
+[[nodiscard]] PatternMaps make_face_folds(const FaceFoldsPattern& pattern);
+
+}  // namespace limn

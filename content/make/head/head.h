@@ -1,0 +1,88 @@
+#pragma once
+
+#include "content/make/models/creature.h"
+#include "ecs/components/surface.h"
+
+#include <cstdint>
+#include <string>
+
+namespace limn {
+
+// A human head on its neck, facing +z, +x to its left. Skin is one closed quad mesh, cut into
+// triangles, but for the ring at the end of the neck: a grid of columns around the head and rows
+// from crown to neck, with a square cap on the crown and concentric loops around eyes, mouth and
+// ears (head_layout.h), wrapped around an implicit surface (head_surface.h). One UV seam runs down
+// the back; a second set of UVs hardly stretches patterns as pores (even_chart.h), which go on
+// across the seam behind the neck if they repeat five times in a unit, or a multiple of that.
+// Proportions after Farkas, "Anthropometry of the Head and Face" (1994).
+//
+// Regions are those of face_regions.h. Expressions are morph targets (head_expressions.h), jaw and
+// eyes are joints as well: "head", "jaw", "left_eye", "right_eye". Each part is a mesh of its own,
+// with a material of its own, and has the same morph targets:
+//
+//     skin      with regions that fold
+//     eyes      white, iris, pupil and caruncle, in vertex colors
+//     corneas   clear shells before them and tear lines, for a material that refracts
+//     teeth     of both jaws
+//     mouth     gums and tongue
+//     hair      brows and lashes: ribbons, for a material with two sides
+//     scalp     a short cut: cards for a material with the images of HairPattern
+//     shirt     over shoulders, with a wide neckline
+//     markers   no part to be seen: a coarse surface that moves the skin (head_markers.h)
+
+enum class HeadPartKind : std::uint8_t {
+    Skin,
+    Eyes,
+    Corneas,
+    Teeth,
+    Mouth,
+    Hair,
+    Scalp,
+    Shirt,
+    Markers
+};
+
+struct HeadShape {
+    HeadPartKind part = HeadPartKind::Skin;
+    float age = 0.3f;
+    float sex = 0.0f;
+    float build = 0.0f;
+    float asymmetry = 0.0f;
+    float scalp_shade = 0.0f;
+    bool shoulders = false;
+    bool dressed = false;
+    bool grows_old = false;
+    std::string says = "Hello. I am made of numbers, and light moves within my skin.";
+};
+
+LIMN_FIELDS(HeadShape) {
+    LIMN_FIELD(
+        part,
+        .doc = "part of the head; markers: a coarse surface, for a surface_binding of the skin",
+        .values = "skin eyes corneas teeth mouth hair scalp shirt markers");
+    LIMN_FIELD(age, "0: twenty years, 1: seventy; lips thin, tissue sags", "", 0, 1);
+    LIMN_FIELD(sex, "-1: a woman's features, 1: a man's", "", -1, 1);
+    LIMN_FIELD(build, "-1: lean, 1: heavy", "", -1, 1);
+    LIMN_FIELD(asymmetry, "of the left and right half; 0: mirror images", "", 0, 1);
+    LIMN_FIELD(scalp_shade, "of the skin: how much it is darkened where hair grows", "", 0, 1);
+    LIMN_FIELD(
+        shoulders, "the skin goes on over collar bones and shoulders, which stay when the head "
+                   "turns; it ends in a plane ring 27 cm below the ears, without: 14.5 cm");
+    LIMN_FIELD(
+        dressed, "of the skin: it ends some centimeters below the collar of a shirt, which is worn "
+                 "over it; has shoulders");
+    LIMN_FIELD(
+        grows_old, "adds the shape `age`, which at weight 1 makes it seventy years old; set it of "
+                   "all parts of a head");
+    LIMN_FIELD(says, "what it says in its clip talk, English");
+}
+
+/// In meters; the origin lies between the ears, 3.5 cm below the pupils.
+[[nodiscard]] MeshData make_head(const HeadShape& shape);
+
+/// The same skeleton for all parts. The skin has clips: each face of head_clips.h for a few
+/// seconds, "expressions" with all of them, "talk", "relax", and "blink" and "old", for morph
+/// animations beside others.
+[[nodiscard]] MeshRig make_head_rig(const HeadShape& shape);
+
+}  // namespace limn

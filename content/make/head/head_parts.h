@@ -1,0 +1,58 @@
+#pragma once
+
+#include "content/make/head/head_action_units.h"
+#include "ecs/components/surface.h"
+
+#include <vector>
+
+namespace limn {
+
+// Parts of a head besides its skin, in centimeters of the space of head_surface.h.
+
+struct HeadPart {
+    MeshData mesh;                  ///< positions, uvs, colors and indices [cm]
+    std::vector<HeadPoint> points;  ///< one per vertex
+    std::vector<bool> covered;      ///< per triangle, left out in the end; or empty
+};
+
+/// Both balls, of the radius kBallRadius, with an iris that lies as deep behind the cornea as in a
+/// real eye, and a pupil of 3 mm; and the caruncles in their inner corners.
+[[nodiscard]] HeadPart make_eye_balls();
+
+/// The clear shells before them, and the tear lines along the lower lids.
+[[nodiscard]] HeadPart make_corneas();
+
+/// 14 teeth in each jaw.
+[[nodiscard]] HeadPart make_teeth();
+
+/// Gums and the tongue.
+[[nodiscard]] HeadPart make_mouth();
+
+/// Brows and lashes: ribbons, visible from both sides.
+[[nodiscard]] HeadPart make_face_hair(const HeadShape& shape);
+
+/// The hair of the scalp in a short cut: cards in layers, v from roots to tips, normals those of
+/// the scalp so that cards catch light as one body.
+[[nodiscard]] HeadPart make_scalp_hair(const HeadShape& shape);
+
+/// A shirt on the shoulders that `shape` has; it hangs a little lower than their skin ends. Its
+/// points move as skin does.
+[[nodiscard]] HeadPart make_shirt(const HeadShape& shape);
+
+/// Of each vertex of head_layout(true), which lie at `skin` [cm] at rest: whether it lies so far
+/// below the neckline of the shirt that it cannot be seen, however the head turns.
+[[nodiscard]] std::vector<bool> find_covered_skin(const std::vector<Vec3>& skin);
+
+/// How much hair grows at `p` on a head, 0 .. 1.
+[[nodiscard]] float scalp_hair_cover(const Vec3& p);
+
+/// Radius of an eye without its cornea [cm]: the lids lie on a ball that is a little larger.
+inline constexpr float kBallRadius = 1.27f;
+
+/// Adds a grid of `rows` x `columns` vertices, which have been appended row after row, as
+/// triangles; `closed`: the last column joins the first. They face the side from which rows run
+/// down and columns to the left; flipped, the other.
+void append_grid(
+    MeshData& mesh, std::uint32_t rows, std::uint32_t columns, bool closed, bool flip = false);
+
+}  // namespace limn

@@ -1,0 +1,172 @@
+#include "content/make/head/head_parts.h"
+#include "content/make/head/head_surface.h"
+#include "ecs/base/rng.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+constexpr Vec3 kMiddle = {0, 5.5f, -0.5f};  ///< of the skull [cm]
+constexpr float kImageWidth = 1.0f;         ///< of the image of strands [cm]
+constexpr Vec3 kWhorl = {-0.9f, 13.0f, -4.5f};
+
+/// Height of the hairline by the angle around the head from its front, left and right alike.
+struct HairlineKey {
+    float angle;   ///< [degrees]
+    float height;  ///< [cm]
+};
+constexpr std::array<HairlineKey, 12> kHairline = {{
+    {0, 10.3f},
+    {18, 10.2f},
+    {32, 9.5f},
+    {44, 8.2f},
+    {56, 6.6f},
+    {66, 4.2f},
+    {72, 1.6f},
+    {82, 1.4f},
+    {88, 4.3f},
+    {102, 3.6f},
+    {118, -0.6f},
+    {181, -4.4f},
+}};
+
+float hairline(const Vec3& p) {
+    const float angle = std::atan2(std::abs(p.x), p.z) * 180 / kPi;
+    std::size_t i = 1;
+    while (i + 1 < kHairline.size() && kHairline[i].angle < angle) {
+        ++i;
+    }
+    const HairlineKey& a = kHairline[i - 1];
+    const HairlineKey& b = kHairline[i];
+    return glm::mix(a.height, b.height, glm::smoothstep(a.angle, b.angle, angle));
+}
+
+/// The way hair lies at `p`: away from the whorl, across the forehead and down the sides.
+Vec3 hair_flow(const Vec3& p, const Vec3& out) {
+    const Vec3 away = glm::normalize(p - kWhorl);
+    const float fringe = glm::smoothstep(7.5f, 10.5f, p.y) * glm::smoothstep(-2.0f, 5.0f, p.z);
+    const Vec3 down = Vec3(0, -1.1f, 0) * (1 - glm::smoothstep(6.0f, 10.0f, p.y));
+    const Vec3 flow = glm::mix(away + down, Vec3(0.75f, 0.25f, 0.55f), fringe);
+    return glm::normalize(flow - glm::dot(flow, out) * out);
+}
+
+struct Card {
+    Vec3 root, out, flow;  ///< out and flow: unit
+    float length, width;   ///< [cm]
+    float lift;            ///< of its tip from the scalp [cm]
+    float strand;          ///< u of the image in the middle
+    float shade;
+    float root_shade;  ///< factor of the shade at the root: less light comes there
+};
+
+/// Roots evenly over the skull (R. Swinbank and R. Purser, "Fibonacci Grids", 2006), from below, so
+/// that upper layers come last.
+Vec3 scalp_root(int i, int count, const Vec3& jitter, const HeadShape& shape) {
+    const float up = -1 + 2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
+    const float turn = kPi * (3 - std::sqrt(5.0f)) * static_cast<float>(i);
+    const float ring = std::sqrt(1 - up * up);
+    Vec3 root = kMiddle + 9.0f * Vec3(ring * std::sin(turn), up, ring * std::cos(turn)) + jitter;
+    for (int step = 0; step < 3; ++step) {
+        root = project_to_head(root, shape, 0);
+    }
+    return root;
+}
+
+void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
+    constexpr std::uint32_t kRows = 3;
+    Vec3 at = card.root - 0.1f * card.out;
+    Vec3 out = card.out;
+    for (std::uint32_t row = 0; row < kRows; ++row) {
+        const float t = static_cast<float>(row) / (kRows - 1);
+        if (row > 0) {
+            const Vec3 flow = normalize_or(card.flow - glm::dot(card.flow, out) * out, card.flow);
+            const Vec3 lie = hair_flow(at, out);
+            at += card.length / (kRows - 1) * glm::normalize(glm::mix(flow, lie, 0.6f * t));
+            const Vec3 slope = head_gradient(at, shape, 0);
+            out = normalize_or(slope, out);
+            const float rise = card.lift * std::sin(0.5f * kPi * std::min(1.6f * t, 1.0f));
+            at += (rise - head_distance(at, shape, 0)) * out;
+        }
+        const Vec3 across = normalize_or(glm::cross(card.flow, out), Vec3(1, 0, 0));
+        for (const float edge : {-1.0f, 1.0f}) {
+            const Vec3 p = at + 0.5f * card.width * (1 - 0.3f * t) * edge * across;
+            part.points.push_back(bone_point(p, 0));
+            part.mesh.positions.push_back(p);
+            part.mesh.normals.push_back(glm::normalize(out + 0.2f * edge * across));
+            part.mesh.uvs.emplace_back(card.strand + 0.5f * edge * card.width / kImageWidth, t);
+            part.mesh.colors.emplace_back(
+                Vec3(card.shade * glm::mix(card.root_shade, 1.0f, t)), 1.0f);
+        }
+    }
+    append_grid(part.mesh, kRows, 2, false);
+}
+
+/// Wide cards that lie on the scalp, so that hair is seen between locks, not skin.
+void append_undercoat(HeadPart& part, const HeadShape& shape) {
+    constexpr int kCards = 700;
+    for (int i = 0; i < kCards; ++i) {
+        Card card;
+        card.root = scalp_root(i, kCards, Vec3(0), shape);
+        if (scalp_hair_cover(card.root) < 0.95f) {
+            continue;
+        }
+        card.out = glm::normalize(head_gradient(card.root, shape, 0));
+        card.flow = hair_flow(card.root, card.out);
+        card.length = 2.4f;
+        card.width = 2.0f;
+        card.lift = 0.06f;
+        card.strand = 0.37f * static_cast<float>(i);
+        card.shade = 0.75f;
+        card.root_shade = 1;
+        append_card(part, card, shape);
+    }
+}
+
+}  // namespace
+
+float scalp_hair_cover(const Vec3& p) {
+    return glm::smoothstep(-0.5f, 0.7f, p.y - hairline(p));
+}
+
+HeadPart make_scalp_hair(const HeadShape& shape) {
+    constexpr int kCards = 3900;  // on the whole ball around the skull; some 2520 grow
+    HeadPart part;
+    part.mesh.name = "scalp";
+    append_undercoat(part, shape);
+    Random random(0, 0, name_hash("scalp_hair"), 0);
+    for (int i = 0; i < kCards; ++i) {
+        const float aside_x = random.uniform() - 0.5f;
+        const float aside_z = random.uniform() - 0.5f;
+        const Vec3 root = scalp_root(i, kCards, 0.35f * Vec3(aside_x, 0, aside_z), shape);
+        const float grown = random.uniform();
+        const std::array<float, 4> chance = {
+            random.uniform(), random.uniform(), random.uniform(), random.uniform()};
+        if (scalp_hair_cover(root) < 0.25f + 0.6f * grown) {
+            continue;
+        }
+        Card card;
+        card.root = root;
+        card.out = glm::normalize(head_gradient(root, shape, 0));
+        const Vec3 flow = hair_flow(root, card.out);
+        const Vec3 aside = glm::cross(card.out, flow);
+        card.flow = glm::normalize(flow + 0.4f * (chance[0] - 0.5f) * aside);
+        const float top = glm::smoothstep(3.0f, 11.0f, root.y);
+        card.length = glm::mix(2.1f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
+        card.width = glm::mix(0.5f, 0.65f, top) * (0.7f + 0.6f * chance[1]);
+        card.lift = glm::mix(0.1f, 0.75f, top) * (0.35f + 0.75f * chance[2]);
+        card.strand = 7.31f * chance[3] + 3.17f * chance[0];
+        card.shade = 0.9f + 0.2f * chance[3];
+        card.root_shade = glm::mix(0.85f, 0.6f, top);
+        append_card(part, card, shape);
+    }
+    return part;
+}
+
+}  // namespace limn

@@ -1,0 +1,35 @@
+#include "render/environment/fog_pass.h"
+
+#include "ecs/world.h"
+#include "render/fullscreen.h"
+#include "render/view_block.h"
+#include "render/water/water_surfaces.h"
+
+namespace limn {
+namespace {
+
+constexpr unsigned kFogSceneDepthUnit = 0;
+
+}  // namespace
+
+bool FogEffect::is_used(const FrameData& frame) {
+    return frame.world->find_resource<HeightFog>() != nullptr;
+}
+
+Result<FogEffect> FogEffect::create(gpu::Device& device, const RenderSettings&) {
+    return FogEffect{LIMN_TRY(load_fullscreen(device, "fog.frag"))};
+}
+
+void FogEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    const auto* waters = view.data.find<WaterSurfaces>();
+    if (waters != nullptr && waters->list.around) {
+        return;  // no fog under water
+    }
+    gpu::PipelineState state = gpu::kFullscreenState;
+    state.blend = gpu::kBlendPremultiplied;
+    add_fullscreen_pass(
+        graph, "fog", {sampled(view.gbuffer.depth, kFogSceneDepthUnit)}, {view.radiance}, program,
+        state, [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
+}
+
+}  // namespace limn

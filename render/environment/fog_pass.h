@@ -1,0 +1,25 @@
+#pragma once
+
+#include "ecs/components/height_fog.h"
+#include "render/effect.h"
+
+namespace limn {
+
+// Fog between the camera and surfaces, water and sky (render/environment/fog_block.h).
+//
+// Reads    depth; HeightFog
+// Writes   radiance
+// Order    after water, before blended surfaces and particles, which add the fog in front of them
+// Shaders  fog.frag, lib/height_fog.glsl
+//
+// Of what a surface mirrors or refracts, only the way from the camera to that surface is foggy.
+
+struct FogEffect {
+    const gpu::Program* program = nullptr;
+
+    [[nodiscard]] static bool is_used(const FrameData& frame);
+    [[nodiscard]] static Result<FogEffect> create(gpu::Device& device, const RenderSettings&);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+};
+
+}  // namespace limn

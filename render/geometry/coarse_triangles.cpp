@@ -1,0 +1,195 @@
+#include "render/geometry/coarse_triangles.h"
+
+#include "ecs/base/hash.h"
+#include "ecs/base/jobs.h"
+#include "render/geometry/triangle_grid.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+namespace limn {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+constexpr std::size_t kMinTriangles = 48;  // a mesh of fewer costs less than its draw call
+constexpr std::size_t kCoarsestTriangles = 8;
+constexpr float kMaxError = 0.5f;  // quadric error, relative to the size of the mesh
+constexpr float kRatio = 0.4f;     // triangles wanted of a level, of those of the one before
+// The finest levels are drawn of what is seen large: steps between them are smaller.
+constexpr float kFineRatios[] = {0.65f, 0.62f};
+constexpr float kWorthwhile = 0.75f;
+// Of more triangles than this in pieces of fewer, such as points and lines, nothing is simplified:
+// there is little to collapse, and measuring distances takes some 20 s per million triangles.
+constexpr std::size_t kMaxLooseTriangles = 200'000;
+constexpr std::size_t kMinPiece = 12;
+
+/// The triangles of the mesh that are no lines, with one of the vertices at the same place.
+Indices welded_indices(const MeshData& mesh) {
+    Indices indices(mesh.indices.size() / 3 * 3);
+    meshopt_generateShadowIndexBuffer(
+        indices.data(), mesh.indices.data(), indices.size(), mesh.positions.data(),
+        mesh.positions.size(), sizeof(Vec3), sizeof(Vec3));
+    Indices kept;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        const std::uint32_t* t = &indices[i];
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) {
+            kept.insert(kept.end(), t, t + 3);
+        }
+    }
+    return kept;
+}
+
+/// The vertices that `indices` name, each once.
+Indices vertices_of(Indices indices) {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    return indices;
+}
+
+/// The largest distance of one of `vertices` from the triangles `coarser` [m].
+float distance_from(const MeshData& mesh, const Indices& vertices, const Indices& coarser) {
+    if (coarser.empty()) {
+        return INFINITY;
+    }
+    const TriangleGrid grid(mesh.positions, coarser);
+    float largest = 0;
+    for (const std::uint32_t index : vertices) {
+        largest = std::max(largest, grid.distance(mesh.positions[index], largest));
+    }
+    return largest;
+}
+
+/// `finer` with edges collapsed, as far as that keeps the surface closed.
+Indices collapse(const MeshData& mesh, const Indices& finer, std::size_t wanted) {
+    Indices coarser(finer.size());
+    coarser.resize(meshopt_simplify(
+        coarser.data(), finer.data(), finer.size(), &mesh.positions[0].x, mesh.positions.size(),
+        sizeof(Vec3), wanted, kMaxError));
+    return coarser;
+}
+
+/// `finer` with the vertices in each cell of a grid merged, closed or not.
+Indices cluster(const MeshData& mesh, const Indices& finer, std::size_t wanted) {
+    Indices coarser(finer.size());
+    coarser.resize(meshopt_simplifySloppy(
+        coarser.data(), finer.data(), finer.size(), &mesh.positions[0].x, mesh.positions.size(),
+        sizeof(Vec3), wanted, kMaxError));
+    return coarser;
+}
+
+/// Sets of triangles that share no vertex with others.
+std::size_t count_pieces(const Indices& indices, std::size_t vertices) {
+    Indices parent(vertices);
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root_of = [&parent](std::uint32_t vertex) {
+        while (parent[vertex] != vertex) {
+            parent[vertex] = parent[parent[vertex]];
+            vertex = parent[vertex];
+        }
+        return vertex;
+    };
+    std::size_t pieces = vertices_of(indices).size();
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        const std::uint32_t a = root_of(indices[i]);
+        const std::uint32_t b = root_of(indices[i / 3 * 3]);
+        pieces -= a != b ? 1 : 0;
+        parent[a] = b;
+    }
+    return pieces;
+}
+
+bool is_loose(const Indices& indices, std::size_t vertices) {
+    const std::size_t triangles = indices.size() / 3;
+    return triangles > kMaxLooseTriangles
+           && triangles < kMinPiece * count_pieces(indices, vertices);
+}
+
+bool is_rigid(const MeshData& mesh) {
+    return mesh.skin.empty() && mesh.morphs.empty();
+}
+
+/// Of all that simplify_triangles reads.
+std::uint64_t hash_of(const MeshData& mesh) {
+    const auto bytes = [](const auto& values, std::uint64_t seed) {
+        return hash_bytes(values.data(), values.size() * sizeof(values[0]), seed);
+    };
+    const std::uint64_t kind = (is_rigid(mesh) ? 1u : 0u) + (mesh.morphs.empty() ? 2u : 0u);
+    return hash_combine(bytes(mesh.indices, bytes(mesh.positions, kind)), mesh.positions.size());
+}
+
+}  // namespace
+
+std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
+    std::vector<CoarseTriangles> levels;
+    const auto finite = [](const Vec3& p) { return is_finite(p); };
+    if (mesh.indices.size() < 3 * kMinTriangles
+        || !std::all_of(mesh.positions.begin(), mesh.positions.end(), finite)) {
+        return levels;
+    }
+    const Indices all = is_rigid(mesh) ? welded_indices(mesh) : mesh.indices;
+    if (is_loose(all, mesh.positions.size())) {
+        return levels;
+    }
+    const Indices vertices = vertices_of(all);
+    Indices finer = all;
+    finer.resize(finer.size() / 3 * 3);
+    float error = 0;
+    while (levels.size() < kMaxCoarseLevels && finer.size() > 3 * kCoarsestTriangles) {
+        const auto share = [&](float of) {
+            return static_cast<std::size_t>(of * static_cast<float>(finer.size() / 3)) * 3;
+        };
+        const float ratio =
+            levels.size() < std::size(kFineRatios) ? kFineRatios[levels.size()] : kRatio;
+        Indices coarser = collapse(mesh, finer, share(ratio));
+        float distance = distance_from(mesh, vertices, coarser);
+        Indices merged = mesh.morphs.empty() ? cluster(mesh, all, share(ratio)) : Indices();
+        const float merged_distance = distance_from(mesh, vertices, merged);
+        if (coarser.size() > share(kWorthwhile) || merged_distance < distance) {
+            coarser = std::move(merged);
+            distance = merged_distance;
+        }
+        if (coarser.empty() || coarser.size() > share(kWorthwhile)) {
+            break;
+        }
+        error = std::max(error, distance);
+        levels.push_back({coarser, error});
+        finer = std::move(coarser);
+    }
+    return levels;
+}
+
+std::vector<std::vector<CoarseTriangles>>
+CoarseMemory::simplify(std::span<const MeshData* const> meshes) {
+    std::vector<std::uint64_t> keys(meshes.size());
+    std::vector<std::vector<CoarseTriangles>> levels(meshes.size());
+    parallel_for(meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (meshes[i] == nullptr) {
+                continue;
+            }
+            keys[i] = hash_of(*meshes[i]);
+            const auto known = levels_.find(keys[i]);
+            levels[i] = known != levels_.end() ? known->second : simplify_triangles(*meshes[i]);
+        }
+    });
+    if (indices_ > kMaxIndices) {
+        levels_.clear();
+        indices_ = 0;
+    }
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (meshes[i] != nullptr && levels_.try_emplace(keys[i], levels[i]).second) {
+            for (const CoarseTriangles& level : levels[i]) {
+                indices_ += level.indices.size();
+            }
+        }
+    }
+    return levels;
+}
+
+}  // namespace limn

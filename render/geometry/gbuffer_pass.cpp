@@ -1,0 +1,137 @@
+#include "render/geometry/gbuffer_pass.h"
+
+#include "ecs/base/log.h"
+#include "ecs/components/surface.h"
+#include "render/fullscreen.h"
+#include "render/geometry/surface_draws.h"
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/light/lighting.h"
+#include "render/material/material_pool.h"
+#include "render/render_frame.h"
+#include "render/shadow/volume_list.h"
+#include "render/view_block.h"
+
+#include <algorithm>
+#include <array>
+
+namespace limn {
+namespace {
+
+/// Where no surface is; nothing while the camera stands still.
+void draw_sky_velocity(FrameGraph& graph, const gpu::Program* program, const ViewData& view) {
+    if (view.camera.previous_clip_from_world == view.camera.unjittered_from_world) {
+        return;
+    }
+    gpu::PipelineState state = gpu::kFullscreenState;
+    state.depth = {.test = true, .write = false, .func = GL_EQUAL};
+    add_fullscreen_pass(
+        graph, "gbuffer, sky velocity", {depth_tested(view.gbuffer.depth)}, {view.gbuffer.velocity},
+        program, state,
+        [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
+}
+
+/// Hybrid shadows look at normals.
+bool needs_normals(const ViewData& view) {
+    const auto* volumes = view.data.find<VolumeList>();
+    return volumes != nullptr
+           && std::any_of(
+               volumes->lights.begin(), volumes->lights.end(),
+               [](const VolumeLight& light) { return light.hybrid; });
+}
+
+}  // namespace
+
+GLenum depth_format(const ViewData& view) {
+    const LightMethod method = view.data.get<LightingMethod>().method;
+    const bool by_screen = method == LightMethod::Clustered || method == LightMethod::FullScreen;
+    const auto* volumes = view.data.find<VolumeList>();
+    const bool stencil = !by_screen || (volumes != nullptr && !volumes->lights.empty());
+    return stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F;
+}
+
+Result<GbufferEffect> GbufferEffect::create(gpu::Device& device, const RenderSettings&) {
+    GbufferEffect effect{
+        .programs = ProgramVariants::of_meshes(device, "gbuffer.frag"),
+        .depth_first = ProgramVariants::of_meshes(device, "depth_first.frag")};
+    LIMN_TRY(effect.programs.load());
+    effect.sky_velocity = LIMN_TRY(
+        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "sky_velocity.frag"}));
+    return effect;
+}
+
+bool GbufferEffect::prepare(const FrameData& frame, ViewData& view) {
+    auto& list = view.data.publish<InstanceList>();
+    collector.collect(
+        *frame.items, view.camera, view.velocity, *frame.ring, list,
+        view.data.get<LightingMethod>().is_forward());
+    for (const std::uint32_t mesh : list.without_tangents) {
+        if (reported_meshes.insert(mesh).second) {
+            log_warn(
+                "mesh {}: no tangents found, expected one per vertex; drawn without its normal map",
+                frame.assets->meshes[mesh].name);
+        }
+    }
+    return true;
+}
+
+void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    const auto create = [&](const char* name, GLenum format) {
+        return graph.create(
+            {.name = name,
+             .format = format,
+             .width = view.camera.width,
+             .height = view.camera.height});
+    };
+    const bool attributes = view.attributes || view.velocity || needs_normals(view);
+    const bool forward = view.data.get<LightingMethod>().is_forward();
+    if (forward && !attributes) {
+        view.gbuffer.depth = create("depth", depth_format(view));
+        graph.add_pass(
+            "depth", mesh_reads(graph, frame), std::array{cleared(view.gbuffer.depth)},
+            [this, &view](PassContext& context) {
+                bind_view(context, view);
+                draw_depths(context, view, view.data.get<InstanceList>().opaque, depth_first);
+            });
+        return;
+    }
+    view.gbuffer.surface = create("gbuffer.surface", GL_RGBA32UI);
+    view.gbuffer.depth = create("gbuffer.depth", depth_format(view));
+    std::vector<Use> writes = {discarded(view.gbuffer.surface)};
+    if (view.velocity) {
+        view.gbuffer.velocity = create("gbuffer.velocity", frame.velocity_format);
+        writes.push_back(cleared(view.gbuffer.velocity));
+    }
+    if (!forward && reads_material_records(frame.materials->shading_models())) {
+        view.gbuffer.material = create("gbuffer.material", GL_R32UI);
+        writes.push_back(discarded(view.gbuffer.material));
+    }
+    writes.push_back(cleared(view.gbuffer.depth));
+    graph.add_pass(
+        "gbuffer", mesh_reads(graph, frame), writes, [this, &view](PassContext& context) {
+            const bool clipped = is_clipped(view);
+            Variant variant;
+            variant.add_if(clipped, "CLIPPED");
+            variant.add_if(view.gbuffer.material.valid(), "MATERIAL_RECORDS");
+            bind_view(context, view);
+            draw_runs(
+                context, view, view.data.get<InstanceList>().opaque, programs,
+                {.variant = &variant,
+                 .features = view.velocity ? kVelocity : 0u,
+                 .state = {.clip = clipped}});
+        });
+    if (view.velocity) {
+        draw_sky_velocity(graph, sky_velocity, view);
+    }
+}
+
+void GbufferEffect::report(const FrameData&, const ViewData& view, FrameOutput& out) {
+    if (const auto* list = view.data.find<InstanceList>()) {
+        out.statistics.instances = list->total;
+        out.statistics.visible_instances = list->visible;
+        out.statistics.draws = static_cast<int>(list->opaque.size() + list->blended.size());
+        out.statistics.triangles = list->triangles;
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,180 @@
+#include "render/geometry/mesh_pool.h"
+
+#include "ecs/base/log.h"
+#include "render/gpu/grown_buffer.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr std::uint32_t kInitialVertices = 1 << 16;
+constexpr std::uint32_t kInitialIndices = 1 << 18;
+
+std::int16_t to_snorm(float x) {
+    return static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f));
+}
+std::uint16_t to_half(float x) {
+    constexpr float kMaxHalf = 65504;
+    return glm::packHalf1x16(std::isnan(x) ? 0.0f : std::clamp(x, -kMaxHalf, kMaxHalf));
+}
+
+PackedFrame pack_frame(const MeshData& mesh, std::size_t i) {
+    const Vec3 n =
+        normalize_or(i < mesh.normals.size() ? mesh.normals[i] : Vec3(0, 0, 1), {0, 0, 1});
+    const Vec4 t = i < mesh.tangents.size() ? mesh.tangents[i] : Vec4(any_perpendicular(n), 1);
+    const Vec3 t3 = normalize_or(Vec3(t), any_perpendicular(n));
+    return {
+        {to_snorm(n.x), to_snorm(n.y), to_snorm(n.z), 0},
+        {to_snorm(t3.x), to_snorm(t3.y), to_snorm(t3.z), to_snorm(t.w < 0 ? -1.0f : 1.0f)}};
+}
+
+using PackedColor = std::array<std::uint16_t, 4>;
+PackedColor pack_color(const MeshData& mesh, std::size_t i) {
+    const Vec4 c = i < mesh.colors.size() ? mesh.colors[i] : Vec4(1);
+    return {to_half(c.x), to_half(c.y), to_half(c.z), to_half(c.w)};
+}
+
+Vec2 first_uv(const MeshData& mesh, std::size_t i) {
+    return i < mesh.uvs.size() ? mesh.uvs[i] : Vec2(0);
+}
+Vec2 second_uv(const MeshData& mesh, std::size_t i) {
+    return i < mesh.uvs1.size() ? mesh.uvs1[i] : first_uv(mesh, i);
+}
+
+/// Writes what `pack(mesh, i)` makes of every vertex.
+template <typename Pack>
+void write_stream(
+    VertexStreams& streams, VertexStream stream, std::uint32_t first, const MeshData& mesh,
+    Pack pack) {
+    std::vector<decltype(pack(mesh, 0))> values(mesh.positions.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = pack(mesh, i);
+    }
+    streams.write(stream, first, std::span<const decltype(pack(mesh, 0))>(values));
+}
+
+bool is_drawable(const MeshData& mesh) {
+    const auto past = [&](std::uint32_t index) { return index >= mesh.positions.size(); };
+    if (mesh.positions.empty() || mesh.indices.size() < 3) {
+        return false;
+    }
+    if (std::any_of(mesh.indices.begin(), mesh.indices.end(), past)) {
+        log_error(
+            "mesh {}: an index exceeds the {} vertices; it is not drawn", mesh.name,
+            mesh.positions.size());
+        return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+MeshPool::MeshPool() : streams_("meshes") {
+    vertex_slots_.grow(kInitialVertices);
+    streams_.reserve(kInitialVertices);
+    index_slots_.grow(kInitialIndices);
+    indices_ = gpu::grown_buffer("mesh indices", {}, 0, std::size_t{4} * kInitialIndices);
+    streams_.vertices().set_indices(indices_);
+}
+
+void MeshPool::update(std::span<const MeshData> meshes) {
+    const std::size_t known = std::min(meshes_.size(), meshes.size());
+    meshes_.resize(std::max(meshes_.size(), meshes.size()));
+    std::vector<char> drawable(meshes.size());
+    std::vector<const MeshData*> fresh(meshes.size());  // of which coarser levels are made
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (i >= known || meshes_[i].version != meshes[i].version) {
+            drawable[i] = is_drawable(meshes[i]) ? 1 : 0;
+            fresh[i] = i >= known && drawable[i] != 0 ? &meshes[i] : nullptr;
+        }
+    }
+    const std::vector<std::vector<CoarseTriangles>> coarse = coarse_memory_.simplify(fresh);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (i >= known || meshes_[i].version != meshes[i].version) {
+            release(meshes_[i]);
+            meshes_[i] = {};
+            meshes_[i].version = meshes[i].version;
+            meshes_[i].bounds = meshes[i].bounds;
+            if (drawable[i] != 0) {
+                upload(meshes[i], coarse[i], meshes_[i]);
+            }
+            ++revision_;
+        }
+    }
+}
+
+void MeshPool::upload(
+    const MeshData& mesh, std::span<const CoarseTriangles> coarse, MeshRange& range) {
+    if (is_empty(range.bounds)) {
+        for (const Vec3& p : mesh.positions) {
+            grow(range.bounds, p);
+        }
+    }
+    range.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    range.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
+    range.colored = !mesh.colors.empty();
+    range.tangents = !mesh.tangents.empty();
+    const std::uint32_t first = vertex_slots_.allocate_or_grow(range.vertex_count);
+    range.base_vertex = static_cast<std::int32_t>(first);
+    streams_.reserve(vertex_slots_.capacity());
+    const std::size_t old_indices = index_slots_.capacity();
+    std::vector<std::uint32_t> indices(
+        mesh.indices.begin(), mesh.indices.begin() + range.index_count);
+    for (const CoarseTriangles& level : coarse) {
+        range.coarse.push_back(
+            {static_cast<std::uint32_t>(indices.size()),
+             static_cast<std::uint32_t>(level.indices.size()), level.error});
+        indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+    }
+    range.first_index =
+        index_slots_.allocate_or_grow(static_cast<std::uint32_t>(indices.size()), kInitialIndices);
+    for (CoarseRange& level : range.coarse) {
+        level.first_index += range.first_index;
+    }
+    if (index_slots_.capacity() > old_indices) {
+        indices_ = gpu::grown_buffer(
+            "mesh indices", indices_, 4 * old_indices, std::size_t{4} * index_slots_.capacity());
+        streams_.vertices().set_indices(indices_);
+    }
+    if (range.colored) {
+        streams_.require(VertexStream::Color);
+    }
+    if (!mesh.uvs1.empty()) {
+        streams_.require(VertexStream::Uv1);
+    }
+    streams_.write(VertexStream::Position, first, std::span<const Vec3>(mesh.positions));
+    write_stream(streams_, VertexStream::Frame, first, mesh, pack_frame);
+    write_stream(streams_, VertexStream::Uv, first, mesh, first_uv);
+    if (streams_.has(VertexStream::Uv1)) {
+        write_stream(streams_, VertexStream::Uv1, first, mesh, second_uv);
+    }
+    if (streams_.has(VertexStream::Color)) {
+        write_stream(streams_, VertexStream::Color, first, mesh, pack_color);
+    }
+    indices_.write(std::size_t{4} * range.first_index, std::span<const std::uint32_t>(indices));
+}
+
+void MeshPool::release(const MeshRange& range) {
+    if (range.index_count > 0) {
+        vertex_slots_.release(static_cast<std::uint32_t>(range.base_vertex), range.vertex_count);
+        std::uint32_t count = range.index_count;
+        for (const CoarseRange& level : range.coarse) {
+            count += level.index_count;
+        }
+        index_slots_.release(range.first_index, count);
+    }
+}
+
+void MeshPool::clear() {
+    ++revision_;
+    meshes_.clear();
+    vertex_slots_.clear();
+    index_slots_.clear();
+}
+
+}  // namespace limn

@@ -1,0 +1,221 @@
+#include "render/geometry/render_items.h"
+
+#include "ecs/base/hash.h"
+#include "ecs/base/jobs.h"
+#include "ecs/components/particle_mesh.h"
+#include "ecs/components/shadow.h"
+#include "ecs/world.h"
+#include "render/geometry/mesh_pool.h"
+#include "render/material/material_pool.h"
+#include "render/skinning/deformed_list.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+static_assert(kChunkRows <= kCullBlock);
+
+float determinant(const Affine& a) {
+    const auto& r = a.row;
+    return r[0].x * (r[1].y * r[2].z - r[1].z * r[2].y)
+           - r[0].y * (r[1].x * r[2].z - r[1].z * r[2].x)
+           + r[0].z * (r[1].x * r[2].y - r[1].y * r[2].x);
+}
+
+/// Whether the chunk's matrices are the same at any alpha. update_transforms lets
+/// PreviousWorldTransform catch up one step after the last change of WorldTransform.
+bool is_at_rest(const ChunkView& chunk) {
+    return !chunk.has<PreviousWorldTransform>()
+           || is_newer(chunk.version<PreviousWorldTransform>(), chunk.version<WorldTransform>());
+}
+
+template <typename T>
+bool has_changed(const ChunkView& chunk, std::uint32_t since) {
+    return chunk.has<T>() && chunk.changed_since<T>(since);
+}
+
+bool has_changed(const ChunkView& chunk, std::uint32_t since) {
+    return has_changed<MeshInstance>(chunk, since) || has_changed<WorldTransform>(chunk, since)
+           || has_changed<PreviousWorldTransform>(chunk, since)
+           || has_changed<Inflate>(chunk, since);
+}
+
+}  // namespace
+
+Bounds RenderItemBlock::box(std::size_t i) const {
+    return {boxes.middle(i) - boxes.half(i), boxes.middle(i) + boxes.half(i)};
+}
+
+Bounds RenderItems::local_bounds(const RenderItemBlock& block, std::size_t i) const {
+    const DrawState state = draw_state(block.keys[i]);
+    const Bounds& box =
+        state.deformed ? (*shapes_)[state.index].bounds : meshes_->meshes()[state.index].bounds;
+    return block.inflate.empty() ? box : inflated(box, block.inflate[i]);
+}
+
+void RenderItems::update(
+    const World& world, const MeshPool& meshes, const MaterialPool& materials, DeformedList& shapes,
+    float alpha) {
+    const auto query = world.query<
+        const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
+        Optional<const Inflate>>();
+    const bool same_sources = world_ == &world && epoch_ == world.core().epoch
+                              && mesh_revision_ == meshes.revision()
+                              && material_revision_ == materials.revision();
+    const bool same_time = alpha == 1.0f && alpha_ == 1.0f;
+    world_ = &world;
+    meshes_ = &meshes;
+    materials_ = &materials;
+    shapes_ = &shapes;
+    alpha_ = alpha;
+    size_ = query.count();
+    count_ = query.chunk_count();
+    while (blocks_.size() < count_) {
+        blocks_.push_back(std::make_unique<RenderItemBlock>());
+    }
+
+    const auto* const jumps = world.find_resource<StepJumps>();
+    std::atomic<std::size_t> refreshed = 0;
+    query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
+                         std::span<const WorldTransform> now,
+                         std::span<const PreviousWorldTransform> before,
+                         std::span<const Inflate> inflate) {
+        RenderItemBlock& block = *blocks_[chunk.index()];
+        const bool kept = same_sources && block.archetype_ == &chunk.archetype()
+                          && block.first_row_ == chunk.first_row() && block.size() == chunk.size()
+                          && !chunk.has<Deformed>() && (same_time || is_at_rest(chunk))
+                          && !has_changed(chunk, version_);
+        block.entities = chunk.entities();
+        block.surfaces = surfaces;
+        block.now = now;
+        block.before = before;
+        block.inflate = inflate;
+        block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
+        block.casts_shadows = !chunk.has<NoShadow>();
+        block.archetype_ = &chunk.archetype();
+        block.first_row_ = chunk.first_row();
+        if (!kept) {
+            refresh(block);
+            refreshed.fetch_add(1, std::memory_order_relaxed);
+        }
+    });
+    refreshed_ = refreshed;
+    add_particles();
+    epoch_ = world.core().epoch;
+    version_ = world.version();
+    mesh_revision_ = meshes.revision();
+    material_revision_ = materials.revision();
+}
+
+void RenderItems::add_particles() {
+    const auto add =
+        [this](Entity entity, const ParticleMesh& mesh, const ParticleMeshState& state) {
+            const std::vector<MeshParticle>& particles = state.instances;
+            for (std::size_t first = 0; first < particles.size(); first += kCullBlock) {
+                const std::size_t end = std::min<std::size_t>(first + kCullBlock, particles.size());
+                if (count_ == blocks_.size()) {
+                    blocks_.push_back(std::make_unique<RenderItemBlock>());
+                }
+                RenderItemBlock& block = *blocks_[count_++];
+                RenderItemBlock::Copies& copies = block.copies_;
+                copies.entities.assign(end - first, entity);
+                copies.surfaces.clear();
+                copies.now.clear();
+                copies.before.clear();
+                for (std::size_t i = first; i < end; ++i) {
+                    copies.surfaces.push_back({particles[i].mesh, mesh.material});
+                    copies.now.push_back({particles[i].now});
+                    copies.before.push_back({particles[i].before});
+                }
+                block.entities = copies.entities;
+                block.surfaces = copies.surfaces;
+                block.now = copies.now;
+                block.before = copies.before;
+                block.inflate = {};
+                block.jumps = nullptr;
+                block.casts_shadows = !world_->has<NoShadow>(entity);
+                block.archetype_ = nullptr;
+                refresh(block);
+                size_ += end - first;
+            }
+        };
+    world_->query<const ParticleMesh, const ParticleMeshState>().each(add);
+}
+
+void RenderItems::refresh(RenderItemBlock& block) const {
+    const std::vector<MeshRange>& meshes = meshes_->meshes();
+    BoxBlock& boxes = block.boxes;
+    block.hashed_ = false;
+    const bool may_deform =
+        block.archetype_ != nullptr && block.archetype_->has(component_id<Deformed>);
+    for (std::uint32_t i = 0; i < block.size(); ++i) {
+        const std::uint32_t mesh = block.surfaces[i].mesh.index;
+        const std::uint32_t shape =
+            may_deform ? shapes_->find(block.entities[i]) : DeformedList::kNone;
+        const bool deformed = shape != DeformedList::kNone;
+        Vec3 c = {0, 0, 0};
+        Vec3 h = Vec3(-1e30f);
+        float det = 1;
+        if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
+            const Bounds& own = deformed ? (*shapes_)[shape].bounds : meshes[mesh].bounds;
+            const Bounds local = block.inflate.empty() ? own : inflated(own, block.inflate[i]);
+            const Affine a = block.world_at(i, time());
+            const Vec3 middle = transform_point(a, center(local));
+            const Vec3 half = transform_half_extent(a, half_extent(local));
+            det = determinant(a);
+            // One sum that is not finite if any part is not.
+            const float sum =
+                middle.x + middle.y + middle.z + half.x + half.y + half.z + std::abs(det);
+            if (std::abs(sum) < INFINITY) {
+                c = middle;
+                h = half;
+            }
+        }
+        boxes.set(i, c, h);
+        const std::uint32_t batch =
+            materials_->batch_of(materials_->record_of(block.surfaces[i].material));
+        block.keys[i] = make_draw_key(
+            {.blended = materials_->batch(batch).blend,
+             .inflated = !block.inflate.empty(),
+             .deformed = deformed,
+             .mirrored = det < 0,
+             .batch = batch,
+             .index = deformed ? shape : mesh});
+    }
+}
+
+void RenderItems::hash_casters() {
+    const std::size_t grain = 1 + count_ / (32 * static_cast<std::size_t>(thread_count()));
+    parallel_for(count_, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            if (!blocks_[b]->hashed_ && blocks_[b]->casts_shadows) {
+                hash_block(*blocks_[b]);
+                blocks_[b]->hashed_ = true;
+            }
+        }
+    });
+}
+
+void RenderItems::hash_block(RenderItemBlock& block) const {
+    const std::vector<MeshRange>& meshes = meshes_->meshes();
+    for (std::uint32_t i = 0; i < block.size(); ++i) {
+        const DrawState state = draw_state(block.keys[i]);
+        const std::uint64_t drawn = static_cast<std::uint64_t>(block.surfaces[i].mesh.index) << 32
+                                    | materials_->record_of(block.surfaces[i].material);
+        const std::uint64_t shape = state.deformed         ? (*shapes_)[state.index].shape
+                                    : block.is_drawable(i) ? meshes[state.index].version
+                                                           : 0;
+        const std::uint64_t what = hash_combine(drawn, shape);
+        const Affine a = block.world_at(i, time());
+        const float inflation = block.inflation(i);
+        block.caster_hashes[i] =
+            state.blended
+                ? 0
+                : hash_bytes(&a, sizeof a, hash_bytes(&inflation, sizeof inflation, what)) | 1;
+    }
+}
+
+}  // namespace limn

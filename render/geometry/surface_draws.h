@@ -1,0 +1,103 @@
+#pragma once
+
+#include "render/frame_data.h"
+#include "render/geometry/instance_list.h"
+#include "render/light/light_objects.h"
+#include "render/material/surface_features.h"
+#include "render/variant.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Draws the instances of a view, run by run: one multi-draw for all that share program, state and
+// textures. The programs are variants of mesh.vert with the fragment shader of the pass.
+
+/// What every run of a pass has in common.
+struct SurfaceDraw {
+    const Variant* variant = nullptr;  ///< of the programs, beside the features of the surface
+    std::uint32_t features = 0;        ///< of SurfaceFeature, beside those of the surface
+    gpu::PipelineState state;          ///< winding and culled sides are those of each run
+    int light = -1;                    ///< uniform light_index of programs that light with one
+};
+
+void draw_runs(
+    PassContext& context, const ViewData& view, std::span<const DrawRun> runs,
+    ProgramVariants& programs, const SurfaceDraw& draw);
+
+/// Draws the objects that single lights reach: `runs` of `commands`, indirect draw commands in
+/// place of those of the instance list.
+void draw_light_runs(
+    PassContext& context, const ViewData& view, std::span<const LightRun> runs,
+    const gpu::RingSlice& commands, ProgramVariants& programs, const SurfaceDraw& draw);
+
+/// Draws runs of the view's instances for their depth alone, visible sides only.
+void draw_depths(
+    PassContext& context, const ViewData& view, std::span<const DrawRun> runs,
+    ProgramVariants& programs);
+
+/// Draws shadow casters for their depth alone, both sides: `programs` get no more features than
+/// decide where a surface has holes.
+void draw_casters(
+    PassContext& context, const ViewData& view, const InstanceList& casters,
+    ProgramVariants& programs, const gpu::PipelineState& state);
+
+/// Draws the opaque instances for where they are and were, without their materials, visible sides
+/// only; needs the view's velocity. `prepare(program)` sets the uniforms of each program.
+template <typename Prepare>
+void draw_motions(
+    PassContext& context, const ViewData& view, ProgramVariants& programs,
+    const gpu::PipelineState& state, Prepare prepare);
+
+/// Texture arrays with images that passes of this frame draw; published before the views are drawn.
+struct DrawnImages {
+    std::vector<const gpu::Texture*> arrays;
+};
+
+/// The same, of images that are lit texel by texel.
+struct ShadedImages {
+    std::vector<const gpu::Texture*> arrays;
+};
+
+/// The same, of normal maps that are composed of several.
+struct WrinkledImages {
+    std::vector<const gpu::Texture*> arrays;
+};
+
+/// `reads`, the DrawnImages, the ShadedImages, the WrinkledImages and, where meshes are deformed in
+/// this frame, their vertices: what passes that call the functions above must declare.
+[[nodiscard]] std::vector<Use>
+mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {});
+
+// ---- parts of the above ----
+
+/// What decides where the vertices of a mesh are drawn.
+inline constexpr std::uint32_t kMovedVertices = kInflate | kWrinkleDisplaced;
+
+/// Binds instance streams, material records and draw commands of a list.
+void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list);
+/// `state` with the sides culled that a run does not show.
+[[nodiscard]] gpu::PipelineState visible_sides(gpu::PipelineState state, const DrawRun& run);
+void draw_run(
+    gpu::Device& device, const FrameData& frame, const InstanceList& list, const DrawRun& run);
+
+template <typename Prepare>
+void draw_motions(
+    PassContext& context, const ViewData& view, ProgramVariants& programs,
+    const gpu::PipelineState& state, Prepare prepare) {
+    const auto& list = view.data.get<InstanceList>();
+    bind_instances(context.device(), *view.frame, list);
+    for (const DrawRun& run : list.opaque) {
+        const gpu::Program* program = programs.get(
+            {}, {.bits = (run.features.bits & (kMovedVertices | kDeformed)) | kVelocity});
+        if (program != nullptr) {
+            context.device().use(gpu::Pipeline{program, visible_sides(state, run)});
+            prepare(*program);
+            draw_run(context.device(), *view.frame, list, run);
+        }
+    }
+}
+
+}  // namespace limn

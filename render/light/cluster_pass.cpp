@@ -1,0 +1,261 @@
+#include "render/light/cluster_pass.h"
+
+#include "ecs/base/log.h"
+#include "ecs/components/shading_comparison.h"
+#include "ecs/components/wrinkle_comparison.h"
+#include "ecs/world.h"
+#include "render/environment/fog_block.h"
+#include "render/geometry/instance_list.h"
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/material/shading_models.h"
+#include "render/material/surface_features.h"
+#include "render/render_frame.h"
+#include "render/skinning/deformed_list.h"
+#include "render/view_block.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kMasksBinding = 0;
+constexpr unsigned kCellsBinding = 1;
+constexpr unsigned kIndicesBinding = 2;
+constexpr unsigned kClusterLightsUnit = 0;
+constexpr unsigned kBoxesUnit = 1;
+constexpr unsigned kBlocksGroup = 32;  ///< local size of cluster_blocks.comp
+
+unsigned divide_up(std::size_t count, std::size_t by) {
+    return static_cast<unsigned>((count + by - 1) / by);
+}
+
+unsigned block_count(const ClusterShape& shape) {
+    return divide_up(shape.columns, layout::kBlockColumns)
+           * divide_up(shape.rows, layout::kBlockRows)
+           * divide_up(shape.slices, layout::kBlockSlices);
+}
+
+/// As ViewBlock::wrinkle_columns has them.
+layout::uvec4 pack_columns(const std::vector<WrinkleMethod>& methods, const Vec2& borders) {
+    layout::uvec4 packed;
+    packed.z = std::bit_cast<std::uint32_t>(borders.x);
+    packed.w = std::bit_cast<std::uint32_t>(borders.y);
+    for (const WrinkleMethod method : methods) {
+        packed.y |= static_cast<std::uint32_t>(method) << (4 * packed.x);
+        ++packed.x;
+    }
+    return packed;
+}
+
+/// Sizes vary from frame to frame; rounding to powers of two lets the pool reuse the buffer.
+std::size_t rounded(std::size_t bytes) {
+    return std::bit_ceil(std::max<std::size_t>(bytes, 1024));
+}
+
+BufferId create_cells(FrameGraph& graph, const ClusterShape& shape) {
+    const auto cells = static_cast<std::size_t>(shape.cells());
+    return graph.create_buffer({.name = "light cells", .bytes = rounded(8 * cells)});
+}
+
+BufferId create_indices(FrameGraph& graph, std::size_t capacity) {
+    return graph.create_buffer({.name = "light indices", .bytes = rounded(4 * capacity)});
+}
+
+/// The lists of a view that no light reaches.
+ClusterLists clear_clusters(FrameGraph& graph, ClusterPass& pass, const ClusterShape& shape) {
+    const ClusterLists lists = {
+        create_cells(graph, shape), create_indices(graph, 0), &pass.cells, &pass.indices};
+    graph.add_pass(
+        "clusters.none", {}, {lists.cells, lists.indices}, [&pass, lists](PassContext& context) {
+            context.buffer(lists.cells).clear(0);
+            pass.cells.set(context.buffer(lists.cells));
+            pass.indices.set(context.buffer(lists.indices));
+        });
+    return lists;
+}
+
+/// The global vector that fixes the axes of Blinn maps: unit, or zero.
+Vec3 blinn_axis(const Rendering& rendering, const RenderView& camera) {
+    const auto unit_or_zero = [](const Vec3& v) {
+        const float length = glm::length(v);
+        return length > 1e-6f && std::isfinite(length) ? v / length : Vec3(0);
+    };
+    switch (rendering.blinn_axis) {
+    case BlinnAxis::WorldUp:
+        return {0, 1, 0};
+    case BlinnAxis::Custom:
+        return unit_or_zero(rendering.blinn_vector);
+    default: {
+        const auto& r = camera.world_from_camera.row;
+        return unit_or_zero({r[0][1], r[1][1], r[2][1]});
+    }
+    }
+}
+
+}  // namespace
+
+Result<ClusterPass> create_cluster_pass(gpu::Device& device) {
+    ClusterPass pass;
+    gpu::ShaderLibrary& shaders = device.shaders();
+    pass.blocks = LIMN_TRY(shaders.load({.compute = "cluster_blocks.comp"}));
+    pass.count = LIMN_TRY(shaders.load({.compute = "cluster_lists.comp"}));
+    pass.scan = LIMN_TRY(shaders.load({.compute = "cluster_scan.comp"}));
+    pass.fill = LIMN_TRY(shaders.load({.compute = "cluster_lists.comp", .defines = {{"FILL"}}}));
+    return pass;
+}
+
+ClusterLists build_clusters(
+    FrameGraph& graph, ClusterPass& pass, const ClusterLights& clusters, const ViewData& view) {
+    ClusterLists lists;
+    if (clusters.lights.empty()) {
+        return lists;
+    }
+    lists.cell_texture = &pass.cells;
+    lists.index_texture = &pass.indices;
+    const unsigned words = divide_up(clusters.lights.size(), 32);
+    const unsigned blocks = block_count(clusters.shape);
+    const auto cells = static_cast<unsigned>(clusters.shape.cells());
+    const BufferId masks = graph.create_buffer(
+        {.name = "cluster masks", .bytes = rounded(std::size_t{4} * blocks * words)});
+    lists.cells = create_cells(graph, clusters.shape);
+    lists.indices = create_indices(graph, clusters.capacity);
+
+    graph.add_pass(
+        "clusters.blocks", {}, {masks},
+        [&pass, &clusters, &view, masks, blocks, words](PassContext& context) {
+            context.device().use(*pass.blocks);
+            bind_view(context, view);
+            clusters.light_records.bind(context.device(), kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), kBoxesUnit);
+            context.bind_storage(kMasksBinding, masks);
+            context.device().dispatch(divide_up(blocks, kBlocksGroup), words);
+        });
+    graph.add_pass(
+        "clusters.count", {masks}, {lists.cells},
+        [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
+            context.device().use(*pass.count);
+            bind_view(context, view);
+            clusters.light_records.bind(context.device(), kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), kBoxesUnit);
+            context.bind_storage(kMasksBinding, masks);
+            context.bind_storage(kCellsBinding, lists.cells);
+            context.device().dispatch(blocks);
+        });
+    graph.add_pass("clusters.scan", {}, {lists.cells}, [&pass, lists, cells](PassContext& context) {
+        context.device().use(*pass.scan);
+        pass.scan->set("cell_count", cells);
+        context.bind_storage(kCellsBinding, lists.cells);
+        context.device().dispatch(1);
+    });
+    graph.add_pass(
+        "clusters.fill", {masks, lists.cells}, {lists.indices},
+        [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
+            context.device().use(*pass.fill);
+            bind_view(context, view);
+            clusters.light_records.bind(context.device(), kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), kBoxesUnit);
+            context.bind_storage(kMasksBinding, masks);
+            context.bind_storage(kCellsBinding, lists.cells);
+            context.bind_storage(kIndicesBinding, lists.indices);
+            context.device().dispatch(blocks);
+            pass.cells.set(context.buffer(lists.cells));
+            pass.indices.set(context.buffer(lists.indices));
+        });
+    return lists;
+}
+
+Result<LightListEffect> LightListEffect::create(gpu::Device& device, const RenderSettings&) {
+    return LightListEffect{LIMN_TRY(create_cluster_pass(device))};
+}
+
+void LightListEffect::collect(FrameData& frame) {
+    collect_lights(
+        *frame.world, frame.camera.alpha, frame.data.publish<LightList>(), frame.all_lights);
+}
+
+bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
+    const auto* found = frame.world->find_resource<Rendering>();
+    const Rendering rendering = found != nullptr && view.is(kMainViews) ? *found : Rendering{};
+    auto& method = view.data.publish<LightingMethod>();
+    method.shading = rendering.shading;
+    const auto* comparison = frame.world->find_resource<ShadingComparison>();
+    method.compared.reset();
+    if (comparison != nullptr && view.is(kMainViews)) {
+        method.compared = comparison->right;
+    }
+    method.worst_blinn_axis = rendering.blinn_axis == BlinnAxis::WorstCase;
+    method.blinn_diffuse = rendering.blinn_diffuse;
+    method.screen_interpolation = rendering.screen_interpolation;
+    method.hardware = rendering.hardware;
+    method.method = method.shading == ShadingRate::Pixel && !method.compared
+                        ? rendering.lights
+                        : LightMethod::ObjectMajor;
+    method.infinite_viewer = rendering.infinite_viewer;
+
+    auto& lights = view.data.publish<LightList>();
+    lights = frame.data.get<LightList>();
+    auto& placed = view.data.publish<ClusterLights>();
+    placed.max_entries = std::min(kMaxListEntries, BufferTexture::max_texel_count());
+    place_lights(view.camera, lights, placed);
+    placed.light_records.upload(*frame.ring, placed.lights);
+    placed.box_records.upload(*frame.ring, placed.boxes);
+    if (placed.dropped > 0 && !dropped_reported) {
+        log_warn(
+            "lights: {} of {} cover so much of the image that the cluster lists have no room for "
+            "them (ClusterLights::max_entries); they are not shown",
+            placed.dropped, lights.reach.size());
+        dropped_reported = true;
+    }
+    layout::ViewBlock block =
+        make_view_block(view.camera, placed.shape, lights, method.infinite_viewer);
+    block.blinn_axis = Vec4(blinn_axis(rendering, view.camera), 0);
+    const auto* const wrinkles = frame.world->find_resource<WrinkleComparison>();
+    block.wrinkle_columns = pack_columns(wrinkle_columns(wrinkles), column_borders(wrinkles));
+    describe_fog(frame.world->find_resource<HeightFog>(), lights, block);
+    view.block = frame.ring->push_value(block);
+
+    Variant& variant = view.lighting.variant;
+    variant.add_if(lights.directional > 0, "DIRECTIONAL_LIGHTS");
+    variant.add_if(lights.spots > 0, "SPOT_LIGHTS");
+    variant.add_if(lights.spot_angles, "SPOT_ANGLES");
+    variant.add_if(lights.linear_fade, "LINEAR_FADE");
+    variant.add_if(!lights.reach.empty(), "LOCAL_LIGHTS");
+    add_shading_models(variant, frame.materials->shading_models());
+    variant.add_if(
+        frame.shapes->has_wrinkles(kWrinkleBlend | kWrinkleFade | kWrinkleBounce),
+        "SMOOTH_NORMALS");
+    variant.add_if(frame.shapes->has_wrinkles(kWrinkleBlend), "BLENDED_SKIN");
+    variant.add_if(frame.shapes->has_wrinkles(kWrinkleBounce), "FOLD_LIGHT");
+    return true;
+}
+
+void LightListEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    const bool by_clusters = view.data.get<LightingMethod>().method == LightMethod::Clustered
+                             || !view.data.get<InstanceList>().blended.empty();
+    if (!by_clusters || view.data.get<LightList>().reach.empty()) {
+        return;
+    }
+    const auto& placed = view.data.get<ClusterLights>();
+    const ClusterLists lists = placed.lights.empty()
+                                   ? clear_clusters(graph, clusters, placed.shape)
+                                   : build_clusters(graph, clusters, placed, view);
+    auto& published = view.data.publish<ClusterLists>();
+    published = lists;
+    view.lighting.reads.insert(view.lighting.reads.end(), {lists.cells, lists.indices});
+    view.lighting.add_binding<[](PassContext& context, const ClusterLists& found) {
+        found.index_texture->bind(context.device(), kLightIndicesUnit);
+        found.cell_texture->bind(context.device(), kLightCellsUnit);
+    }>(published);
+}
+
+void LightListEffect::report(const FrameData&, const ViewData& view, FrameOutput& out) {
+    if (const auto* lights = view.data.find<LightList>()) {
+        out.statistics.lights = static_cast<int>(lights->records.size());
+    }
+}
+
+}  // namespace limn

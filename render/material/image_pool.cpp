@@ -1,0 +1,160 @@
+#include "render/material/image_pool.h"
+
+#include "ecs/base/log.h"
+#include "render/gpu/device.h"
+#include "render/shaders/material_maps_gpu.h"
+
+#include <algorithm>
+
+namespace limn {
+namespace {
+
+/// Beyond this a further layer begins a further array: drivers allocate arrays in one piece.
+constexpr std::size_t kMaxArrayBytes = std::size_t{256} << 20;
+
+struct ImageFormat {
+    GLenum format;
+    GLenum type;
+    std::size_t bytes;
+};
+
+ImageFormat image_format(const ImageData& image) {
+    switch (image.format) {
+    case PixelFormat::Rgba8:
+        return {static_cast<GLenum>(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8), GL_UNSIGNED_BYTE, 4};
+    case PixelFormat::Rgba16F:
+        return {GL_RGBA16F, GL_HALF_FLOAT, 8};
+    case PixelFormat::Rgba32F:
+        return {GL_RGBA32F, GL_FLOAT, 16};
+    }
+    return {GL_RGBA8, GL_UNSIGNED_BYTE, 4};
+}
+
+/// Of level 0. The image must have a size.
+std::size_t image_bytes(const ImageData& image) {
+    return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)
+           * image_format(image).bytes;
+}
+
+bool is_valid_image(const ImageData& image, int limit) {
+    return image.width > 0 && image.height > 0 && image.width <= limit && image.height <= limit
+           && image.pixels.size() >= image_bytes(image);
+}
+
+gpu::TextureDesc array_of(const ImageData& image) {
+    return {
+        .format = image_format(image).format,
+        .width = image.width,
+        .height = image.height,
+        .levels = 0,
+        .target = GL_TEXTURE_2D_ARRAY};
+}
+
+bool has_room(const gpu::TextureDesc& array, const gpu::TextureDesc& wanted, int max_layers) {
+    gpu::TextureDesc more = array;
+    more.depth = wanted.depth;
+    const bool same = more == wanted;
+    more.depth = array.depth + 1;
+    return same && more.depth <= max_layers && gpu::texture_bytes(more) <= kMaxArrayBytes;
+}
+
+}  // namespace
+
+ImagePool::ImagePool(gpu::Device& device) : device_(device) {
+    clear();
+}
+
+void ImagePool::clear() {
+    images_.clear();
+    arrays_.clear();
+    gpu::Texture magenta("magenta", {.format = GL_RGBA8, .target = GL_TEXTURE_2D_ARRAY});
+    const std::uint8_t pixel[4] = {255, 0, 255, 255};
+    magenta.upload(std::span<const std::uint8_t>(pixel), GL_RGBA, GL_UNSIGNED_BYTE);
+    arrays_.push_back({std::move(magenta), {}});
+}
+
+void ImagePool::update(std::span<const ImageData> images) {
+    const std::size_t first = images_.size();
+    if (first >= images.size()) {
+        return;
+    }
+    const std::size_t first_array = arrays_.size();
+    for (const gpu::TextureDesc& desc : place(images)) {
+        create_array(desc);
+    }
+    for (std::size_t i = first; i < images.size(); ++i) {
+        const ImageLayer place = images_[i].place;
+        if (place.array != 0) {
+            // The first row of the image is row 0 of the texture, where v = 0, as in glTF.
+            arrays_[place.array].texture.upload<std::uint8_t>(
+                std::span(images[i].pixels).first(image_bytes(images[i])), GL_RGBA,
+                image_format(images[i]).type, 0, static_cast<int>(place.layer));
+        }
+    }
+    for (std::size_t i = first_array; i < arrays_.size(); ++i) {
+        arrays_[i].texture.generate_mipmaps();
+    }
+    for (std::size_t i = first; i < images.size(); ++i) {
+        if (images_[i].place.array != 0) {
+            const gpu::Texture& array = arrays_[images_[i].place.array].texture;
+            images_[i].texture = array.view(
+                images[i].name, array.desc().format, static_cast<int>(images_[i].place.layer));
+        }
+    }
+}
+
+void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
+    const ImageLayer place = find(id);
+    if (place.array == 0) {
+        return;
+    }
+    gpu::Texture& array = arrays_[place.array].texture;
+    gpu::TextureDesc level = array.desc();
+    level.levels = 1;
+    level.depth = 1;
+    if (pixels.size() == gpu::texture_bytes(level)) {
+        array.upload(std::as_bytes(pixels), 0, static_cast<int>(place.layer));
+        array.generate_mipmaps();  // of all layers: those of a view alone stay as they were on Mesa
+    }
+}
+
+std::vector<gpu::TextureDesc> ImagePool::place(std::span<const ImageData> images) {
+    const int max_size = device_.caps().max_texture_size;
+    const int max_layers = std::min(device_.caps().max_texture_layers, 1 << layout::kLayerBits);
+    std::vector<gpu::TextureDesc> arrays;
+    for (std::size_t i = images_.size(); i < images.size(); ++i) {
+        const ImageData& image = images[i];
+        images_.emplace_back();
+        if (!is_valid_image(image, max_size)) {
+            log_error(
+                "image {}: found {}x{} pixels in {} bytes, expected 1 .. {} pixels per side and "
+                "complete data; shown magenta",
+                image.name, image.width, image.height, image.pixels.size(), max_size);
+            continue;
+        }
+        const gpu::TextureDesc wanted = array_of(image);
+        const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const auto& array) {
+            return has_room(array, wanted, max_layers);
+        });
+        const auto index = static_cast<std::uint32_t>(found - arrays.begin());
+        if (found == arrays.end()) {
+            arrays.push_back(wanted);
+        } else {
+            ++found->depth;
+        }
+        images_.back().place = {
+            static_cast<std::uint32_t>(arrays_.size()) + index,
+            static_cast<std::uint32_t>(arrays[index].depth) - 1};
+    }
+    return arrays;
+}
+
+void ImagePool::create_array(const gpu::TextureDesc& desc) {
+    Array array = {gpu::Texture("images", desc), {}};
+    if (device_.caps().profile == gpu::Profile::Software && desc.format == GL_SRGB8_ALPHA8) {
+        array.encoded = array.texture.view("encoded images", GL_RGBA8);
+    }
+    arrays_.push_back(std::move(array));
+}
+
+}  // namespace limn

@@ -1,0 +1,152 @@
+#include "render/material/material_blocks.h"
+
+#include "ecs/components/surface.h"
+#include "render/material/diffusion_profile.h"
+#include "render/material/hair_lobes.h"
+#include "render/material/material_maps.h"
+#include "render/material/skin_tone.h"
+#include "render/shaders/material_blocks_gpu.h"
+#include "render/shaders/material_classic_gpu.h"
+#include "render/shaders/material_clear_gpu.h"
+#include "render/shaders/material_lafortune_gpu.h"
+#include "render/shaders/material_skin_gpu.h"
+#include "render/shaders/material_subsurface_gpu.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <iterator>
+#include <optional>
+
+namespace limn {
+namespace {
+
+std::optional<layout::ClassicBlock> make_classic_block(const Material& m) {
+    const bool classic = m.shading == ShadingModel::Blinn || m.shading == ShadingModel::Phong
+                         || m.shading == ShadingModel::Skin;
+    return classic ? std::optional(
+               layout::ClassicBlock{.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f))})
+                   : std::nullopt;
+}
+
+std::optional<layout::SkinBlock> make_skin_block(const Material& m) {
+    return m.shading == ShadingModel::Skin ? std::optional(
+               layout::SkinBlock{.rim = Vec4(m.skin_color, m.wide_rim ? 1.0f : 0.0f)})
+                                           : std::nullopt;
+}
+
+/// Beer-Lambert: of light, exp(-absorption * distance) is left.
+std::optional<layout::ClearBlock> make_clear_block(const Material& m) {
+    if (m.transmission <= 0) {
+        return std::nullopt;
+    }
+    const Vec3 left = glm::max(m.attenuation_color, Vec3(1e-6f));
+    return layout::ClearBlock{
+        .medium = {m.transmission, m.refractive_index, m.thickness, 0},
+        .absorption = Vec4(-glm::log(left) / std::max(m.attenuation_distance, 1e-6f), 0)};
+}
+
+using LafortuneBlock = std::array<layout::LafortuneLobeRecord, kMaxLafortuneLobes>;
+
+std::optional<LafortuneBlock> make_lafortune_block(const Material& m) {
+    if (m.shading != ShadingModel::Lafortune) {
+        return std::nullopt;
+    }
+    LafortuneBlock block = {};
+    const std::size_t count = std::min(m.lobes.size(), block.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const LafortuneLobe& lobe = m.lobes[i];
+        block[i] = {
+            .across = Vec4(lobe.across, 0),
+            .along = Vec4(lobe.along, 0),
+            .exponent = Vec4(lobe.exponent, 0)};
+    }
+    block[0].across.w = static_cast<float>(count);
+    return block;
+}
+
+std::optional<layout::HairBlock> make_block_of_hair(const Material& m) {
+    return m.shading == ShadingModel::Hair ? std::optional(make_hair_block(m)) : std::nullopt;
+}
+
+std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) {
+    if (m.shading != ShadingModel::Subsurface) {
+        return std::nullopt;
+    }
+    const Vec3 d = diffusion_distance(Vec3(m.base_color) * skin_tone(m), m.scatter);
+    layout::SubsurfaceBlock block{
+        .specular = Vec4(m.specular, m.gloss),
+        .diffusion = Vec4(d, m.gloss_roughness),
+        .samples = {},
+        .few_samples = {},
+        .fewest_samples = {}};
+    sample_diffusion(d, kDensityNear, block.samples);
+    sample_diffusion(d, kDensityFar, block.few_samples);
+    sample_diffusion(d, kDensityFarther, block.fewest_samples);
+    return block;
+}
+
+struct BlockKind {
+    std::uint32_t number;
+    std::uint32_t texels;  ///< at most
+    /// Appends the block of a material; false if it has none.
+    bool (*append)(const Material&, std::vector<Vec4>&);
+};
+
+template <auto make>
+constexpr BlockKind block_kind(std::uint32_t number) {
+    using Block = typename decltype(make(Material()))::value_type;
+    static_assert(sizeof(Block) % sizeof(Vec4) == 0);
+    constexpr std::size_t kTexels = sizeof(Block) / sizeof(Vec4);
+    return {
+        number, static_cast<std::uint32_t>(kTexels),
+        [](const Material& material, std::vector<Vec4>& blocks) {
+            const std::optional<Block> block = make(material);
+            if (block) {
+                blocks.resize(blocks.size() + kTexels);
+                std::memcpy(blocks.data() + blocks.size() - kTexels, &*block, sizeof(Block));
+            }
+            return block.has_value();
+        }};
+}
+
+constexpr BlockKind kKinds[] = {
+    {layout::kUvBlock, 2 * layout::kMaxMapSlots, append_uv_block},
+    block_kind<make_classic_block>(layout::kClassicBlock),
+    block_kind<make_skin_block>(layout::kSkinBlock),
+    block_kind<make_lafortune_block>(layout::kLafortuneBlock),
+    block_kind<make_clear_block>(layout::kClearBlock),
+    block_kind<make_block_of_hair>(layout::kHairBlock),
+    block_kind<make_subsurface_block>(layout::kSubsurfaceBlock),
+};
+
+/// What a material with all blocks needs fits the offsets, and each kind has its number.
+constexpr bool kinds_fit() {
+    std::uint32_t texels = 0;
+    for (std::size_t i = 0; i < std::size(kKinds); ++i) {
+        if (kKinds[i].number != i || texels >> layout::kBlockOffsetBits != 0) {
+            return false;
+        }
+        texels += kKinds[i].texels;
+    }
+    return std::size(kKinds) <= layout::kMaxBlockKinds;
+}
+static_assert(kinds_fit());
+
+}  // namespace
+
+Vec4 append_blocks(const Material& material, std::vector<Vec4>& blocks) {
+    const std::size_t first = blocks.size();
+    std::uint32_t offsets[3] = {};
+    for (const BlockKind& kind : kKinds) {
+        const auto offset = static_cast<std::uint32_t>(blocks.size() - first);
+        if (kind.append(material, blocks)) {
+            const std::uint32_t shift =
+                kind.number % layout::kBlocksPerFloat * layout::kBlockOffsetBits;
+            offsets[kind.number / layout::kBlocksPerFloat] |= offset << shift;
+        }
+    }
+    return {first, offsets[0], offsets[1], offsets[2]};
+}
+
+}  // namespace limn

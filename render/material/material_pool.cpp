@@ -1,0 +1,197 @@
+#include "render/material/material_pool.h"
+
+#include "ecs/base/log.h"
+#include "render/gpu/device.h"
+#include "render/material/material_blocks.h"
+#include "render/material/skin_tone.h"
+
+#include <algorithm>
+
+namespace limn {
+namespace {
+
+/// Whether one fetch gives occlusion, roughness and metalness, as most exporters pack them.
+bool shares_occlusion(const Material& m) {
+    const TextureSlot& a = m.occlusion_texture;
+    const TextureSlot& b = m.metal_rough_texture;
+    return is_used(a) && a.image == b.image && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v
+           && a.nearest == b.nearest && same_uv(a, b);
+}
+
+layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks) {
+    return {
+        .base_color = m.base_color * Vec4(skin_tone(m), 1.0f),
+        .emission = Vec4(m.emission, m.normal_scale),
+        .factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff},
+        .blocks = append_blocks(m, blocks),
+        .maps = {}};
+}
+
+GLenum wrap_mode(Wrap wrap) {
+    return wrap == Wrap::Repeat   ? GL_REPEAT
+           : wrap == Wrap::Mirror ? GL_MIRRORED_REPEAT
+                                  : GL_CLAMP_TO_EDGE;
+}
+
+}  // namespace
+
+MaterialPool::MaterialPool(gpu::Device& device, float anisotropy)
+    : device_(device),
+      anisotropy_(
+          device.caps().software  // not by profile: filters change quality, not formats
+              ? 1.0f
+              : std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
+      images_(device), record_texture_("materials", GL_RGBA32F) {}
+
+void MaterialPool::update(const Assets& assets, bool fresh) {
+    if (fresh) {
+        images_.clear();
+        material_count_ = 0;
+        material_version_ = 0;
+    }
+    const bool more_images = images_.size() < assets.images.size();
+    images_.update(assets.images);
+    if (!fresh && !more_images && material_version_ == assets.material_version
+        && material_count_ == assets.materials.size()) {
+        return;
+    }
+
+    ++revision_;
+    records_.clear();
+    blocks_.clear();
+    batches_.clear();
+    batch_of_.clear();
+    models_.clear();
+    textures_.clear();
+    shading_models_ = 0;
+    diffuses_ = false;
+    add_material(Material{});
+    Material missing;
+    missing.shading = ShadingModel::Unlit;
+    missing.base_color = {1, 0, 1, 1};
+    add_material(missing);
+    for (const Material& material : assets.materials) {
+        add_material(material);
+    }
+    material_count_ = assets.materials.size();
+    material_version_ = assets.material_version;
+    upload_records();
+}
+
+/// The blocks follow the records.
+void MaterialPool::upload_records() {
+    const auto first_block = static_cast<float>(records_.size() * layout::kMaterialTexels);
+    for (layout::MaterialRecord& record : records_) {
+        record.blocks.x += first_block;
+    }
+    const std::span<const layout::MaterialRecord> records = records_;
+    const std::span<const Vec4> blocks = blocks_;
+    record_buffer_ = gpu::Buffer(
+        "materials", records.size_bytes() + blocks.size_bytes(), gpu::BufferUse::Dynamic);
+    record_buffer_.write(0, records);
+    record_buffer_.write(records.size_bytes(), blocks);
+    record_texture_.set(record_buffer_);
+}
+
+void MaterialPool::add_maps(
+    const Material& material, SurfaceBatch& batch, layout::MaterialRecord& record) {
+    MapBindings bindings;
+    for (const MapSlot& slot : map_slots()) {
+        const TextureSlot& texture = material.*slot.texture;
+        if (!is_used(texture)) {
+            continue;
+        }
+        if (slot.number == layout::kOcclusionSlot && shares_occlusion(material)) {
+            batch.features.bits |= kOcclusionShared;
+            continue;
+        }
+        const ImageLayer image = images_.find(texture.image);
+        const bool encoded = slot.number == layout::kBaseColorSlot && images_.encoded(image.array);
+        const auto unit = bindings.add(
+            {.array = image.array,
+             .sampler = sampler_of(texture, slot.trilinear || !device_.caps().software),
+             .encoded = encoded});
+        if (!unit) {
+            log_error(
+                "material {}: its maps need more than {} texture arrays, one per size, format and "
+                "sampler; drawn without {}",
+                material.name, layout::kMapUnits, slot.definition);
+            continue;
+        }
+        batch.features.maps.set(slot.number, *unit);
+        batch.features.bits |= encoded ? kSrgbBaseColor : 0u;
+        set_layer(record.maps, slot.number, image.layer);
+    }
+    batch.textures = index_of(bindings);
+}
+
+void MaterialPool::add_material(const Material& material) {
+    layout::MaterialRecord record = make_record(material, blocks_);
+    SurfaceBatch batch;
+    batch.blend = is_see_through(material);
+    batch.features.bits = uv_feature(material);
+    batch.features.bits |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
+    batch.features.bits |= material.double_sided ? kDoubleSided : 0u;
+    batch.features.bits |= material.shading == ShadingModel::Hair ? kStrands : 0u;
+    if (material.transmission > 0) {
+        batch.features.bits |= kTransmission | (material.thickness > 0 ? kRefraction : 0u);
+    }
+    add_maps(material, batch, record);
+
+    const auto same = [&](const SurfaceBatch& b) {
+        return b.features == batch.features && b.blend == batch.blend
+               && b.textures == batch.textures;
+    };
+    const auto found = std::find_if(batches_.begin(), batches_.end(), same);
+    batch_of_.push_back(static_cast<std::uint32_t>(found - batches_.begin()));
+    if (found == batches_.end()) {
+        batches_.push_back(batch);
+    }
+    records_.push_back(record);
+    models_.push_back(static_cast<std::uint8_t>(stored_number(material.shading)));
+    shading_models_ |= 1u << stored_number(material.shading);
+    diffuses_ =
+        diffuses_ || (material.shading == ShadingModel::Subsurface && material.scatter != Vec3(0));
+}
+
+std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) {
+    const std::uint32_t key = static_cast<std::uint32_t>(slot.wrap_u)
+                              | static_cast<std::uint32_t>(slot.wrap_v) << 4
+                              | static_cast<std::uint32_t>(slot.nearest) << 8
+                              | static_cast<std::uint32_t>(trilinear) << 9;
+    const auto found = std::find(sampler_keys_.begin(), sampler_keys_.end(), key);
+    if (found == sampler_keys_.end()) {
+        gpu::Sampler sampler(
+            "material", {.minify = static_cast<GLenum>(
+                             trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST),
+                         .magnify = static_cast<GLenum>(slot.nearest ? GL_NEAREST : GL_LINEAR),
+                         .wrap = wrap_mode(slot.wrap_u),
+                         .anisotropy = slot.nearest ? 1.0f : anisotropy_});
+        glSamplerParameteri(
+            sampler.id(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap_mode(slot.wrap_v)));
+        samplers_.push_back(std::move(sampler));
+        sampler_keys_.push_back(key);
+        return static_cast<std::uint32_t>(samplers_.size() - 1);
+    }
+    return static_cast<std::uint32_t>(found - sampler_keys_.begin());
+}
+
+std::uint32_t MaterialPool::index_of(const MapBindings& bindings) {
+    const auto found = std::find(textures_.begin(), textures_.end(), bindings);
+    const auto index = static_cast<std::uint32_t>(found - textures_.begin());
+    if (found == textures_.end()) {
+        textures_.push_back(bindings);
+    }
+    return index;
+}
+
+void MaterialPool::bind_textures(std::uint32_t textures) const {
+    unsigned unit = 0;
+    for (const MapBinding& map : textures_[textures].used()) {
+        const gpu::Texture& texture =
+            map.encoded ? images_.encoded(map.array) : images_.array(map.array);
+        device_.bind_texture(unit++, texture, &samplers_[map.sampler]);
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/buffer_texture.h"
+#include "render/gpu/texture.h"
+#include "render/material/image_pool.h"
+#include "render/material/material_maps.h"
+#include "render/material/shading_models.h"
+#include "render/material/surface_features.h"
+#include "render/shaders/material_gpu.h"
+
+#include <span>
+#include <vector>
+
+namespace limn {
+
+namespace gpu {
+class Device;
+}
+
+// Materials as one array of records, followed by their blocks (material_blocks.h). Materials with
+// the same program, fixed state, texture arrays and samplers share a batch: instances of a batch
+// are drawn together, whatever their mesh and material.
+//
+// Cheaper settings on a software OpenGL, which pays for what is free on a GPU: the sRGB of the base
+// color is decoded after filtering (a third of the cost), only the base color is filtered
+// trilinearly, and nothing anisotropically (five times the cost). Emission is decoded before
+// filtering: between lit and dark windows the error would show.
+
+/// Materials that share a draw state.
+struct SurfaceBatch {
+    SurfaceFeatures features;
+    bool blend = false;
+    std::uint32_t textures = 0;  ///< index for MaterialPool::bind_textures
+};
+
+class MaterialPool {
+  public:
+    MaterialPool(gpu::Device& device, float anisotropy);
+
+    /// Uploads what is new in `assets`: images beyond those it has, and all materials if any were
+    /// added or their version changed. `fresh`: these are other assets than last time. A map that
+    /// would need one texture array more than a material has units is left out, with an error.
+    void update(const Assets& assets, bool fresh);
+
+    /// Record index of a material; 0 for none, 1 for an unknown one.
+    [[nodiscard]] std::uint32_t record_of(MaterialId id) const {
+        return id.index == kNoAsset ? 0 : id.index + 2 < batch_of_.size() ? id.index + 2 : 1;
+    }
+    [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
+    /// Counts the changes of records and batches.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    /// stored_number() of its shading model.
+    [[nodiscard]] std::uint32_t model_of(std::uint32_t record) const { return models_[record]; }
+    [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
+    [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
+    /// Those that some material has.
+    [[nodiscard]] ShadingModelSet shading_models() const { return shading_models_; }
+    /// Whether light spreads under the surface of some material (subsurface_pass.h).
+    [[nodiscard]] bool diffuses() const { return diffuses_; }
+
+    void bind_textures(std::uint32_t textures) const;
+    [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
+    [[nodiscard]] const ImagePool& images() const { return images_; }
+    [[nodiscard]] ImagePool& images() { return images_; }
+
+  private:
+    void upload_records();
+    void add_material(const Material& material);
+    /// Chooses the units of its maps and writes their layers.
+    void add_maps(const Material& material, SurfaceBatch& batch, layout::MaterialRecord& record);
+    [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot, bool trilinear);
+    [[nodiscard]] std::uint32_t index_of(const MapBindings& bindings);
+
+    gpu::Device& device_;
+    float anisotropy_;
+    ImagePool images_;
+    std::vector<gpu::Sampler> samplers_;
+    std::vector<std::uint32_t> sampler_keys_;
+    std::vector<MapBindings> textures_;
+    std::vector<SurfaceBatch> batches_;
+    std::vector<std::uint32_t> batch_of_;  ///< by record; 0: default material, 1: missing material
+    std::vector<std::uint8_t> models_;     ///< by record
+    std::vector<layout::MaterialRecord> records_;
+    std::vector<Vec4> blocks_;  ///< of all materials, one after the other
+    gpu::Buffer record_buffer_;
+    BufferTexture record_texture_;
+    std::size_t material_count_ = 0;
+    std::uint64_t material_version_ = 0;
+    std::uint64_t revision_ = 0;
+    ShadingModelSet shading_models_ = 0;
+    bool diffuses_ = false;
+};
+
+}  // namespace limn

@@ -1,0 +1,50 @@
+#include "render/material/shading_fields.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace limn {
+namespace {
+
+constexpr unsigned bit(ShadingModel model) {
+    return 1u << static_cast<unsigned>(model);
+}
+constexpr unsigned kMirrors = bit(ShadingModel::Pbr) | bit(ShadingModel::Unlit);
+constexpr unsigned kClassic =
+    bit(ShadingModel::Blinn) | bit(ShadingModel::Phong) | bit(ShadingModel::Skin);
+constexpr unsigned kHair = bit(ShadingModel::Hair);
+
+/// A field that some models do not read, and those that do.
+struct FieldReaders {
+    std::string_view field;
+    unsigned models;  ///< a bit each
+};
+constexpr FieldReaders kFieldReaders[] = {
+    {"metalness", kMirrors},
+    {"roughness", kMirrors | bit(ShadingModel::Subsurface) | kHair},
+    {"metal_rough_texture", kMirrors | bit(ShadingModel::Subsurface) | kHair},
+    {"emission", ~kHair},
+    {"emission_texture", ~kHair},
+    {"specular", kClassic | bit(ShadingModel::Subsurface)},
+    {"shininess", kClassic},
+    {"skin_color", bit(ShadingModel::Skin)},
+    {"wide_rim", bit(ShadingModel::Skin)},
+    {"lobes", bit(ShadingModel::Lafortune)},
+    {"scatter", bit(ShadingModel::Subsurface)},
+    {"gloss", bit(ShadingModel::Subsurface)},
+    {"gloss_roughness", bit(ShadingModel::Subsurface)},
+    {"roughness_across", kHair},
+    {"scale_tilt", kHair},
+    {"hair_scatter", kHair},
+};
+
+}  // namespace
+
+bool reads_field(ShadingModel model, std::string_view field) {
+    const auto* const row = std::find_if(
+        std::begin(kFieldReaders), std::end(kFieldReaders),
+        [field](const FieldReaders& readers) { return readers.field == field; });
+    return row == std::end(kFieldReaders) || (row->models & bit(model)) != 0;
+}
+
+}  // namespace limn

@@ -1,0 +1,66 @@
+#include "render/material/surface_features.h"
+
+#include "render/variant.h"
+
+namespace limn {
+namespace {
+
+struct FeatureName {
+    std::uint32_t bit;
+    const char* definition;
+};
+constexpr FeatureName kNames[] = {
+    {kUvMap, "UV_MAP"},
+    {kUvMaps, "UV_MAPS"},
+    {kAlphaMask, "ALPHA_MASK"},
+    {kDoubleSided, "DOUBLE_SIDED"},
+    {kSrgbBaseColor, "SRGB_BASE_COLOR"},
+    {kOcclusionShared, "OCCLUSION_SHARED"},
+    {kVertexColor, "VERTEX_COLOR"},
+    {kInflate, "INFLATE"},
+    {kDeformed, "DEFORMED"},
+    {kVelocity, "VELOCITY"},
+    {kWrinkleBlend, "WRINKLE_BLEND"},
+    {kWrinkleFade, "WRINKLE_FADE"},
+    {kWrinkleFlat, "WRINKLE_FLAT"},
+    {kWrinkleView, "WRINKLE_VIEW"},
+    {kTransmission, "TRANSMISSION"},
+    {kRefraction, "REFRACTION"},
+    {kStrands, "STRANDS"},
+    {kWrinkleDisplaced, "WRINKLE_DISPLACED"},
+    {kWrinkleColumns, "WRINKLE_COLUMNS"},
+    {kWrinkleModel, "WRINKLE_MODEL"},
+    {kWrinkleLayers, "WRINKLE_LAYERS"},
+    {kWrinkleIndependent, "WRINKLE_INDEPENDENT"},
+    {kWrinklePhoto, "WRINKLE_PHOTO"},
+    {kWrinkleBounce, "WRINKLE_BOUNCE"},
+};
+
+constexpr bool has_bits_of_their_own() {
+    std::uint32_t taken = 0;
+    for (const FeatureName& feature : kNames) {
+        if ((taken & feature.bit) != 0) {
+            return false;
+        }
+        taken |= feature.bit;
+    }
+    return true;
+}
+static_assert(has_bits_of_their_own());
+
+}  // namespace
+
+void add_features(Variant& variant, const SurfaceFeatures& features) {
+    for (const FeatureName& feature : kNames) {
+        if ((features.bits & feature.bit) != 0) {
+            variant.add(feature.definition);
+        }
+    }
+    for (const MapSlot& slot : map_slots()) {
+        if (features.maps.has(slot.number)) {
+            variant.add(slot.definition, static_cast<int>(features.maps.unit(slot.number)));
+        }
+    }
+}
+
+}  // namespace limn

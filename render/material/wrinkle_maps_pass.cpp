@@ -1,0 +1,109 @@
+#include "render/material/wrinkle_maps_pass.h"
+
+#include "ecs/components/wrinkle_maps.h"
+#include "ecs/components/wrinkle_response.h"
+#include "ecs/world.h"
+#include "render/fullscreen.h"
+#include "render/geometry/surface_draws.h"
+#include "render/material/drawn_image.h"
+#include "render/material/material_pool.h"
+
+#include <algorithm>
+#include <array>
+
+namespace limn {
+namespace {
+
+/// Four weights from the region `first` on.
+Vec4 weights_of(const WrinkleWeights* weights, std::size_t first) {
+    Vec4 found = {0, 0, 0, 0};
+    for (std::size_t i = 0; weights != nullptr && i < 4; ++i) {
+        const float weight = weights->*kWrinkleRegions[first + i];
+        found[static_cast<int>(i)] = std::clamp(finite_or(weight, 0.0f), -1.0f, 1.0f);
+    }
+    return found;
+}
+
+/// Scale and offset from texels of a wrinkle map to normals; 128 of 255 is flat, exactly.
+Vec2 decoding_of(const gpu::Texture& map) {
+    return map.desc().format == GL_RGBA8 ? Vec2(255, -128) / 127.0f : Vec2(2, -1);
+}
+
+}  // namespace
+
+Result<WrinkleMapsEffect> WrinkleMapsEffect::create(gpu::Device& device, const RenderSettings&) {
+    return WrinkleMapsEffect{
+        LIMN_TRY(load_fullscreen(device, "wrinkle_maps.frag")),
+        gpu::Sampler("texels of wrinkle maps", {.minify = GL_LINEAR, .magnify = GL_LINEAR})};
+}
+
+bool WrinkleMapsEffect::is_used(const FrameData& frame) {
+    return !frame.world->query<const WrinkleMaps>().empty();
+}
+
+void WrinkleMapsEffect::collect(FrameData& frame) {
+    const ImagePool& images = frame.materials->images();
+    auto& wrinkled = frame.data.publish<WrinkledImages>();
+    wrinkled.arrays.clear();
+    frame.world->query<const WrinkleMaps>().each([&](const WrinkleMaps& maps) {
+        wrinkled.arrays.push_back(&images.array(images.find(maps.target).array));
+    });
+}
+
+void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
+    const ImagePool& images = frame.materials->images();
+    const auto draw = [&](Entity entity, const WrinkleMaps& maps) {
+        const auto* const response = frame.world->find<WrinkleResponse>(entity);
+        const auto* const measured = frame.world->find<MeasuredWrinkles>(entity);
+        const bool measures = response != nullptr && measured != nullptr;
+        const WrinkleWeights* const weights =
+            measures ? &measured->weights : frame.world->find<WrinkleWeights>(entity);
+        const float influence = measures ? response->share : 1.0f;
+        const bool more = images.find_texture(maps.second_masks) != nullptr;
+        const std::array<ImageId, 5> sources = {
+            maps.base, maps.stretched, maps.compressed, maps.first_masks,
+            more ? maps.second_masks : maps.first_masks};
+        const ImageLayer target = images.find(maps.target);
+        const auto is_unfit = [&](ImageId source) {
+            return images.find_texture(source) == nullptr || source == maps.target
+                   || !have_one_aspect(
+                       frame.assets->images[source.index], frame.assets->images[maps.target.index]);
+        };
+        if (target.array == 0 || std::ranges::any_of(sources, is_unfit)) {
+            return;
+        }
+        const auto read = [&](unsigned i) {
+            const gpu::Texture& texture = *images.find_texture(sources[i]);
+            return sampled(graph.import("wrinkle map", texture), i, &texels);
+        };
+        const auto array_of = [&](unsigned i) {
+            return graph.import("images", images.array(images.find(sources[i]).array));
+        };
+        const gpu::Texture& array = images.array(target.array);
+        const TextureId composed = create_drawn_image(graph, images, target);
+        const Vec4 first = weights_of(weights, 0);
+        const Vec4 second = more ? weights_of(weights, 4) : Vec4(0);
+        const Vec4 decoding = {
+            decoding_of(*images.find_texture(maps.stretched)),
+            decoding_of(*images.find_texture(maps.compressed))};
+        const bool by_slopes = maps.blend == WrinkleBlend::Slopes;
+        add_fullscreen_pass(
+            graph, "wrinkle maps",
+            {array_of(0), array_of(1), array_of(2), array_of(3), array_of(4), read(0), read(1),
+             read(2), read(3), read(4)},
+            {target_level(discarded(composed), 0)}, program,
+            [&array, first, second, decoding, by_slopes,
+             influence](PassContext&, const gpu::Program& shader) {
+                shader.set("size", Vec2(array.width(), array.height()));
+                shader.set("first_weights", first);
+                shader.set("second_weights", second);
+                shader.set("decoding", decoding);
+                shader.set("share", influence);
+                shader.set("by_slopes", by_slopes ? 1 : 0);
+            });
+        place_drawn_image(graph, images, composed, target);
+    };
+    frame.world->query<const WrinkleMaps>().each(draw);
+}
+
+}  // namespace limn

@@ -1,0 +1,394 @@
+#include "render/particles/gpu_particle_pools.h"
+
+#include "ecs/base/log.h"
+#include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
+#include "ecs/world.h"
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/shaders/particle_gpu.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kStepsUnit = 0;
+constexpr unsigned kSeenDepthUnit = 1;
+constexpr unsigned kViewBinding = 0;
+constexpr unsigned kStateBinding = 0;
+constexpr unsigned kBitsBinding = 1;
+constexpr unsigned kInstancesBinding = 2;
+
+float word(std::uint64_t bits) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+}
+
+/// Bounce, friction, radius, action.
+Vec4 response_texel(const ParticleCollision* collision) {
+    if (collision == nullptr) {
+        return Vec4(0);
+    }
+    const auto share = [](float value) { return std::clamp(finite_or(value, 0), 0.0f, 1.0f); };
+    const auto action = static_cast<std::uint32_t>(collision->action) + 1;
+    return {
+        share(collision->bounce), share(collision->friction),
+        std::max(finite_or(collision->radius, 0), 0.0f), word(action)};
+}
+
+void pack_emitter(
+    const ParticleEmitter& emitter, const ParticleCollision* collision,
+    const GpuParticles& particles, std::vector<Vec4>& texels) {
+    const PhiloxKey& key = particles.key;
+    const PhiloxCounter& counter = particles.counter;
+    const float cone = std::clamp(finite_or(emitter.cone, 0), 0.0f, kPi);
+    texels.emplace_back(word(key[0]), word(key[1]), word(counter[2]), word(counter[3]));
+    texels.emplace_back(
+        0.0f, word(static_cast<std::uint32_t>(emitter.shape)),
+        word(static_cast<std::uint32_t>(emitter.direction)), std::cos(cone));
+    texels.emplace_back(emitter.size, emitter.speed);
+    texels.emplace_back(emitter.speed_spread, emitter.life, emitter.life_spread, 0.0f);
+    texels.emplace_back(emitter.size_spread, 0.0f);
+    texels.emplace_back(emitter.velocity_spread, 0.0f);
+    texels.push_back(response_texel(collision));
+}
+
+/// Texels of what belongs to a step, counted from the first of their kind.
+struct StepParts {
+    std::uint32_t run = 0;
+    std::uint32_t force = 0;
+    std::uint32_t collider = 0;
+};
+
+void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<Vec4>& texels) {
+    const MotionStep& motion = step.motion;
+    const float dt = motion.step.dt;
+    texels.emplace_back(
+        word(step.first), word(step.count), word(first.run), word(step.births.size()));
+    texels.emplace_back(motion.step.gravity * dt, dt);
+    texels.emplace_back(motion.step.air, motion.step.keep);
+    for (const Affine* const place : {&step.place.before, &step.place.now}) {
+        texels.insert(texels.end(), std::begin(place->row), std::end(place->row));
+    }
+    texels.emplace_back(step.inherited, motion.step.old_share);
+    texels.emplace_back(motion.turbulence.drift_a, motion.turbulence.strength * dt);
+    texels.emplace_back(motion.turbulence.drift_b, 1 / motion.turbulence.size);
+    texels.emplace_back(motion.vortex.origin, motion.vortex.around * dt);
+    texels.emplace_back(motion.vortex.axis, motion.vortex.toward * dt);
+    texels.emplace_back(
+        motion.steering.orbit, motion.steering.loss, word(motion.turbulence.seed), 0.0f);
+    texels.emplace_back(motion.wrap_center, word(first.force));
+    texels.emplace_back(motion.wrap_size, word(motion.forces.size()));
+    texels.emplace_back(word(first.collider), word(step.colliders.size()), 0.0f, 0.0f);
+}
+
+Result<const gpu::Program*>
+load_update(gpu::Device& device, std::vector<gpu::ShaderDefine> defines) {
+    return device.shaders().load(
+        {.compute = "particle_update.comp", .defines = std::move(defines)});
+}
+
+/// Whether gravity and drag alone move particles in a step.
+bool is_plain(const GpuParticleStep& step) {
+    const MotionStep& motion = step.motion;
+    const bool steers = motion.steering.orbit > 0 || motion.steering.loss > 0;
+    const bool whirls = motion.vortex.around != 0 || motion.vortex.toward != 0;
+    return !motion.step.closed_form && motion.turbulence.strength == 0 && !steers && !whirls
+           && motion.forces.empty() && motion.wrap_size == Vec3(0) && step.colliders.empty();
+}
+
+void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
+    const std::size_t slots = std::max(capacity, 1u);
+    pool.state = gpu::Buffer("particle state", slots * 2 * sizeof(Vec4), gpu::BufferUse::GpuOnly);
+    pool.bits =
+        gpu::Buffer("particle bits", slots * sizeof(std::uint32_t), gpu::BufferUse::GpuOnly);
+    pool.instances = gpu::Buffer(
+        "particle instances", slots * layout::kParticleWords * sizeof(std::uint32_t),
+        gpu::BufferUse::GpuOnly);
+    pool.texels.set(pool.instances);
+    pool.capacity = static_cast<std::uint32_t>(slots);
+    pool.done = 0;
+}
+
+/// From the oldest particle to the oldest that is moved: one whose number the stride divides.
+std::uint32_t offset_of(const GpuParticlePool& pool) {
+    return (0u - pool.first) & (pool.stride - 1);
+}
+
+/// How many of the `count` oldest are moved.
+std::uint32_t moved_of(std::uint64_t count, const GpuParticlePool& pool) {
+    const std::uint64_t offset = offset_of(pool);
+    return count > offset
+               ? static_cast<std::uint32_t>((count - offset + pool.stride - 1) / pool.stride)
+               : 0;
+}
+
+/// Those that are moved, numbered without gaps.
+ParticleWindow sort_window(const GpuParticlePool& pool) {
+    return {(pool.first + offset_of(pool)) / pool.stride, pool.count};
+}
+
+}  // namespace
+
+std::uint32_t particle_stride(float share) {
+    std::uint32_t stride = 1;
+    while (stride < 1024 && static_cast<float>(stride) * share < 1) {
+        stride *= 2;
+    }
+    return stride;
+}
+
+std::vector<Vec4> pack_particle_steps(
+    const ParticleEmitter& emitter, const ParticleCollision* collision,
+    const GpuParticles& particles, std::uint64_t from, ParticleStepTexels& layout) {
+    const std::span<const GpuParticleStep> kept = particles.kept();
+    const std::uint64_t first_kept = particles.step - kept.size();
+    const std::size_t skipped = std::min<std::size_t>(
+        from > first_kept ? static_cast<std::size_t>(from - first_kept) : 0, kept.size());
+    std::vector<Vec4> texels;
+    pack_emitter(emitter, collision, particles, texels);
+    StepParts next;
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        pack_step(step, next, texels);
+        next.run += static_cast<std::uint32_t>(step.births.size());
+        next.force += static_cast<std::uint32_t>(step.motion.forces.size()) * layout::kForceTexels;
+        next.collider +=
+            static_cast<std::uint32_t>(step.colliders.size()) * layout::kColliderTexels;
+    }
+    layout.steps = static_cast<int>(kept.size() - skipped);
+    layout.runs = static_cast<int>(texels.size());
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        for (const BirthRun& births : step.births) {
+            texels.emplace_back(births.first, births.spacing, word(births.count), 0.0f);
+        }
+    }
+    layout.forces = static_cast<int>(texels.size());
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        const float share = step.motion.forces_share * step.motion.step.dt;
+        for (const Force& one : step.motion.forces) {
+            texels.emplace_back(one.origin, word(static_cast<std::uint32_t>(one.kind)));
+            texels.emplace_back(one.axis, one.strength * share);
+            texels.emplace_back(one.speed, one.radius, 0.0f, 0.0f);
+        }
+    }
+    layout.colliders = static_cast<int>(texels.size());
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        for (const GpuCollider& one : step.colliders) {
+            texels.insert(texels.end(), std::begin(one.rows), std::end(one.rows));
+            texels.emplace_back(one.half, word(static_cast<std::uint32_t>(one.kind)));
+        }
+    }
+    return texels;
+}
+
+Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
+    GpuParticlePools pools;
+    pools.programs_.births = LIMN_TRY(load_update(device, {}));
+    pools.programs_.old = LIMN_TRY(load_update(device, {{"OLD"}}));
+    pools.programs_.plain = LIMN_TRY(load_update(device, {{"OLD"}, {"PLAIN"}}));
+    return pools;
+}
+
+void GpuParticlePools::begin_frame(const World& world) {
+    if (std::exchange(epoch_, world.core().epoch) != world.core().epoch) {
+        pools_.clear();
+    }
+    updated_ = false;
+    for (auto& [entity, pool] : pools_) {
+        pool->used = false;
+    }
+}
+
+void GpuParticlePools::forget_unused() {
+    std::erase_if(pools_, [](const auto& pool) { return !pool.second->used; });
+}
+
+bool GpuParticlePools::can_sort(gpu::Device& device) {
+    if (!sort_programs_) {
+        Result<ParticleSortPrograms> made = ParticleSortPrograms::create(device);
+        if (!made) {
+            log_error("{}", made.error().message);
+            return false;
+        }
+        sort_programs_ = *made;
+    }
+    return true;
+}
+
+bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
+    if (programs_.seen_old == nullptr) {
+        const Result<const gpu::Program*> births = load_update(device, {{"SEEN_DEPTH"}});
+        const Result<const gpu::Program*> old = load_update(device, {{"SEEN_DEPTH"}, {"OLD"}});
+        if (!births || !old) {
+            log_error("{}", (births ? old : births).error().message);
+            return false;
+        }
+        programs_.seen_births = *births;
+        programs_.seen_old = *old;
+    }
+    return true;
+}
+
+bool GpuParticlePools::meets_depth() const {
+    return std::any_of(pools_.begin(), pools_.end(), [](const auto& pool) {
+        return pool.second->collide_depth > 0;
+    });
+}
+
+void GpuParticlePools::add(
+    FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
+    std::uint32_t look, std::optional<std::uint32_t> sort_passes,
+    const ParticleCollision* collision, std::uint32_t stride) {
+    std::unique_ptr<GpuParticlePool>& found = pools_[entity.bits()];
+    if (found == nullptr) {
+        found = std::make_unique<GpuParticlePool>();
+    }
+    GpuParticlePool& pool = *found;
+    const std::uint64_t window = particles.clock.born - particles.oldest();
+    // A smaller capacity than there are particles counts when those have died.
+    const auto slots =
+        static_cast<std::uint32_t>(std::max<std::uint64_t>(emitter.capacity, window));
+    const std::uint64_t first_kept = particles.step - particles.kept().size();
+    if (pool.capacity != std::max(slots, 1u) || pool.done > particles.step || pool.done < first_kept
+        || stride < pool.stride) {
+        make_buffers(slots, pool);  // and all steps again
+    }
+    pool.stride = stride;
+    pool.steps.upload(
+        *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
+    const std::span<const GpuParticleStep> to_do =
+        particles.kept().last(static_cast<std::size_t>(pool.layout.steps));
+    pool.done = particles.step;
+    pool.used = true;
+    pool.look = look;
+    pool.first = static_cast<std::uint32_t>(particles.oldest());
+    pool.count = moved_of(window, pool);
+    const std::uint64_t born_before = to_do.empty() ? particles.clock.born : to_do.front().first;
+    pool.old = moved_of(std::max(born_before, particles.oldest()) - particles.oldest(), pool);
+    pool.plain.reset();
+    if (to_do.size() == 1 && is_plain(to_do.front())) {
+        pool.plain = to_do.front().motion.step;
+    }
+    if (!particles.kept().empty()) {
+        const ParticleStep& step = particles.kept().back().motion.step;
+        pool.closed_form = step.closed_form;
+        pool.gravity = step.gravity;
+    }
+    const bool closed_form = pool.closed_form;
+    const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
+    pool.collide_depth = depth > 0 && !closed_form && can_meet_depth(*frame.device) ? depth : 0.0f;
+    pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
+    if (pool.sorted) {
+        plan_particle_sort(sort_window(pool), *sort_passes, pool.sort);
+    }
+}
+
+/// Those born before the steps to do, and those born in them.
+void GpuParticlePools::move(
+    gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const {
+    const bool meets = seen && pool.collide_depth > 0;
+    const bool is_plain_step = pool.plain.has_value() && !meets;
+    pool.steps.bind(device, kStepsUnit);
+    device.bind_storage(kStateBinding, pool.state);
+    device.bind_storage(kBitsBinding, pool.bits);
+    device.bind_storage(kInstancesBinding, pool.instances);
+    const auto dispatch = [&](const gpu::Program& program, std::uint32_t begin, std::uint32_t end,
+                              std::uint32_t first_slot) {
+        if (begin >= end) {
+            return;
+        }
+        device.use(program);
+        program.set("first", pool.first);
+        program.set("begin", begin);
+        program.set("end", end);
+        program.set("stride", pool.stride);
+        program.set("offset", offset_of(pool));
+        program.set("first_slot", first_slot);
+        program.set("step_count", pool.layout.steps);
+        program.set("runs", pool.layout.runs);
+        program.set("forces", pool.layout.forces);
+        program.set("colliders", pool.layout.colliders);
+        program.set("look", pool.look);
+        program.set("back", back);
+        program.set("closed_form", pool.closed_form ? 1 : 0);
+        program.set("gravity", pool.gravity);
+        program.set("thickness", pool.collide_depth);
+        if (pool.plain) {
+            const ParticleStep& step = *pool.plain;
+            const float old_way = step.dt * step.old_share;
+            const Vec3 added = step.air + (step.gravity * step.dt - step.air) * step.keep;
+            program.set("added_dt", Vec4(added, step.dt));
+            program.set("kept", step.keep);
+            program.set("ways", Vec2(old_way, step.dt - old_way));
+        }
+        device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
+    };
+    const gpu::Program* const old = is_plain_step ? programs_.plain
+                                    : meets       ? programs_.seen_old
+                                                  : programs_.old;
+    // The slots are a ring: what lies beyond its end is at its beginning.
+    const std::uint32_t first_slot = pool.first % pool.capacity + offset_of(pool);
+    const std::uint32_t room = pool.capacity - std::min(first_slot, pool.capacity);
+    const std::uint32_t wrap = room / pool.stride + (room % pool.stride > 0 ? 1 : 0);
+    const auto dispatch_parts = [&](const gpu::Program& program, std::uint32_t begin,
+                                    std::uint32_t end) {
+        const std::uint32_t middle = std::clamp(wrap, begin, end);
+        dispatch(program, begin, middle, first_slot);
+        dispatch(program, middle, end, first_slot - pool.capacity);
+    };
+    dispatch_parts(*old, 0, pool.old);
+    dispatch_parts(*(meets ? programs_.seen_births : programs_.births), pool.old, pool.count);
+}
+
+void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
+    if (std::exchange(updated_, true)) {
+        return;
+    }
+    if (pools_.empty()) {
+        return;
+    }
+    std::vector<Use> writes;
+    for (const auto& [entity, pool] : pools_) {
+        for (const gpu::Buffer* const buffer : {&pool->state, &pool->bits, &pool->instances}) {
+            writes.emplace_back(graph.import("particles", *buffer));
+        }
+    }
+    const SeenDepth seen = view.seen;
+    std::vector<Use> reads;
+    if (seen.depth != nullptr) {
+        reads.push_back(sampled(graph.import("seen depth", *seen.depth), kSeenDepthUnit));
+    }
+    graph.add_pass(
+        "move particles", reads, writes, [this, back = view.back, seen](PassContext& context) {
+            gpu::Device& device = context.device();
+            if (seen.depth != nullptr) {
+                device.bind_uniforms(
+                    kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
+            }
+            for (const auto& [entity, pool] : pools_) {
+                move(device, *pool, back, seen.depth != nullptr);
+            }
+        });
+    for (const auto& [entity, found] : pools_) {
+        GpuParticlePool& pool = *found;
+        if (!pool.sorted) {
+            continue;
+        }
+        const Use unsorted[] = {graph.import("particles", pool.instances)};
+        const Use order[] = {
+            graph.import("particle order", pool.sort.entries[0]),
+            graph.import("particle order", pool.sort.entries[1]),
+            graph.import("sorted particles", pool.sort.instances)};
+        graph.add_pass("sort particles", unsorted, order, [=, this, &pool](PassContext& context) {
+            run_particle_sort(
+                context, *sort_programs_, sort_window(pool), pool.instances,
+                {view.eye, view.forward}, pool.sort);
+        });
+    }
+}
+
+}  // namespace limn

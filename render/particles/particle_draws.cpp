@@ -1,0 +1,424 @@
+#include "render/particles/particle_draws.h"
+
+#include "ecs/components/beam.h"
+#include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
+#include "ecs/components/rendering.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "render/frame_data.h"
+#include "render/material/material_pool.h"
+#include "render/particles/gpu_particle_pools.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+#include <span>
+#include <tuple>
+
+namespace limn {
+namespace {
+
+constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
+constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
+
+/// As an entity is seen; none without a transform.
+std::optional<Affine> pose_of(const World& world, Entity entity, float alpha) {
+    const auto* const now = world.find<WorldTransform>(entity);
+    const auto* const before = world.find<PreviousWorldTransform>(entity);
+    if (now == nullptr) {
+        return std::nullopt;
+    }
+    return world_at(world.find_resource<StepJumps>(), entity, *now, before, {alpha, alpha});
+}
+
+std::optional<Vec3> place_of(const World& world, Entity entity, float alpha) {
+    const std::optional<Affine> pose = pose_of(world, entity, alpha);
+    return pose ? std::optional(transform_point(*pose, Vec3(0))) : std::nullopt;
+}
+
+/// What only adds light needs no weights.
+LookLayer layer_of(const ParticleLook& look) {
+    return look.sort == ParticleSort::Weighted && look.cover > 0 ? LookLayer::Weighted
+           : look.resolution == ParticleResolution::Half         ? LookLayer::Half
+                                                                 : LookLayer::Full;
+}
+
+/// Passes of a sort on the GPU a frame, 0: all; none for particles that need no order.
+std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
+    if (look.sort == ParticleSort::Births || look.sort == ParticleSort::Weighted
+        || look.cover <= 0) {
+        return std::nullopt;
+    }
+    return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
+}
+
+/// One for `stride` particles: their area in one.
+ParticleLook enlarged(ParticleLook look, std::uint32_t stride) {
+    const float factor = std::sqrt(static_cast<float>(stride));
+    look.size *= factor;
+    look.size_spread *= factor;
+    look.stretch *= factor;
+    return look;
+}
+
+void append_births_of(
+    const World& world, Entity emitter, const Trail& trail, float back, float alpha,
+    RibbonList& ribbons) {
+    const auto* const pool = world.find<ParticlePool>(emitter);
+    const auto* const settings = world.find<ParticleEmitter>(emitter);
+    if (pool == nullptr) {
+        return;
+    }
+    const bool grows = settings != nullptr && settings->active && settings->rate > 0;
+    const std::optional<Vec3> head = place_of(world, emitter, alpha);
+    append_births(trail, *pool, back, grows && head ? &*head : nullptr, ribbons);
+}
+
+void clear_insets(LookRecord& record) {
+    std::fill_n(record.begin() + layout::kLookInsets, layout::kMaxInsetFrames / 4, Vec4(0));
+}
+
+/// Instead of in the middle. What is different at the corners is meant for those of the whole quad.
+void light_at_corners(LookRecord& record) {
+    record[layout::kLookFocus].y = 0;
+    const bool is_six_way = record[layout::kLookMotion].w >= 0;
+    if (is_lit_at_corners(record) && !is_six_way) {
+        clear_insets(record);
+    }
+}
+
+void set_insets(const std::vector<float>& insets, LookRecord& record) {
+    for (std::size_t i = 0; i < insets.size(); ++i) {
+        record[layout::kLookInsets + i / 4][static_cast<int>(i % 4)] = insets[i];
+    }
+    const bool moves_in_frame = record[layout::kLookMotion].x >= 0;
+    if (moves_in_frame) {
+        clear_insets(record);
+    }
+    if (!is_lit_in_middle(record)) {
+        light_at_corners(record);
+    }
+}
+
+std::uint32_t add_look(
+    const FrameData& frame, const ParticleLook& look, ParticleDraws& draws,
+    std::optional<Vec3> place = std::nullopt) {
+    const bool has_image = frame.assets->images.size() > look.image.index;
+    const ImageLayer image = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
+    const ImageLayer motion = frame.materials->images().find(look.motion);
+    const ImageLayer negative = frame.materials->images().find(look.negative_light);
+    const bool has_motion = has_image && motion.array != 0;
+    const bool is_six_way = has_image && negative.array != 0;
+    const auto layer_if = [](bool has, const ImageLayer& layer) {
+        return has ? static_cast<int>(layer.layer) : -1;
+    };
+    draws.looks.push_back(make_look_record(
+        look, {.image = layer_if(has_image, image),
+               .motion = layer_if(has_motion, motion),
+               .negative_light = layer_if(is_six_way, negative)}));
+    draws.arrays.push_back(
+        {.images = image.array,
+         .motions = has_motion ? motion.array : 0,
+         .negative_lights = is_six_way ? negative.array : 0});
+    draws.places.push_back(place);
+    draws.extents.push_back(make_look_extent(look));
+    draws.extents.back().texels = 0;
+    if (has_image) {
+        const ImageData& pixels = frame.assets->images[look.image.index];
+        draws.extents.back().texels = std::max(
+            static_cast<float>(pixels.width) / static_cast<float>(look.columns),
+            static_cast<float>(pixels.height) / static_cast<float>(look.rows));
+        set_insets(
+            draws.insets.find(pixels, look.image, look.columns, look.rows), draws.looks.back());
+    }
+    draws.layers.push_back(layer_of(look));
+    draws.has_halves = draws.has_halves || draws.layers.back() == LookLayer::Half;
+    draws.has_weighted = draws.has_weighted || draws.layers.back() == LookLayer::Weighted;
+    draws.lit_in_middle = draws.lit_in_middle || is_lit_in_middle(draws.looks.back());
+    const SpriteFeatures features = {
+        .images = has_image,
+        .flipbooks = look.frames != ParticleFrames::Pick && (look.columns > 1 || look.rows > 1),
+        .motions = has_motion,
+        .six_way = is_six_way};
+    draws.features |= features;
+    draws.layer_features[static_cast<std::size_t>(draws.layers.back())] |= features;
+    draws.soft = draws.soft || look.softness > 0;
+    draws.moving = draws.moving || moves_pixels(draws.looks.back());
+    draws.focused = draws.focused || look.velocity_cover < 1;
+    return static_cast<std::uint32_t>(draws.looks.size() - 1);
+}
+
+/// What bends the ways of an emitter's particles, gusts apart.
+void add_pull(const World& world, Entity emitter, std::uint32_t look, ParticleDraws& draws) {
+    if (const auto* const motion = world.find<ParticleMotion>(emitter)) {
+        constexpr float kGravity = 9.81f;  // [m/s^2]
+        const Vec3 at_rest = Vec3(0, -kGravity * motion->gravity, 0) + motion->drag * motion->wind;
+        draws.looks[look][layout::kLookMotion + 1] = Vec4(at_rest, motion->drag);
+    }
+}
+
+void collect_ribbons(const FrameData& frame, float back, float step, ParticleDraws& draws) {
+    const World& world = *frame.world;
+    const auto add_segments = [&](const ParticleLook& look) {
+        draws.has_ribbons = true;
+        const std::uint32_t index = add_look(frame, look, draws);
+        draws.looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
+        draws.looks[index][layout::kLookFocus].y = 0;    // lit at its corners
+        draws.looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
+        draws.looks[index][layout::kLookMotion].w = -1;
+        draws.extents[index] = {};
+        clear_insets(draws.looks[index]);  // its image repeats
+        for (const std::uint32_t before : draws.ribbons.segments) {
+            const Vec3 middle = 0.5f
+                                * (draws.ribbons.points[before + 1].position
+                                   + draws.ribbons.points[before + 2].position);
+            draws.instances.push_back(
+                {.position = middle, .look_and_share = index << 16, .velocity_xy = before});
+        }
+        draws.ribbons.segments.clear();
+    };
+    world.query<const Trail, const ParticleLook, Optional<const TrailState>>().each(
+        [&](Entity entity, const Trail& trail, const ParticleLook& look, const TrailState* state) {
+            if (draws.looks.size() >= kMaxLooks) {
+                return;
+            }
+            draws.ribbons.width = max_width(look);
+            const Entity followed = trail.emitter.is_null() ? entity : trail.emitter;
+            if (trail.path == TrailPath::Births) {
+                append_births_of(world, followed, trail, back, frame.camera.alpha, draws.ribbons);
+            } else if (state != nullptr) {
+                append_trail(trail, *state, back, step, draws.ribbons);
+            }
+            add_segments(look);
+        });
+    world.query<const Beam, const ParticleLook, const BeamState>().each(
+        [&](Entity entity, const Beam& beam, const ParticleLook& look, const BeamState& state) {
+            if (draws.looks.size() < kMaxLooks) {
+                draws.ribbons.width = max_width(look);
+                append_beam(beam, state, entity, frame.camera.alpha, frame.time, draws.ribbons);
+                add_segments(look);
+            }
+        });
+}
+
+void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws) {
+    const auto add_once = [&](const ParticleLook& look) {
+        const std::uint32_t index = add_look(frame, look, draws);
+        draws.looks[index][2].w = static_cast<float>(layout::kFacingBillboard);
+        light_at_corners(draws.looks[index]);
+        draws.looks[index][layout::kLookMore + 1].w = 0;  // no life to fade at the end of
+        const bool is_repeated =
+            index > 0 && draws.looks[index] == draws.looks[index - 1]
+            && draws.arrays[index] == draws.arrays[index - 1]
+            && draws.extents[index].culling == draws.extents[index - 1].culling;
+        if (!is_repeated) {
+            draws.extents[index].radius = draws.extents[index].stretch = 0;
+            return index;
+        }
+        draws.looks.pop_back();
+        draws.arrays.pop_back();
+        draws.layers.pop_back();
+        draws.places.pop_back();
+        draws.extents.pop_back();
+        return index - 1;
+    };
+    const World& world = *frame.world;
+    world.query<const Billboard, const ParticleLook>().each([&](Entity entity,
+                                                                const Billboard& billboard,
+                                                                const ParticleLook& look) {
+        const std::optional<Affine> pose = pose_of(world, entity, frame.camera.alpha);
+        const std::size_t first = draws.billboards.quads.size();
+        const Vec3 velocity = entity_velocity(world, entity, particle_step(frame));
+        const std::uint32_t random = entity.index * 0x9e3779b9u;
+        if (!pose || draws.looks.size() + 2 > kMaxLooks) {
+            return;
+        }
+        const double time = std::max(billboard.time - static_cast<double>(back), 0.0);
+        append_billboard(billboard, look, *pose, time, random, draws.billboards);
+        for (std::size_t i = first; i < draws.billboards.quads.size(); ++i) {
+            const BillboardPlace& place = draws.billboards.places[i];
+            BillboardQuad& quad = draws.billboards.quads[i];
+            quad.velocity = velocity;
+            ParticleLook section_look = look;
+            if (place.is_section) {
+                section_look.image = billboard.section;
+                section_look.columns = section_look.rows = 1;
+            }
+            section_look.culling = ParticleCulling::Particles;
+            const std::uint32_t index = add_once(section_look);
+            draws.extents[index].radius = std::max(
+                draws.extents[index].radius,
+                glm::length(quad.right) + glm::length(quad.up) + look.cull_margin);
+            draws.instances.push_back(
+                {.position = place.position,
+                 .look_and_share = index << 16 | static_cast<std::uint32_t>(place.share * 65535.0f),
+                 .velocity_xy = static_cast<std::uint32_t>(i),
+                 .velocity_z_age = std::bit_cast<std::uint32_t>(std::max(place.opacity, 0.0f)),
+                 .random = random});
+        }
+    });
+    draws.has_billboards = !draws.billboards.quads.empty();
+}
+
+/// For a warm-up, whose image nobody sees: a particle for each program that some look needs.
+void append_one_of_each(ParticleDraws& draws) {
+    std::set<std::tuple<LookLayer, bool, bool, bool>> made;
+    for (std::uint32_t i = 0; i < draws.looks.size(); ++i) {
+        const bool is_six_way = draws.arrays[i].negative_lights != 0;
+        const LookRecord& look = draws.looks[i];
+        const bool is_new =
+            made.emplace(draws.layers[i], is_point(look), is_six_way, is_lit_at_corners(look))
+                .second;
+        if (is_new) {
+            auto& target =
+                draws.layers[i] == LookLayer::Weighted ? draws.weighted : draws.instances;
+            target.emplace_back().look_and_share = i << 16;
+        }
+    }
+}
+
+void clear(ParticleDraws& draws) {
+    draws.looks.clear();
+    draws.arrays.clear();
+    draws.places.clear();
+    draws.layers.clear();
+    draws.instances.clear();
+    draws.weighted.clear();
+    draws.ribbons.clear();
+    draws.billboards.quads.clear();
+    draws.billboards.places.clear();
+    draws.extents.clear();
+    draws.waters.clear();
+    draws.features = {};
+    draws.layer_features = {};
+    draws.lit_in_middle = draws.soft = draws.moving = draws.focused = false;
+    draws.has_ribbons = draws.has_billboards = draws.has_halves = draws.has_weighted = false;
+}
+
+Bounds shape_in_world(const World& world, Entity entity, float alpha) {
+    const auto* const emitter = world.find<ParticleEmitter>(entity);
+    const std::optional<Affine> pose = pose_of(world, entity, alpha);
+    return emitter != nullptr && pose ? shape_bounds(*emitter, *pose) : Bounds{};
+}
+
+void collect_pools(const FrameData& frame, float back, float step, ParticleDraws& draws) {
+    const World& world = *frame.world;
+    const float alpha = frame.camera.alpha;
+    const Vec3 eye_velocity = entity_velocity(world, frame.camera.entity, step);
+    world.query<const ParticleLook, const ParticlePool, Optional<const Trail>>().each(
+        [&](Entity entity, const ParticleLook& look, const ParticlePool& particles,
+            const Trail* trail) {
+            const bool is_ribbon =
+                trail != nullptr && trail->path == TrailPath::Births && trail->emitter.is_null();
+            if (draws.looks.size() < kMaxLooks && !is_ribbon) {
+                std::optional<Vec3> place;
+                if (look.sort == ParticleSort::Births) {
+                    place = place_of(world, entity, alpha);
+                }
+                const std::uint32_t index = add_look(frame, look, draws, place);
+                auto& target =
+                    draws.layers[index] == LookLayer::Weighted ? draws.weighted : draws.instances;
+                const std::size_t first = target.size();
+                add_pull(world, entity, index, draws);
+                append_particles(particles, index, back, target, look.camera_streak * eye_velocity);
+                if (look.culling == ParticleCulling::Bounds) {
+                    draws.extents[index].group = bounds_of(std::span(target).subspan(first));
+                } else if (look.culling == ParticleCulling::Emitter) {
+                    draws.extents[index].group = shape_in_world(world, entity, alpha);
+                }
+            }
+        });
+}
+
+/// Of those that the GPU moves, looks alone.
+void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& draws) {
+    const World& world = *frame.world;
+    const float alpha = frame.camera.alpha;
+    const auto* const rendering = world.find_resource<Rendering>();
+    const std::uint32_t stride =
+        particle_stride(rendering != nullptr ? rendering->particle_share : 1);
+    gpu.begin_frame(world);
+    world
+        .query<
+            const ParticleLook, const ParticleEmitter, const GpuParticles,
+            Optional<const ParticleCollision>>()
+        .each([&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
+                  const GpuParticles& particles, const ParticleCollision* collision) {
+            if (draws.looks.size() < kMaxLooks) {
+                const std::uint32_t index = add_look(frame, enlarged(look, stride), draws);
+                light_at_corners(draws.looks[index]);
+                add_pull(world, entity, index, draws);
+                gpu.add(
+                    frame, entity, emitter, particles, index, sort_passes(look), collision, stride);
+                if (look.culling == ParticleCulling::Emitter) {
+                    draws.extents[index].group = shape_in_world(world, entity, alpha);
+                }
+                const std::optional<Affine> pose = pose_of(world, entity, alpha);
+                if (draws.layers[index] == LookLayer::Weighted && pose) {
+                    draws.extents[index].ways = bounds_of_ways(emitter, *pose);
+                }
+            }
+        });
+    gpu.forget_unused();
+}
+
+void order(const RenderView& camera, ParticleDraws& draws) {
+    const Affine& pose = camera.world_from_camera;
+    order_by_distance(
+        draws.instances, draws.places, transform_point(pose, Vec3(0)),
+        transform_vector(pose, Vec3(0, 0, -1)), draws.order);
+    draws.sorted.clear();
+    for (const std::uint32_t i : draws.order.indices) {
+        draws.sorted.push_back(draws.instances[i]);
+    }
+    draws.sorted.insert(draws.sorted.end(), draws.weighted.begin(), draws.weighted.end());
+    draws.instances.insert(draws.instances.end(), draws.weighted.begin(), draws.weighted.end());
+}
+
+}  // namespace
+
+float particle_step(const FrameData& frame) {
+    const auto* const time = frame.world->find_resource<FrameTime>();
+    return time != nullptr ? time->step : FrameTime{}.step;
+}
+
+float particle_lag(const FrameData& frame) {
+    return (1.0f - frame.camera.alpha) * particle_step(frame);
+}
+
+Vec3 entity_velocity(const World& world, Entity entity, float step) {
+    const auto* const now = world.find<WorldTransform>(entity);
+    const auto* const previous = world.find<PreviousWorldTransform>(entity);
+    if (now == nullptr || previous == nullptr || step <= 0 || is_cut(previous->world, now->world)) {
+        return Vec3(0);
+    }
+    return (transform_point(now->world, Vec3(0)) - transform_point(previous->world, Vec3(0)))
+           / step;
+}
+
+void collect_particle_draws(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& draws) {
+    const World& world = *frame.world;
+    const float step = particle_step(frame);
+    const float back = particle_lag(frame);
+    clear(draws);
+    draws.insets.use_assets(frame.assets_identity);
+    world.query<const Water, const WorldTransform>().each(
+        [&](const Water& water, const WorldTransform& transform) {
+            draws.waters.push_back({&water, water_frame(transform.world)});
+        });
+    collect_pools(frame, back, step, draws);
+    collect_gpu_pools(frame, gpu, draws);
+    collect_ribbons(frame, back, step, draws);
+    collect_billboards(frame, back, draws);
+    if (frame.warm_up) {
+        append_one_of_each(draws);
+    }
+    order(frame.camera, draws);
+}
+
+}  // namespace limn

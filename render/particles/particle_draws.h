@@ -1,0 +1,75 @@
+#pragma once
+
+#include "ecs/components/water.h"
+#include "ecs/components/water_frame.h"
+#include "ecs/entity.h"
+#include "render/particles/billboard_list.h"
+#include "render/particles/frame_insets.h"
+#include "render/particles/particle_culling.h"
+#include "render/particles/particle_list.h"
+#include "render/particles/ribbon_list.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace limn {
+
+class GpuParticlePools;
+class World;
+struct FrameData;
+
+// What of a world is drawn as particles: ParticlePool, Trail, Beam and Billboard with their
+// ParticleLook, collected once a frame, whatever the number of views (particle_runs.h).
+
+/// What the particles of a look are drawn into.
+enum class LookLayer : std::uint8_t { Full, Half, Weighted };
+inline constexpr std::size_t kLookLayers = 3;
+
+struct DrawnWater {
+    const Water* water = nullptr;
+    WaterFrame frame{};
+};
+
+/// Keeps its memory from frame to frame.
+struct ParticleDraws {
+    std::vector<LookRecord> looks = {};
+    std::vector<ParticleArrays> arrays = {};       ///< of each look
+    std::vector<LookLayer> layers = {};            ///< of each look
+    std::vector<LookExtent> extents = {};          ///< of each look
+    std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
+    RibbonList ribbons = {};
+    BillboardList billboards = {};
+    std::vector<ParticleInstance> weighted = {};   ///< not sorted
+    std::vector<ParticleInstance> instances = {};  ///< those that are sorted, then `weighted`
+    std::vector<ParticleInstance> sorted = {};     ///< likewise, from back to front
+    DistanceOrder order = {};
+    std::vector<DrawnWater> waters = {};
+    FrameInsetTable insets = {};                                  ///< from frame to frame
+    SpriteFeatures features = {};                                 ///< of all looks
+    std::array<SpriteFeatures, kLookLayers> layer_features = {};  ///< of those of a LookLayer
+    bool lit_in_middle = false;
+    bool soft = false;     ///< some fade where they meet a surface
+    bool moving = false;   ///< some look may cover enough to move pixels
+    bool focused = false;  ///< some look may cover enough for the lens to focus on
+    bool has_ribbons = false;
+    bool has_billboards = false;
+    bool has_halves = false;
+    bool has_weighted = false;
+};
+
+/// Sorted as the camera of the frame sees them. Those that the GPU moves go to `gpu`, which begins
+/// a frame; their looks are among `draws.looks`.
+void collect_particle_draws(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& draws);
+
+/// Length of a step [s].
+[[nodiscard]] float particle_step(const FrameData& frame);
+/// Time of the frame before the end of the last step [s].
+[[nodiscard]] float particle_lag(const FrameData& frame);
+
+/// Of an entity in the last step [m/s]; 0 where it jumped.
+[[nodiscard]] Vec3 entity_velocity(const World& world, Entity entity, float step);
+
+}  // namespace limn

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/particles.h"
+#include "render/gpu/buffer_texture.h"
+#include "render/particles/particle_packing.h"
+#include "render/render_view.h"
+#include "render/shaders/particle_gpu.h"
+#include "render/variant.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Particles and their looks as shaders read them (particle_gpu.h).
+
+static_assert(sizeof(ParticleInstance) == 4 * layout::kParticleWords);
+
+/// The record of a look in particle_gpu.h.
+using LookRecord = std::array<Vec4, layout::kLookTexels>;
+
+/// Of the texture arrays that the images of a look are in; -1: none.
+struct LookLayers {
+    int image = -1;  ///< a soft disc without
+    int motion = -1;
+    int negative_light = -1;
+};
+[[nodiscard]] LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers);
+
+/// Whether it is drawn as points: discs that face the camera, of a size in pixels or of specks.
+[[nodiscard]] bool is_point(const LookRecord& look);
+
+/// Whether a look scatters light that is evaluated once a particle, or at the corners of quads.
+[[nodiscard]] bool is_lit_in_middle(const LookRecord& look);
+[[nodiscard]] bool is_lit_at_corners(const LookRecord& look);
+
+/// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
+[[nodiscard]] bool moves_pixels(const LookRecord& look);
+
+/// Appends the particles that exist `back` seconds before the end of the step, where they are then.
+/// Streaks show velocities relative to `observer` [m/s].
+void append_particles(
+    const ParticlePool& pool, std::uint32_t look, float back,
+    std::vector<ParticleInstance>& instances, const Vec3& observer = {0, 0, 0});
+
+/// Distance of its corners from its middle [m] at most, if its size is in meters and it is no
+/// streak.
+[[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
+
+/// Diameter of its quad in the image at least [px]; 0 where it may be seen at an angle.
+[[nodiscard]] float
+least_pixels(const ParticleInstance& instance, const LookRecord& look, const RenderView& view);
+
+/// Where the images of a look are, in ImagePool; 0: it has none.
+struct ParticleArrays {
+    std::uint32_t images = 0;
+    std::uint32_t motions = 0;
+    std::uint32_t negative_lights = 0;
+
+    bool operator==(const ParticleArrays&) const = default;
+};
+
+/// What some look has: definitions of lib/sprite.glsl.
+struct SpriteFeatures {
+    bool images = false;
+    bool flipbooks = false;  ///< that go from frame to frame
+    bool motions = false;    ///< with a motion map
+    bool six_way = false;    ///< with images of the light from six sides
+
+    SpriteFeatures& operator|=(const SpriteFeatures& more) {
+        images = images || more.images;
+        flipbooks = flipbooks || more.flipbooks;
+        motions = motions || more.motions;
+        six_way = six_way || more.six_way;
+        return *this;
+    }
+
+    void add_to(Variant& variant) const {
+        variant.add_if(images, "IMAGES");
+        variant.add_if(images && flipbooks, "FLIPBOOKS");
+        variant.add_if(images && motions, "MOTION");
+    }
+};
+
+/// What of the GPU draws a particle. A disc of a few pixels without light, which would differ from
+/// corner to corner, is a point unless it follows something that needs a quad.
+enum class SpriteShape : std::uint8_t { Quad, SmallDisc, Point };
+
+/// Particles that follow one another in the order, have images of the same texture arrays and are
+/// drawn as the same shape.
+struct ParticleRun {
+    ParticleArrays arrays{};
+    SpriteShape shape = SpriteShape::Quad;
+    bool lit = false;        ///< some are lit at their corners
+    bool magnified = false;  ///< none is smaller than a frame of its image
+    int first = 0;
+    int count = 0;
+};
+
+class GpuParticlePools;
+struct GpuParticleView;
+
+/// All that is drawn, for effects that draw it once more; published in collect(), until the end of
+/// the frame.
+struct ParticleSprites {
+    std::span<const ParticleInstance> instances;  ///< but for those that the GPU moves
+    GpuParticlePools* gpu = nullptr;              ///< those; update() them before they are read
+    const GpuParticleView* gpu_view = nullptr;    ///< for that
+    std::span<const LookRecord> looks;
+    std::span<const ParticleArrays> arrays;  ///< of each look
+    SpriteFeatures features{};
+    const BufferTexture* look_texels = nullptr;
+};
+
+}  // namespace limn

@@ -1,0 +1,101 @@
+#include "render/particles/particle_splats.h"
+
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/particles/gpu_particle_pools.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kSumsBinding = 0;
+constexpr unsigned kRadianceImage = 0;
+constexpr unsigned kAddGroup = 64;  // pixels of a row
+constexpr float kMaxSteps =
+    1 << 17;  // that a point adds to a pixel; less if there are more than 32,768
+constexpr float kLargestSum = 4.29e9f;  // a little less than a word holds
+
+bool is_positive(float x) {
+    return x > 0 && std::isfinite(x);
+}
+
+}  // namespace
+
+ParticleSplats create_particle_splats(gpu::Device& device) {
+    return {
+        .splat = ProgramVariants(device, {.compute = "particle_splat.comp"}),
+        .add = ProgramVariants(device, {.compute = "particle_splat_add.comp"})};
+}
+
+bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look) {
+    const float softness = look[1].z;
+    const float lit = look[2].y;
+    const float cover = look[2].z;
+    return !pool.sorted && is_point(look) && lit == 0 && cover == 0 && softness == 0;
+}
+
+float brightest_of(const LookRecord& look) {
+    Vec4 most = {0, 0, 0, 0};
+    for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
+        most = glm::max(most, look[layout::kLookColors + i]);
+    }
+    const Vec4& varied = look[layout::kLookMore + 3];
+    const float color = std::max({most.x + varied.y, most.y + varied.z, most.z + varied.w});
+    const float brightest = look[2].x * color * most.w;
+    return is_positive(brightest) ? brightest : 0;
+}
+
+const gpu::Program* begin_particle_splats(
+    ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest) {
+    const float share = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
+    splats.max_amount = std::max(std::min(kMaxSteps, share) - 1, 1.0f);  // rounding may add one
+    splats.unit = brightest > 0 ? splats.max_amount / brightest : 1;
+    const IVec2 size = view.size();
+    const std::size_t words =
+        3 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    if (splats.sums.size() < words * sizeof(std::uint32_t)) {
+        const std::vector<std::uint32_t> zeros(words);
+        splats.sums = gpu::Buffer::of("sums of particles", std::span(zeros));
+    }
+    return splats.splat.get({});
+}
+
+void draw_particle_splats(
+    PassContext& context, const gpu::Program& program, const ParticleSplats& splats,
+    const GpuParticlePool& pool) {
+    gpu::Device& device = context.device();
+    device.use(program);
+    device.bind_storage(kSumsBinding, splats.sums);
+    program.set("count", static_cast<int>(pool.count));
+    program.set("unit", splats.unit);
+    program.set("max_amount", splats.max_amount);
+    device.dispatch((pool.count + layout::kParticleGroup - 1) / layout::kParticleGroup);
+}
+
+void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view) {
+    Variant variant;
+    variant.add_if(view.frame->radiance_format == GL_RGBA32F, "FULL_FLOATS");
+    const gpu::Program* const program = splats.add.get(variant);
+    const BufferId sums = graph.import("sums of particles", splats.sums);
+    const TextureId radiance = view.radiance;
+    const auto run = [&splats, program, sums, radiance](PassContext& context) {
+        if (program == nullptr) {
+            return;
+        }
+        context.device().use(*program);
+        context.bind_storage(kSumsBinding, sums);
+        context.bind_image(kRadianceImage, radiance, GL_READ_WRITE);
+        program->set("unit", splats.unit);
+        const gpu::Texture& target = context.texture(radiance);
+        context.device().dispatch(
+            (static_cast<unsigned>(target.width()) + kAddGroup - 1) / kAddGroup,
+            static_cast<unsigned>(target.height()));
+    };
+    graph.add_pass("particles.sums", {}, {sums, image(radiance)}, run);
+}
+
+}  // namespace limn
