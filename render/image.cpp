@@ -39,6 +39,8 @@
 #include "render/tone_mapper.h"
 #include "render/water/water_surfaces.h"
 
+// Techniques: post.effect-pipeline
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,8 @@
 #include "render/material_pool.h"
 #include "render/surface_draws.h"
 
+// Techniques: wrinkle.furrow.texture-space-shading
+
 namespace limn {
 namespace {
 
