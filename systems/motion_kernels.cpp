@@ -17,6 +17,8 @@ static_assert(sizeof(limn::WorldTransform) == 12 * sizeof(float));
 static_assert(sizeof(limn::PreviousWorldTransform) == 12 * sizeof(float));
 static_assert(sizeof(limn::Spin) == 4 * sizeof(float));
 
+// Techniques: shade.stream-kernel
+
 #ifndef LIMN_MOTION_CONSTANTS
 #define LIMN_MOTION_CONSTANTS
 namespace limn::motion {

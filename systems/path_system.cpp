@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: anim.arclength, anim.bezier-track
+
 namespace limn {
 namespace {
 

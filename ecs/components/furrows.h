@@ -18,6 +18,7 @@ namespace limn {
 // Skin Simulation by Generating Wrinkles along Vector Fields", 2001). What an author writes is
 // here, and the surface laid flat that furrows are drawn on. Field 0 is the first field (F1), field
 // 1 the second (F2); a vector's magnitude, 0 .. 2, is how pronounced furrows are.
+// Techniques: wrinkle.furrow.functions
 
 /// How the local magnitude x of a field becomes a furrow; k is FurrowStyle::scale. Pairs are {value
 /// at x = 0, increase with x}.

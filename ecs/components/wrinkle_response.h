@@ -12,6 +12,7 @@ namespace limn {
 
 // Wrinkle maps whose weights follow from what the skin does (skin.pipeline): compression across the
 // wrinkles of a region shows the compressed map there, compression along them the stretched one.
+// Techniques: skin.pipeline
 
 /// Of an entity with WrinkleMaps and a deformed mesh whose regions have directions.
 struct WrinkleResponse {

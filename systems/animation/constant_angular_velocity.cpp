@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numeric>
 
+// Techniques: anim.constant-angular-velocity
+
 namespace limn {
 namespace {
 

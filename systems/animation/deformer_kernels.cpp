@@ -15,6 +15,8 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+// Techniques: face.ffd, face.pull, face.waters-muscle
+
 #ifndef LIMN_DEFORMER_CONSTANTS
 #define LIMN_DEFORMER_CONSTANTS
 namespace limn::deformer {

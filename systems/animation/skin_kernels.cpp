@@ -19,6 +19,9 @@ static_assert(sizeof(limn::Quat) == 4 * sizeof(float));
 static_assert(sizeof(limn::DualQuaternion) == 8 * sizeof(float));
 static_assert(sizeof(limn::Affine) == 12 * sizeof(float));
 
+// Techniques: char.morph-target, char.skin-cpu, char.skin-defects, char.skin-limits,
+//     char.skin-rigid
+
 #ifndef LIMN_SKIN_CONSTANTS
 #define LIMN_SKIN_CONSTANTS
 namespace limn::skin {

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <complex>
 
+// Techniques: water.fft-synthesis
+
 namespace limn {
 
 namespace {

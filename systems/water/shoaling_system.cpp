@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.noise-surface, water.shallow-refraction
+
 namespace limn {
 namespace {
 

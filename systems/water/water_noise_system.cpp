@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.noise-surface
+
 namespace limn {
 
 namespace {

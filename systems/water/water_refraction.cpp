@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.shallow-refraction
+
 namespace limn {
 
 namespace {

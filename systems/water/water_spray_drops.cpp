@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.crest-spray, water.impact-spray
+
 namespace limn {
 
 namespace {

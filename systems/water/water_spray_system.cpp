@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: water.crest-spray, water.impact-spray
+
 namespace limn {
 
 namespace {

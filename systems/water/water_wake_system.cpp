@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+// Techniques: water.wake
+
 namespace limn {
 
 namespace {

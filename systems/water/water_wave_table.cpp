@@ -9,6 +9,9 @@
 #include <cmath>
 #include <span>
 
+// Techniques: water.geometric-texture-split, water.gerstner, water.radial-packet,
+//     water.radial-wave, water.travelling-wave, water.trochoid, water.wave-sum, water.wind-crest
+
 namespace limn {
 
 namespace {

@@ -2,6 +2,7 @@
 #include "content/load/files/exr_file.h"
 #include "ecs/components/surface.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <Imath/half.h>
 #include <doctest/doctest.h>
@@ -71,7 +72,9 @@ std::size_t find_attribute(
 
 }  // namespace
 
-TEST_CASE("exr: halves are IEEE 754 binary16, rounded to even, in files and in textures") {
+TEST_CASE(
+    "exr: halves are IEEE 754 binary16, rounded to even, in files and in textures"
+    * technique("hdr.float-formats")) {
     const std::pair<float, std::uint16_t> cases[] = {
         {1.0f, 0x3C00},
         {-0.5f, 0xB800},
@@ -107,7 +110,9 @@ TEST_CASE("exr: halves are IEEE 754 binary16, rounded to even, in files and in t
     }
 }
 
-TEST_CASE("exr: every half of a file reaches the texture without a change") {
+TEST_CASE(
+    "exr: every half of a file reaches the texture without a change"
+    * technique("hdr.float-formats")) {
     const ExrImage image = make_all_halves();
     const Result<ExrImage> back = decode_exr(bytes_of(image), "a.exr");
     REQUIRE(back.ok());
@@ -125,7 +130,8 @@ TEST_CASE("exr: every half of a file reaches the texture without a change") {
     }
 }
 
-TEST_CASE("exr: a half image reads back bit for bit with every compression") {
+TEST_CASE(
+    "exr: a half image reads back bit for bit with every compression" * technique("hdr.openexr")) {
     const ExrImage image = make_all_halves();
     for (const ExrCompression compression :
          {ExrCompression::None, ExrCompression::Rle, ExrCompression::Zips, ExrCompression::Zip,
@@ -186,7 +192,9 @@ TEST_CASE("exr: non-finite values are replaced and counted") {
     CHECK(replace_non_finite(values) == 0);
 }
 
-TEST_CASE("exr: as a texture a missing alpha is 1 and a lone channel is gray") {
+TEST_CASE(
+    "exr: as a texture a missing alpha is 1 and a lone channel is gray"
+    * technique("hdr.openexr")) {
     ExrImage image{.width = 1, .height = 1};
     add_layer(image, "", "Y", std::vector<float>{0.5f}, true);
     const ImageData texture = to_image_data(image, "gray");
@@ -309,7 +317,7 @@ TEST_CASE("exr: the reports of windows have the pixels of their display windows"
     }
 }
 
-TEST_CASE("exr: broken files are errors of one line") {
+TEST_CASE("exr: broken files are errors of one line" * technique("hdr.openexr")) {
     const std::vector<std::byte> good = bytes_of(make_picture());
     std::vector<std::byte> wrong_magic = good;
     wrong_magic[0] = std::byte{0x77};
