@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-void place(const PathFollower& follower, const PathData& path, Transform& transform) {
+void place_on_path(const PathFollower& follower, const PathData& path, Transform& transform) {
     transform = transform_on_path(
         path_frame_at(path, follower.distance), follower.offset, follower.level, transform.scale);
 }
@@ -36,7 +36,7 @@ void update_path_followers(
             distance = std::clamp(distance, 0.0, length);
         }
         follower.distance = distance;
-        place(follower, *path, transform);
+        place_on_path(follower, *path, transform);
     });
 }
 
@@ -44,7 +44,7 @@ void place_path_followers(
     Query<const PathFollower, Transform> followers, Res<const Assets> assets) {
     followers.each([&assets = *assets](const PathFollower& follower, Transform& transform) {
         if (const PathData* path = find_path(assets, follower.path)) {
-            place(follower, *path, transform);
+            place_on_path(follower, *path, transform);
         }
     });
 }
