@@ -59,7 +59,7 @@ std::vector<double> diffused(const SkinDiffusion& diffusion, const std::vector<d
     for (std::size_t v = 0; v < values.size(); ++v) {
         double sum = 0;
         for (std::uint32_t i = diffusion.first[v]; i < diffusion.first[v + 1]; ++i) {
-            sum += double{diffusion.shares[i].second} * values[diffusion.shares[i].first];
+            sum += double{diffusion.weights[i].second} * values[diffusion.weights[i].first];
         }
         after.push_back(sum);
     }
@@ -117,7 +117,7 @@ TEST_CASE(
         return std::inner_product(x.begin(), x.end(), diffusion.area.begin(), 0.0);
     };
     CHECK(total(after) == near(total(values)).epsilon(1e-6));
-    for (const auto& [vertex, share] : diffusion.shares) {
+    for (const auto& [vertex, share] : diffusion.weights) {
         CHECK(share >= 0);
     }
     const auto variance = [&](const std::vector<double>& x) {
@@ -164,7 +164,7 @@ TEST_CASE(
             const std::uint32_t middle = side / 2 * (side + 1) + side / 2;
             double square = 0;
             for (std::uint32_t i = diffusion.first[middle]; i < diffusion.first[middle + 1]; ++i) {
-                const auto& [vertex, share] = diffusion.shares[i];
+                const auto& [vertex, share] = diffusion.weights[i];
                 const double distance =
                     double{glm::distance(sheet.positions[vertex], sheet.positions[middle])};
                 square += double{share} * distance * distance;
@@ -232,7 +232,7 @@ TEST_CASE(
     const SkinDiffusion halves = make_skin_diffusion(sheet.positions, sheet.indices, used, 2);
     for (std::uint32_t v = 0; v < sheet.positions.size(); ++v) {
         for (std::uint32_t i = halves.first[v]; i < halves.first[v + 1]; ++i) {
-            CHECK((v % 7 < 3) == (halves.shares[i].first % 7 < 3));
+            CHECK((v % 7 < 3) == (halves.weights[i].first % 7 < 3));
         }
     }
 }

@@ -172,8 +172,8 @@ TEST_CASE("skin pull: the nearest front face is taken, and no back") {
     CHECK(hit->distance == near(1));
     Vec3 place(0);
     for (std::uint32_t k = 0; k < 3; ++k) {
-        place +=
-            hit->shares[static_cast<int>(k)] * mesh.positions[mesh.indices[3 * hit->triangle + k]];
+        place += hit->barycentric[static_cast<int>(k)]
+                 * mesh.positions[mesh.indices[3 * hit->triangle + k]];
     }
     CHECK(glm::distance(place, Vec3(0.3f, 0.2f, 0)) < 1e-6f);
     CHECK_FALSE(hit_skin(mesh.positions, mesh.indices, {0.3f, 0.2f, -3}, {0, 0, 1}));

@@ -177,8 +177,8 @@ TEST_CASE("wrinkle batch: folds at rest count as shortening, each face by its ow
         Crowd together(sheet, 11);
         Crowd alone(sheet, 11);
         for (std::size_t i = 0; i < 11; ++i) {
-            together.faces[i].resting_share = 0.1f * static_cast<float>(i);
-            alone.faces[i].resting_share = together.faces[i].resting_share;
+            together.faces[i].resting_weight = 0.1f * static_cast<float>(i);
+            alone.faces[i].resting_weight = together.faces[i].resting_weight;
         }
         find_intensities(rests, together.faces, resting);
         find_intensities_scalar(rests, alone.faces, resting);
