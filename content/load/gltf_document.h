@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -46,6 +47,11 @@ struct GltfDocument {
     std::vector<GltfMorphs> node_morphs;  ///< per file node; set by build_nodes
     std::vector<std::string> warnings;
 };
+
+/// A bad part costs that part and a warning: "file: images[2]: found X, expected Y; COST".
+inline void warn_of_loss(GltfDocument& document, const Error& error, std::string_view cost) {
+    document.warnings.push_back(error.message + "; " + std::string(cost));
+}
 
 /// Validates the JSON of a file: every property that is read has the right type and range, and
 /// every index refers to an existing item. Unknown properties are ignored, as the specification

@@ -185,6 +185,24 @@ std::optional<JsonValue> take_member(JsonValue& object, std::string_view key) {
     return value;
 }
 
+/// Files written on Windows have backslashes for slashes, also as %5C.
+std::string read_slashes(GltfDocument& document, std::string uri, const std::string& place) {
+    if (uri.starts_with("data:")) {
+        return uri;
+    }
+    std::string slashes;
+    for (std::string_view rest = uri; !rest.empty();) {
+        const bool is_code = rest.starts_with("%5C") || rest.starts_with("%5c");
+        slashes += is_code || rest[0] == '\\' ? '/' : rest[0];
+        rest.remove_prefix(is_code ? 3 : 1);
+    }
+    if (slashes != uri) {
+        document.warnings.push_back(fmt::format(
+            "{}: found {}, expected no backslash; it is read as a slash", place, in_quotes(uri)));
+    }
+    return slashes;
+}
+
 /// What tinygltf asks for through its callbacks.
 using BufferBytes = std::vector<std::vector<std::byte>>;
 
@@ -199,8 +217,9 @@ Result<BufferBytes> take_buffers(GltfDocument& document, const GltfChunks& chunk
         set_member(buffer, "uri", json_of(std::to_string(all.size())));
         std::vector<std::byte>& bytes = all.emplace_back();
         if (uri) {
-            bytes = LIMN_TRY(
-                fetch_uri(uri->text, document.folder, place + ".uri", document.limits.max_bytes));
+            bytes = LIMN_TRY(fetch_uri(
+                read_slashes(document, uri->text, place + ".uri"), document.folder, place + ".uri",
+                document.limits.max_bytes));
         } else if (all.size() == 1 && chunks.has_binary) {
             bytes.assign(chunks.binary.begin(), chunks.binary.end());
         } else {
@@ -231,7 +250,9 @@ void take_images(GltfDocument& document) {
         const std::optional<JsonValue> view = take_member(image, "bufferView");
         GltfImage& taken = document.images.emplace_back();
         if (uri) {
-            taken.uri = std::move(uri->text);
+            taken.uri = read_slashes(
+                document, std::move(uri->text),
+                fmt::format("{}: images[{}].uri", document.file, document.images.size() - 1));
         }
         if (view) {
             taken.view = static_cast<std::int32_t>(view->number);

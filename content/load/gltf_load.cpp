@@ -2,7 +2,6 @@
 
 #include "content/load/atomic_file.h"
 #include "content/load/gltf_file.h"
-#include "ecs/base/log.h"
 
 #include <algorithm>
 #include <exception>
@@ -11,8 +10,6 @@
 namespace limn {
 
 namespace {
-
-constexpr std::size_t kMaxWarnings = 10;  ///< that are logged
 
 /// Smallest joint count of the skins that draw each mesh; 0 = it is not skinned.
 std::vector<std::size_t> common_joints(const GltfDocument& document) {
@@ -80,18 +77,13 @@ Result<GltfScene> parse_gltf(
     }
 }
 
-Result<GltfScene> load_gltf(const std::string& path, const GltfLimits& limits) {
+Result<GltfScene>
+load_gltf(const std::string& path, const GltfLimits& limits, const LoadOptions& options) {
     const std::vector<std::byte> bytes = LIMN_TRY(read_file(path, limits.max_bytes));
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     GltfScene scene =
         LIMN_TRY(parse_gltf(bytes, path, folder.empty() ? "." : folder.string(), limits));
-    const std::size_t shown = std::min(scene.warnings.size(), kMaxWarnings);
-    for (std::size_t i = 0; i < shown; ++i) {
-        log_warn("{}", scene.warnings[i]);
-    }
-    if (scene.warnings.size() > shown) {
-        log_warn("{}: {} more warnings", path, scene.warnings.size() - shown);
-    }
+    LIMN_TRY(report_load_warnings(path, scene.warnings, options));
     return scene;
 }
 

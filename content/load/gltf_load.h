@@ -2,6 +2,7 @@
 
 #include "content/load/gltf_scene.h"
 #include "content/load/image_load.h"
+#include "content/load/load_warnings.h"
 #include "ecs/base/result.h"
 
 #include <cstddef>
@@ -44,9 +45,10 @@ struct GltfLimits {
     ImageLimits image;
 };
 
-/// Loads `path`. Components of extras.limn must be registered (ecs/components/all.h). Logs the
-/// warnings.
-[[nodiscard]] Result<GltfScene> load_gltf(const std::string& path, const GltfLimits& limits = {});
+/// Loads `path`. Components of extras.limn must be registered (ecs/components/all.h). Reports the
+/// warnings; see load_warnings.h.
+[[nodiscard]] Result<GltfScene> load_gltf(
+    const std::string& path, const GltfLimits& limits = {}, const LoadOptions& options = {});
 
 /// The same from memory. `file` is the prefix of messages; URIs are resolved under `folder`, and if
 /// that is empty, a reference to another file is an error.

@@ -378,7 +378,7 @@ TEST_CASE("gltf: a buffer without bytes is refused") {
         "accessors[0]: found bufferViews[0] in a buffer without data");
 }
 
-TEST_CASE("gltf: a texture that is missing, corrupt or 100,000 pixels wide is refused") {
+TEST_CASE("gltf: an image that is missing, corrupt or too large costs the textures of it") {
     const TemporaryFolder folder;
     std::vector<std::uint8_t> pixels(8 * 8 * 3, 99);
     REQUIRE(write_png(folder.file("good.png"), 8, 8, 3, pixels).ok());
@@ -395,24 +395,78 @@ TEST_CASE("gltf: a texture that is missing, corrupt or 100,000 pixels wide is re
     REQUIRE(write_file(folder.file("corrupt.png"), corrupt).ok());
     REQUIRE(write_file(folder.file("text.png"), std::string("not a picture")).ok());
 
+    std::filesystem::create_directory(folder.file("sub"));
+    REQUIRE(write_file(folder.file("empty.png"), std::string()).ok());
+    REQUIRE(write_png(folder.file("sub/good.png"), 8, 8, 3, pixels).ok());
+
     const auto load = [&folder](const std::string& image) {
         REQUIRE(
             write_file(folder.file("square.glb"), make_glb(textured_json(image), square_binary()))
                 .ok());
         return load_gltf(folder.file("square.glb"));
     };
-    CHECK(load(R"({"uri": "good.png"})").ok());
-    check_refused(
-        load(R"({"uri": "missing.png"})"), "images[0].uri: \"missing.png\": no such file");
-    check_refused(load(R"({"uri": "corrupt.png"})"), "images[0] (corrupt.png): corrupt PNG");
-    check_refused(load(R"({"uri": "wide.png"})"), "found 100000 x 8 pixels");
-    check_refused(load(R"({"uri": "text.png"})"), "unknown format");
-    check_refused(load(R"({"uri": "../good.png"})"), "expected a path under");
-    check_refused(load(R"({"uri": "http://example.com/a.png"})"), "a scheme");
-    check_refused(load(R"({"bufferView": 0})"), "unknown format");
-    check_refused(load(R"({"bufferView": 11})"), "images[0].bufferView");
-    check_refused(load(R"({"bufferView": 0, "uri": "good.png"})"), "found both");
-    check_refused(load(R"({})"), "found neither");
+    const std::pair<std::string, std::string> bad[] = {
+        {R"({"uri": "missing.png"})", "images[0].uri: \"missing.png\": no such file"},
+        {R"({"uri": "corrupt.png"})", "images[0] (corrupt.png): corrupt PNG"},
+        {R"({"uri": "empty.png"})", "images[0] (empty.png): found an empty file"},
+        {R"({"uri": "wide.png"})", "found 100000 x 8 pixels"},
+        {R"({"uri": "text.png"})", "unknown format"},
+        {R"({"uri": "../good.png"})", "expected a path under"},
+        {R"({"uri": "..\\..\\good.png"})", "expected a path under"},
+        {R"({"uri": "\\good.png"})", "an absolute path"},
+        {R"({"uri": "http://example.com/a.png"})", "a scheme"},
+        {R"({"uri": "data:image/png;base64,????"})", "not base64"},
+        {R"({"bufferView": 0})", "unknown format"},
+        {R"({"bufferView": 0, "uri": "good.png"})", "found both"},
+        {R"({})", "found neither"},
+    };
+    for (const auto& [image, expected] : bad) {
+        const Result<GltfScene> scene = load(image);
+        REQUIRE_MESSAGE(scene.ok(), image);
+        REQUIRE(!scene->warnings.empty());
+        CHECK_MESSAGE(contains(scene->warnings.back(), expected), scene->warnings.back());
+        CHECK(contains(scene->warnings.back(), "; materials are without it"));
+        CHECK(scene->images.empty());
+        CHECK(scene->materials[0].base_color_texture.image.index == kNoAsset);
+        const Result<GltfScene> strict =
+            load_gltf(folder.file("square.glb"), {}, {.strict = true});
+        REQUIRE_FALSE(strict.ok());
+        CHECK(contains(strict.error().message, expected));
+    }
+    for (const auto& [image, warnings] : std::vector<std::pair<std::string, std::size_t>>{
+             {R"({"uri": "good.png"})", 0},
+             {R"({"uri": "sub\\good.png"})", 1},
+             {R"({"uri": "sub%5Cgood.png"})", 1}}) {
+        const Result<GltfScene> scene = load(image);
+        REQUIRE_MESSAGE(scene.ok(), image);
+        CHECK(scene->warnings.size() == warnings);
+        CHECK(scene->images.size() == 1);
+        CHECK(scene->materials[0].base_color_texture.image.index == 0);
+    }
+}
+
+TEST_CASE("gltf: of an image that is missing the other images keep their numbers") {
+    const TemporaryFolder folder;
+    REQUIRE(write_png(folder.file("a.png"), 1, 1, 3, std::vector<std::uint8_t>{1, 2, 3}).ok());
+    REQUIRE(write_png(folder.file("c.png"), 1, 1, 3, std::vector<std::uint8_t>{4, 5, 6}).ok());
+    const std::string json = replace_once(
+        kSquareJson, R"({"name": "paint"}])",
+        R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+            "normalTexture": {"index": 1}, "occlusionTexture": {"index": 2},
+            "emissiveTexture": {"index": 1}}],
+           "textures": [{"source": 0}, {"source": 1}, {"source": 2}],
+           "images": [{"uri": "a.png"}, {"uri": "b.png"}, {"uri": "c.png"}])");
+    const Result<GltfScene> scene =
+        parse_gltf(make_glb(json, square_binary()), "square.glb", folder.path());
+    REQUIRE(scene.ok());
+    REQUIRE(scene->warnings.size() == 1);
+    CHECK(contains(scene->warnings[0], "images[1].uri: \"b.png\": no such file"));
+    REQUIRE(scene->images.size() == 2);
+    const Material& material = scene->materials[0];
+    CHECK(scene->images[material.base_color_texture.image.index].name == "a.png");
+    CHECK(scene->images[material.occlusion_texture.image.index].name == "c.png");
+    CHECK(material.normal_texture.image.index == kNoAsset);
+    CHECK(material.emission_texture.image.index == kNoAsset);
 }
 
 TEST_CASE("gltf: what one file may cost is bounded") {
@@ -431,11 +485,13 @@ TEST_CASE("gltf: what one file may cost is bounded") {
     REQUIRE(write_png(folder.file("good.png"), 8, 8, 3, pixels).ok());
     limits = {};
     limits.max_pixels = 63;
-    check_refused(
-        parse_gltf(
-            make_glb(textured_json(R"({"uri": "good.png"})"), square_binary()), "square.glb",
-            folder.path(), limits),
-        "found 8 x 8 pixels");
+    const Result<GltfScene> scene = parse_gltf(
+        make_glb(textured_json(R"({"uri": "good.png"})"), square_binary()), "square.glb",
+        folder.path(), limits);
+    REQUIRE(scene.ok());
+    REQUIRE(scene->warnings.size() == 1);
+    CHECK(contains(scene->warnings[0], "found 8 x 8 pixels"));
+    CHECK(scene->images.empty());
 }
 
 TEST_CASE("gltf: wrong components in extras.limn are refused at their place") {
