@@ -125,7 +125,8 @@ Result<GltfFace> read_gltf_face(const std::string& path) {
             continue;
         }
         const auto mesh = static_cast<std::size_t>(nodes[i].mesh);
-        const std::size_t count = document.model.meshes[mesh].primitives[0].targets.size();
+        const std::vector<tinygltf::Primitive>& primitives = document.model.meshes[mesh].primitives;
+        const std::size_t count = primitives.empty() ? 0 : primitives[0].targets.size();
         if (count == 0) {
             continue;
         }

@@ -47,8 +47,8 @@ struct GltfLimits {
 
 /// Loads `path`. Components of extras.limn must be registered (ecs/components/all.h). Reports the
 /// warnings; see load_warnings.h.
-[[nodiscard]] Result<GltfScene> load_gltf(
-    const std::string& path, const GltfLimits& limits = {}, const LoadOptions& options = {});
+[[nodiscard]] Result<GltfScene>
+load_gltf(const std::string& path, const GltfLimits& limits = {}, const LoadOptions& options = {});
 
 /// The same from memory. `file` is the prefix of messages; URIs are resolved under `folder`, and if
 /// that is empty, a reference to another file is an error.

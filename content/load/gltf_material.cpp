@@ -25,7 +25,7 @@ constexpr float kIndex = 1.5f;  ///< of refraction, by default; of every opaque 
 constexpr float kMaxIndex = 3;
 constexpr float kMaxThickness = 1000;  // [m]
 
-constexpr TextureSlot Material::* kImageSlots[] = {
+constexpr TextureSlot Material::*kImageSlots[] = {
     &Material::base_color_texture, &Material::metal_rough_texture, &Material::normal_texture,
     &Material::occlusion_texture, &Material::emission_texture};
 
@@ -62,6 +62,7 @@ class MaterialBuilder {
         material.roughness = static_cast<float>(pbr.roughnessFactor);
         material.normal_scale = static_cast<float>(source.normalTexture.scale);
         material.occlusion_strength = static_cast<float>(source.occlusionTexture.strength);
+        warn_of_bright(source.emissiveFactor);
         const tinygltf::Value& emission =
             extension_of(source.extensions, "KHR_materials_emissive_strength");
         material.emission =
@@ -84,6 +85,16 @@ class MaterialBuilder {
     [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
 
   private:
+    /// Written before there was KHR_materials_emissive_strength.
+    void warn_of_bright(const std::vector<double>& factor) {
+        const auto largest = std::ranges::max_element(factor);
+        if (largest != factor.end() && *largest > 1 + 1e-5) {
+            document_.warnings.push_back(fmt::format(
+                "{}.emissiveFactor: found {:.6g}, expected at most 1; it is used as it is", place_,
+                *largest));
+        }
+    }
+
     void transmit(const tinygltf::ExtensionMap& extensions, Material& material) {
         const tinygltf::Value& transmission =
             extension_of(extensions, "KHR_materials_transmission");
@@ -179,7 +190,7 @@ load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits
             place += " (" + source.uri->substr(0, 200) + ")";
         }
     } else {
-        bytes = view_bytes(document, source.view);
+        bytes = LIMN_TRY(view_bytes(document, source.view));
     }
     ImageData image = LIMN_TRY(decode_image(bytes, place, used.srgb, limits));
     const std::string& name = document.model.images[used.source].name;
@@ -229,7 +240,7 @@ void load_images(GltfDocument& document, const std::vector<UsedImage>& used, Glt
         }
     }
     for (Material& material : scene.materials) {
-        for (TextureSlot Material::* const slot : kImageSlots) {
+        for (TextureSlot Material::*const slot : kImageSlots) {
             TextureSlot& texture = material.*slot;
             if (texture.image.index != kNoAsset) {
                 texture.image.index = numbers[texture.image.index];
