@@ -1,4 +1,4 @@
-// Furrows that live on entities, and follow what they are made from.
+// Furrows on entities, which are updated when their inputs change.
 
 #include "content/bake/furrow_height.h"
 #include "content/bake/furrow_recipe.h"
@@ -183,7 +183,7 @@ TEST_CASE("furrow skin: images and meshes that do not fit grow nothing, with a r
         CAPTURE(sample.skin().fault);
         CHECK(sample.skin().fault.find(it.expected) != std::string::npos);
         CHECK(sample.skin().version == 2);
-        sample.update();  // says so once
+        sample.update();  // logs it once
         CHECK(sample.skin().version == 2);
     }
 }
