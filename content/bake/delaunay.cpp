@@ -37,11 +37,11 @@ std::vector<std::uint32_t> triangulate_points(std::span<const glm::dvec2> points
     for (const DVec2& p : flat) {
         size = std::max(size, glm::distance(p, flat[0]));
     }
-    // A triangle around all, far enough that it hardly bends the hull.
-    const DVec2 middle = flat.empty() ? DVec2(0) : flat[0];
-    flat.push_back(middle + 1e4 * size * DVec2(-1, -1));
-    flat.push_back(middle + 1e4 * size * DVec2(1, -1));
-    flat.push_back(middle + 1e4 * size * DVec2(0, 1));
+    // A triangle around all points, far enough out that it hardly distorts the hull.
+    const DVec2 origin = flat.empty() ? DVec2(0) : flat[0];
+    flat.push_back(origin + 1e4 * size * DVec2(-1, -1));
+    flat.push_back(origin + 1e4 * size * DVec2(1, -1));
+    flat.push_back(origin + 1e4 * size * DVec2(0, 1));
     std::vector<Corners> triangles = {{count, count + 1, count + 2}};
     for (std::size_t i = 0; i < count; ++i) {
         const bool is_twin = std::any_of(
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> triangulate_points(std::span<const glm::dvec2> points
         if (is_twin) {
             continue;
         }
-        std::map<std::pair<std::size_t, std::size_t>, int> edges;  // of what is taken out
+        std::map<std::pair<std::size_t, std::size_t>, int> edges;  // of the removed triangles
         std::erase_if(triangles, [&](const Corners& t) {
             const bool out = is_in_circle(flat[t[0]], flat[t[1]], flat[t[2]], flat[i]);
             for (std::size_t k = 0; out && k < 3; ++k) {

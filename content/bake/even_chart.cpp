@@ -20,19 +20,19 @@ namespace {
 using Vec2d = glm::dvec2;
 
 constexpr int kChartRounds = 8;
-constexpr int kSolveSteps = 40;   ///< of conjugate gradients in a round, from the last result
-constexpr double kAnchor = 1e-7;  ///< holds what nothing else holds, by the stiffest vertex
-constexpr double kMinChartArea = 1e-12;  ///< of a triangle, by `size` squared
+constexpr int kSolveSteps = 40;          ///< of conjugate gradients per round, from the last result
+constexpr double kAnchor = 1e-7;         ///< regularization relative to the stiffest vertex
+constexpr double kMinChartArea = 1e-12;  ///< of a triangle, relative to `size` squared
 
 /// A triangle in its own plane.
 struct FlatTriangle {
-    std::array<std::uint32_t, 3> vertices;  ///< those that are joined as one
-    std::array<Vec2d, 3> steps;             ///< of joins, from corner k to the next
+    std::array<std::uint32_t, 3> vertices;  ///< joined vertices count as one
+    std::array<Vec2d, 3> steps;             ///< step of the joins, from corner k to the next
     std::array<Vec2d, 3> sides;             ///< from corner k to the next, in units of the chart
-    std::array<double, 3> weights;          ///< of sides: cotangents of the angles opposite of them
+    std::array<double, 3> weights;          ///< of sides: cotangents of the opposite angles
 };
 
-/// A step from each vertex that is joined to another, or from itself.
+/// For each vertex the join to another one, or to itself.
 std::vector<ChartJoin> join_each(std::size_t vertices, std::span<const ChartJoin> joins) {
     std::vector<ChartJoin> each(vertices);
     for (std::uint32_t v = 0; v < vertices; ++v) {
@@ -62,7 +62,7 @@ std::vector<FlatTriangle> flatten(
         if (!(area > kMinChartArea)) {
             continue;
         }
-        // As the axes of textures, v downwards: clockwise.
+        // v points down, as in textures: clockwise.
         const double length = glm::length(ab);
         const Vec2d b = {length, 0};
         const Vec2d c = {glm::dot(ac, ab) / length, -area / length};
@@ -72,7 +72,7 @@ std::vector<FlatTriangle> flatten(
             flat.steps[k] = Vec2d(each[v[(k + 1) % 3]].step) - Vec2d(each[v[k]].step);
         }
         flat.sides = {b, c - b, -c};
-        // Between all triangles alike and by their area, so that dense parts get their share.
+        // Between equal weights and weights by area, so that dense parts are not neglected.
         const double mean = double{importance[v[0]] + importance[v[1]] + importance[v[2]]} / 3;
         const double stiffness = -0.5 * mean / (area * std::sqrt(area));
         for (std::size_t k = 0; k < 3; ++k) {
@@ -83,12 +83,12 @@ std::vector<FlatTriangle> flatten(
     return triangles;
 }
 
-/// From corner `k` to the next.
+/// The side in the chart from corner `k` to the next.
 Vec2d side_in(const FlatTriangle& triangle, std::span<const Vec2d> chart, std::size_t k) {
     return chart[triangle.vertices[(k + 1) % 3]] - chart[triangle.vertices[k]] + triangle.steps[k];
 }
 
-/// Of the rotation (cos, sin) that brings its sides nearest to those in the chart.
+/// The rotation (cos, sin) that fits its sides best to those in the chart.
 Vec2d nearest_turn(const FlatTriangle& triangle, std::span<const Vec2d> chart) {
     Vec2d turn = {0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -100,7 +100,7 @@ Vec2d nearest_turn(const FlatTriangle& triangle, std::span<const Vec2d> chart) {
     return length > 0 ? turn / length : Vec2d(1, 0);
 }
 
-/// The sparse matrix of the sums of weighted differences, by triangles.
+/// Multiplies by the sparse matrix of weighted differences, triangle by triangle.
 void apply(
     std::span<const FlatTriangle> triangles, double anchor, std::span<const Vec2d> x,
     std::vector<Vec2d>& out) {
@@ -118,7 +118,7 @@ void apply(
     }
 }
 
-/// What the sides, turned, pull at the vertices of a chart, less what they do now.
+/// Residual at the vertices of a chart: the rotated sides minus the current ones, weighted.
 std::vector<Vec2d>
 residual_of(std::span<const FlatTriangle> triangles, std::span<const Vec2d> chart) {
     std::vector<Vec2d> residual(chart.size(), Vec2d(0));
@@ -145,7 +145,7 @@ double product(std::span<const Vec2d> a, std::span<const Vec2d> b) {
     return sum;
 }
 
-/// Moves the chart to where the triangles, as they are turned now, pull it.
+/// Moves the chart to the minimum for the current rotations of the triangles.
 void relax_chart(
     std::span<const FlatTriangle> triangles, std::span<const double> diagonal, double anchor,
     std::vector<Vec2d>& chart) {

@@ -15,19 +15,20 @@ namespace limn {
 
 namespace {
 
-constexpr float kSoft = 0.4f;          ///< width of most borders [cm]
-constexpr float kFacing = 0.15f;       ///< z of the normals of skin that is seen from the front
-constexpr float kFacingSoft = 0.1f;    ///< width of that border
-constexpr float kRegionMiddle = 0.8f;  ///< |x| below which directions turn to the middle's [cm]
+constexpr float kSoft = 0.4f;        ///< width of most borders [cm]
+constexpr float kFacing = 0.15f;     ///< z of the normals of skin that faces the front
+constexpr float kFacingSoft = 0.1f;  ///< width of that border
+constexpr float kMidlineBand =
+    0.8f;  ///< |x| below which directions turn to those of the midline [cm]
 constexpr float kInfiniteDistance = std::numeric_limits<float>::infinity();
 
-// Of the reference face [cm].
+// Landmarks of the reference face [cm].
 constexpr Vec3 kCanthus = {4.459f, 3.432f, 8.603f};  ///< outer corner of the left eye
 constexpr Vec2 kFoldTop = {1.75f, -0.3f};            ///< nasolabial fold beside the left ala
 constexpr Vec2 kFoldEnd = {3.1f, -3.0f};             ///< and outside the corner of the mouth
-constexpr float kFoldReach = 0.6f;                   ///< from the fold
+constexpr float kFoldRange = 0.6f;                   ///< distance from the fold
 constexpr Vec2 kMouth = {0, -3.4f};                  ///< center
-constexpr Vec2 kMouthRadii = {2.6f, 1.9f};           ///< of the ellipses around it, across and up
+constexpr Vec2 kMouthRadii = {2.6f, 1.9f};           ///< of the ellipse around it, across and up
 
 enum class Across : std::uint8_t {
     Angle,    ///< a fixed angle
@@ -42,8 +43,8 @@ struct Rule {
     Vec2 y = {-kInfiniteDistance, kInfiniteDistance};
     float min_z = -kInfiniteDistance;
     float soft = kSoft;
-    bool fold = false;  ///< within kFoldReach of the nasolabial fold
-    bool front = true;  ///< only skin that is seen from the front
+    bool fold = false;  ///< within kFoldRange of the nasolabial fold
+    bool front = true;  ///< only skin that faces the front
     Across across = Across::Angle;
     float degrees = 0;  ///< from lateral (0) to up (90), on the left side
 };
@@ -103,13 +104,13 @@ float distance_to_fold(const Vec2& p) {
 float weight_at(const Rule& rule, const Vec3& p, float facing) {
     float weight = soft_range(rule.x, rule.soft, p.x) * soft_range(rule.y, rule.soft, p.y);
     weight *= rule.min_z == -kInfiniteDistance ? 1 : soft_step(rule.min_z, kSoft, p.z);
-    weight *= rule.fold ? 1 - soft_step(kFoldReach, kSoft, distance_to_fold({p.x, p.y})) : 1;
+    weight *= rule.fold ? 1 - soft_step(kFoldRange, kSoft, distance_to_fold({p.x, p.y})) : 1;
     weight *= rule.front ? soft_step(kFacing, kFacingSoft, facing) : 1;
     return weight;
 }
 
-/// From lateral towards up [rad] at `p` on the left side; in the middle of the face the nearer of
-/// across and up, so that both sides meet.
+/// From lateral towards up [rad] at `p` on the left side; on the midline of the face rounded to
+/// across or up, so that both sides meet.
 float angle_at(const Rule& rule, const Vec3& p) {
     float angle = radians(rule.degrees);
     if (rule.across == Across::Mouth) {
@@ -117,8 +118,8 @@ float angle_at(const Rule& rule, const Vec3& p) {
         angle = std::atan2(outwards.y, outwards.x) + 0.5f * kPi;
         return outwards.y < 0 ? angle + kPi : angle;
     }
-    const float middle = std::round(angle / (0.5f * kPi)) * 0.5f * kPi;
-    return glm::mix(middle, angle, glm::smoothstep(0.0f, kRegionMiddle, p.x));
+    const float on_midline = std::round(angle / (0.5f * kPi)) * 0.5f * kPi;
+    return glm::mix(on_midline, angle, glm::smoothstep(0.0f, kMidlineBand, p.x));
 }
 
 Vec3 across_at(const Rule& rule, const Vec3& reference, const Vec3& normal) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kMaxMagnitude = 2.0f;
 
-/// `v` in the plane of unit `n`, as long as before; 0 where nothing is left.
+/// `v` rotated into the plane of unit `n`, with its length; 0 if it is parallel to `n`.
 Vec3 turned_tangent(const Vec3& v, const Vec3& n) {
     return std::min(glm::length(v), kMaxMagnitude) * normalize_or(v - glm::dot(v, n) * n, Vec3(0));
 }

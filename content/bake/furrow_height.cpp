@@ -61,7 +61,7 @@ FurrowGrowth grow_furrows(const FurrowMap& map, const FurrowStyle& style) {
 std::vector<float> add_furrow_noise(const FurrowGrowth& growth, const FurrowStyle& style) {
     std::vector<float> height = growth.height;
     if (style.noise > 0) {
-        constexpr std::size_t kWords = 4;  // that one counter gives: of four pixels in a row
+        constexpr std::size_t kWords = 4;  // random words per counter: four pixels in a row
         parallel_for((height.size() + 3) / kWords, 2048, [&](std::size_t begin, std::size_t end) {
             for (std::size_t group = begin; group < end; ++group) {
                 Random random = furrow_noise(style, group);

@@ -19,13 +19,13 @@
 namespace limn {
 namespace {
 
-constexpr float kMargin = 0.01f;   // of a planar image, at each side
-constexpr float kMinArea = 1e-6f;  // twice that of a triangle [px^2]
-constexpr float kMaxCopies = 8;    // of a triangle in an image that repeats, along each side
+constexpr float kMargin = 0.01f;   // of a planar image, on each side
+constexpr float kMinArea = 1e-6f;  // twice the area of a triangle [px^2]
+constexpr float kMaxCopies = 8;    // of a triangle in an image that repeats, per axis
 
-/// A corner of a triangle, laid flat.
+/// A corner of a flattened triangle.
 struct Corner {
-    Vec2 place = {0, 0};  ///< [px]
+    Vec2 pixel = {0, 0};  ///< position [px]
     Vec2 field[2] = {};   ///< in pixel directions: right and down
     Vec3 normal = {0, 0, 1};
 };
@@ -37,8 +37,8 @@ Vec2 cross_gradient(const Vec2& ab, const Vec2& ac, float b, float c, float area
 
 /// Nothing where the triangle is degenerate.
 std::optional<FurrowTriangle> set_up(MapCorners corners) {
-    Vec2 ab = corners[1].place - corners[0].place;
-    Vec2 ac = corners[2].place - corners[0].place;
+    Vec2 ab = corners[1].pixel - corners[0].pixel;
+    Vec2 ac = corners[2].pixel - corners[0].pixel;
     float area = ab.x * ac.y - ab.y * ac.x;
     if (!(std::abs(area) > kMinArea) || !std::isfinite(area)) {
         return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<FurrowTriangle> set_up(MapCorners corners) {
     }
     FurrowTriangle triangle = {};
     for (int i = 0; i < 3; ++i) {
-        triangle.corner[i] = corners[i].place;
+        triangle.corner[i] = corners[i].pixel;
     }
     for (int f = 0; f < 2; ++f) {
         triangle.field[f] = corners[0].field[f];
@@ -73,8 +73,8 @@ std::optional<FurrowTriangle> set_up(MapCorners corners) {
     return triangle;
 }
 
-/// How many images to the right (or downwards) a part of the surface from `from` to `to` must be
-/// copied to reach into the first: from `first` to `last`.
+/// By which image offsets to the right (or downwards) a part of the surface between `from` and `to`
+/// must be copied to overlap the first image: from `first` to `last`.
 struct Copies {
     int first = 0;
     int last = 0;
@@ -92,11 +92,11 @@ std::optional<Copies> copies_of(bool wrap, float from, float to, float length) {
     return Copies{static_cast<int>(first), static_cast<int>(last)};
 }
 
-/// Adds the triangle, and its copies that reach into a repeating image from beyond its borders.
+/// Adds the triangle, and its copies that overlap a repeating image from beyond its borders.
 void add_triangle(FurrowMap& map, const MapCorners& corners) {
     const std::optional<FurrowTriangle> triangle = set_up(corners);
-    const Vec2 low = glm::min(corners[0].place, glm::min(corners[1].place, corners[2].place));
-    const Vec2 high = glm::max(corners[0].place, glm::max(corners[1].place, corners[2].place));
+    const Vec2 low = glm::min(corners[0].pixel, glm::min(corners[1].pixel, corners[2].pixel));
+    const Vec2 high = glm::max(corners[0].pixel, glm::max(corners[1].pixel, corners[2].pixel));
     const Vec2 size(map.size);
     const std::optional<Copies> right = copies_of(map.wrap_s, low.x, high.x, size.x);
     const std::optional<Copies> down = copies_of(map.wrap_t, low.y, high.y, size.y);
@@ -114,7 +114,7 @@ void add_triangle(FurrowMap& map, const MapCorners& corners) {
     }
 }
 
-/// The corners of triangle `t`, before they are laid flat.
+/// The corners of triangle `t`, before flattening.
 struct Source {
     Vec3 position[3];
     Vec3 normal[3];
@@ -139,7 +139,7 @@ void lay_by_uv(const MeshData& mesh, std::span<const FurrowVectors> field, Furro
             mesh.uvs[mesh.indices[3 * t]], mesh.uvs[mesh.indices[3 * t + 1]],
             mesh.uvs[mesh.indices[3 * t + 2]]};
         const TriangleFrame frame = triangle_frame(source.position, uv);
-        // d = a dP/du + b dP/dv, by least squares: d may lean out of the triangle.
+        // d = a dP/du + b dP/dv, by least squares: d may not lie in the triangle's plane.
         const float uu = glm::dot(frame.tangent, frame.tangent);
         const float uv_dot = glm::dot(frame.tangent, frame.bitangent);
         const float vv = glm::dot(frame.bitangent, frame.bitangent);
@@ -149,7 +149,7 @@ void lay_by_uv(const MeshData& mesh, std::span<const FurrowVectors> field, Furro
         }
         MapCorners corners;
         for (int i = 0; i < 3; ++i) {
-            corners[i].place = uv[i] * Vec2(map.size);
+            corners[i].pixel = uv[i] * Vec2(map.size);
             for (int f = 0; f < 2; ++f) {
                 const Vec3& d = source.field[i][f];
                 const float u = glm::dot(d, frame.tangent);
@@ -172,18 +172,18 @@ void lay_planar(const MeshData& mesh, std::span<const FurrowVectors> field, Furr
     const Vec3 extent = bounds.max - bounds.min;
     const float scale =
         (1.0f - 2.0f * kMargin) * static_cast<float>(map.size.x) / std::max(extent.x, extent.y);
-    const Vec3 middle = center(bounds);
+    const Vec3 origin = center(bounds);
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const Source source = source_of(mesh, field, t);
         const Vec3 face = glm::cross(
             source.position[1] - source.position[0], source.position[2] - source.position[0]);
         if (!(face.z > 0)) {
-            continue;  // seen from behind
+            continue;  // back face
         }
         MapCorners corners;
         for (int i = 0; i < 3; ++i) {
-            const Vec3 p = (source.position[i] - middle) * scale;
-            corners[i].place = 0.5f * Vec2(map.size) + Vec2(p.x, -p.y);
+            const Vec3 p = (source.position[i] - origin) * scale;
+            corners[i].pixel = 0.5f * Vec2(map.size) + Vec2(p.x, -p.y);
             corners[i].normal = source.normal[i];
             for (int f = 0; f < 2; ++f) {
                 corners[i].field[f] = {source.field[i][f].x, -source.field[i][f].y};
@@ -248,7 +248,7 @@ Status lay_cylinder(const MeshData& mesh, std::span<const FurrowVectors> field, 
         const std::array<float, 3> angles = triangle_angles(source);
         MapCorners corners;
         for (int i = 0; i < 3; ++i) {
-            corners[i].place = {
+            corners[i].pixel = {
                 angles[i] / (2.0f * kPi) * static_cast<float>(map.size.x),
                 (high - source.position[i].y) * scale};
             corners[i].normal = unroll_vector(source.normal[i], angles[i]);

@@ -10,18 +10,18 @@ namespace limn {
 
 struct MeshData;
 
-// Lays a mesh with its two fields flat on an image, where furrows are drawn.
+// Flattens a mesh with its two fields to an image on which furrows are drawn.
 //
-// Planar (hands, feet): (s, t) = (x, y), as seen from +z; sides that turn away are distorted.
+// Planar (hands, feet): (s, t) = (x, y), viewed from +z; oblique faces are distorted.
 // Cylinder (arms, legs): s is the angle around y, scaled by the mean radius so that lengths along s
-// and t agree; the image is as wide as the circumference and repeats to the right, so that no seam
-// shows. Uv: the texture coordinates of the mesh; directions by the Jacobian of each triangle,
-// magnitudes kept; normals are (0, 0, 1), tangent space.
+// and t agree; the image is as wide as the circumference and repeats to the right, so that there is
+// no seam. Uv: the texture coordinates of the mesh; directions by the Jacobian of each triangle,
+// with their magnitudes; normals are (0, 0, 1), tangent space.
 // After Bando 2001, section 3.2.
 
 /// The angle [rad] around y of a point, from +z over +x, in (0, 2 pi]; 0 on the axis.
 [[nodiscard]] float cylinder_angle(const Vec3& p);
-/// A vector at the angle `s`, unrolled: along s, up, and outwards.
+/// A vector at the angle `s` in unrolled axes: along s, up, and outwards.
 [[nodiscard]] Vec3 unroll_vector(const Vec3& v, float s);
 
 struct FurrowMapShape {
@@ -32,10 +32,10 @@ struct FurrowMapShape {
 
 inline constexpr int kMaxFurrowSize = 4096;
 
-/// Needs normals, and for Uv texture coordinates. The height of the image follows from the mesh on
-/// a cylinder, otherwise it is square. Leaves out triangles without an area, triangles that a
-/// planar projection sees from behind, and those larger than eight images of a texture that tiles.
-/// Fails where none is left, or a cylinder would need more than kMaxFurrowSize rows.
+/// Needs normals, and for Uv texture coordinates. On a cylinder the height of the image follows
+/// from the mesh, otherwise it is square. Skips triangles without an area, back faces in a planar
+/// projection, and triangles larger than eight images of a tiling texture. Fails if none remains,
+/// or a cylinder would need more than kMaxFurrowSize rows.
 [[nodiscard]] Result<FurrowMap> make_furrow_map(
     const MeshData& mesh, std::span<const FurrowVectors> field, const FurrowMapShape& shape);
 

@@ -18,7 +18,7 @@ struct FurrowPreset {
     float noise;
     float bump;
     FurrowLighting lighting;
-    float melanin;    ///< 0 .. 1; this and what follows is 0 where the lighting is measured
+    float melanin;    ///< 0 .. 1; this and the following are 0 where the lighting is measured
     float blood;      ///< 0 .. 1
     float specular;   ///< 0 .. 1
     float shininess;  ///< 0 .. 128
@@ -31,8 +31,8 @@ struct FurrowPreset {
 /// `style` with the noise, the bump and the scale of `preset`.
 [[nodiscard]] FurrowStyle with_preset(FurrowStyle style, const FurrowPreset& preset);
 
-/// Whether furrows must grow again after the style changed from `a` to `b`; otherwise noise and
-/// normals are enough.
+/// Whether furrows must be regrown after the style changed from `a` to `b`; otherwise updating
+/// noise and normals suffices.
 [[nodiscard]] bool needs_growth(const FurrowStyle& a, const FurrowStyle& b);
 
 }  // namespace limn

@@ -12,9 +12,9 @@ namespace limn {
 
 struct MeshData;
 
-// From a mesh and what an author says of its furrows to maps, in one call.
+// From a mesh and an author's furrow settings to maps, in one call.
 
-/// A preset by its place in furrow_presets(), after None.
+/// A preset by its index in furrow_presets(), after None.
 enum class FurrowPresetName : std::uint8_t { None };
 
 struct FurrowRecipe {
@@ -31,18 +31,17 @@ LIMN_FIELDS(FurrowRecipe) {
         preset, .doc = "settings of a figure of Bando 2001, instead of scale, noise and bump",
         .values = "none hand foot arm hand_close_up faint distinct smooth rough measured_1 "
                   "measured_2 light_skin dark_skin");
-    LIMN_FIELD(projection, .doc = "how the surface is laid flat", .values = "uv planar cylinder");
+    LIMN_FIELD(projection, .doc = "how the surface is flattened", .values = "uv planar cylinder");
     LIMN_FIELD(size, "width of the image", "px", 1, 4096);
     LIMN_FIELD(tiles, "uv: the image repeats in both directions");
-    LIMN_FIELD(
-        arrows, "the fields at some points; without any, one points upwards, the other across");
+    LIMN_FIELD(arrows, "the fields at some points; if empty, one points upwards, the other across");
     visit_fields(self.style, visit);
 }
 
 /// The style of the recipe, with its preset.
 [[nodiscard]] FurrowStyle style_of(const FurrowRecipe& recipe);
 
-/// The mesh of the recipe laid flat, with its fields. Fails as make_furrow_map does.
+/// The flattened mesh of the recipe, with its fields. Fails as make_furrow_map does.
 [[nodiscard]] Result<FurrowMap> lay_out_furrows(const MeshData& mesh, const FurrowRecipe& recipe);
 
 struct FurrowMaps {
@@ -53,8 +52,9 @@ struct FurrowMaps {
 
 [[nodiscard]] FurrowMaps make_furrow_maps(const FurrowMap& map, const FurrowStyle& style);
 
-/// Extends height and normals by `rings` pixels beyond the surface, with the mean of the neighbors
-/// in the ring within, so that filtering at the borders of a texture atlas meets skin.
+/// Extends height and normals by `rings` pixels beyond the surface, each with the mean of its
+/// neighbors in the previous ring, so that filtering at the borders of a texture atlas stays within
+/// skin.
 void add_furrow_gutter(FurrowMaps& maps, int rings);
 
 }  // namespace limn

@@ -22,7 +22,7 @@
 namespace limn {
 namespace {
 
-constexpr int kSkinGutter = 4;  // around the parts of an atlas [px]
+constexpr int kSkinGutter = 4;  // around the charts of an atlas [px]
 
 /// Why the images of `furrows` cannot be written, or nothing.
 std::string image_fault(const Furrows& furrows, const Assets& assets) {
@@ -60,7 +60,7 @@ std::string mesh_fault(const MeshData& mesh) {
         mesh.name, vertices, mesh.normals.size(), mesh.uvs.size());
 }
 
-/// The fields as they are shown: an edited vertex has its own, others those of the arrows spread.
+/// The displayed fields: edited vertices have their own, others are interpolated from the arrows.
 void show_field(FurrowSkin& skin, const Furrows& furrows, const MeshData& mesh) {
     const auto spread = place_furrow_arrows(spread_arrows(furrows), mesh.positions, mesh.normals);
     skin.field = make_furrow_field(mesh.positions, mesh.normals, spread);
@@ -84,8 +84,8 @@ float mean_edge_length(const MeshData& mesh) {
                : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
 }
 
-std::uint8_t byte_of(float share) {
-    return static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0f, 1.0f) * 255.0f));
+std::uint8_t byte_of(float value) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
 }
 
 /// RGBA of an image; write(pixel, its bytes) sets three of them.

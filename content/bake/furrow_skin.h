@@ -10,13 +10,13 @@
 
 namespace limn {
 
-// Furrows on the entities of a world: grown again where what they follow from has changed, and no
-// more than that asks for (INTERPOLATE, GENERATE and REMAKE of Bando 2001, section 5.1). Furrows
-// grow on the CPU: one depends on all before it, so that a GPU has little to share out; 512 x 512
-// take about 30 ms on two cores.
+// Furrows on the entities of a world: after a change, only the steps that depend on it are repeated
+// (INTERPOLATE, GENERATE and REMAKE of Bando 2001, section 5.1). Furrows grow on the CPU: each
+// depends on all previous ones, which leaves a GPU little parallelism; 512 x 512 take about 30 ms
+// on two cores.
 
-/// Gives each Furrows its FurrowSkin. What cannot be grown has a fault, which is logged once, and
-/// leaves its images alone.
+/// Gives each Furrows its FurrowSkin. If nothing can be grown, it has a fault, which is logged
+/// once, and its images stay unchanged.
 void update_furrow_skins(
     Query<const Furrows, const MeshInstance> furrows, Query<FurrowSkin> skins,
     Query<const FurrowView> views, Res<const Assets> assets, Commands commands);
@@ -29,8 +29,8 @@ void update_furrow_skins(
 [[nodiscard]] const std::vector<FurrowArrow>& grown_arrows(const Furrows& furrows);
 [[nodiscard]] const FurrowStyle& grown_style(const Furrows& furrows);
 
-/// Brings `skin` up to date with `furrows` on `mesh`, for images of `size` pixels along each
-/// side; what did not change is kept. `flat` is for the images alone.
+/// Updates `skin` from `furrows` on `mesh`, for images of `size` pixels along each side; unchanged
+/// parts are kept. `flat` affects only the images.
 void update_furrow_skin(
     FurrowSkin& skin, const Furrows& furrows, const MeshData& mesh, int size, bool flat);
 

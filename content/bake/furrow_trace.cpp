@@ -13,8 +13,8 @@ namespace limn {
 namespace {
 
 constexpr float kMaxTracedMagnitude = 2.0f;
-constexpr float kEdgeTolerance = 1e-3f;  // of triangles that share an edge [px]
-constexpr float kStill = 1e-4f;          // magnitude that counts as none
+constexpr float kEdgeTolerance = 1e-3f;  // overlap of triangles that share an edge [px]
+constexpr float kStill = 1e-4f;          // magnitude that counts as zero
 constexpr float kFarFromTrace = 1e30f;   // beyond the end of every segment [px]
 
 float cross(const Vec2& a, const Vec2& b) {
@@ -43,7 +43,7 @@ int wrapped_angle(int i, int size) {
     return i;
 }
 
-/// The image that furrows are drawn on.
+/// The image on which furrows are drawn.
 struct Canvas {
     const FurrowMap& map;
     const std::vector<std::int32_t>& cover;
@@ -100,8 +100,8 @@ Crossings crossings(float at, int cell, float direction) {
     return {edge * inverse, std::abs(inverse)};
 }
 
-/// Walks over the pixels along a segment and owns them, up to the first obstacle. Returns the
-/// length of the way, `length` if nothing is met.
+/// Traverses the pixels along a segment and claims them, up to the first obstacle. Returns the
+/// distance to it, or `length`.
 float walk(
     Canvas& canvas, const Vec2& from, const Vec2& direction, float length, std::uint32_t furrow,
     bool& met) {
@@ -134,7 +134,7 @@ float walk(
     }
 }
 
-/// The share of a pixel that a line of this width covers, `distance` from its axis [px].
+/// Coverage of a pixel at `distance` from the axis of a line of this width [px].
 float line_coverage(float distance, float width) {
     const float half = 0.5f * width;
     const float overlap = std::min(distance + 0.5f, half) - std::max(distance - 0.5f, -half);
@@ -148,14 +148,14 @@ void draw(
     const float band = 0.5f * shape.density;
     const float line = 0.5f * shape.width + 0.5f;
     const float owned = std::max(0.5f * shape.width, 0.5f);
-    const float reach = std::max(std::max(band, line), owned);
-    const float reach2 = reach * reach;
+    const float extent = std::max(std::max(band, line), owned);
+    const float extent2 = extent * extent;
     const float band2 = band * band;
     const float line2 = line * line;
     const float owned2 = owned * owned;
     const Vec2 to = from + direction * length;
-    const IVec2 low = cell_of(glm::min(from, to) - reach);
-    const IVec2 high = cell_of(glm::max(from, to) + reach);
+    const IVec2 low = cell_of(glm::min(from, to) - extent);
+    const IVec2 high = cell_of(glm::max(from, to) + extent);
     for (int y = low.y; y <= high.y; ++y) {
         for (int x = low.x; x <= high.x; ++x) {
             const Vec2 offset = Vec2(x, y) + 0.5f - from;
@@ -163,7 +163,7 @@ void draw(
                 std::clamp(offset.x * direction.x + offset.y * direction.y, 0.0f, length);
             const Vec2 away = offset - direction * along;
             const float distance2 = away.x * away.x + away.y * away.y;
-            if (distance2 > reach2) {
+            if (distance2 > extent2) {
                 continue;
             }
             const int index = canvas.pixel({x, y});
@@ -324,9 +324,9 @@ FurrowDrawing trace_furrows(
     };
     for (std::size_t t = 0; t < map.triangles.size(); ++t) {
         const FurrowTriangle& triangle = map.triangles[t];
-        const Vec2 middle =
+        const Vec2 centroid =
             (triangle.corner[0] + triangle.corner[1] + triangle.corner[2]) * (1.0f / 3.0f);
-        try_start(within(map, middle), t + 1);
+        try_start(within(map, centroid), t + 1);
     }
     for (int y = 0; y < map.size.y; ++y) {
         for (int x = 0; x < map.size.x; ++x) {

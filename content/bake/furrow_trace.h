@@ -7,27 +7,27 @@
 
 namespace limn {
 
-// Furrows of one field, drawn one after another until no place is left where one may start.
+// Furrows of one field, drawn one after another until there is no room for another start.
 //
-// A furrow starts in its middle and runs along the field, then against it: a straight segment along
-// the field at its beginning, turned at random by up to the angle of the style, then the next,
-// until the furrow is long enough or meets another furrow of the field or the border of the
-// surface, where it ends. Around it lies a band in which no other furrow starts. First the middles
-// of all triangles are tried, which spreads furrows sparsely, then all pixels. After Bando 2001,
-// section 3.3; where that is silent:
+// A furrow starts at its center and runs along the field, then against it: a straight segment along
+// the field at its start, rotated at random by up to the angle of the style, then the next, until
+// the furrow is long enough or meets another furrow of the field or the border of the surface,
+// where it ends. It is surrounded by a band in which no other furrow starts. First the centroids of
+// all triangles are tried, which spreads furrows sparsely, then all pixels. After Bando 2001,
+// section 3.3; choices where that is silent:
 //
 //   - a segment turns by a random angle in -+angle, which FurrowStyle::literal_turn replaces by the
 //     angle itself, as printed;
-//   - each half of a furrow passes over the other;
+//   - the halves of a furrow may cross each other;
 //   - a furrow owns the pixels that its segments cross, and those whose centers it covers: no other
 //     furrow of its field enters them, so that it ends there;
 //   - deep is dark: the printed color is the depth, but white is high;
-//   - furrows narrower than a pixel cover their share of it.
+//   - furrows narrower than a pixel cover a fraction of it.
 //
-// Every step depends on those before, so all arithmetic is repeatable (repeatable_math.h); the
-// version on the GPU, furrow_trace.comp, gives the same bits.
+// Every step depends on the previous ones, so all arithmetic is repeatable (repeatable_math.h); the
+// version on the GPU, furrow_trace.comp, is bit-identical.
 
-/// What the six functions say at one point, in pixels and radians.
+/// The six furrow functions evaluated at one point, in pixels and radians.
 struct FurrowShape {
     float angle = 0;    ///< -kMaxFurrowTurn .. kMaxFurrowTurn
     float length = 0;   ///< of a segment, at least kMinFurrowStep
@@ -37,10 +37,10 @@ struct FurrowShape {
     int limit = 0;    ///< segments that follow
 };
 
-inline constexpr float kMaxFurrowTurn = 1.2f;  // [rad]; as far as repeatable_cos_sin reaches
-inline constexpr float kMinFurrowStep = 0.5f;  // [px]: furrows do not stay where they are
+inline constexpr float kMaxFurrowTurn = 1.2f;  // [rad]; range of repeatable_cos_sin
+inline constexpr float kMinFurrowStep = 0.5f;  // [px], so that furrows advance
 
-/// Of a field with this magnitude, which is clamped to 0 .. 2.
+/// The shape at this field magnitude, which is clamped to 0 .. 2.
 [[nodiscard]] FurrowShape furrow_shape(const FurrowStyle& style, float magnitude);
 
 /// Per pixel: index of the first triangle of the map that covers its center, or -1. Row by row.
@@ -52,7 +52,7 @@ struct FurrowSegment {
     Vec2 to = {0, 0};          ///< [px]
     float band = 0;            ///< width of the band [px]
     std::uint32_t furrow = 0;  ///< its id
-    bool backward = false;     ///< of the half that runs against the field
+    bool backward = false;     ///< belongs to the half that runs against the field
     bool met = false;          ///< ends at another furrow or the border
 };
 

@@ -17,11 +17,11 @@ namespace {
 using MarkerDVec3 = glm::dvec3;
 using Matrix4 = std::array<std::array<double, 4>, 4>;
 
-constexpr std::size_t kNeighbors = 4;  ///< that a hidden marker goes with
+constexpr std::size_t kNeighbors = 4;  ///< that a hidden marker follows
 constexpr int kSweeps = 32;            ///< of Jacobi's method, far more than 4 x 4 needs
-constexpr double kMinSpread = 1e-10;  ///< of points in their second direction, squared and relative
+constexpr double kMinSpread = 1e-10;  ///< of points in their second direction, relative and squared
 
-/// Turns rows and columns p and q of a symmetric matrix so that element (p, q) is 0.
+/// Rotates rows and columns p and q of a symmetric matrix so that element (p, q) is 0.
 void rotate(Matrix4& m, Matrix4& vectors, std::size_t p, std::size_t q) {
     if (m[p][q] == 0.0) {
         return;
@@ -76,7 +76,7 @@ MarkerDVec3 mean_of(std::span<const Vec3> points) {
     return sum / static_cast<double>(points.size());
 }
 
-/// Whether points lie in a line, or at one place.
+/// Whether points are collinear or coincide.
 bool is_line(std::span<const Vec3> points, const MarkerDVec3& mean) {
     MarkerDVec3 farthest(0);
     for (const Vec3& p : points) {
@@ -92,28 +92,29 @@ bool is_line(std::span<const Vec3> points, const MarkerDVec3& mean) {
     return !(wide > kMinSpread * size * size);
 }
 
-/// The seen markers that are nearest at rest, but the marker itself.
+/// The visible markers that are nearest at rest, except the marker itself.
 std::vector<std::size_t>
 find_neighbors(std::span<const Vec3> rest, std::span<const Vec3> frame, std::size_t marker) {
-    std::vector<std::size_t> seen;
+    std::vector<std::size_t> visible;
     for (std::size_t m = 0; m < frame.size(); ++m) {
         if (m != marker && is_finite(frame[m])) {
-            seen.push_back(m);
+            visible.push_back(m);
         }
     }
-    const std::size_t kept = std::min(kNeighbors, seen.size());
+    const std::size_t kept = std::min(kNeighbors, visible.size());
     std::partial_sort(
-        seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(kept), seen.end(),
+        visible.begin(), visible.begin() + static_cast<std::ptrdiff_t>(kept), visible.end(),
         [&](std::size_t a, std::size_t b) {
             const float to_a = glm::distance(rest[a], rest[marker]);
             const float to_b = glm::distance(rest[b], rest[marker]);
             return to_a != to_b ? to_a < to_b : a < b;
         });
-    seen.resize(kept);
-    return seen;
+    visible.resize(kept);
+    return visible;
 }
 
-/// Where its neighbors would take a marker, weighted by nearness; at rest without any.
+/// Position of a marker that moves with its neighbors, weighted by inverse distance; at rest
+/// without any.
 Vec3 carried_by_neighbors(
     std::span<const Vec3> rest, std::span<const Vec3> frame, std::size_t marker) {
     Vec3 sum(0);
@@ -170,23 +171,23 @@ Result<Affine> fit_rigid(std::span<const Vec3> from, std::span<const Vec3> to) {
 
 void fill_gaps(MarkerMotion& motion, std::span<const Vec3> rest) {
     LIMN_CHECK(rest.size() == motion.markers());
-    const MarkerMotion seen = motion;
+    const MarkerMotion recorded = motion;
     const std::size_t count = motion.markers();
     const std::size_t frames = motion.frames();
     const auto frame = [&](std::size_t f) {
-        return std::span(seen.positions).subspan(f * count, count);
+        return std::span(recorded.positions).subspan(f * count, count);
     };
     for (std::size_t m = 0; m < count; ++m) {
-        const auto is_seen = [&](std::size_t f) { return is_finite(frame(f)[m]); };
+        const auto is_visible = [&](std::size_t f) { return is_finite(frame(f)[m]); };
         const auto difference = [&](std::size_t f) {
             return frame(f)[m] - carried_by_neighbors(rest, frame(f), m);
         };
         for (std::size_t f = 0; f < frames; ++f) {
-            if (is_seen(f)) {
+            if (is_visible(f)) {
                 continue;
             }
             std::size_t next = f;
-            while (next < frames && !is_seen(next)) {
+            while (next < frames && !is_visible(next)) {
                 ++next;
             }
             const bool has_last = f > 0;
@@ -195,9 +196,9 @@ void fill_gaps(MarkerMotion& motion, std::span<const Vec3> rest) {
             const Vec3 second = has_next ? difference(next) : first;
             const auto steps = static_cast<float>(next - f + 1);
             for (std::size_t g = f; g < next; ++g) {
-                const float share = static_cast<float>(g - f + 1) / steps;
+                const float t = static_cast<float>(g - f + 1) / steps;
                 motion.positions[g * count + m] =
-                    carried_by_neighbors(rest, frame(g), m) + glm::mix(first, second, share);
+                    carried_by_neighbors(rest, frame(g), m) + glm::mix(first, second, t);
             }
             f = next;
         }
@@ -222,10 +223,10 @@ std::vector<Vec3> sample_markers(const MarkerMotion& motion, float time) {
 Result<std::vector<Affine>> stabilize_head(
     MarkerMotion& motion, std::span<const Vec3> rest, std::span<const std::uint32_t> head) {
     LIMN_CHECK(rest.size() == motion.markers());
-    std::vector<Vec3> places;
+    std::vector<Vec3> rest_positions;
     for (const std::uint32_t m : head) {
         LIMN_CHECK(m < rest.size());
-        places.push_back(rest[m]);
+        rest_positions.push_back(rest[m]);
     }
     std::vector<Affine> heads;
     std::vector<Vec3> all = motion.positions;
@@ -236,14 +237,14 @@ Result<std::vector<Affine>> stabilize_head(
         for (const std::uint32_t m : head) {
             now.push_back(frame[m]);
         }
-        const Result<Affine> back = fit_rigid(now, places);
+        const Result<Affine> back = fit_rigid(now, rest_positions);
         if (!back) {
             return fail("frame {}: {}", f, back.error().message);
         }
         for (Vec3& p : frame) {
             p = transform_point(*back, p);
         }
-        heads.push_back(LIMN_TRY(fit_rigid(places, now)));
+        heads.push_back(LIMN_TRY(fit_rigid(rest_positions, now)));
     }
     motion.positions = std::move(all);
     return heads;

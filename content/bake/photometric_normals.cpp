@@ -16,7 +16,7 @@ namespace limn {
 
 namespace {
 
-/// Of unit lights: below it their directions are in one plane, to within a degree or so.
+/// Determinant of unit lights below which their directions are coplanar, within about a degree.
 constexpr double kMinDeterminant = 1e-3;
 
 }  // namespace

@@ -8,16 +8,16 @@
 
 namespace limn {
 
-// Normals of a matt surface from photographs in one light each, which the camera sees from the same
-// place (face.photometric-normals; Woodham 1980; Rushmeier and Bernardini 1999). Of Lambert's law
+// Photometric stereo: normals of a matte surface from photographs by a fixed camera, each in one
+// light (face.photometric-normals; Woodham 1980; Rushmeier and Bernardini 1999). In Lambert's law
 //
 //     radiance_i = g . light_i,    g = reflectance * normal
 //
-// g is the least-squares solution over the lights that reach the pixel, with three the exact one.
-// Highlights break it, and so does light from elsewhere.
+// g is the least-squares solution over the lights that reach the pixel, exact with three of them.
+// Highlights and ambient light violate the law.
 
-/// Fails where there are fewer than three lights, one has no length or is not finite, or all lie in
-/// one plane. `to_light`: of any length; lights are equally bright.
+/// Fails if there are fewer than three lights, one has no length or is not finite, or all are
+/// coplanar. `to_light`: of any length; lights are equally bright.
 [[nodiscard]] Status check_photometric_lights(std::span<const Vec3> to_light);
 
 struct PhotometricPixel {
@@ -25,8 +25,8 @@ struct PhotometricPixel {
     float reflectance = 0;    ///< times the brightness of the lights; 0: too few of them reach it
 };
 
-/// `to_light`: unit, as check_photometric_lights wants them. `radiance`: one for each light; those
-/// that are not above `shadow` are left out.
+/// `to_light`: unit, accepted by check_photometric_lights. `radiance`: one per light; lights not
+/// above `shadow` are ignored.
 [[nodiscard]] PhotometricPixel
 solve_photometric(std::span<const Vec3> to_light, std::span<const float> radiance, float shadow);
 

@@ -8,7 +8,7 @@
 
 namespace limn {
 
-// A smooth map of space that takes given points to given points and bends as little as it can in
+// A smooth map of space that interpolates pairs of points and bends as little as possible in
 // between: the biharmonic spline in three dimensions (Duchon 1977),
 //
 //     f(p) = a + A p + sum over i of w_i |p - c_i|,
@@ -21,8 +21,8 @@ struct PointWarp {
     Affine affine;
 };
 
-/// The warp that takes from[i] to to[i], solved in double precision in O(n^3). Fails when there are
-/// fewer than four points, two at the same place, or all in one plane.
+/// The warp that maps from[i] to to[i], solved in double precision in O(n^3). Fails when there are
+/// fewer than four points, two coincide, or all are coplanar.
 [[nodiscard]] Result<PointWarp>
 make_point_warp(std::span<const Vec3> from, std::span<const Vec3> to);
 

@@ -17,9 +17,9 @@ namespace limn {
 namespace {
 
 constexpr double kMaxTurn = 35 * kPi / 180.0;
-constexpr float kDirectionMiddle = 0.008f;  ///< |x| below which directions turn less [m]
-constexpr double kMinShortening = 0.01;     ///< mean of a region; less says no direction
-constexpr double kMinAgreement = 0.3;       ///< length of the mean direction, 1: all have the same
+constexpr float kMidlineWidth = 0.008f;  ///< |x| below which directions turn less [m]
+constexpr double kMinShortening = 0.01;  ///< mean of a region; less determines no direction
+constexpr double kMinAgreement = 0.3;    ///< length of the mean direction; 1: all agree
 
 struct FoldedBy {
     std::string_view region;
@@ -53,8 +53,8 @@ std::vector<Vec3> express(const MeshData& mesh, std::span<const std::string_view
     return deformed;
 }
 
-/// The most shortening of a triangle, and its direction from the one across the folds towards the
-/// one along them.
+/// The maximum shortening of a triangle, and its direction, from across the folds towards along
+/// them.
 struct Shortening {
     double amount = 0;
     double angle = 0;  ///< [rad]
@@ -71,7 +71,7 @@ Shortening find_shortening(
     if (!(area2 > 0) || a == Vec3(0)) {
         return {};
     }
-    // Where a vector x e1 + y e2 of the plane goes.
+    // The image of a vector x e1 + y e2 of the plane.
     const auto carry = [&](const Vec3& v) {
         const float x = glm::dot(glm::cross(v, e2), cross) / area2;
         const float y = glm::dot(glm::cross(e1, v), cross) / area2;
@@ -86,11 +86,11 @@ Shortening find_shortening(
     return {std::max(1 - std::sqrt(std::max(least, 0.0)), 0.0), 0.5 * std::atan2(-2 * ab, bb - aa)};
 }
 
-/// By how much the directions of a region are to turn, from lateral towards up on the left [rad].
+/// The angle by which the directions of a region turn, from lateral towards up on the left [rad].
 double find_turn(const MeshData& mesh, const VertexRegion& region, std::span<const Vec3> deformed) {
     glm::dvec2 sum = {0, 0};
     double shortening = 0;
-    double share = 0;
+    double total = 0;
     for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
         std::array<Vec3, 3> rest;
         std::array<Vec3, 3> now;
@@ -114,10 +114,10 @@ double find_turn(const MeshData& mesh, const VertexRegion& region, std::span<con
         const double side = x < 0 ? -1 : 1;
         sum += counts * glm::dvec2(std::cos(2 * found.angle), side * std::sin(2 * found.angle));
         shortening += counts;
-        share += double{weight} * double{area};
+        total += double{weight} * double{area};
     }
     const bool clear =
-        shortening > kMinShortening * share && glm::length(sum) > kMinAgreement * shortening;
+        shortening > kMinShortening * total && glm::length(sum) > kMinAgreement * shortening;
     return clear ? std::clamp(0.5 * std::atan2(sum.y, sum.x), -kMaxTurn, kMaxTurn) : 0.0;
 }
 
@@ -133,9 +133,9 @@ void fit_region_directions(MeshData& mesh) {
         for (std::size_t v = 0; v < region.across.size(); ++v) {
             Vec3& across = region.across[v];
             const float x = mesh.positions[v].x;
-            const float share =
-                std::copysign(glm::smoothstep(0.0f, kDirectionMiddle, std::abs(x)), x);
-            const float angle = share * static_cast<float>(turn);
+            const float factor =
+                std::copysign(glm::smoothstep(0.0f, kMidlineWidth, std::abs(x)), x);
+            const float angle = factor * static_cast<float>(turn);
             across =
                 std::cos(angle) * across + std::sin(angle) * glm::cross(mesh.normals[v], across);
         }

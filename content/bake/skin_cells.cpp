@@ -19,7 +19,7 @@ int wrapped_cell(int i, int size) {
     return (i % size + size) % size;
 }
 
-/// Where the site lies within its square of the grid, in its units.
+/// Position of the site within its square of the grid, in units of the square.
 Vec2 jitter(const IVec2& cell, int cells, int level, int seed) {
     const auto index =
         static_cast<std::uint64_t>(wrapped_cell(cell.y, cells)) * static_cast<std::uint64_t>(cells)
@@ -34,12 +34,12 @@ Vec2 jitter(const IVec2& cell, int cells, int level, int seed) {
 /// 1 - d1 / d2 of the distances to the nearest two sites.
 float level_height(const Vec2& uv, int cells, int level, int seed) {
     const Vec2 p = uv * static_cast<float>(cells);
-    const IVec2 middle(glm::floor(p));
+    const IVec2 own_cell(glm::floor(p));
     float nearest = INFINITY;
     float second = INFINITY;
     for (int y = -2; y <= 2; ++y) {
         for (int x = -2; x <= 2; ++x) {
-            const IVec2 cell = middle + IVec2(x, y);
+            const IVec2 cell = own_cell + IVec2(x, y);
             const float distance = glm::distance(p, Vec2(cell) + jitter(cell, cells, level, seed));
             second = std::min(second, std::max(nearest, distance));
             nearest = std::min(nearest, distance);

@@ -6,9 +6,9 @@
 
 namespace limn {
 
-// Polygons of skin as cells of a Voronoi diagram (Ishii et al. 1993), in levels, each within the
-// one before: the older way to make the pattern of skin, which knows no direction. Furrows drawn
-// along fields (furrow_trace.h) let polygons arise; cells serve as the finest relief between them.
+// Polygons of skin as cells of a Voronoi diagram (Ishii et al. 1993), in nested levels: the older
+// method for the pattern of skin, which is isotropic. Polygons also emerge between furrows drawn
+// along fields (furrow_trace.h); cells serve as the finest relief between them.
 
 struct SkinCells {
     int cells = 48;  ///< along each side of the image, >= 2
@@ -16,8 +16,8 @@ struct SkinCells {
     int seed = 1;
 };
 
-/// Per pixel of a square image that tiles: 0 on the edges of the coarsest cells, up to 1 within;
-/// with one level 1 at the sites. Rows from top to bottom. `size` >= 1 [px].
+/// Height per pixel of a square image that tiles: 0 on the edges of the coarsest cells, up to 1
+/// inside; with one level 1 at the sites. Rows from top to bottom. `size` >= 1 [px].
 [[nodiscard]] std::vector<float> make_skin_cells(int size, const SkinCells& cells);
 
 /// The same at one point of the image, 0 .. 1.

@@ -57,7 +57,7 @@ void cover(const MeshData& mesh, int triangle, int size, std::vector<SkinTexel>&
     }
 }
 
-/// One more ring of texels beyond those that are covered.
+/// Adds a ring of texels around those that are covered.
 void grow_texels(int size, std::vector<SkinTexel>& texels) {
     const std::vector<SkinTexel> old = texels;
     constexpr int kNear[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -75,7 +75,7 @@ void grow_texels(int size, std::vector<SkinTexel>& texels) {
     }
 }
 
-/// Per vertex the number of its position: vertices that a seam repeats count as one.
+/// Per vertex the number of its position: vertices that a seam duplicates count as one.
 std::vector<std::uint32_t> number_positions(std::span<const Vec3> positions) {
     std::map<std::tuple<float, float, float>, std::uint32_t> numbers;
     std::vector<std::uint32_t> number(positions.size());
@@ -87,7 +87,7 @@ std::vector<std::uint32_t> number_positions(std::span<const Vec3> positions) {
     return number;
 }
 
-/// The rotation that takes unit `from` to unit `to`.
+/// The rotation from unit `from` to unit `to`.
 glm::mat3 turn_between(const Vec3& from, const Vec3& to) {
     const float c = glm::dot(from, to);
     const Vec3 v = glm::cross(from, to);

@@ -21,7 +21,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 constexpr int kMaxSteps = 200;        ///< of conjugate gradients
 constexpr double kTolerance = 1e-20;  ///< of the squared residual, relative to its start
-constexpr double kSettled = 1e-9;     ///< relative change of the energy at which it ends
+constexpr double kSettled = 1e-9;     ///< relative change of the energy that ends the iteration
 
 double length2(const std::vector<DVec3>& vectors) {
     double sum = 0;
@@ -34,9 +34,9 @@ double length2(const std::vector<DVec3>& vectors) {
 /// The edges and neighbors of a triangle mesh.
 struct Net {
     std::vector<Edge> edges;
-    std::vector<std::vector<std::uint32_t>> beside;  ///< of each vertex
+    std::vector<std::vector<std::uint32_t>> neighbors;  ///< of each vertex
 
-    Net(std::size_t vertices, std::span<const std::uint32_t> indices) : beside(vertices) {
+    Net(std::size_t vertices, std::span<const std::uint32_t> indices) : neighbors(vertices) {
         std::set<Edge> found;
         for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
             for (std::size_t k = 0; k < 3; ++k) {
@@ -49,17 +49,17 @@ struct Net {
         }
         edges.assign(found.begin(), found.end());
         for (const auto& [a, b] : edges) {
-            beside[a].push_back(b);
-            beside[b].push_back(a);
+            neighbors[a].push_back(b);
+            neighbors[b].push_back(a);
         }
     }
 
-    /// Vertices less the means of their neighbors.
+    /// Vertices minus the means of their neighbors.
     [[nodiscard]] std::vector<DVec3> laplacian(const std::vector<DVec3>& p) const {
         std::vector<DVec3> result(p.size(), DVec3(0));
         for (std::size_t v = 0; v < p.size(); ++v) {
-            for (const std::uint32_t n : beside[v]) {
-                result[v] += (p[v] - p[n]) / static_cast<double>(beside[v].size());
+            for (const std::uint32_t n : neighbors[v]) {
+                result[v] += (p[v] - p[n]) / static_cast<double>(neighbors[v].size());
             }
         }
         return result;
@@ -67,10 +67,10 @@ struct Net {
     [[nodiscard]] std::vector<DVec3> transposed_laplacian(const std::vector<DVec3>& p) const {
         std::vector<DVec3> result(p.size(), DVec3(0));
         for (std::size_t v = 0; v < p.size(); ++v) {
-            for (const std::uint32_t n : beside[v]) {
-                const DVec3 share = p[v] / static_cast<double>(beside[v].size());
-                result[v] += share;
-                result[n] -= share;
+            for (const std::uint32_t n : neighbors[v]) {
+                const DVec3 part = p[v] / static_cast<double>(neighbors[v].size());
+                result[v] += part;
+                result[n] -= part;
             }
         }
         return result;
@@ -96,7 +96,7 @@ struct Energy {
                + static_cast<double>(weights.bending) * length2(net.laplacian(d))
                + static_cast<double>(weights.distance) * distance;
     }
-    /// Half of its gradient, without the part of the goals.
+    /// Half of its gradient, without the goals' term.
     [[nodiscard]] std::vector<DVec3> apply(const std::vector<DVec3>& d) const {
         std::vector<DVec3> result = net.transposed_laplacian(net.laplacian(d));
         for (std::size_t v = 0; v < d.size(); ++v) {

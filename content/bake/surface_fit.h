@@ -16,9 +16,9 @@ namespace limn {
 //     E = strain sum |e - e'|^2 + bending sum |L - L'|^2 + distance sum |p - nearest|^2,
 //
 // over edge vectors e and umbrella Laplacians L of the fitted vertices p, where a prime marks the
-// warped ones. While the nearest points of the target are held, E is quadratic and its minimum is
-// found by conjugate gradients; finding them anew can only lower E. So it never rises. Strain is
-// measured along vectors: rotations beyond those of the warp count as strain.
+// warped ones. For fixed nearest points on the target, E is quadratic and is minimized by conjugate
+// gradients; updating the nearest points can only lower E, so it never rises. Strain compares
+// vectors: rotations beyond those of the warp count as strain.
 
 struct FitWeights {
     float strain = 0.2f;
@@ -32,7 +32,8 @@ struct SurfaceFit {
 };
 
 /// `warped`: vertices of the surface, already warped; `target`: triangles to fit to. All indices
-/// valid, at least one triangle of `target`; vertices without edges go where the nearest point is.
+/// must be valid, with at least one triangle of `target`; vertices without edges snap to the
+/// nearest point.
 [[nodiscard]] SurfaceFit fit_surface(
     std::span<const Vec3> warped, std::span<const std::uint32_t> indices,
     std::span<const Vec3> target, std::span<const std::uint32_t> target_indices,
@@ -42,8 +43,8 @@ struct SurfaceFit {
 [[nodiscard]] std::vector<std::uint32_t>
 label_vertices(std::span<const Vec3> points, std::span<const Vec3> vertices);
 
-/// What the warp makes of a motion by `offset` from `rest` (face.retarget-warp): to be added to
-/// where the fitted marker rests.
+/// The warped motion by `offset` from `rest` (face.retarget-warp), to be added to the rest position
+/// of the fitted marker.
 [[nodiscard]] Vec3
 warp_offset(const PointWarp& warp, const Vec3& rest, const Vec3& offset, float gain = 1.0f);
 

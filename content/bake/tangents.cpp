@@ -22,7 +22,7 @@ using TangentDVec3 = glm::dvec3;
 
 constexpr std::uint32_t kNoTangent = 0xffffffffu;
 
-/// With more corners at one point all are smoothed together, to avoid quadratic run time.
+/// Beyond this number of corners at one point all are smoothed together, to avoid quadratic time.
 constexpr std::size_t kMaxCreaseCorners = 256;
 
 /// Floats as a key of a hash map, by their bits; -0 equals 0.
@@ -111,11 +111,11 @@ std::uint32_t duplicate_vertex(MeshData& mesh, std::uint32_t v) {
     for (MorphTarget& morph : mesh.morphs) {
         const auto found = std::lower_bound(morph.vertices.begin(), morph.vertices.end(), v);
         if (found != morph.vertices.end() && *found == v) {
-            const auto place = static_cast<std::size_t>(found - morph.vertices.begin());
+            const auto index = static_cast<std::size_t>(found - morph.vertices.begin());
             for (std::vector<Vec3>* const values :
                  {&morph.positions, &morph.normals, &morph.tangents}) {
                 if (!values->empty()) {
-                    values->push_back(Vec3((*values)[place]));
+                    values->push_back(Vec3((*values)[index]));
                 }
             }
             morph.vertices.push_back(copy);  // keeps the list sorted
@@ -242,16 +242,16 @@ find_triangle_frames(const MeshData& mesh, const std::vector<Vec2>& uvs) {
     return frames;
 }
 
-/// Adds the contribution of the triangle with vertices `v` to the normals of its corners.
+/// Adds the normal of the triangle with vertices `v`, weighted by the angle at each corner.
 void add_face(
-    const std::vector<Vec3>& positions, const std::uint32_t* v, TangentDVec3 (&shares)[3],
+    const std::vector<Vec3>& positions, const std::uint32_t* v, TangentDVec3 (&weighted)[3],
     double sign) {
     const TangentDVec3 p[3] = {
         TangentDVec3(positions[v[0]]), TangentDVec3(positions[v[1]]),
         TangentDVec3(positions[v[2]])};
     const TangentDVec3 normal = direction(glm::cross(p[1] - p[0], p[2] - p[0]));
     for (int k = 0; k < 3; ++k) {
-        shares[k] += sign * corner_angle(p, k) * normal;
+        weighted[k] += sign * corner_angle(p, k) * normal;
     }
 }
 
@@ -269,10 +269,10 @@ struct SmoothGroups {
         }
         sums.assign(welder.size(), TangentDVec3(0));
         for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-            TangentDVec3 shares[3] = {TangentDVec3(0), TangentDVec3(0), TangentDVec3(0)};
-            add_face(mesh.positions, &mesh.indices[i], shares, 1.0);
+            TangentDVec3 weighted[3] = {TangentDVec3(0), TangentDVec3(0), TangentDVec3(0)};
+            add_face(mesh.positions, &mesh.indices[i], weighted, 1.0);
             for (std::size_t k = 0; k < 3; ++k) {
-                sums[group_of[mesh.indices[i + k]]] += shares[k];
+                sums[group_of[mesh.indices[i + k]]] += weighted[k];
             }
         }
     }
@@ -289,11 +289,11 @@ void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothG
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const std::uint32_t* v = &mesh.indices[i];
         if (moves[v[0]] || moves[v[1]] || moves[v[2]]) {
-            TangentDVec3 shares[3] = {TangentDVec3(0), TangentDVec3(0), TangentDVec3(0)};
-            add_face(moved, v, shares, 1.0);
-            add_face(mesh.positions, v, shares, -1.0);
+            TangentDVec3 weighted[3] = {TangentDVec3(0), TangentDVec3(0), TangentDVec3(0)};
+            add_face(moved, v, weighted, 1.0);
+            add_face(mesh.positions, v, weighted, -1.0);
             for (std::size_t k = 0; k < 3; ++k) {
-                sums[groups.group_of[v[k]]] += shares[k];
+                sums[groups.group_of[v[k]]] += weighted[k];
             }
         }
     }
@@ -315,7 +315,7 @@ void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothG
         while (result.vertices[at] != morph.vertices[i]) {
             ++at;
         }
-        result.positions[at] = morph.positions[i];  // exactly as they were
+        result.positions[at] = morph.positions[i];  // exactly as before
     }
     morph = std::move(result);
 }

@@ -10,8 +10,8 @@ struct MeshData;
 //
 // A triangle has an exact frame: T and B are the gradients of position along u and v
 // (bump.tangent-triangle). A vertex has the sum of the frames around it, weighted by the angle of
-// the triangle's corner there, so that the result does not depend on how a face was cut into
-// triangles (Thuermer and Wuethrich 1998), then orthogonalized against the normal
+// the triangle's corner there, so that the result does not depend on how a face was triangulated
+// (Thuermer and Wuethrich 1998), then orthogonalized against the normal
 // (bump.tangent-vertex). Like MikkTSpace, vertices that agree in position, normal and uv share
 // their sum, each triangle counts as a direction, not as a length, and mirrored uvs are never
 // averaged with unmirrored ones: such a vertex is split. Unlike MikkTSpace the corner angle is not
@@ -36,9 +36,9 @@ struct TriangleFrame {
 /// morph targets and regions. Degenerate triangles do not count; vertices of no triangle get +y.
 void generate_normals(MeshData& mesh, float crease_angle = kPi);
 
-/// Replaces the tangents of `mesh` by those of `uvs` (or `uvs1` for set 1), which must be there as
-/// well as normals. Splits vertices where mirrored and unmirrored triangles meet. A vertex without
-/// any triangle with an area in uv gets an arbitrary tangent perpendicular to its normal, w = 1.
+/// Replaces the tangents of `mesh` by those of `uvs` (or `uvs1` for set 1), which must exist, as
+/// must normals. Splits vertices where mirrored and unmirrored triangles meet. A vertex without any
+/// triangle with an area in uv gets an arbitrary tangent perpendicular to its normal, w = 1.
 void generate_tangents(MeshData& mesh, int uv_set = 0);
 
 /// Generates normals for morph targets without them: the difference between the smooth normals of

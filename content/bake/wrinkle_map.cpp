@@ -16,7 +16,7 @@
 
 namespace limn {
 
-int limit_wrinkle_map(ImageData& map, float most) {
+int limit_wrinkle_map(ImageData& map, float max_square) {
     if (map.format != PixelFormat::Rgba8) {
         return 0;
     }
@@ -26,12 +26,12 @@ int limit_wrinkle_map(ImageData& map, float most) {
     for (std::size_t i = 0; i < std::min(texels, map.pixels.size() / 4); ++i) {
         const Vec2 xy = Vec2(map.pixels[4 * i] - 128, map.pixels[4 * i + 1] - 128) / kUnit;
         const float length2 = glm::dot(xy, xy);
-        if (length2 <= most) {
+        if (length2 <= max_square) {
             continue;
         }
         ++beyond;
-        // Towards zero, so that rounding does not lead beyond again.
-        const Vec2 limited = glm::trunc(xy * (kUnit * std::sqrt(most / length2)));
+        // Towards zero, so that rounding does not exceed the limit.
+        const Vec2 limited = glm::trunc(xy * (kUnit * std::sqrt(max_square / length2)));
         map.pixels[4 * i] = static_cast<std::uint8_t>(128 + static_cast<int>(limited.x));
         map.pixels[4 * i + 1] = static_cast<std::uint8_t>(128 + static_cast<int>(limited.y));
         const float z = std::sqrt(std::max(1 - glm::dot(limited, limited) / (kUnit * kUnit), 0.0f));
@@ -45,7 +45,7 @@ void write_wrinkle_map(ImageData& map, std::span<const float> heights) {
     const auto height = static_cast<std::size_t>(map.height);
     LIMN_CHECK(map.format == PixelFormat::Rgba8 && heights.size() == width * height);
     constexpr float kUnit = 127;
-    std::vector<Vec2> below(width + 2, Vec2(0));  // what is left over for the next row
+    std::vector<Vec2> below(width + 2, Vec2(0));  // rounding errors, passed on to the next row
     for (std::size_t y = 0; y < height; ++y) {
         std::vector<Vec2> here(width + 2, Vec2(0));
         std::swap(here, below);
@@ -62,15 +62,15 @@ void write_wrinkle_map(ImageData& map, std::span<const float> heights) {
                 texel[2] = 255;
                 continue;
             }
-            const Vec2 wanted = Vec2(-right, down) / std::sqrt(1 + right * right + down * down);
-            const Vec2 steps = glm::clamp(kUnit * wanted + here[x + 1], -kUnit, kUnit);
+            const Vec2 exact = Vec2(-right, down) / std::sqrt(1 + right * right + down * down);
+            const Vec2 steps = glm::clamp(kUnit * exact + here[x + 1], -kUnit, kUnit);
             const Vec2 rounded = glm::floor(steps + 0.5f);
             const Vec2 left_over = steps - rounded;
             here[x + 2] += 7.0f / 16 * left_over;
             below[x] += 3.0f / 16 * left_over;
             below[x + 1] += 5.0f / 16 * left_over;
             below[x + 2] += 1.0f / 16 * left_over;
-            const float z = std::sqrt(std::max(1 - glm::dot(wanted, wanted), 0.0f));
+            const float z = std::sqrt(std::max(1 - glm::dot(exact, exact), 0.0f));
             texel[0] = static_cast<std::uint8_t>(128 + static_cast<int>(rounded.x));
             texel[1] = static_cast<std::uint8_t>(128 + static_cast<int>(rounded.y));
             texel[2] = static_cast<std::uint8_t>(128 + std::lround(kUnit * z));

@@ -6,19 +6,19 @@
 
 namespace limn {
 
-/// x^2 + y^2 of normals up to which the source's fit to the unit sphere (WrinkleMethod::Sphere) is
-/// wrong by less than 8.76 degrees at any strength.
+/// x^2 + y^2 of normals up to which the fit to the unit sphere (WrinkleMethod::Sphere) is off by
+/// less than 8.76 degrees at any strength.
 inline constexpr float kSteepestWrinkle = 0.6f;
 
-/// Brings the normals of an 8-bit wrinkle map, flat at 128, back to x^2 + y^2 <= `most` (0 .. 1),
-/// with their direction along the skin. Returns how many were beyond; 0 for other formats
+/// Clamps the normals of an 8-bit wrinkle map, flat at 128, to x^2 + y^2 <= `max_square` (0 .. 1),
+/// keeping their direction along the skin. Returns how many were steeper; 0 for other formats
 /// (wrinkle.compression.map).
-int limit_wrinkle_map(ImageData& map, float most = kSteepestWrinkle);
+int limit_wrinkle_map(ImageData& map, float max_square = kSteepestWrinkle);
 
-/// Writes the normals of `heights` [texels], row by row, into `map`, of 8 bits and that size, whose
-/// edges meet: 128 stands for 0, so that flat is exact, and what rounding leaves over goes on to
-/// the next texels (Floyd and Steinberg 1976). Means of slopes are right to far below a step of 8
-/// bits; without, a fold would end in terraces. Alpha stays.
+/// Writes the normals of `heights` [texels], row by row, into `map`, of 8 bits and the same size,
+/// which tiles: 128 stands for 0, so that flat is exact, and rounding errors diffuse to the next
+/// texels (Floyd and Steinberg 1976). Mean slopes are then accurate to far below a step of 8 bits;
+/// otherwise a fold would end in terraces. Alpha is unchanged.
 void write_wrinkle_map(ImageData& map, std::span<const float> heights);
 
 }  // namespace limn

@@ -19,7 +19,7 @@ namespace limn {
 namespace {
 
 constexpr int kMaxTerms = 19;
-constexpr float kMinRange = 1e-3f;  ///< smaller strains count as parts of it
+constexpr float kMinRange = 1e-3f;  ///< smaller ranges of strain are scaled by it
 
 using Terms = std::array<float, kMaxTerms>;
 
@@ -44,8 +44,9 @@ int find_terms(int degree, const Vec3& x, Terms& terms) {
     return static_cast<int>(n);
 }
 
-Vec3 scaled_strain(const Vec3& strain, const Vec3& least, const Vec3& most) {
-    return glm::clamp(strain, least, most) / glm::max(glm::max(-least, most), Vec3(kMinRange));
+Vec3 scaled_strain(const Vec3& strain, const Vec3& min_strain, const Vec3& max_strain) {
+    return glm::clamp(strain, min_strain, max_strain)
+           / glm::max(glm::max(-min_strain, max_strain), Vec3(kMinRange));
 }
 
 /// Solves (A + ridge I) c = b for two right sides by Cholesky's method; `a` is symmetric.
@@ -110,12 +111,12 @@ void fit_texel(
     if (!is_finite_at(poses, texel)) {
         return;
     }
-    Vec3& least = model.least[texel];
-    Vec3& most = model.most[texel];
+    Vec3& min_strain = model.min_strain[texel];
+    Vec3& max_strain = model.max_strain[texel];
     bool smooth = true;
     for (const WrinklePose& pose : poses) {
-        least = glm::min(least, pose.strain[texel]);
-        most = glm::max(most, pose.strain[texel]);
+        min_strain = glm::min(min_strain, pose.strain[texel]);
+        max_strain = glm::max(max_strain, pose.strain[texel]);
         smooth = smooth && pose.slopes[texel] == Vec2(0);
     }
     if (smooth) {
@@ -125,7 +126,7 @@ void fit_texel(
     NormalEquations equations(count);
     for (const WrinklePose& pose : poses) {
         Terms terms;
-        find_terms(model.degree, scaled_strain(pose.strain[texel], least, most), terms);
+        find_terms(model.degree, scaled_strain(pose.strain[texel], min_strain, max_strain), terms);
         equations.add(terms, pose.slopes[texel]);
     }
     equations.solve(double{ridge}, &model.coefficients[texel * static_cast<std::size_t>(count)]);
@@ -148,8 +149,8 @@ WrinkleModel fit_wrinkle_model(
     WrinkleModel model = {
         .size = size,
         .degree = options.degree,
-        .least = std::vector<Vec3>(texels, Vec3(0)),
-        .most = std::vector<Vec3>(texels, Vec3(0)),
+        .min_strain = std::vector<Vec3>(texels, Vec3(0)),
+        .max_strain = std::vector<Vec3>(texels, Vec3(0)),
         .coefficients = std::vector<Vec2>(texels * terms, Vec2(0))};
     parallel_for(texels, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t texel = begin; texel < end; ++texel) {
@@ -162,7 +163,8 @@ WrinkleModel fit_wrinkle_model(
 Vec2 modeled_slope(const WrinkleModel& model, std::size_t texel, const Vec3& strain) {
     Terms terms;
     const int count = find_terms(
-        model.degree, scaled_strain(strain, model.least[texel], model.most[texel]), terms);
+        model.degree, scaled_strain(strain, model.min_strain[texel], model.max_strain[texel]),
+        terms);
     Vec2 slope = {0, 0};
     for (int i = 0; i < count; ++i) {
         slope += terms[static_cast<std::size_t>(i)]
@@ -175,7 +177,7 @@ Vec2 modeled_slope(const WrinkleModel& model, std::size_t texel, const Vec3& str
 ImageData pack_wrinkle_model(const WrinkleModel& model) {
     const auto terms = static_cast<std::size_t>(wrinkle_terms(model.degree));
     const std::size_t tiles = 2 + (terms + 1) / 2;
-    const std::size_t texels = model.least.size();
+    const std::size_t texels = model.min_strain.size();
     ImageData image;
     image.name = "wrinkle model";
     image.width = model.size;
@@ -187,8 +189,8 @@ ImageData pack_wrinkle_model(const WrinkleModel& model) {
         std::memcpy(&image.pixels[(tile * texels + texel) * sizeof packed], &packed, sizeof packed);
     };
     for (std::size_t i = 0; i < texels; ++i) {
-        const Vec3& low = model.least[i];
-        const Vec3& high = model.most[i];
+        const Vec3& low = model.min_strain[i];
+        const Vec3& high = model.max_strain[i];
         put(0, i, {low.x, high.x, low.y, high.y});
         put(1, i, {low.z, high.z, 0, 0});
         const Vec2* const c = &model.coefficients[i * terms];

@@ -22,8 +22,8 @@ struct DominanceTarget {
     float power = 1.0f;     ///< p, > 0
 };
 
-/// The parameter at `time` [s]; `rest` where no target is felt any more, or without targets. Always
-/// between the smallest and the largest target, else.
+/// The parameter at `time` [s]; `rest` where the dominance of all targets vanishes, or without
+/// targets. Otherwise always between the smallest and the largest target.
 [[nodiscard]] float
 blend_targets(std::span<const DominanceTarget> targets, float time, float rest = 0.0f);
 

@@ -55,15 +55,15 @@ EyeTrack make_eye_track(float duration, std::uint64_t seed) {
     for (float time = exponential(random, kAtViewer);;) {
         const float angle = std::min(exponential(random, kMeanSaccade), kLargestSaccade);
         const float direction = random.uniform(0.0f, 2.0f * kPi);
-        const float taken = saccade_duration(angle);
-        const float away = std::max(exponential(random, kAway), taken);
-        if (time + away + taken > duration) {
+        const float saccade = saccade_duration(angle);
+        const float away = std::max(exponential(random, kAway), saccade);
+        if (time + away + saccade > duration) {
             break;
         }
         track.shifts.push_back(
-            {time, taken, angle * std::cos(direction), 0.5f * angle * std::sin(direction)});
-        track.shifts.push_back({time + away, taken, 0.0f, 0.0f});
-        time += away + taken + exponential(random, kAtViewer);
+            {time, saccade, angle * std::cos(direction), 0.5f * angle * std::sin(direction)});
+        track.shifts.push_back({time + away, saccade, 0.0f, 0.0f});
+        time += away + saccade + exponential(random, kAtViewer);
     }
     return track;
 }

@@ -5,14 +5,14 @@
 
 namespace limn {
 
-// Blinks and gaze of someone who speaks to the viewer. Blinks: 26 a minute at intervals that are
-// log-normal (A. Bentivoglio et al., 1997). Gaze: 3.1 s at the viewer, 0.9 s away (S. Lee,
-// J. Badler and N. Badler, "Eyes Alive", 2002), in saccades that take 21 ms + 2.2 ms per degree (A.
-// Bahill et al., 1975).
+// Blinks and gaze of a speaker who faces the viewer. Blinks: 26 per minute at log-normal intervals
+// (A. Bentivoglio et al., 1997). Gaze: 3.1 s at the viewer, 0.9 s away (S. Lee, J. Badler and N.
+// Badler, "Eyes Alive", 2002), with saccades that take 21 ms + 2.2 ms per degree (A. Bahill et al.,
+// 1975).
 
 struct EyePose {
     float closed = 0.0f;  ///< 0: open, 1: lids shut
-    float yaw = 0.0f;     ///< of the gaze [degrees], > 0: to the own left
+    float yaw = 0.0f;     ///< of the gaze [degrees], > 0: to the speaker's left
     float pitch = 0.0f;   ///< [degrees], > 0: up
 };
 
@@ -33,10 +33,10 @@ struct GazeShift {
 
 struct EyeTrack {
     std::vector<Blink> blinks;      ///< one after the other
-    std::vector<GazeShift> shifts;  ///< one after the other; before the first: straight ahead
+    std::vector<GazeShift> shifts;  ///< one after the other; the gaze starts straight ahead
 };
 
-/// Of `duration` [s]; the same for the same `seed`. It ends with open eyes that look ahead.
+/// A track of `duration` [s], determined by `seed`. It ends with open eyes that look ahead.
 [[nodiscard]] EyeTrack make_eye_track(float duration, std::uint64_t seed);
 
 [[nodiscard]] EyePose eyes_at(const EyeTrack& track, float time);

@@ -14,15 +14,15 @@ namespace {
 
 constexpr float kFullGaze = 40.0f;  ///< degrees of an eye shape at weight 1
 
-/// A shape by its name or its action unit, with the weight at which it shows the channel fully.
+/// A shape by its name or action unit, with its weight for the full channel.
 struct ClipCandidate {
     FaceChannel channel;
     std::string_view shape;
     float gain;
 };
 
-/// Of each channel the first that a face has. Gains make full action units, which are stronger than
-/// speech, as large as the mouth moves in speech (MouthAxis).
+/// Per channel, the first that a face has is used. Gains scale full action units, which are
+/// stronger than speech, to the motion of the mouth in speech (MouthAxis).
 constexpr std::array kCandidates{
     ClipCandidate{FaceChannel::JawOpen, "AU27", 0.34f},  // 42 mm
     ClipCandidate{FaceChannel::JawOpen, "AU26", 0.9f},   // 15 mm
@@ -115,7 +115,7 @@ bool moves_mouth(const GltfShape& shape) {
     return unit == 8 || (unit >= 10 && unit <= 28 && unit != 21) || (unit >= 32 && unit <= 35);
 }
 
-float mouth_left(const MouthPose& mouth) {
+float mouth_expression_weight(const MouthPose& mouth) {
     float engaged = 0.0f;
     for (const float axis : mouth) {
         engaged = std::max(engaged, std::abs(axis));

@@ -7,8 +7,8 @@
 
 namespace limn {
 
-/// The turn of a speaker's head at `time` [s]: nods of up to 3 degrees at stressed vowels on a slow
-/// sway of up to 2 degrees; none at the ends of the track. The same for the same `seed`.
+/// Rotation of a speaker's head at `time` [s]: nods of up to 3 degrees at stressed vowels on a slow
+/// sway of up to 2 degrees; none at the ends of the track. Determined by `seed`.
 [[nodiscard]] Quat head_at(const SpeechTrack& track, float time, std::uint64_t seed);
 
 }  // namespace limn

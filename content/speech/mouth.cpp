@@ -16,7 +16,7 @@ struct VisemeMouth {
     MouthPose strength;
 };
 
-// Consonants leave to their neighbors what they do not need: width in t, k and n, for example.
+// Consonants leave axes that they do not need to their neighbors: for example width in t, k and n.
 constexpr std::array<VisemeMouth, kVisemes> kMouths{{
     {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, {0.6f, 0.3f, 0.3f, 0.5f, 0.5f}},     // silence, h
     {{0.05f, 0.0f, 0.1f, 1.0f, 0.0f}, {0.9f, 0.15f, 0.15f, 1.0f, 0.8f}},  // p b m
@@ -35,7 +35,7 @@ constexpr std::array<VisemeMouth, kVisemes> kMouths{{
     {{0.25f, -0.8f, 1.0f, 0.0f, 0.0f}, {0.6f, 0.9f, 1.0f, 0.5f, 0.5f}},   // u
 }};
 
-// Decay of dominance [1/s]. Lips round 100 to 200 ms before the sound that needs it.
+// Decay of dominance [1/s]. Lips are rounded 100 to 200 ms before the sound that needs it.
 constexpr MouthPose kBefore{14.0f, 8.0f, 6.0f, 30.0f, 25.0f};
 constexpr MouthPose kAfter{14.0f, 12.0f, 12.0f, 30.0f, 25.0f};
 

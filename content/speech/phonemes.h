@@ -28,7 +28,7 @@ enum class Viseme : std::uint8_t {
 
 inline constexpr std::size_t kVisemes = 15;
 
-/// A sound of English, with its length in fluent speech: D. Klatt, "Linguistic uses of segmental
+/// A sound of English, with its duration in fluent speech: D. Klatt, "Linguistic uses of segmental
 /// duration in English", 1976; T. Crystal and A. House, 1988.
 struct Phoneme {
     std::string_view name;  ///< ARPAbet, in lower case; diphthongs are two phonemes

@@ -21,7 +21,7 @@ struct SampledCurves {
 /// Interpolates curves through their samples by radial basis functions r^3 with a linear part
 /// (face.align-resample). In one dimension that is the natural cubic spline, which takes O(n) for n
 /// samples instead of the O(n^3) of a dense system. Before the first and after the last sample the
-/// curve goes on straight.
+/// curve is extrapolated linearly.
 class CurveSpline {
   public:
     explicit CurveSpline(const SampledCurves& curves);
@@ -34,8 +34,8 @@ class CurveSpline {
     std::vector<double> bends_;  ///< second derivative by sample index, laid out as the values
 };
 
-/// The time in the source of the time `t` in the target: linear between the boundaries, which both
-/// increase and are equally many, at least two; beyond them at the pace of the nearest piece.
+/// Maps the time `t` in the target to the source: linear between the boundaries, which increase and
+/// are equally many, at least two; beyond them at the rate of the nearest interval.
 [[nodiscard]] float map_time(std::span<const float> target, std::span<const float> source, float t);
 
 /// Weight of the later of two curves that overlap, at s = 0 .. 1 through the overlap

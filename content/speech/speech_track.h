@@ -15,8 +15,8 @@ struct SpeechSegment {
     float end = 0.0f;    ///< [s], > start; the start of the next
 };
 
-/// When an utterance makes each sound (face.viseme). It begins at 0 and has no gaps; `segments` is
-/// empty for silence.
+/// Timing of the sounds of an utterance (face.viseme). It begins at 0 and has no gaps; `segments`
+/// is empty for silence.
 struct SpeechTrack {
     std::vector<SpeechSegment> segments;
 
@@ -30,11 +30,11 @@ inline constexpr float kSpeechMargin = 0.15f;
 /// syllable of a phrase, divided by `rate` > 0; between two margins of silence.
 [[nodiscard]] SpeechTrack make_speech_track(std::span<const Sound> sounds, float rate = 1.0f);
 
-/// Scales everything but the margins so that the track lasts `duration` [s]; it must be longer than
+/// Scales everything except the margins so that the track lasts `duration` [s], which must exceed
 /// both margins. A track of silence is unchanged.
 void fit_duration(SpeechTrack& track, float duration);
 
-/// `next` after the end of `track`.
+/// Appends `next` to `track`.
 void append_track(SpeechTrack& track, const SpeechTrack& next);
 
 [[nodiscard]] inline Viseme viseme_of(const SpeechSegment& segment) {

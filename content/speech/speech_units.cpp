@@ -17,7 +17,7 @@ namespace {
 constexpr float kOffsetDecay = 0.05f;  ///< time in which the offset of a hard join falls to 1/e [s]
 constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-float middle(const SpeechSegment& segment) {
+float center_time(const SpeechSegment& segment) {
     return 0.5f * (segment.start + segment.end);
 }
 
@@ -30,8 +30,8 @@ struct Candidate {
     PlacedUnit placed;
     std::size_t begin = 0;
     std::size_t end = 0;
-    double cost = kUnreachable;  ///< of the best cover that ends with it
-    std::ptrdiff_t before = -1;  ///< the candidate before it, or -1: silence
+    double cost = kUnreachable;    ///< of the best cover that ends with it
+    std::ptrdiff_t previous = -1;  ///< the previous candidate, or -1: silence
 };
 
 bool has_sounds(
@@ -77,7 +77,7 @@ std::vector<float> pose_at(const SampledCurves& motion, float time) {
     return pose;
 }
 
-/// Distance between the poses where a unit ends and where the next starts; none for units that were
+/// Distance between the last pose of a unit and the first pose of the next; 0 for units that were
 /// recorded one after the other.
 float pose_distance(
     const SpeechUnit& a, const SpeechUnit& b, std::span<const SpeechRecording> recordings) {
@@ -95,8 +95,8 @@ float pose_distance(
     return std::sqrt(sum);
 }
 
-/// Why no cover reaches the end: the first sound that no recording has, or the sounds after which
-/// the furthest cover ends.
+/// Why no cover is complete: the first sound that no recording has, or the sounds after which the
+/// longest cover ends.
 Error explain_gap(
     const SpeechTrack& target, std::span<const SpeechRecording> recordings, std::size_t reached) {
     for (const SpeechSegment& segment : target.segments) {
@@ -124,7 +124,7 @@ struct StretchedUnit {
     CurveSpline spline;
     std::vector<float> source;  ///< boundaries in the recording
     std::vector<float> target;  ///< the same in the utterance
-    float begin = 0.0f;         ///< what it covers of the utterance [s]
+    float begin = 0.0f;         ///< interval of the utterance that it covers [s]
     float end = 0.0f;
 };
 
@@ -139,8 +139,8 @@ stretch(const SpeechTrack& target, const PlacedUnit& placed, const SpeechRecordi
     const SpeechSegment& last = target.segments[placed.at + placed.unit.count - 1];
     unit.target.push_back(last.end);
     const bool is_diphone = placed.unit.kind == UnitKind::Diphone;
-    unit.begin = is_diphone ? middle(target.segments[placed.at]) : unit.target.front();
-    unit.end = is_diphone ? middle(last) : unit.target.back();
+    unit.begin = is_diphone ? center_time(target.segments[placed.at]) : unit.target.front();
+    unit.end = is_diphone ? center_time(last) : unit.target.back();
     return unit;
 }
 
@@ -148,13 +148,13 @@ void sample(const StretchedUnit& unit, float time, std::span<float> values) {
     unit.spline.evaluate(map_time(unit.target, unit.source, time), values);
 }
 
-/// Blends `row`, of the unit in which `time` lies, with the unit on the other side of a join.
+/// Blends `row`, of the unit that contains `time`, with the unit on the other side of a join.
 void blend_join(
     const StretchedUnit& earlier, const StretchedUnit& later, float time, float rate,
     std::span<float> row) {
     const float join = later.begin;
     if (earlier.end != join) {
-        return;  // silence lies between
+        return;  // silence in between
     }
     const float half = 0.5f
                        * std::min(
@@ -214,12 +214,12 @@ std::vector<SpeechUnit> generate_units(std::span<const SpeechRecording> recordin
 
 float unit_start(const SpeechUnit& unit, const SpeechRecording& recording) {
     const SpeechSegment& first = recording.track.segments[unit.first];
-    return unit.kind == UnitKind::Diphone ? middle(first) : first.start;
+    return unit.kind == UnitKind::Diphone ? center_time(first) : first.start;
 }
 
 float unit_end(const SpeechUnit& unit, const SpeechRecording& recording) {
     const SpeechSegment& last = recording.track.segments[unit.first + unit.count - 1];
-    return unit.kind == UnitKind::Diphone ? middle(last) : last.end;
+    return unit.kind == UnitKind::Diphone ? center_time(last) : last.end;
 }
 
 Result<std::vector<PlacedUnit>> select_units(
@@ -227,7 +227,7 @@ Result<std::vector<PlacedUnit>> select_units(
     std::span<const SpeechRecording> recordings, float join_cost) {
     const std::size_t halves = 2 * target.segments.size();
     std::vector<Candidate> candidates = find_candidates(target, units, recordings);
-    // The best way to each boundary between half sounds: a cost and the candidate that ends there
+    // The best path to each boundary between half sounds: a cost and the candidate that ends there
     // or, after silence, before it.
     struct Arrival {
         std::ptrdiff_t candidate = -1;
@@ -252,7 +252,7 @@ Result<std::vector<PlacedUnit>> select_units(
                 }
                 if (cost < candidate.cost) {
                     candidate.cost = cost;
-                    candidate.before = arrival.candidate;
+                    candidate.previous = arrival.candidate;
                 }
             }
             if (candidate.cost < kUnreachable) {
@@ -274,7 +274,7 @@ Result<std::vector<PlacedUnit>> select_units(
     std::vector<PlacedUnit> cover;
     for (std::ptrdiff_t i =
              std::ranges::min_element(arrivals[halves], {}, &Arrival::cost)->candidate;
-         i >= 0; i = candidates[static_cast<std::size_t>(i)].before) {
+         i >= 0; i = candidates[static_cast<std::size_t>(i)].previous) {
         cover.push_back(candidates[static_cast<std::size_t>(i)].placed);
     }
     std::ranges::reverse(cover);

@@ -15,8 +15,8 @@ namespace limn {
 // units, and an utterance is covered by as few of them as possible, since sounds that were spoken
 // together already shape each other.
 
-/// One recording: what was said, when, and how the face moved. `track` covers it from 0 on, with
-/// silence first and last.
+/// One recording: its text, timing and the motion of the face. `track` covers it from 0 on, with
+/// silence at both ends.
 struct SpeechRecording {
     std::string text;
     SpeechTrack track;
@@ -26,7 +26,7 @@ struct SpeechRecording {
 enum class UnitKind : std::uint8_t {
     Sentence,  ///< all sounds of a recording
     Word,
-    Diphone,  ///< from the middle of one sound to the middle of the next
+    Diphone,  ///< from the center of one sound to the center of the next
 };
 
 /// A range of sounds of a recording; nothing is copied.
@@ -38,15 +38,15 @@ struct SpeechUnit {
 };
 
 /// All units of all recordings (face.unit-generate): the sentence without its margins, its words,
-/// and the diphones, those with silence at the margins too. A recording of p sounds and two margins
-/// has p + 1 diphones.
+/// and the diphones, including those with silence at the margins. A recording of p sounds and two
+/// margins has p + 1 diphones.
 [[nodiscard]] std::vector<SpeechUnit> generate_units(std::span<const SpeechRecording> recordings);
 
 /// Time in the recording at which a unit starts or ends [s].
 [[nodiscard]] float unit_start(const SpeechUnit& unit, const SpeechRecording& recording);
 [[nodiscard]] float unit_end(const SpeechUnit& unit, const SpeechRecording& recording);
 
-/// A unit that stands for sounds of an utterance, the first of them at segment `at` of its track.
+/// A unit that is used for sounds of an utterance, starting at segment `at` of its track.
 struct PlacedUnit {
     SpeechUnit unit;
     std::uint32_t at = 0;
@@ -54,17 +54,16 @@ struct PlacedUnit {
 
 /// Covers the utterance by units (face.unit-select): the fewest joins, plus `join_cost` times the
 /// distance between the poses at each join, by dynamic programming (A. Hunt and A. Black, "Unit
-/// selection in a concatenative speech synthesis system", 1996). Silence needs no unit. Of equal
-/// covers the one whose units come first in `units`. Fails with the sound or the pair of sounds
-/// that is missing.
+/// selection in a concatenative speech synthesis system", 1996). Silence needs no unit. Ties go to
+/// the cover whose units come first in `units`. Fails with the missing sound or pair of sounds.
 [[nodiscard]] Result<std::vector<PlacedUnit>> select_units(
     const SpeechTrack& target, std::span<const SpeechUnit> units,
     std::span<const SpeechRecording> recordings, float join_cost);
 
 /// The motion of the utterance (face.align-resample, face.fragment-blend): each unit is stretched
-/// so that its sounds fall on those of `target`, and neighbors are blended over up to half a sound
-/// on both sides of a join; where that is shorter than two samples, the second begins at the end of
-/// the first and the difference fades. At rest, 0, in silence without a unit.
+/// so that its sounds align with those of `target`, and neighbors are blended over up to half a
+/// sound on both sides of a join; where that is shorter than two samples, the second begins at the
+/// end of the first and the difference fades out. At rest, 0, in silence without a unit.
 [[nodiscard]] SampledCurves join_units(
     const SpeechTrack& target, std::span<const PlacedUnit> placed,
     std::span<const SpeechRecording> recordings, float rate);

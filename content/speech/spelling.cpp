@@ -98,7 +98,7 @@ void append_sounds(std::string_view names, std::vector<Sound>& sounds) {
     }
 }
 
-/// Of letters a to z only. The first full vowel is stressed.
+/// The sounds of a word of letters a to z. The first full vowel is stressed.
 void append_word(std::string_view word, std::vector<Sound>& sounds) {
     const std::size_t first = sounds.size();
     const std::string_view known = sounds_of_word(word);
@@ -161,7 +161,7 @@ void append_number(std::uint32_t number, std::vector<Sound>& sounds) {
     append_word(kNumberWords[number], sounds);
 }
 
-/// Of digits only: as a number, or digit by digit if it is long or begins with 0.
+/// The sounds of digits: as a number, or digit by digit if it is long or begins with 0.
 void append_digits(std::string_view digits, std::vector<Sound>& sounds) {
     if (digits.size() <= 6 && (digits.size() == 1 || digits[0] != '0')) {
         append_number(static_cast<std::uint32_t>(std::stoul(std::string(digits))), sounds);
@@ -238,7 +238,7 @@ std::vector<Sound> sounds_of_ipa(std::string_view ipa) {
             ipa.remove_prefix(kStress.size());
             continue;
         }
-        // The longest symbol of any phoneme that comes next.
+        // The longest symbol of any phoneme that matches here.
         std::size_t longest = 0;
         std::size_t found = 0;
         for (std::size_t p = 1; p < phonemes().size(); ++p) {

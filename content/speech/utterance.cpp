@@ -28,7 +28,7 @@ bool is_spoken(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
 
-/// A folder that goes away.
+/// A temporary folder, removed at the end of the scope.
 struct TemporaryFolder {
     std::filesystem::path path;
 

@@ -10,19 +10,19 @@
 
 namespace limn {
 
-// Text to sounds in time, and to audio (face.talking-head). Sound and face share one clock: the
-// track is as long as the audio, and each phrase begins and ends in both at the same time.
+// Text to timed sounds and to audio (face.talking-head). Audio and face share one clock: the track
+// is as long as the audio, and each phrase begins and ends in both at the same time.
 
 struct Utterance {
     SpeechTrack track;
     Recording wave;  ///< without samples: no audio
 };
 
-/// The phrases of a text, each up to and including its punctuation; none without letters or digits.
+/// The phrases of a text, each with its final punctuation; none without letters or digits.
 [[nodiscard]] std::vector<std::string> phrases_of(std::string_view text);
 
-/// The utterance by rules, without audio: the same on every machine. Empty for text without
-/// letters or digits.
+/// The utterance by spelling rules, without audio: the same on every machine. Empty for text
+/// without letters or digits.
 [[nodiscard]] Utterance spell_utterance(std::string_view text);
 
 /// Whether the program espeak-ng can be run.
@@ -35,7 +35,7 @@ struct Utterance {
 /// One phrase from its sounds and audio, with a margin of silence on both sides.
 [[nodiscard]] Utterance join_phrase(std::span<const Sound> sounds, const Recording& wave);
 
-/// `next` after the end of `utterance`.
+/// Appends `next` to `utterance`.
 void append_utterance(Utterance& utterance, const Utterance& next);
 
 }  // namespace limn

@@ -67,14 +67,13 @@ struct MeshData {
         tangents;            ///< unit xyz along +u; bitangent = w cross(normal, tangent), w = +-1
     std::vector<Vec2> uvs;   ///< (0, 0) is the first texel of the image (top left of a glTF image)
     std::vector<Vec2> uvs1;  ///< second set, or empty
-    std::vector<Vec4> colors;  ///< linear RGBA factor per vertex, or empty
-    std::vector<std::uint32_t>
-        indices;                      ///< three per triangle, counter-clockwise seen from the front
-    SkinWeights skin;                 ///< empty: not skinned
-    std::vector<MorphTarget> morphs;  ///< morph targets, in the file's order
-    std::vector<MeshPiece> pieces;    ///< all of it in pieces, or empty
-    std::vector<VertexRegion> regions;  ///< names differ; may overlap
-    Bounds bounds;                      ///< of the undeformed mesh
+    std::vector<Vec4> colors;            ///< linear RGBA factor per vertex, or empty
+    std::vector<std::uint32_t> indices;  ///< three per triangle, counter-clockwise from the front
+    SkinWeights skin;                    ///< empty: not skinned
+    std::vector<MorphTarget> morphs;     ///< morph targets, in the file's order
+    std::vector<MeshPiece> pieces;       ///< all of it in pieces, or empty
+    std::vector<VertexRegion> regions;   ///< names differ; may overlap
+    Bounds bounds;                       ///< of the undeformed mesh
     std::uint32_t version = 0;
 };
 
@@ -247,7 +246,7 @@ LIMN_FIELDS(Material) {
     LIMN_FIELD(occlusion_strength, "strength of the occlusion map", "", 0, 1);
     LIMN_FIELD(
         transmission,
-        "share of light that passes through instead of being scattered; what is behind is seen "
+        "fraction of light that is transmitted instead of scattered; what is behind is visible "
         "refracted, in the base color, and blurred by the roughness",
         "", 0, 1);
     LIMN_FIELD(
@@ -277,7 +276,7 @@ LIMN_FIELDS(Material) {
         "scale to tile it");
 }
 
-/// Whether what is behind the surface is seen through it.
+/// Whether what is behind the surface is visible through it.
 [[nodiscard]] inline bool is_see_through(const Material& material) {
     return material.alpha_mode == AlphaMode::Blend || material.transmission > 0;
 }

@@ -37,7 +37,7 @@ MeshData make_trough() {
     return mesh;
 }
 
-/// The longest by the shortest length that a circle on triangle `t` has in the chart.
+/// Ratio of the axes of the ellipse to which the chart maps a circle on triangle `t`.
 float stretch_of(const MeshData& mesh, const std::vector<Vec2>& chart, std::size_t t) {
     const std::uint32_t* const v = &mesh.indices[3 * t];
     const Vec3 ab = mesh.positions[v[1]] - mesh.positions[v[0]];
@@ -53,7 +53,7 @@ float stretch_of(const MeshData& mesh, const std::vector<Vec2>& chart, std::size
     return std::sqrt((mean + radius) / std::max(mean - radius, 1e-12f));
 }
 
-/// The median of the triangles of a head whose |x|, y and z are within a box [cm].
+/// The median stretch of the triangles of a head whose |x|, y and z are within a box [cm].
 float stretch_within(
     const MeshData& head, const std::vector<Vec2>& chart, const Vec3& low, const Vec3& high) {
     std::vector<float> found;

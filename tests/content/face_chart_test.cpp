@@ -12,7 +12,7 @@
 namespace limn::face_chart_test {
 namespace {
 
-/// Of the skin that folds.
+/// The reference positions of the skin that folds.
 float farthest_from_uvs() {
     const MeshData head = make_head({});
     std::vector<std::size_t> folding;

@@ -13,7 +13,7 @@
 namespace limn::face_fold_pattern_test {
 namespace {
 
-/// The slope that the map stands for at a texture coordinate, as wrinkle_slopes has it.
+/// The slope of the map at a texture coordinate, decoded as by wrinkle_slopes.
 Vec2 slope_at(const ImageData& map, const Vec2& uv) {
     const auto texel = [](float at, int size) {
         return std::clamp(static_cast<int>(at * static_cast<float>(size)), 0, size - 1);
@@ -111,7 +111,8 @@ float roughness_of(const ImageData& map) {
     return largest;
 }
 
-/// Valleys along a row between two columns, seen from both sides a fifth as deep as the deepest.
+/// Valleys along a row between two columns, at least a fifth as deep from both sides as the
+/// deepest.
 int count_valleys(const ImageData& map, float row, float from, float to) {
     constexpr float kStep = 0.05f;  // columns
     std::vector<float> heights = {0};

@@ -29,7 +29,7 @@ namespace {
 
 void no_progress(int /*done*/, int /*total*/) {}
 
-/// A message of an import that must not succeed.
+/// The error message of an import that must fail.
 template <typename Import>
 std::string refusal(Import&& import, const std::string& folder) {
     const Result<GltfScene> scene = import(folder, no_progress);
@@ -88,9 +88,9 @@ class ImportedSkin {
             const PrincipalStrain p = principal_strain(strain[t]);
             const double shortening = std::max(-p.lower, 0.0f);
             const std::size_t side = center.x > 0 ? 0 : 1;
-            const double share = static_cast<double>(weight * skin_.area[t]);
-            sums[side] += share * shortening;
-            areas[side] += share;
+            const double area = static_cast<double>(weight * skin_.area[t]);
+            sums[side] += area * shortening;
+            areas[side] += area;
         }
         return {
             (sums[0] + sums[1]) / (areas[0] + areas[1]), sums[0] / areas[0], sums[1] / areas[1]};
@@ -108,7 +108,7 @@ struct Expression {
     std::vector<std::string> quiet;
 };
 
-/// At least five times as much shortening in each region that folds as in those that are quiet, and
+/// At least five times as much shortening in each region that folds as in those that do not, and
 /// the same on both sides within 2 %.
 void check_expression(const ImportedSkin& skin, const Expression& expression, double mirror) {
     const std::vector<SkinStrain> strain = skin.strain(expression.targets);
@@ -281,7 +281,8 @@ TEST_CASE("face import: a MakeHuman target or proxy with a bad line is refused w
     const auto proxy =
         parse_makehuman_proxy("x_scale 0 1 2\nverts 0\n0 1 2 0.5 0.5 0 1 0 0\n", "a.mhclo", 10);
     REQUIRE(proxy.ok());
-    const std::vector<Vec3> base = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};  // half as wide as then
+    const std::vector<Vec3> base = {
+        {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};  // half as wide as when the offsets were made
     CHECK(fit_proxy(*proxy, base)[0] == Vec3(1, 0, 0));
     CHECK(fit_offsets(*proxy, base)[0] == Vec3(0.5f, 0, 0));
 }

@@ -15,7 +15,7 @@ using limn::test::near;
 
 namespace {
 
-/// The region of that name at one point of the reference face, whose skin faces along `normal`.
+/// The region of that name at one point of the reference face with this `normal`.
 struct Sample {
     float weight = 0;
     Vec3 across = Vec3(0);

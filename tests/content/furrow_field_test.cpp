@@ -113,7 +113,7 @@ TEST_CASE(
         low = glm::min(low, edit.vectors[0]);
         high = glm::max(high, edit.vectors[0]);
     }
-    for (const FurrowVectors& d : field) {  // within the hull of what was set
+    for (const FurrowVectors& d : field) {  // within the hull of the edits
         CHECK(glm::all(glm::greaterThanEqual(d[0], low - 1e-6f)));
         CHECK(glm::all(glm::lessThanEqual(d[0], high + 1e-6f)));
     }
@@ -177,7 +177,7 @@ TEST_CASE(
     REQUIRE(map->triangles.size() == 2);
     CHECK(map->size == IVec2(512, 512));
     const FurrowTriangle& first = map->triangles[0];
-    // 98 % of the image: 1 % is left at each side; rows run downwards.
+    // 98 % of the image, with a margin of 1 % on each side; rows run downwards.
     const float side = 0.98f * 512;
     const Vec2 corner(0.01f * 512, 0.99f * 512);
     CHECK(glm::distance(first.corner[0], corner) < 1e-3f);

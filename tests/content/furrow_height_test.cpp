@@ -41,7 +41,7 @@ std::uint64_t bits(const std::vector<T>& values) {
     return hash_bytes(values.data(), values.size() * sizeof(T), 0);
 }
 
-/// Equation 4.11, by its cross products.
+/// Equation 4.11 with its cross products.
 Vec3 perturbed_by_cross_products(const Vec3& n, const Vec2& slope) {
     return n + slope.x * glm::cross(n, Vec3(0, n.z, -n.y))
            + slope.y * glm::cross(Vec3(n.z, 0, -n.x), n);
@@ -193,7 +193,7 @@ TEST_CASE(
     }
     const auto normals = make_furrow_normals(map, growth, height, 0.5f);
     CHECK(glm::length(normals[3 * 9 + 4] - glm::normalize(Vec3(-0.01f, -0.025f, 1))) < 1e-6f);
-    // At the borders nothing is beyond.
+    // There are no slopes across the borders.
     CHECK(glm::length(normals[0 * 9 + 4] - glm::normalize(Vec3(-0.01f, 0, 1))) < 1e-6f);
     CHECK(glm::length(normals[3 * 9 + 8] - glm::normalize(Vec3(0, -0.025f, 1))) < 1e-6f);
     FurrowMap repeating = map;
@@ -248,12 +248,12 @@ TEST_CASE("furrow maps: beyond the surface its border goes on for as many rings 
                 CHECK(maps.height[pixel] == bare.height[pixel]);
                 CHECK(maps.normals[pixel] == bare.normals[pixel]);
             } else if (y - x == 1 && x > 0 && y < 39) {  // seven neighbors, of which some are skin
-                float least = 1;
+                float lowest = 1;
                 for (const int to : {-40, 1, -39, -41, 41}) {
                     const auto near = static_cast<std::size_t>(static_cast<int>(pixel) + to);
-                    least = std::min(least, bare.growth.cover[near] < 0 ? 1 : bare.height[near]);
+                    lowest = std::min(lowest, bare.growth.cover[near] < 0 ? 1 : bare.height[near]);
                 }
-                CHECK(maps.height[pixel] >= least);
+                CHECK(maps.height[pixel] >= lowest);
             }
             changed += maps.height[pixel] != bare.height[pixel] ? 1 : 0;
         }

@@ -1,4 +1,4 @@
-// Furrows that live on entities, and follow what they are made from.
+// Furrows on entities, which are updated when their inputs change.
 
 #include "content/bake/furrow_height.h"
 #include "content/bake/furrow_recipe.h"
@@ -195,7 +195,7 @@ TEST_CASE(
         CAPTURE(sample.skin().fault);
         CHECK(sample.skin().fault.find(it.expected) != std::string::npos);
         CHECK(sample.skin().version == 2);
-        sample.update();  // says so once
+        sample.update();  // logs it once
         CHECK(sample.skin().version == 2);
     }
 }

@@ -23,7 +23,7 @@ FurrowStyle make_straight_style() {
     return style;
 }
 
-/// What was drawn, and how.
+/// The drawing and its segments.
 struct Traced : FurrowDrawing {
     std::vector<FurrowSegment> segments = {};
 };
@@ -146,7 +146,8 @@ TEST_CASE(
     CHECK(drawing.segments[2].met);
     CHECK(drawing.segments[2].to.x == test::near(32));
     CHECK(drawing.cells[20 * 100 + 32] == (77 | kFurrowBand));
-    // The border of the surface is a wall as well, and the other half runs the other way.
+    // The border of the surface is a wall as well, and the other half runs in the opposite
+    // direction.
     Traced other = {make_furrow_drawing(map)};
     trace_half_furrow(
         map, cover, make_straight_style(), 0, 5, {18, 20.5f}, true, other, &other.segments);
@@ -165,7 +166,7 @@ TEST_CASE(
     strong.corner[2] = {24, 400};
     map.triangles.insert(map.triangles.begin(), strong);
     const Traced drawing = trace_half(map, make_straight_style(), {20.5f, 20.5f});
-    // One weak segment and one of magnitude 2, after which 9 and the last one are left.
+    // One weak segment and one of magnitude 2, which are followed by 9 and the last one.
     CHECK(drawing.segments.size() == 1 + 1 + 9 + 1);
 }
 
@@ -225,7 +226,7 @@ TEST_CASE(
         FurrowStyle style;
         style.seed = run;
         const Traced drawing = trace_all(map, style);
-        // A pixel belongs to the furrow that came first; no other one's axis may pass through it.
+        // A pixel belongs to the first furrow that crosses it; no other axis may pass through it.
         int crossings = 0;
         int ends = 0;
         for (const FurrowSegment& s : drawing.segments) {
@@ -368,17 +369,17 @@ TEST_CASE(
     }
     CHECK(crossings > 500);
     // The sides of a patch of skin are the furrows around it. Patches at the border are left out.
-    std::vector<bool> seen(kSide * kSide);
+    std::vector<bool> visited(kSide * kSide);
     std::map<std::size_t, int> patches;  // by number of sides
     for (int start = 0; start < kSide * kSide; ++start) {
-        if (seen[start] || owner(0, start) != 0 || owner(1, start) != 0) {
+        if (visited[start] || owner(0, start) != 0 || owner(1, start) != 0) {
             continue;
         }
         std::vector<int> open = {start};
         std::map<std::pair<int, std::uint32_t>, int> contacts;  // pixels at each furrow
         bool inside = true;
         std::size_t area = 0;
-        seen[start] = true;
+        visited[start] = true;
         while (!open.empty()) {
             const int pixel = open.back();
             open.pop_back();
@@ -387,11 +388,11 @@ TEST_CASE(
             const int y = pixel / kSide;
             inside = inside && x > 0 && y > 0 && x < kSide - 1 && y < kSide - 1;
             for (const int next : {pixel - 1, pixel + 1, pixel - kSide, pixel + kSide}) {
-                if (!inside || seen[next]) {
+                if (!inside || visited[next]) {
                     continue;
                 }
                 const bool free = owner(0, next) == 0 && owner(1, next) == 0;
-                seen[next] = free;
+                visited[next] = free;
                 if (free) {
                     open.push_back(next);
                 }

@@ -29,15 +29,15 @@ const std::vector<MorphTarget>& shapes() {
 
 using Weights = std::vector<std::pair<std::string, float>>;
 
-/// Places of the skin [cm], with or without what follows from the units.
+/// Positions of the skin [cm], with or without the shapes that the units drive.
 std::vector<Vec3> posed(const Weights& units, bool follows) {
     std::vector<float> weights(shapes().size(), 0.0f);
     for (const auto& unit : units) {
         weights[expression_index(unit.first)] = unit.second;
     }
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (const HeadPoint& point : skin()) {
-        places.push_back(point.rest);
+        positions.push_back(point.rest);
     }
     for (std::size_t t = 0; t < shapes().size(); ++t) {
         const MorphTarget& target = shapes()[t];
@@ -45,20 +45,21 @@ std::vector<Vec3> posed(const Weights& units, bool follows) {
                              : follows              ? driven_weight(target.drivers, weights)
                                                     : 0.0f;
         for (std::size_t i = 0; weight != 0 && i < target.vertices.size(); ++i) {
-            places[target.vertices[i]] += 100.0f * weight * target.positions[i];
+            positions[target.vertices[i]] += 100.0f * weight * target.positions[i];
         }
     }
-    return places;
+    return positions;
 }
 
-/// How far the left eye is open between its corners, at the widest; negative where lids cross [cm].
+/// Smallest and largest opening of the left eye between its corners; negative where lids cross
+/// [cm].
 std::pair<float, float> opening(const Weights& units, bool follows) {
-    const std::vector<Vec3> places = posed(units, follows);
+    const std::vector<Vec3> positions = posed(units, follows);
     std::vector<std::pair<float, float>> edge;  // of the angle, and of y
-    for (std::size_t v = 0; v < places.size(); ++v) {
+    for (std::size_t v = 0; v < positions.size(); ++v) {
         const HeadPoint& point = skin()[v];
         if (point.loops == HeadLoops::Eye && point.loop == kLidLoop && point.rest.x > 0) {
-            edge.emplace_back(point.angle, places[v].y);
+            edge.emplace_back(point.angle, positions[v].y);
         }
     }
     std::ranges::sort(edge);
@@ -100,8 +101,8 @@ TEST_CASE("head correctives: on its way down the chin keeps its distance from th
             [](const HeadPoint& p) { return glm::distance(p.rest, Vec3(0, -7.5f, 10)); })
         - skin().begin());
     const auto distance = [&](float weight, bool follows) {
-        const Vec3 place = posed({{"AU27", weight}}, follows)[chin];
-        return glm::length(Vec2(place.y, place.z) - kJawAxis);
+        const Vec3 p = posed({{"AU27", weight}}, follows)[chin];
+        return glm::length(Vec2(p.y, p.z) - kJawAxis);
     };
     const float rest = distance(0, true);
     CHECK(std::abs(distance(0.5f, true) - rest) < 0.002f);  // [cm]

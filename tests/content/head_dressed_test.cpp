@@ -1,4 +1,4 @@
-// A head that wears a shirt leaves out the skin below it.
+// A head that wears a shirt lacks the skin below it.
 
 #include "content/make/head/head.h"
 #include "ecs/components/surface.h"
@@ -52,7 +52,7 @@ const Person& neutral() {
     return made;
 }
 
-/// Of a head that `turn` rotates about the origin, which shoulders do not follow, with morph
+/// Positions of a head rotated by `turn` about the origin, while the shoulders stay, with morph
 /// `target` at weight 1; -1: none.
 std::vector<Vec3> posed(const MeshData& mesh, const Quat& turn, int target) {
     std::vector<Vec3> positions = mesh.positions;
@@ -72,7 +72,7 @@ std::vector<Vec3> posed(const MeshData& mesh, const Quat& turn, int target) {
     return positions;
 }
 
-/// A parallel view of 70 cm, with the height of what is nearest at each pixel.
+/// An orthographic view of 70 cm with a depth buffer.
 class DepthView {
   public:
     explicit DepthView(const Vec3& toward)
@@ -83,9 +83,9 @@ class DepthView {
     /// The triangles that face the viewer.
     void draw(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& indices) {
         for (std::size_t i = 0; i < indices.size(); i += 3) {
-            const Vec3 a = place(positions[indices[i]]);
-            const Vec3 b = place(positions[indices[i + 1]]);
-            const Vec3 c = place(positions[indices[i + 2]]);
+            const Vec3 a = project(positions[indices[i]]);
+            const Vec3 b = project(positions[indices[i + 1]]);
+            const Vec3 c = project(positions[indices[i + 2]]);
             const float area = cross(b - a, c - a);
             if (area > 0) {
                 fill(a, b, c, area);
@@ -96,11 +96,11 @@ class DepthView {
   private:
     static constexpr int kSize = 175;
     static constexpr float kPixel = 0.004f;  // [m]
-    static constexpr float kEdge = 0.01f;    // rounding leaves no cracks between triangles
+    static constexpr float kEdge = 0.01f;    // so that rounding causes no cracks between triangles
 
     static float cross(const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; }
 
-    Vec3 place(const Vec3& p) const {
+    Vec3 project(const Vec3& p) const {
         const Vec3 from = p - Vec3(0, -0.08f, 0);
         return {
             0.5f * kSize + glm::dot(from, right_) / kPixel,
@@ -130,8 +130,8 @@ class DepthView {
     std::vector<float> height;
 };
 
-/// Pixels of views from all sides, and somewhat from below but not into the shirt, that see skin
-/// which the dressed head lacks.
+/// Number of pixels, in views from all sides and from slightly below but not into the shirt, that
+/// show skin which the dressed head lacks.
 int pixels_missing(const Person& who, const Quat& turn, int target) {
     constexpr int kViews = 24;
     constexpr float kLowest = -0.25f;
@@ -141,8 +141,8 @@ int pixels_missing(const Person& who, const Quat& turn, int target) {
     for (int i = 0; i < kViews; ++i) {  // evenly over the sphere above its hem
         const float y = 1 - (1 - kLowest) * (static_cast<float>(i) + 0.5f) / kViews;
         const float around = 2.399963f * static_cast<float>(i);
-        const float reach = std::sqrt(1 - y * y);
-        const Vec3 toward = {reach * std::cos(around), y, reach * std::sin(around)};
+        const float ring = std::sqrt(1 - y * y);
+        const Vec3 toward = {ring * std::cos(around), y, ring * std::sin(around)};
         DepthView all(toward);
         all.draw(who.shirt.positions, who.shirt.indices);
         DepthView some = all;

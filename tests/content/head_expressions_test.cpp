@@ -44,7 +44,7 @@ std::vector<Vec3> offsets_of(const MorphTarget& target) {
     return offsets;
 }
 
-/// Skin that can be seen: not behind lids or lips.
+/// Visible skin: not behind lids or lips.
 bool is_outside(const HeadPoint& point) {
     return (point.loops != HeadLoops::Eye || point.loop <= kLidLoop)
            && (point.loops != HeadLoops::Mouth || point.loop <= kLipLoop);
@@ -54,13 +54,13 @@ Vec3 mirrored(const Vec3& p) {
     return {-p.x, p.y, p.z};
 }
 
-/// What the tables of FACS say that a unit moves most, on the left side.
+/// What a unit moves most according to the tables of FACS, on the left side.
 struct Expected {
     std::string_view unit;
-    Vec3 place;       ///< [cm]
+    Vec3 center;      ///< [cm]
     float radius;     ///< of the region around it [cm]
-    float low, high;  ///< largest motion [mm]
-    Vec3 direction;   ///< of that
+    float low, high;  ///< range of the largest motion [mm]
+    Vec3 direction;   ///< of the largest motion
 };
 
 constexpr Expected kExpected[] = {
@@ -116,14 +116,14 @@ TEST_CASE(
         }
         CHECK(10 * peak >= expected.low);
         CHECK(10 * peak <= expected.high);
-        const Vec3 place = expected.unit.ends_with("_L") || skin()[at].rest.x >= 0
-                               ? skin()[at].rest
-                               : mirrored(skin()[at].rest);
-        CHECK(glm::distance(place, expected.place) < std::max(2.5f, expected.radius / 3));
-        const Vec3 way = skin()[at].rest.x >= 0 || expected.unit.ends_with("_L")
-                             ? offsets[at]
-                             : mirrored(offsets[at]);
-        CHECK(glm::dot(glm::normalize(way), glm::normalize(expected.direction)) > 0.7f);
+        const Vec3 position = expected.unit.ends_with("_L") || skin()[at].rest.x >= 0
+                                  ? skin()[at].rest
+                                  : mirrored(skin()[at].rest);
+        CHECK(glm::distance(position, expected.center) < std::max(2.5f, expected.radius / 3));
+        const Vec3 motion = skin()[at].rest.x >= 0 || expected.unit.ends_with("_L")
+                                ? offsets[at]
+                                : mirrored(offsets[at]);
+        CHECK(glm::dot(glm::normalize(motion), glm::normalize(expected.direction)) > 0.7f);
     }
 }
 
@@ -138,7 +138,7 @@ TEST_CASE(
             const Vec3& p = skin()[v].rest;
             const bool left_only = expected.unit.ends_with("_L") && expected.radius < 15;
             const Vec3 side = left_only || p.x >= 0 ? p : mirrored(p);
-            if (glm::distance(side, expected.place) > expected.radius + 3) {
+            if (glm::distance(side, expected.center) > expected.radius + 3) {
                 moved = std::max(moved, glm::length(offsets[v]));
             }
         }
@@ -151,9 +151,9 @@ bool is_plain(const HeadPoint& point) {
     return point.loops == HeadLoops::None || (point.loops == HeadLoops::Mouth && point.loop <= 6);
 }
 
-/// The shortest that a unit makes a side or a diagonal of a quad of such skin, as a share of its
-/// length at rest, with both halves at weight 1.
-float shortest_share(const ActionUnit& unit) {
+/// The smallest ratio of length to rest length of a side or a diagonal of a quad of such skin, with
+/// both halves of a unit at weight 1.
+float shortest_ratio(const ActionUnit& unit) {
     float shortest = 1;
     for (const auto& quad : head_layout().quads) {
         for (std::size_t k = 0; k < 6; ++k) {
@@ -174,7 +174,7 @@ TEST_CASE("head expressions: a unit gathers the skin, and crumples it nowhere at
     for (const ActionUnit& unit : action_units()) {
         if (unit.jaw == 0) {  // below an open jaw skin collapses
             CAPTURE(unit.name);
-            CHECK(shortest_share(unit) >= 0.45f);
+            CHECK(shortest_ratio(unit) >= 0.45f);
         }
     }
 }
@@ -196,7 +196,7 @@ TEST_CASE("head expressions: both halves of a unit sum to the whole and are mirr
             const std::uint32_t other = head_layout().mirror[v];
             mirror_error = std::max(mirror_error, glm::length(left[v] - mirrored(right[other])));
         }
-        CHECK(sum_error < 1e-4f);  // [cm]; 2e-5 is left out of either half
+        CHECK(sum_error < 1e-4f);  // [cm]; either half drops 2e-5
         CHECK(mirror_error < 1e-4f);
     }
 }
@@ -286,7 +286,7 @@ TEST_CASE("head expressions: an open jaw takes the incisors 35 to 45 mm down, AU
     }
 }
 
-/// Largest distance between upper and lower lip along the middle 3 cm of the mouth [cm].
+/// Largest distance between upper and lower lip along the central 3 cm of the mouth [cm].
 float lip_gap(std::string_view name) {
     const std::vector<Vec3> offsets = offsets_of(shape_called(name));
     std::vector<Vec3> line;
@@ -316,11 +316,12 @@ TEST_CASE(
 }
 
 TEST_CASE("head expressions: no triangle of the skin turns over") {
-    constexpr float kSliver = 0.02f;  // narrower ones at rest have no side to speak of [cm]
+    constexpr float kSliver =
+        0.02f;  // width at rest below which a triangle has no reliable side [cm]
     const HeadLayout& layout = head_layout();
     for (const MorphTarget& target : shapes()) {
         CAPTURE(target.name);
-        std::vector<Vec3> offsets = offsets_of(target);  // with all that drives it
+        std::vector<Vec3> offsets = offsets_of(target);  // with all shapes that drive it
         for (const ShapeDriver& driver : target.drivers) {
             const std::vector<Vec3> more = offsets_of(shapes()[driver.target]);
             for (std::size_t v = 0; v < offsets.size(); ++v) {

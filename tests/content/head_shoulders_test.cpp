@@ -45,7 +45,7 @@ const MeshData& skin() {
     return mesh;
 }
 
-/// From left to right, of what is below the neck or of the head above the brows [cm].
+/// Breadth from left to right, below the neck or of the head above the brows [cm].
 float breadth(const std::vector<Vec3>& positions, bool below) {
     float widest = 0;
     for (std::size_t v = 0; v < positions.size(); ++v) {
@@ -59,26 +59,26 @@ float breadth(const std::vector<Vec3>& positions, bool below) {
 
 constexpr float kBelowChin = -0.1f;  ///< [m]
 
-using Place = std::array<long, 3>;
+using PositionKey = std::array<long, 3>;
 
-/// To a micrometer.
-Place place(const Vec3& p) {
+/// `p` rounded to a micrometer.
+PositionKey key_of(const Vec3& p) {
     return {std::lround(p.x * 1e6f), std::lround(p.y * 1e6f), std::lround(p.z * 1e6f)};
 }
 
 TEST_CASE("shoulders: the skin ends in one closed plane ring, where a body begins") {
-    std::map<std::pair<Place, Place>, int> edges;
+    std::map<std::pair<PositionKey, PositionKey>, int> edges;
     const std::vector<Vec3>& positions = skin().positions;
     for (std::size_t i = 0; i < skin().indices.size(); i += 3) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3& from = positions[skin().indices[i + k]];
             const Vec3& to = positions[skin().indices[i + (k + 1) % 3]];
             if (std::min(from.y, to.y) < kBelowChin) {  // lips touch
-                ++edges[{place(from), place(to)}];
+                ++edges[{key_of(from), key_of(to)}];
             }
         }
     }
-    std::map<Place, Place> border;
+    std::map<PositionKey, PositionKey> border;
     for (const auto& [edge, count] : edges) {
         CHECK(count == 1);
         if (!edges.contains({edge.second, edge.first})) {
@@ -88,7 +88,7 @@ TEST_CASE("shoulders: the skin ends in one closed plane ring, where a body begin
     }
     REQUIRE(border.size() == kHeadColumns);
     std::size_t walked = 0;
-    Place at = border.begin()->first;
+    PositionKey at = border.begin()->first;
     do {
         at = border.at(at);
         ++walked;
@@ -97,10 +97,10 @@ TEST_CASE("shoulders: the skin ends in one closed plane ring, where a body begin
 }
 
 TEST_CASE("shoulders: both sides of the seam of the texture have one place, normal and weight") {
-    std::map<Place, std::uint32_t> first;
+    std::map<PositionKey, std::uint32_t> first;
     int doubled = 0;
     for (std::uint32_t v = 0; v < skin().positions.size(); ++v) {
-        const auto [found, added] = first.emplace(place(skin().positions[v]), v);
+        const auto [found, added] = first.emplace(key_of(skin().positions[v]), v);
         if (!added && skin().positions[v].y < kBelowChin) {
             ++doubled;
             const std::uint32_t other = found->second;
@@ -260,7 +260,7 @@ TEST_CASE("shoulders: pores have one size on most of their skin") {
     CHECK(even > 0.75f * static_cast<float>(edges));
 }
 
-/// How far the middle of the throat stands out from above and below [cm].
+/// How far the center of the throat protrudes from above and below [cm].
 float larynx(float sex) {
     const float tall = 1 + 0.025f * sex;
     const auto depth = [&](float y) { return project_forwards({0, tall * y, 0}, bust(sex), 1).z; };
@@ -317,11 +317,11 @@ TEST_CASE("shoulders: a shirt moves as the shoulders do, without shapes, its hal
         CHECK(target.vertices.empty());
     }
     const auto stays = [&](std::size_t v) {
-        float share = 0;
+        float weight = 0;
         for (std::uint32_t i = shirt.skin.first[v]; i < shirt.skin.first[v + 1]; ++i) {
-            share += shirt.skin.joints[i] == 4 ? shirt.skin.weights[i] : 0.0f;
+            weight += shirt.skin.joints[i] == 4 ? shirt.skin.weights[i] : 0.0f;
         }
-        return share;
+        return weight;
     };
     const std::size_t row = kHeadColumns + 1;
     REQUIRE(shirt.positions.size() % row == 0);

@@ -90,7 +90,7 @@ TEST_CASE("head: lids do not enter the ball of the eye") {
     }
 }
 
-/// Vertices of the left part that loops `from` to `to` make up.
+/// Vertices of loops `from` to `to` on the left side.
 std::vector<std::uint32_t> left_loops(HeadLoops loops, int from, int to) {
     std::vector<std::uint32_t> found;
     for (std::uint32_t v = 0; v < wrapped().size(); ++v) {
@@ -102,7 +102,7 @@ std::vector<std::uint32_t> left_loops(HeadLoops loops, int from, int to) {
     return found;
 }
 
-Vec3 mean_place(const std::vector<std::uint32_t>& vertices) {
+Vec3 mean_position(const std::vector<std::uint32_t>& vertices) {
     Vec3 sum = Vec3(0);
     for (const std::uint32_t v : vertices) {
         sum += wrapped()[v];
@@ -110,7 +110,7 @@ Vec3 mean_place(const std::vector<std::uint32_t>& vertices) {
     return sum / static_cast<float>(vertices.size());
 }
 
-/// Of the quads between `vertices`: their areas times their normals.
+/// Sum over the quads between `vertices` of area times normal.
 Vec3 facing(const std::vector<std::uint32_t>& vertices) {
     Vec3 sum = Vec3(0);
     for (const auto& quad : head_layout().quads) {
@@ -129,7 +129,7 @@ TEST_CASE("head: a nostril opens downwards and ends 8 mm or more up, within the 
     const auto end = left_loops(HeadLoops::Nostril, kNostrilLoops, kNostrilLoops);
     REQUIRE(rim.size() >= 16);
     CHECK(facing(cavity).y < -0.8f);
-    CHECK(mean_place(end).y - mean_place(rim).y > 0.8f);
+    CHECK(mean_position(end).y - mean_position(rim).y > 0.8f);
     for (const std::uint32_t v : left_loops(HeadLoops::Nostril, kNostrilRim + 2, kNostrilLoops)) {
         CHECK(head_distance(wrapped()[v], HeadShape{}, 1) < 0);
     }
@@ -151,7 +151,7 @@ TEST_CASE(
     CHECK(high.y - low.y > 5.5f);  // 62.4 mm, two deviations 7.4
     CHECK(high.y - low.y < 7.0f);
     CHECK(facing(front).x > 0.7f);
-    const Vec3 concha = mean_place(left_loops(HeadLoops::Ear, kConcha, kEarLoops));
+    const Vec3 concha = mean_position(left_loops(HeadLoops::Ear, kConcha, kEarLoops));
     CHECK(high.x - concha.x > 0.8f);  // the helix stands out from it
     const Vec3 head = project_to_head(concha, HeadShape{}, 1);
     CHECK(glm::distance(head, concha) < 0.6f);
@@ -200,9 +200,9 @@ TEST_CASE("head: the tear line lies on the lower lid and the ball, and follows t
         ++wet;
         const Vec3 p = {std::abs(point.rest.x), point.rest.y, point.rest.z};
         CHECK(p.y < kEyeCenter.y);
-        const float reach = glm::distance(p, kEyeCenter);
-        CHECK(reach > kBallRadius - 0.01f);
-        CHECK(reach < kEyeRadius + kLidThickness);
+        const float radius = glm::distance(p, kEyeCenter);
+        CHECK(radius > kBallRadius - 0.01f);
+        CHECK(radius < kEyeRadius + kLidThickness);
         CHECK(action_offset(blink, point, HeadShape{}).y > -0.01f);  // up, as the lid does
     }
     CHECK(wet == 2 * 5 * 40);

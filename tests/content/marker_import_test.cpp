@@ -57,11 +57,11 @@ MarkerMotion make_take() {
         }
     }
     for (int f = 0; f < 10; ++f) {
-        const auto share = static_cast<float>(f);
+        const auto frame = static_cast<float>(f);
         const Affine nod = affine_from(
-            {0, 0.01f * share, 0}, glm::angleAxis(0.05f * share, Vec3(1, 0, 0)), Vec3(1));
+            {0, 0.01f * frame, 0}, glm::angleAxis(0.05f * frame, Vec3(1, 0, 0)), Vec3(1));
         for (std::size_t m = 0; m < rest.size(); ++m) {
-            const Vec3 smile = m < 4 ? Vec3(0) : Vec3(0.02f * rest[m].x * share, 0, 0);
+            const Vec3 smile = m < 4 ? Vec3(0) : Vec3(0.02f * rest[m].x * frame, 0, 0);
             take.positions.push_back(transform_point(nod, rest[m] + smile));
         }
     }

@@ -20,7 +20,7 @@ namespace {
 constexpr int kSide = 21;           // vertices
 constexpr float kSpacing = 0.004f;  // [m]
 
-/// A square of skin before z = 0, all of it in a region whose folds lie across x, and a target that
+/// A square of skin in front of z = 0, all in a region whose folds lie across x, and a target that
 /// moves it.
 MeshData make_skin(
     const std::string& region, const char* unit, const std::function<Vec3(const Vec3&)>& move) {
@@ -77,7 +77,7 @@ double angle_at(const MeshData& mesh, float x) {
 TEST_CASE("region directions: a region turns to where its own expression shortens the skin most") {
     MeshData mesh = make_skin("glabella", "AU4", shorten(24));
     fit_region_directions(mesh);
-    // The column in the middle, which both sides pull, turns the mean a little.
+    // The central column, which both sides pull, turns the mean a little.
     CHECK(angle_at(mesh, 0.02f) == near(24).epsilon(0.1));
     CHECK(angle_at(mesh, -0.02f) == near(-angle_at(mesh, 0.02f)).epsilon(1e-4));
     CHECK(std::abs(angle_at(mesh, 0)) < 1e-4);

@@ -228,12 +228,12 @@ TEST_CASE(
     CHECK(!moves_mouth({"sneer", "AU9"}));
     CHECK(!moves_mouth({"neck", "AU21"}));
     CHECK(!moves_mouth({"AU12", ""}));
-    CHECK(mouth_left({}) == 1.0f);
+    CHECK(mouth_expression_weight({}) == 1.0f);
     MouthPose mouth{};
     mouth[1] = -0.75f;
-    CHECK(mouth_left(mouth) == 0.25f);
+    CHECK(mouth_expression_weight(mouth) == 0.25f);
     mouth[0] = 2.0f;
-    CHECK(mouth_left(mouth) == 0.0f);
+    CHECK(mouth_expression_weight(mouth) == 0.0f);
 }
 
 }  // namespace limn::speech_mouth_test

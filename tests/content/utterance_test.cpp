@@ -17,7 +17,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-/// An environment variable, set as long as this lives.
+/// Sets an environment variable for the scope of the object.
 class Variable {
   public:
     Variable(const char* name, const std::string& value) : name_(name) {
@@ -97,7 +97,7 @@ TEST_CASE("utterance: the clip is as long as the sound, and each phrase has its 
     const Result<Utterance> one = speak_utterance("one,", "en");
     REQUIRE(one);
     CHECK(std::abs(one->track.duration() - (0.5f + margins)) < 1e-3f);
-    // The second phrase begins where the sound of the first ends.
+    // The second phrase begins at the end of the sound of the first.
     const std::size_t first = one->track.segments.size();
     REQUIRE(said->track.segments.size() > first);
     CHECK(std::abs(said->track.segments[first].start - one->wave.duration()) < 1e-3f);

@@ -91,13 +91,14 @@ TEST_CASE(
     const WrinkleModel model = fit_wrinkle_model(1, poses, {.degree = 2, .ridge = 1e-9f});
     Random random(12, 0, 0, 0);
     for (int i = 0; i < 50; ++i) {
-        const Vec3 strain = glm::clamp(random_strain(random, 0.2f), model.least[0], model.most[0]);
+        const Vec3 strain =
+            glm::clamp(random_strain(random, 0.2f), model.min_strain[0], model.max_strain[0]);
         CHECK(glm::distance(modeled_slope(model, 0, strain), quadratic(strain)) < 1e-5f);
     }
     const auto line = [](const Vec3& e) { return Vec2(e.x - 2 * e.z, 3 * e.y); };
     const WrinkleModel linear =
         fit_wrinkle_model(1, pose_texel(4, 0.1f, line), {.degree = 1, .ridge = 1e-9f});
-    const Vec3 strain = 0.5f * linear.most[0];
+    const Vec3 strain = 0.5f * linear.max_strain[0];
     CHECK(glm::distance(modeled_slope(linear, 0, strain), line(strain)) < 1e-6f);
 }
 
@@ -129,10 +130,10 @@ TEST_CASE(
     const auto poses = pose_texel(16, 0.2f, quadratic);
     const WrinkleModel model = fit_wrinkle_model(1, poses, {.degree = 2, .ridge = 1e-9f});
     const Vec3 beyond = {1, -1, 1};
-    const Vec3 nearest = {model.most[0].x, model.least[0].y, model.most[0].z};
+    const Vec3 nearest = {model.max_strain[0].x, model.min_strain[0].y, model.max_strain[0].z};
     CHECK(modeled_slope(model, 0, beyond) == modeled_slope(model, 0, nearest));
     CHECK(glm::length(modeled_slope(model, 0, beyond)) < 3.0f);
-    // A texel that no pose strains has no wrinkles, however far it is strained.
+    // A texel without strain in every pose has no wrinkles at any strain.
     const WrinkleModel still =
         fit_wrinkle_model(1, std::vector<WrinklePose>(5, {{Vec3(0)}, {Vec2(0)}}), {});
     CHECK(modeled_slope(still, 0, beyond) == Vec2(0));
@@ -147,7 +148,7 @@ TEST_CASE("wrinkle model: a texel whose pose is not finite has no wrinkles, othe
     poses[3].strain[1].y = nan;
     poses[5].slopes[2].x = nan;
     const WrinkleModel model = fit_wrinkle_model(2, poses, {});
-    const Vec3 strain = 0.5f * model.most[0];
+    const Vec3 strain = 0.5f * model.max_strain[0];
     CHECK(glm::length(modeled_slope(model, 0, strain)) > 0.01f);
     CHECK(modeled_slope(model, 1, strain) == Vec2(0));
     CHECK(modeled_slope(model, 2, strain) == Vec2(0));
@@ -168,9 +169,9 @@ TEST_CASE("wrinkle model: packed, it is tiles of the ranges and of two terms eac
             std::memcpy(&bits, &image.pixels[8 * static_cast<std::size_t>(index)], 8);
             return glm::unpackHalf4x16(bits);
         };
-        CHECK(tile(0).x == near(model.least[0].x).epsilon(1e-3));
-        CHECK(tile(0).w == near(model.most[0].y).epsilon(1e-3));
-        CHECK(tile(1).y == near(model.most[0].z).epsilon(1e-3));
+        CHECK(tile(0).x == near(model.min_strain[0].x).epsilon(1e-3));
+        CHECK(tile(0).w == near(model.max_strain[0].y).epsilon(1e-3));
+        CHECK(tile(1).y == near(model.max_strain[0].z).epsilon(1e-3));
         const Vec2 last = model.coefficients[static_cast<std::size_t>(terms - 1)];
         CHECK(tile(image.height - 1).x == near(last.x).scale(1).epsilon(1e-4));
         CHECK(tile(2).z == near(model.coefficients[1].x).epsilon(1e-3));

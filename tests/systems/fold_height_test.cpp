@@ -69,7 +69,7 @@ ImageData sine_map(int size = 1024) {
     return map;
 }
 
-/// Largest distance of heights from those of the sine, but for the rim [m].
+/// Largest distance of heights from those of the sine, except at the rim [m].
 float worst_height(const MeshData& mesh, const std::vector<Vec2>& heights) {
     float worst = heights.size() == mesh.positions.size() ? 0.0f : 1.0f;
     for (std::size_t v = 0; v < heights.size(); ++v) {
@@ -118,7 +118,7 @@ TEST_CASE(
     const std::vector<Vec2> whole = fold_heights(sheet, sine_map(), {}, false);
     // The upper half has vertices of its own, a copy of the map beyond its edge, mirrored.
     constexpr std::uint32_t kRow = 97;
-    constexpr std::uint32_t kFirst = 48 * kRow;  // of the row that both halves share
+    constexpr std::uint32_t kFirst = 48 * kRow;  // of the row common to both halves
     const auto copies = static_cast<std::uint32_t>(sheet.positions.size());
     for (std::uint32_t v = kFirst; v < kFirst + kRow; ++v) {
         sheet.positions.push_back(Vec3(sheet.positions[v]));
@@ -165,16 +165,16 @@ TEST_CASE("fold height: edges of a quarter of a fold show it, of half a fold not
 
 TEST_CASE("fold height: at a hard edge nothing moves, where it is smooth it does") {
     MeshData sheet = make_sheet(96);
-    const std::size_t middle = 48 * 97 + 30;
-    const float before = fold_heights(sheet, sine_map(), {}, false)[middle - 97 * 3].x;
-    sheet.positions.push_back(Vec3(sheet.positions[middle - 97 * 3]));
+    const std::size_t center = 48 * 97 + 30;
+    const float before = fold_heights(sheet, sine_map(), {}, false)[center - 97 * 3].x;
+    sheet.positions.push_back(Vec3(sheet.positions[center - 97 * 3]));
     sheet.normals.emplace_back(1, 0, 0);
     sheet.tangents.emplace_back(0, 1, 0, 1);
     sheet.uvs.emplace_back(0, 0);
     const std::vector<Vec2> heights = fold_heights(sheet, sine_map(), {}, false);
     REQUIRE(heights.size() == sheet.positions.size());
     CHECK(std::abs(before) > 0.5f * kHigh);
-    CHECK(heights[middle - 97 * 3].x == 0);
+    CHECK(heights[center - 97 * 3].x == 0);
     CHECK(heights.back().x == 0);
 }
 

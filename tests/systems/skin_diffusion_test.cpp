@@ -117,8 +117,8 @@ TEST_CASE(
         return std::inner_product(x.begin(), x.end(), diffusion.area.begin(), 0.0);
     };
     CHECK(total(after) == near(total(values)).epsilon(1e-6));
-    for (const auto& [vertex, share] : diffusion.weights) {
-        CHECK(share >= 0);
+    for (const auto& [vertex, weight] : diffusion.weights) {
+        CHECK(weight >= 0);
     }
     const auto variance = [&](const std::vector<double>& x) {
         double sum = 0;
@@ -161,13 +161,13 @@ TEST_CASE(
         for (const float edges : {0.5f, 1.0f, 2.0f}) {
             const Sheet sheet = make_sheet(side);
             const SkinDiffusion diffusion = diffusion_of(sheet, edges);
-            const std::uint32_t middle = side / 2 * (side + 1) + side / 2;
+            const std::uint32_t center = side / 2 * (side + 1) + side / 2;
             double square = 0;
-            for (std::uint32_t i = diffusion.first[middle]; i < diffusion.first[middle + 1]; ++i) {
-                const auto& [vertex, share] = diffusion.weights[i];
+            for (std::uint32_t i = diffusion.first[center]; i < diffusion.first[center + 1]; ++i) {
+                const auto& [vertex, weight] = diffusion.weights[i];
                 const double distance =
-                    double{glm::distance(sheet.positions[vertex], sheet.positions[middle])};
-                square += double{share} * distance * distance;
+                    double{glm::distance(sheet.positions[vertex], sheet.positions[center])};
+                square += double{weight} * distance * distance;
             }
             CHECK(std::sqrt(square) * side == near(double{edges}).epsilon(0.1));
         }

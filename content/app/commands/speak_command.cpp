@@ -47,7 +47,8 @@ GltfFaceClip make_clip(
             const MouthPose pose = mouth_at(mouth, time);
             std::vector<float> row = nodes[i].expression;
             for (std::size_t s = 0; s < row.size(); ++s) {
-                row[s] *= moves_mouth(face.nodes[i].shapes[s]) ? mouth_left(pose) : 1.0f;
+                row[s] *=
+                    moves_mouth(face.nodes[i].shapes[s]) ? mouth_expression_weight(pose) : 1.0f;
             }
             add_face_weights(nodes[i].links, pose, eyes_at(eyes, time), row);
             clip.weights[i].insert(clip.weights[i].end(), row.begin(), row.end());

@@ -22,7 +22,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kMinOffset = 1e-6f;  ///< [m]; smaller ones are rounding of the files
+constexpr float kMinOffset = 1e-6f;  ///< [m]; smaller ones are rounding errors of the files
 constexpr float kMinTurn = 1e-4f;    ///< of a normal
 
 /// Outer border of the lips of the reference face, left half from top to bottom [cm].
@@ -35,7 +35,7 @@ constexpr std::array<Vec2, 7> kLips = {
      {1.03f, -4.3f},
      {0, -4.38f}}};
 
-/// Normals at rest, and their differences in an expression, by position.
+/// Normals at rest, and their changes in an expression, by position.
 MorphTarget make_target(
     const FaceShape& shape, float scale, std::span<const Vec3> turns,
     std::span<const std::uint32_t> source) {
@@ -81,7 +81,7 @@ gather_source_influences(const SkinWeights& all, std::span<const std::uint32_t> 
     return skin;
 }
 
-/// Along u of the chart, whose v grows downwards on the face; vertices at one place share theirs.
+/// Along u of the chart, whose v grows downwards on the face; equal for vertices at one position.
 std::vector<Vec4> chart_tangents(const MeshData& mesh) {
     const std::vector<std::uint32_t> welded = weld_positions(mesh.positions);
     std::vector<Vec3> sums(mesh.positions.size(), Vec3(0));
@@ -111,14 +111,14 @@ Material pbr(const char* name, const Vec3& color, float roughness) {
     return material;
 }
 
-/// Distance from the axis, before the center; infinite behind it.
+/// Distance from the axis, in front of the center; infinite behind it.
 float from_axis(const EyeBall& eye, const Vec3& p) {
     const float along = glm::dot(p - eye.center, eye.axis);
     return along > 0 ? glm::length(p - eye.center - along * eye.axis)
                      : std::numeric_limits<float>::infinity();
 }
 
-/// 1 on the lining of the mouth where it is part of the skin, `p` on the left side.
+/// 1 on the lining of the mouth where it is part of the skin; `p` is on the left side.
 float lining_amount(const Vec3& p) {
     return (1 - glm::smoothstep(8.4f, 9.2f, p.z)) * (1 - glm::smoothstep(2.3f, 2.8f, p.x))
            * glm::smoothstep(-6.6f, -6.0f, p.y) * (1 - glm::smoothstep(-1.0f, -0.5f, p.y));
@@ -192,9 +192,9 @@ GltfScene make_face_scene(
             }
         }
         if (part.is_skin) {
-            const std::vector<Vec3> places = gather<Vec3>(reference, made.source);
-            mesh.regions = make_face_regions(places, mesh.normals);
-            mesh.uvs1 = make_face_chart(places);
+            const std::vector<Vec3> own_reference = gather<Vec3>(reference, made.source);
+            mesh.regions = make_face_regions(own_reference, mesh.normals);
+            mesh.uvs1 = make_face_chart(own_reference);
         }
         node.parts.push_back(
             {static_cast<std::uint32_t>(scene.meshes.size()),
@@ -237,7 +237,7 @@ std::vector<std::uint32_t> mirror_positions(std::span<const Vec3> positions) {
     std::vector<std::uint32_t> mirror(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const Vec3 image = positions[i] * Vec3(-1, 1, 1);
-        const auto middle = std::ranges::lower_bound(
+        const auto same_height = std::ranges::lower_bound(
             order, image.y, {}, [&](std::uint32_t other) { return positions[other].y; });
         float nearest = std::numeric_limits<float>::infinity();
         const auto visit = [&](std::uint32_t other) {
@@ -248,9 +248,9 @@ std::vector<std::uint32_t> mirror_positions(std::span<const Vec3> positions) {
             }
             return std::abs(positions[other].y - image.y) <= nearest;
         };
-        for (auto at = middle; at != order.end() && visit(*at); ++at) {
+        for (auto at = same_height; at != order.end() && visit(*at); ++at) {
         }
-        for (auto at = middle; at != order.begin() && visit(*(at - 1)); --at) {
+        for (auto at = same_height; at != order.begin() && visit(*(at - 1)); --at) {
         }
     }
     return mirror;
@@ -273,7 +273,7 @@ EyeBall find_eye_ball(std::span<const Vec3> outer, float limbus) {
     }
     EyeBall eye;
     eye.center = center(box);
-    // The cornea bulges and the back may be open: the center is as deep as the widest ring.
+    // The cornea bulges and the back may be open: the center is at the depth of the widest ring.
     const float radius = half_extent(box).y;
     float depth = 0;
     int count = 0;
@@ -365,7 +365,7 @@ Material sclera_material() {
 
 Material iris_material() {
     Material material = pbr("iris", {1, 1, 1}, 0.5f);
-    material.double_sided = true;  // the pupil may be a hole, through which the back is seen
+    material.double_sided = true;  // the pupil may be a hole, through which the back is visible
     return material;
 }
 

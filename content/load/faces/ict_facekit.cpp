@@ -22,7 +22,7 @@ constexpr const char* kNeutral = "generic_neutral_mesh.obj";
 constexpr float kScale = 0.01f;  // the files are in centimeters
 
 // Vertices of the topology, in order: the face, the head behind it, the linings of mouth and eyes,
-// gums, tongue, teeth, eyes and what is around them.
+// gums, tongue, teeth, eyes and their surroundings.
 constexpr std::uint32_t kFaceEnd = 9409;
 constexpr std::uint32_t kHeadEnd = 11248;
 constexpr std::size_t kVertices = 26719;
@@ -32,7 +32,7 @@ struct UnitOfShape {
     std::string_view unit;
 };
 
-/// Without "_L" and "_R", which both have. After the descriptions of the units in Ekman and Friesen
+/// Without the suffixes "_L" and "_R". After the descriptions of the units in Ekman and Friesen
 /// 1978.
 constexpr UnitOfShape kUnits[] = {
     {"browDown", "AU4"},         {"browInnerUp", "AU1"},     {"browOuterUp", "AU2"},
@@ -46,7 +46,7 @@ constexpr UnitOfShape kUnits[] = {
     {"mouthUpperUp", "AU10"},    {"noseSneer", "AU9"},
 };
 
-/// Those whose side is a direction.
+/// Expressions whose side is a direction.
 constexpr UnitOfShape kSidedUnits[] = {
     {"eyeLookIn_L", "AU62_L"},  {"eyeLookIn_R", "AU61_R"}, {"eyeLookOut_L", "AU61_L"},
     {"eyeLookOut_R", "AU62_R"}, {"jawLeft", "AU30_L"},     {"jawRight", "AU30_R"},
@@ -96,7 +96,7 @@ Result<ObjFile> load_mesh(const std::string& path) {
 }
 
 constexpr float kLimbus = 0.487f;      ///< of the radius of the ball
-constexpr float kLidReach = 2.2f;      ///< of the lids from the middle of an eye [cm]
+constexpr float kLidRadius = 2.2f;     ///< of the lids around the center of an eye [cm]
 constexpr float kUpperLashes = 0.45f;  ///< distance from the lid at which lashes end [cm]
 constexpr float kLowerLashes = 0.15f;
 
@@ -106,7 +106,7 @@ class IctImporter {
         find_eyes();
         for (std::uint32_t v = 0; v < kFaceEnd; ++v) {
             const Vec3& p = obj_.positions[v];
-            if (glm::distance(p, eye_at(p).center) < kLidReach) {
+            if (glm::distance(p, eye_at(p).center) < kLidRadius) {
                 lids_.push_back(v);
             }
         }
@@ -149,7 +149,7 @@ class IctImporter {
     [[nodiscard]] const Vec3& position_of(const ObjCorner& corner) const {
         return obj_.positions[corner.position];
     }
-    /// Opaque at the border of the lid, nothing at the tip: the cards have no images of hairs.
+    /// Opaque at the border of the lid, transparent at the tip: the cards have no images of hairs.
     [[nodiscard]] float lash_opacity(std::uint32_t position) const {
         float nearest = std::numeric_limits<float>::infinity();
         for (const std::uint32_t lid : lids_) {
@@ -178,7 +178,7 @@ class IctImporter {
         }
     }
 
-    /// "" for faces that are left out.
+    /// "" for faces that are skipped.
     [[nodiscard]] std::string part_of(const ObjFace& face) const {
         const std::string& material = obj_.materials[face.material];
         const std::span<const ObjCorner> corners = corners_of(face);
@@ -189,7 +189,7 @@ class IctImporter {
             return all([](const ObjCorner& c) { return c.position < kHeadEnd; }) ? "skin"
                                                                                  : "mucosa";
         }
-        // Some files join both sides by a face.
+        // Some files connect both sides by a face.
         const bool left = position_of(corners[0]).x > 0;
         if (!all([&](const ObjCorner& c) { return (position_of(c).x > 0) == left; })
             && material != "M_GumsTongue" && material != "M_Teeth") {
@@ -238,14 +238,14 @@ Result<GltfScene> import_ict_facekit(const std::string& folder, const ImportProg
     const std::filesystem::path root = folder;
     std::error_code ignored;
     const bool nested = std::filesystem::exists(root / "FaceXModel" / kNeutral, ignored);
-    const std::filesystem::path place = nested ? root / "FaceXModel" : root;
-    if (!nested && !std::filesystem::exists(place / kNeutral, ignored)) {
+    const std::filesystem::path models = nested ? root / "FaceXModel" : root;
+    if (!nested && !std::filesystem::exists(models / kNeutral, ignored)) {
         return fail(
             "{}: found no {}, expected the folder FaceXModel of ICT FaceKit", folder, kNeutral);
     }
-    const std::map<std::string, std::string> files = LIMN_TRY(find_expressions(place));
+    const std::map<std::string, std::string> files = LIMN_TRY(find_expressions(models));
     const int total = static_cast<int>(files.size()) + 1;
-    const ObjFile neutral = LIMN_TRY(load_mesh((place / kNeutral).string()));
+    const ObjFile neutral = LIMN_TRY(load_mesh((models / kNeutral).string()));
     const std::vector<std::uint32_t> mirror = mirror_positions(neutral.positions);
 
     std::map<std::string, FaceShape> shapes;  // in alphabetical order

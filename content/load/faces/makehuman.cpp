@@ -34,7 +34,7 @@ struct UnitOfTarget {
     std::string_view unit;
 };
 
-/// By what the targets move, after Ekman and Friesen 1978.
+/// Action units of the targets, after Ekman and Friesen 1978.
 constexpr UnitOfTarget kMakehumanUnits[] = {
     {"eye-left-closure", "AU43_L"},
     {"eye-right-closure", "AU43_R"},
@@ -65,7 +65,7 @@ constexpr UnitOfTarget kMakehumanUnits[] = {
     {"nose-right-elevation", "AU9_R"},
 };
 
-/// A vertex of the base mesh in the middle or on the left, and the same point of the reference face
+/// A vertex of the base mesh on the midline or the left, and the same point of the reference face
 /// of make_face_regions [cm].
 struct Landmark {
     std::uint32_t vertex;
@@ -86,14 +86,14 @@ constexpr Landmark kLandmarks[] = {
     {5171, {0, -7.567f, 10.432f}},       // its lower end
     {6850, {1.844f, 3.252f, 9.196f}},    // inner corner of the eye
     {6807, {4.459f, 3.432f, 8.603f}},    // its outer corner
-    {6785, {3.05f, 3.93f, 9.5f}},        // middle of the upper lid
-    {6828, {3.05f, 3.05f, 9.36f}},       // middle of the lower lid
+    {6785, {3.05f, 3.93f, 9.5f}},        // center of the upper lid
+    {6828, {3.05f, 3.05f, 9.36f}},       // center of the lower lid
     {7006, {1.69f, 6.1f, 10.65f}},       // inner end of the brow
     {7005, {4.93f, 5.98f, 8.99f}},       // its outer end
     {10405, {2.535f, -3.52f, 10.188f}},  // corner of the mouth
     {7102, {1.87f, 0, 10.6f}},           // wing of the nose
     {7613, {6.557f, -2.356f, 5.174f}},   // jaw
-    {11849, {5.724f, -4.487f, 6.127f}},  // jaw before it
+    {11849, {5.724f, -4.487f, 6.127f}},  // jaw in front of it
 };
 
 Result<std::string> read_text(const std::filesystem::path& path) {
@@ -101,7 +101,7 @@ Result<std::string> read_text(const std::filesystem::path& path) {
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
-/// The .target files of a folder by name; none where it does not exist.
+/// The .target files of a folder by name; none if it does not exist.
 std::map<std::string, std::filesystem::path>
 find_makehuman_targets(const std::filesystem::path& folder) {
     std::map<std::string, std::filesystem::path> found;
@@ -159,7 +159,7 @@ class RigReader {
     static constexpr int kMaxDepth = 256;
     static constexpr std::size_t kMaxBones = 4096;
 
-    /// The number of the bone, whose ancestors are added first.
+    /// The index of the bone, whose ancestors are added first.
     Result<std::int32_t> add_bone(const std::string& name, int depth) {
         if (const auto known = numbers_.find(name); known != numbers_.end()) {
             return known->second;
@@ -260,7 +260,7 @@ SkinWeights normalized(std::span<const Influences> influences) {
     return skin;
 }
 
-/// Makes the parts of the only node of `scene` a skin on the rig, as the glTF loader has it.
+/// Skins the parts of the only node of `scene` to the rig, like the glTF loader.
 void add_makehuman_rig(GltfScene& scene, const Rig& rig) {
     GltfNode body = scene.nodes[0];
     body.name += ".skin";
@@ -351,8 +351,8 @@ class MakehumanImporter {
         return Done{};
     }
 
-    /// Moves the base mesh to the mean of the young builds, and makes all relative to that; stands
-    /// it on y = 0.
+    /// Morphs the base mesh to the mean of the young builds, makes everything relative to that, and
+    /// stands it on y = 0.
     void apply_mean(std::vector<FaceShape>& builds) {
         std::vector<Vec3> mean(kMakehumanVertices, Vec3(0));
         const auto is_young = [](const FaceShape& build) { return build.name.ends_with("young"); };
@@ -396,9 +396,10 @@ class MakehumanImporter {
         for (const ObjFace& face : obj_.faces) {
             for (std::uint32_t k = 0; k < face.count && obj_.groups[face.group] == "body"; ++k) {
                 const std::uint32_t p = obj_.corners[face.first + k].position;
-                const Vec3 place = warp_point(warp, obj_.positions[p]);
-                const bool near = std::abs(place.x) < 10 && std::abs(place.y) < 12 && place.z > 0;
-                reference_[p] = near ? place : reference_[p];
+                const Vec3 warped = warp_point(warp, obj_.positions[p]);
+                const bool near =
+                    std::abs(warped.x) < 10 && std::abs(warped.y) < 12 && warped.z > 0;
+                reference_[p] = near ? warped : reference_[p];
             }
         }
         return Done{};
@@ -417,8 +418,7 @@ class MakehumanImporter {
         return Done{};
     }
 
-    /// Appends the eyes, which move with the base mesh, to the mesh and all that belongs to its
-    /// vertices.
+    /// Appends the eyes, which move with the base mesh, to the mesh and its vertex attributes.
     Status read_eyes() {
         const std::filesystem::path folder = folder_ / "proxies";
         std::error_code ignored;
@@ -466,8 +466,8 @@ class MakehumanImporter {
         return Done{};
     }
 
-    /// The base mesh was drawn as a cage: as it is, the skin of the face has edges too long for
-    /// normals and strain to vary smoothly between them.
+    /// Subdivides the skin of the face: the base mesh was modeled as a cage, with edges too long
+    /// for normals and strain to vary smoothly.
     void subdivide_face() {
         std::vector<char> chosen;
         for (const ObjFace& face : obj_.faces) {

@@ -22,12 +22,12 @@ struct MakehumanOffset {
     Vec3 offset = Vec3(0);  ///< [dm]
 };
 
-/// A .target: lines "vertex dx dy dz". Fails on an index of `vertices` or more, or a number that is
+/// A .target file: lines "vertex dx dy dz". Fails on an index >= `vertices`, or a number that is
 /// missing, not finite or beyond 1000.
 [[nodiscard]] Result<std::vector<MakehumanOffset>>
 parse_makehuman_target(std::string_view text, const std::string& file, std::size_t vertices);
 
-/// Where a vertex of a proxy (.mhclo) is fitted to the base mesh.
+/// How a vertex of a proxy (.mhclo) is fitted to the base mesh.
 struct MakehumanFit {
     std::array<std::uint32_t, 3> vertices = {};  ///< of the base mesh
     Vec3 weights = Vec3(0);                      ///< of their positions
@@ -35,8 +35,8 @@ struct MakehumanFit {
 };
 
 struct MakehumanProxy {
-    /// Along x, y and z: two vertices of the base mesh, and their distance on it as the offsets
-    /// were made [dm].
+    /// Along x, y and z: two vertices of the base mesh, and their distance when the offsets were
+    /// made [dm].
     struct Scale {
         std::array<std::uint32_t, 2> vertices = {};
         float distance = 1;

@@ -139,12 +139,12 @@ class TrcParser {
         }
         for (std::size_t m = 0; m < motion_.markers(); ++m) {
             Vec3 p(0);
-            bool seen = true;
+            bool visible = true;
             for (int k = 0; k < 3; ++k) {
                 const std::size_t column = kFirstColumns + 3 * m + static_cast<std::size_t>(k);
                 const std::string_view cell =
                     column < cells_.size() ? cells_[column] : std::string_view{};
-                seen = seen && !cell.empty();
+                visible = visible && !cell.empty();
                 if (!cell.empty()
                     && (!read_number(cell, p[k])
                         || std::abs(p[k]) * meters_ > kLargestMarkerFile)) {
@@ -154,7 +154,7 @@ class TrcParser {
                 }
             }
             motion_.positions.push_back(
-                seen ? meters_ * p : Vec3(std::numeric_limits<float>::quiet_NaN()));
+                visible ? meters_ * p : Vec3(std::numeric_limits<float>::quiet_NaN()));
         }
         return Done{};
     }

@@ -17,9 +17,9 @@ namespace limn {
 //     Frame#  Time  brow        lip
 //                   X1  Y1  Z1  X2  Y2  Z2
 //     1       0     1   2   3   4   5   6
-//     2       0.02              4   5   6           the brow is not seen
+//     2       0.02              4   5   6           the brow is hidden
 //
-// Times are those of the rate; the column is not read.
+// Times follow from the rate; the time column is ignored.
 
 struct MarkerLimits {
     std::size_t max_markers = 4096;

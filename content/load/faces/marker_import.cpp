@@ -26,20 +26,20 @@ namespace {
 
 using DVec2 = glm::dvec2;
 
-/// Angle around a vertical axis, times the radius, and height. The axis lies as far behind the
-/// middle as the face is wide.
+/// Unrolled around a vertical axis: angle times radius, and height. The axis is as far behind the
+/// center as the face is wide.
 std::vector<DVec2> unroll(std::span<const Vec3> positions) {
     Bounds box;
     for (const Vec3& p : positions) {
         grow(box, p);
     }
-    const Vec3 middle = center(box);
+    const Vec3 origin = center(box);
     const double radius =
         static_cast<double>(std::max({half_extent(box).x, half_extent(box).z, 1e-3f})) * 2.0;
     std::vector<DVec2> flat;
     for (const Vec3& p : positions) {
         const double angle = std::atan2(
-            static_cast<double>(p.x - middle.x), static_cast<double>(p.z - middle.z) + radius);
+            static_cast<double>(p.x - origin.x), static_cast<double>(p.z - origin.z) + radius);
         flat.emplace_back(radius * angle, p.y);
     }
     return flat;
@@ -97,7 +97,7 @@ MeshData make_surface(std::span<const Vec3> rest) {
     return mesh;
 }
 
-/// What was recorded of a face without the motion of its head, and how it was at rest.
+/// The recording of a face without the motion of its head, and its rest pose.
 struct Take {
     MarkerMotion face;
     std::vector<Vec3> rest;
@@ -149,10 +149,10 @@ ClipData make_clip(const MarkerMotion& face) {
     return clip;
 }
 
-/// Markers as joints of the skin of `surface`, which knows them already.
+/// Adds the markers as joints of the skin of `surface`, which already has their influences.
 GltfScene make_scene(const std::string& name, const Take& take, MeshData surface) {
     const MarkerMotion& face = take.face;
-    const std::vector<Vec3>& places = take.rest;
+    const std::vector<Vec3>& rest = take.rest;
     GltfScene scene;
     scene.name = name;
     scene.skeleton.joints.push_back(name);
@@ -165,20 +165,20 @@ GltfScene make_scene(const std::string& name, const Take& take, MeshData surface
     root.parts.push_back({0, 0});
     root.skin = 0;
     scene.joints.push_back(-1);
-    for (std::size_t m = 0; m < places.size(); ++m) {
+    for (std::size_t m = 0; m < rest.size(); ++m) {
         const auto joint = static_cast<std::uint16_t>(m + 1);
         GltfNode& node = scene.nodes.emplace_back();
         node.name = face.names[m];
-        node.transform.position = places[m];
+        node.transform.position = rest[m];
         scene.joints.push_back(joint);
         scene.skeleton.joints.push_back(face.names[m]);
         scene.skeleton.parents.push_back(0);
-        scene.skeleton.rest.translations.push_back(places[m]);
+        scene.skeleton.rest.translations.push_back(rest[m]);
         skin.joints.push_back(joint);
-        skin.joint_from_mesh.push_back(affine_from(-places[m], Quat(1, 0, 0, 0), Vec3(1)));
+        skin.joint_from_mesh.push_back(affine_from(-rest[m], Quat(1, 0, 0, 0), Vec3(1)));
     }
-    scene.skeleton.rest.rotations.assign(places.size() + 1, Quat(1, 0, 0, 0));
-    scene.skeleton.rest.scales.assign(places.size() + 1, Vec3(1));
+    scene.skeleton.rest.rotations.assign(rest.size() + 1, Quat(1, 0, 0, 0));
+    scene.skeleton.rest.scales.assign(rest.size() + 1, Vec3(1));
     scene.skins.push_back(std::move(skin));
     scene.meshes.push_back(std::move(surface));
     scene.materials.push_back(

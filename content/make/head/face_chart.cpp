@@ -36,7 +36,7 @@ class Chart {
         }
     }
 
-    /// Of the nearest of the triangles at the nearest vertex.
+    /// The texture coordinates on the nearest triangle at the nearest vertex.
     [[nodiscard]] Vec2 at(const Vec3& p) const {
         Vec2 uv = {0, 0};
         float nearest = kInfinite;
@@ -61,11 +61,11 @@ class Chart {
   private:
     [[nodiscard]] std::size_t nearest_vertex(const Vec3& p) const {
         std::size_t nearest = 0;
-        float least = kInfinite;
+        float least_distance2 = kInfinite;
         for (std::size_t v = 0; v < head_.positions.size(); ++v) {
             const Vec3 offset = head_.positions[v] - p;
-            if (glm::dot(offset, offset) < least) {
-                least = glm::dot(offset, offset);
+            if (glm::dot(offset, offset) < least_distance2) {
+                least_distance2 = glm::dot(offset, offset);
                 nearest = v;
             }
         }

@@ -26,10 +26,10 @@ struct Crease {
     float depth;
 };
 
-// Places, spacings and widths after anatomy: face_regions.h.
+// Positions, spacings and widths after anatomy: face_regions.h.
 constexpr Crease kCreases[] = {
-    // forehead: over the brows towards the temples, unevenly spaced; shorter ones between, and
-    // branches that leave a long one
+    // forehead: over the brows towards the temples, unevenly spaced; shorter ones in between, and
+    // branches of a long one
     {{0, 11.5f}, {7.0f, 10.9f}, {13.0f, 13.0f}, 0.7f, 0.15f},
     {{0, 15.0f}, {8.0f, 13.9f}, {16.5f, 17.6f}, 0.95f, 0.29f},
     {{0, 17.4f}, {7.5f, 16.4f}, {16.5f, 20.9f}, 0.8f, 0.23f},
@@ -60,7 +60,7 @@ constexpr Crease kCreases[] = {
     {{1.8f, 35.6f}, {3.0f, 34.8f}, {4.3f, 33.3f}, 0.75f, 0.12f},
     // outside the corner of the mouth
     {{14.6f, 45.6f}, {16.2f, 49.2f}, {14.9f, 53.4f}, 1.5f, 0.06f},
-    // upper lip, from its border upwards, of uneven lengths and distances
+    // upper lip, from its border upwards, with uneven lengths and spacing
     {{0.8f, 46.4f}, {0.8f, 45.3f}, {0.9f, 44.1f}, 0.5f, 0.06f},
     {{1.8f, 46.6f}, {2.0f, 44.8f}, {2.1f, 42.8f}, 0.6f, 0.07f},
     {{3.1f, 46.6f}, {3.4f, 45.3f}, {3.7f, 44.0f}, 0.5f, 0.06f},
@@ -79,15 +79,15 @@ constexpr Crease kOverhangs[] = {
     {{4.8f, 51.8f}, {7.6f, 53.5f}, {10.4f, 55.0f}, 1.4f, 0.14f},
 };
 
-/// The nearest place on a crease.
-struct CreasePlace {
+/// The nearest point of a crease.
+struct CreasePoint {
     float distance = 1e6f;
     float along = 0;     ///< 0 .. 1
-    bool right = false;  ///< of the way from `a` to `c`, with rows downwards
+    bool right = false;  ///< right of the curve from `a` to `c`, with rows downwards
 };
 
-/// Of the curve itself, not of chords, whose corners would show as lines across the crease.
-CreasePlace nearest_on(const Crease& crease, const Vec2& p) {
+/// On the curve itself, not on chords, whose corners would show as lines across the crease.
+CreasePoint nearest_on(const Crease& crease, const Vec2& p) {
     constexpr int kGuesses = 8;
     constexpr int kNewtonSteps = 3;
     const Vec2 to_b = crease.b - crease.a;
@@ -103,33 +103,34 @@ CreasePlace nearest_on(const Crease& crease, const Vec2& p) {
             t = guess;
         }
     }
-    // One that crosses the middle of the face goes on beyond it.
+    // A crease that crosses the midline of the face continues beyond it.
     const float start = crease.a.x == 0 ? -0.2f : 0.0f;
     for (int i = 0; i < kNewtonSteps; ++i) {
-        const Vec2 way = 2.0f * (to_b + t * bend);
+        const Vec2 tangent = 2.0f * (to_b + t * bend);
         const Vec2 offset = offset_at(t);
-        const float slope = glm::dot(way, way) - 2 * glm::dot(offset, bend);
-        const float step = glm::dot(offset, way) / std::max(slope, 0.25f * glm::dot(way, way));
+        const float slope = glm::dot(tangent, tangent) - 2 * glm::dot(offset, bend);
+        const float step =
+            glm::dot(offset, tangent) / std::max(slope, 0.25f * glm::dot(tangent, tangent));
         t = glm::clamp(t + step, start, 1.0f);
     }
-    const Vec2 way = to_b + t * bend;
+    const Vec2 tangent = to_b + t * bend;
     const Vec2 offset = offset_at(t);
-    return {glm::length(offset), std::max(t, 0.0f), way.x * offset.y > way.y * offset.x};
+    return {glm::length(offset), std::max(t, 0.0f), tangent.x * offset.y > tangent.y * offset.x};
 }
 
-/// 0 at the ends of a crease, 1 in its middle; one that crosses the middle of the face has no end
+/// 0 at the ends of a crease, 1 at its center; one that crosses the midline of the face has no end
 /// there.
 float crease_taper(const Crease& crease, float along) {
     const float start = crease.a.x == 0 ? 1 : glm::smoothstep(0.0f, 0.35f, along);
     return start * (1 - glm::smoothstep(0.45f, 1.0f, along));
 }
 
-/// A share of the depth of a crease: no face has long ones in one piece.
+/// Factor of the depth of a crease: on real faces, long creases are broken into pieces.
 float crease_pieces(const Vec2& uv, std::uint32_t seed) {
     return glm::mix(0.3f, 1.0f, glm::smoothstep(-0.5f, 0.1f, fbm(uv, 9, seed, 2)));
 }
 
-/// |x|, but smooth: lines that cross the middle of the face have no kink there.
+/// |x|, but smooth: lines that cross the midline of the face have no kink there.
 float mirrored(float x) {
     constexpr float kWidth = 2;  // columns
     const float left = std::abs(x);
@@ -153,7 +154,7 @@ float height_of(const Crease& crease, const Vec2& p, Profile&& height) {
     if (!is_near(crease, p)) {
         return 0;
     }
-    const CreasePlace at = nearest_on(crease, p);
+    const CreasePoint at = nearest_on(crease, p);
     const float taper = crease_taper(crease, at.along);
     const float d = at.distance / (crease.width * (0.55f + 0.45f * taper));
     return crease.depth * taper * height(d, at.right);
@@ -205,7 +206,7 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
         for (const Crease& crease : kOverhangs) {
             height += overhang_height(crease, p);
         }
-        // No fold is as deep all along, or as deep as that of the other side.
+        // The depth of a fold varies along it, and between both sides of the face.
         height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;
         const float chin =
             1 - glm::smoothstep(0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6.5f, 3.8f)));

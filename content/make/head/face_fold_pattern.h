@@ -6,8 +6,8 @@ namespace limn {
 
 /// Folds of a face as a wrinkle map for the skin of the mesh "head", and of others by face_chart.h:
 /// lines of the forehead, of the glabella and the root of the nose, crow's feet, folds of the lower
-/// lid, nasolabial fold, lines around the mouth and a dimpled chin. Where they show, and how deep,
-/// is up to a wrinkle_surface.
+/// lid, nasolabial fold, lines around the mouth and a dimpled chin. A wrinkle_surface decides where
+/// they show, and how deep.
 struct FaceFoldsPattern {
     PatternSize image;
     float depth = 1;
@@ -16,8 +16,8 @@ struct FaceFoldsPattern {
 
 LIMN_FIELDS(FaceFoldsPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(depth, "of all folds; 1: as steep as of a face of middle age", "", 0, 4);
-    LIMN_FIELD(wander, "of folds to the sides", "mm", 0, 5);
+    LIMN_FIELD(depth, "depth of all folds; 1: that of a middle-aged face", "", 0, 4);
+    LIMN_FIELD(wander, "irregularity of folds, sideways", "mm", 0, 5);
 }
 
 [[nodiscard]] PatternMaps make_face_folds(const FaceFoldsPattern& pattern);

@@ -33,9 +33,9 @@ namespace limn {
 namespace {
 
 constexpr float kMeters = 0.01f;      ///< per centimeter
-constexpr float kMinWeight = 0.001f;  ///< of a joint that counts
+constexpr float kMinWeight = 0.001f;  ///< smaller weights of joints are dropped
 
-float spot(const Vec3& p, const Vec3& center, float radius) {
+float gaussian_spot(const Vec3& p, const Vec3& center, float radius) {
     const Vec3 offset = p - center;
     return std::exp(-glm::dot(offset, offset) / square(radius));
 }
@@ -47,14 +47,16 @@ Vec3 skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& sh
     color *=
         glm::mix(Vec3(1), Vec3(0.16f, 0.15f, 0.16f), shape.scalp_shade * scalp_hair_cover(point));
     const float flush = std::min(
-        1.0f, 0.8f * spot(p, {4.4f, -0.2f, 8.6f}, 2.4f) + spot(p, {0, 0.2f, 12}, 1.5f)
+        1.0f, 0.8f * gaussian_spot(p, {4.4f, -0.2f, 8.6f}, 2.4f)
+                  + gaussian_spot(p, {0, 0.2f, 12}, 1.5f)
                   + (vertex.loops == HeadLoops::Ear ? 0.9f * (1 - ear_on_cheek(vertex)) : 0.0f)
-                  + 0.4f * spot(p, {0, -6.3f, 10.2f}, 1.6f));
+                  + 0.4f * gaussian_spot(p, {0, -6.3f, 10.2f}, 1.6f));
     color = glm::mix(color, Vec3(1.0f, 0.80f, 0.76f), flush);
-    color = glm::mix(color, Vec3(0.83f, 0.76f, 0.78f), 0.6f * spot(p, {2.6f, 2.0f, 9.2f}, 0.9f));
+    color = glm::mix(
+        color, Vec3(0.83f, 0.76f, 0.78f), 0.6f * gaussian_spot(p, {2.6f, 2.0f, 9.2f}, 0.9f));
     if (vertex.loops == HeadLoops::Mouth) {
         const float arch = std::sqrt(std::max(1 - square(p.x / 2.45f), 0.0f));
-        const float bow = 0.14f * spot({p.x, 0, 0}, {0, 0, 0}, 0.3f);
+        const float bow = 0.14f * gaussian_spot({p.x, 0, 0}, {0, 0, 0}, 0.3f);
         const float edge = p.y > -3.3f ? 0.85f * arch - bow : arch;
         const float lips = 1 - glm::smoothstep(edge - 0.14f, edge + 0.06f, std::abs(p.y + 3.3f));
         color = glm::mix(color, Vec3(0.86f, 0.52f, 0.52f), lips);
@@ -78,30 +80,31 @@ Vec2 uv_at(const Vec2& chart) {
     return {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)};
 }
 
-constexpr float kAroundNeck = 1.4f;  ///< in the chart of pores, about as far as it would lie
+constexpr float kAroundNeck =
+    1.4f;  ///< step across the seam in the chart of pores, near the natural one
 
-/// Whether the seam of the texture is seen at `p` [cm], behind the neck.
+/// Whether the texture seam is visible at `p` [cm], behind the neck.
 bool at_nape(const Vec3& p) {
     constexpr float kTop = -3;  // within the hair
     constexpr float kEnd = -14;
     return p.y < kTop && p.y > kEnd;
 }
 
-/// For patterns of one size, a unit as long as one across the forehead by `uvs`. `reference`: of
-/// the skin of the face alone a number. `joins`: where they go on across the seam.
+/// A chart for patterns of uniform size, with a unit as long as across the forehead in `uvs`.
+/// `reference`: NaN outside the skin of the face. `joins`: where patterns continue across the seam.
 std::vector<Vec2> make_pore_chart(
     const HeadPart& part, std::span<const Vec3> reference, std::span<const ChartJoin> joins) {
-    constexpr float kUnit = 33;       // [cm]
-    constexpr float kFaceCounts = 9;  // times more than the rest, by trial
+    constexpr float kUnit = 33;           // [cm]
+    constexpr float kFaceImportance = 9;  // added to that of the rest, 1; by trial
     std::vector<float> importance;
     for (const Vec3& p : reference) {
         const float face = is_finite(p) ? glm::smoothstep(6.5f, 8.5f, p.z) : 0.0f;
-        importance.push_back(1 + kFaceCounts * face);
+        importance.push_back(1 + kFaceImportance * face);
     }
     return make_even_chart(part.mesh, kUnit, importance, joins);
 }
 
-/// Vertices that the seam of the texture doubles are there twice.
+/// Vertices on the texture seam are duplicated.
 HeadPart make_skin(const HeadShape& shape) {
     const HeadLayout& layout = head_layout(shape.shoulders);
     const std::vector<Vec3> positions = wrap_head(shape);
@@ -131,7 +134,7 @@ HeadPart make_skin(const HeadShape& shape) {
             const bool beyond = layout.vertices[quad[k]].chart.x < high - 0.5f * kHeadColumns;
             corners[k] = vertex_at(quad[k], beyond);
         }
-        // By the shorter diagonal, which is the same on both sides.
+        // Split along the shorter diagonal, which is the same on both sides.
         const auto distance = [&](int a, int b) {
             return glm::distance(positions[quad[a]], positions[quad[b]]);
         };
@@ -149,7 +152,7 @@ HeadPart make_skin(const HeadShape& shape) {
         }
     }
     generate_normals(part.mesh);
-    // Ears, shoulders and what lies behind lids and lips are no skin of the face.
+    // Ears, shoulders and what lies behind lids and lips do not belong to the face.
     std::vector<Vec3> reference;
     for (const HeadPoint& point : part.points) {
         const bool face = (point.loops == HeadLoops::None
@@ -171,7 +174,7 @@ HeadPart make_skin(const HeadShape& shape) {
     return part;
 }
 
-/// Some vertices of the skin, where they are on it and in its texture.
+/// Some vertices of the skin, with its positions and texture coordinates.
 HeadPart make_marker_surface(HeadShape shape) {
     shape.shoulders = false;
     const std::vector<Vec3> positions = wrap_head(shape);
@@ -215,13 +218,13 @@ HeadPart make_part(const HeadShape& shape) {
 
 enum class HeadJoint : std::uint16_t { Head, Jaw, LeftEye, RightEye, Shoulders };
 
-/// How much it turns with the head, not the shoulders.
-float head_share(const HeadPoint& point) {
-    const float share = point.skin ? turns_with_head(point.rest) : 1.0f;
-    return share < kMinWeight ? 0 : share > 1 - kMinWeight ? 1 : share;
+/// Weight of the head, against that of the shoulders.
+float head_weight(const HeadPoint& point) {
+    const float weight = point.skin ? turns_with_head(point.rest) : 1.0f;
+    return weight < kMinWeight ? 0 : weight > 1 - kMinWeight ? 1 : weight;
 }
 
-/// Of the joints of make_head_rig.
+/// Weights of the joints of make_head_rig.
 SkinWeights head_weights(std::span<const HeadPoint> points, const HeadShape& shape) {
     SkinWeights skin;
     const auto add = [&](HeadJoint joint, float weight) {
@@ -235,7 +238,7 @@ SkinWeights head_weights(std::span<const HeadPoint> points, const HeadShape& sha
         if (point.eye != 0) {
             add(point.eye > 0 ? HeadJoint::LeftEye : HeadJoint::RightEye, 1);
         } else {
-            const float turning = shape.shoulders ? head_share(point) : 1.0f;
+            const float turning = shape.shoulders ? head_weight(point) : 1.0f;
             const float jaw = turning * point.jaw < kMinWeight ? 0 : turning * point.jaw;
             add(HeadJoint::Head, turning - jaw);
             add(HeadJoint::Jaw, jaw);
@@ -252,13 +255,13 @@ HeadShape complete(HeadShape shape) {
     return shape;
 }
 
-/// With positions [cm] of the head that `shape` asks for, and normals.
-HeadPart make_placed_part(const HeadShape& shape) {
+/// With the final positions [cm] for `shape`, and normals.
+HeadPart make_skewed_part(const HeadShape& shape) {
     HeadPart part = make_part(shape);
     MeshData& mesh = part.mesh;
     const bool on_skin = shape.part == HeadPartKind::Skin || shape.part == HeadPartKind::Shirt
                          || shape.part == HeadPartKind::Markers;
-    if (!on_skin) {  // points on the skin are those of a skewed head already
+    if (!on_skin) {  // points on the skin are already skewed
         for (Vec3& p : mesh.positions) {
             p = skew_head(p, shape);
         }
@@ -269,12 +272,12 @@ HeadPart make_placed_part(const HeadShape& shape) {
     return part;
 }
 
-/// From `positions` [m], which are those of `shape`, to the same head of seventy years.
+/// From `positions` [m], those of `shape`, to the same head at seventy.
 MorphTarget make_aging(std::span<const Vec3> positions, const HeadShape& shape) {
     constexpr float kMinOffset = 1e-5f;
     HeadShape old = shape;
     old.age = 1;
-    const MeshData aged = make_placed_part(old).mesh;
+    const MeshData aged = make_skewed_part(old).mesh;
     LIMN_CHECK(aged.positions.size() == positions.size());
     MorphTarget target;
     target.name = "age";
@@ -288,7 +291,7 @@ MorphTarget make_aging(std::span<const Vec3> positions, const HeadShape& shape) 
     return target;
 }
 
-void leave_out(MeshData& mesh, const std::vector<bool>& triangles) {
+void remove_triangles(MeshData& mesh, const std::vector<bool>& triangles) {
     std::vector<std::uint32_t> kept;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         if (!triangles[t]) {
@@ -300,9 +303,9 @@ void leave_out(MeshData& mesh, const std::vector<bool>& triangles) {
 
 }  // namespace
 
-MeshData make_head(const HeadShape& wanted) {
-    const HeadShape shape = complete(wanted);
-    HeadPart part = make_placed_part(shape);
+MeshData make_head(const HeadShape& requested) {
+    const HeadShape shape = complete(requested);
+    HeadPart part = make_skewed_part(shape);
     MeshData& mesh = part.mesh;
     for (Vec3& p : mesh.positions) {
         p *= kMeters;
@@ -317,33 +320,33 @@ MeshData make_head(const HeadShape& wanted) {
     generate_tangents(mesh);
     generate_morph_tangents(mesh);
     if (!part.covered.empty()) {
-        leave_out(mesh, part.covered);
+        remove_triangles(mesh, part.covered);
     }
     update_bounds(mesh);
     return mesh;
 }
 
-MeshRig make_head_rig(const HeadShape& wanted) {
-    const HeadShape shape = complete(wanted);
+MeshRig make_head_rig(const HeadShape& requested) {
+    const HeadShape shape = complete(requested);
     const Vec3 right = kEyeCenter * Vec3(-1, 1, 1);
-    std::vector<Vec3> places = {
+    std::vector<Vec3> joints = {
         Vec3(0), Vec3(0, kJawAxis.x, kJawAxis.y), skew_head(kEyeCenter, shape),
         skew_head(right, shape)};
     MeshRig rig;
     rig.skeleton.joints = {"head", "jaw", "left_eye", "right_eye"};
     rig.skeleton.parents = {-1, 0, 0, 0};
-    if (shape.shoulders) {  // last: skins of other parts know the rest
-        places.emplace_back(0, -16, -3);
+    if (shape.shoulders) {  // last, so that the other joints have the same indices without it
+        joints.emplace_back(0, -16, -3);
         rig.skeleton.joints.emplace_back("shoulders");
         rig.skeleton.parents.push_back(-1);
     }
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        rig.skeleton.rest.translations.push_back(kMeters * places[i]);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        rig.skeleton.rest.translations.push_back(kMeters * joints[i]);
         rig.skeleton.rest.rotations.emplace_back(1, 0, 0, 0);
         rig.skeleton.rest.scales.emplace_back(1);
         rig.skin.joints.push_back(static_cast<std::uint16_t>(i));
         rig.skin.joint_from_mesh.push_back(
-            affine_from(-kMeters * places[i], Quat(1, 0, 0, 0), Vec3(1)));
+            affine_from(-kMeters * joints[i], Quat(1, 0, 0, 0), Vec3(1)));
     }
     if (shape.part == HeadPartKind::Skin) {
         rig.clips = make_head_clips(shape.says, shape.grows_old);

@@ -16,7 +16,7 @@ namespace limn {
 namespace {
 
 constexpr float kPerMm = 0.1f;       ///< centimeters
-constexpr float kSkinOnJaw = 0.85f;  ///< skin of the chin turns less than the teeth
+constexpr float kSkinOnJaw = 0.85f;  ///< the skin of the chin turns less than the teeth
 
 constexpr Lips kUpper = Lips::Upper;
 constexpr Lips kLower = Lips::Lower;
@@ -86,7 +86,7 @@ constexpr ActionUnit kUnits[] = {
      .pulls = {{{{2.1f, -1.6f, 10.9f}, {1.6f, 5.6f, 0}, {1.7f, 2.1f, 2.4f}, kUpper}}}},
     {.name = "AU12",
      .sided = true,
-     // Wide, so that cheek and lip gather instead of meeting at a ledge.
+     // Wide radii, so that cheek and lip bunch up instead of meeting at a ledge.
      .pulls = {{
          {{3.0f, -3.3f, 9.9f}, {6.8f, 8.6f, -3.8f}, {3.3f, 3.4f, 3.4f}},
          {{4.3f, 0.1f, 9.2f}, {0.2f, 3.2f, 2.0f}, {3.0f, 2.8f, 3.6f}},
@@ -240,7 +240,7 @@ float fall_off(float d2) {
     return square(std::max(1 - d2, 0.0f));
 }
 
-float lip_share(Lips lips, float upper) {
+float lip_weight(Lips lips, float upper) {
     return lips == Lips::Both ? 1 : lips == Lips::Upper ? upper : 1 - upper;
 }
 
@@ -248,20 +248,20 @@ Vec3 mirrored_unit(const Vec3& v) {
     return {-v.x, v.y, v.z};
 }
 
-/// Of one pull and its mirror image.
+/// Offset by a pull and its mirror image.
 Vec3 pull_offset(const MusclePull& pull, const HeadPoint& point) {
-    const auto share = [&](const Vec3& center) {
-        const Vec3 q = (point.rest - center) / pull.reach;
+    const auto weight = [&](const Vec3& center) {
+        const Vec3 q = (point.rest - center) / pull.radii;
         return fall_off(glm::dot(q, q));
     };
-    Vec3 offset = share(pull.center) * pull.motion;
+    Vec3 offset = weight(pull.center) * pull.motion;
     if (pull.center.x > 0) {
-        offset += share(mirrored_unit(pull.center)) * mirrored_unit(pull.motion);
+        offset += weight(mirrored_unit(pull.center)) * mirrored_unit(pull.motion);
     }
-    return kPerMm * lip_share(pull.lips, point.upper_lip) * offset;
+    return kPerMm * lip_weight(pull.lips, point.upper_lip) * offset;
 }
 
-/// Turns about the axis parallel to x through `center` by `angle` [rad], z towards y.
+/// Rotates about the axis parallel to x through `center` by `angle` [rad], z towards y.
 Vec3 turn_about_x(const Vec3& p, const Vec3& center, float angle) {
     const float c = std::cos(angle);
     const float s = std::sin(angle);
@@ -271,31 +271,31 @@ Vec3 turn_about_x(const Vec3& p, const Vec3& center, float angle) {
 
 /// `p` and the result on the left side.
 Vec3 turn_lid(const ActionUnit& unit, const HeadPoint& point, const Vec3& p) {
-    // How much each loop follows the edge of the lid; behind it the pocket follows less again.
+    // How much each loop follows the edge of the lid; less again in the pocket behind it.
     constexpr std::array<float, kEyeLoops + 1> kFollow = {
         0, 0.01f, 0.04f, 0.1f, 0.19f, 0.32f, 0.49f, 0.67f, 0.83f, 1, 1, 0.9f, 0.6f, 0.3f, 0};
     static_assert(kFollow[kLidLoop] == 1);
     const bool upper = std::sin(point.angle) > 0;
-    const float share = upper ? unit.upper_lid : unit.lower_lid;
-    if (point.loops != HeadLoops::Eye || share == 0) {
+    const float closing = upper ? unit.upper_lid : unit.lower_lid;
+    if (point.loops != HeadLoops::Eye || closing == 0) {
         return p;
     }
     const Vec3 own = lid_margin(point.angle) - kEyeCenter;
     const Vec3 other = lid_margin(-point.angle) - kEyeCenter;
-    const float turn = share * (std::atan2(other.y, other.z) - std::atan2(own.y, own.z));
+    const float turn = closing * (std::atan2(other.y, other.z) - std::atan2(own.y, own.z));
     const float corner = glm::smoothstep(0.9f, 1.0f, std::abs(std::cos(point.angle)));
     const float follow = std::pow(kFollow[point.loop], 1 + 3 * corner);
-    const float reach = glm::length(Vec2(own.y, own.z));
-    // Skin before the corners, farther from the axis, moves as far as they do.
-    const float nearer =
-        std::min(reach / glm::length(Vec2(p.y, p.z) - Vec2(kEyeCenter.y, kEyeCenter.z)), 1.0f);
-    Vec3 turned = turn_about_x(p, kEyeCenter, nearer * follow * turn) - kEyeCenter;
-    // Both edges meet at one distance from the axis, and keep clear of the cornea on the way there,
-    // which is straight.
-    float scale = glm::mix(1.0f, glm::length(Vec2(other.y, other.z)) / reach, share);
+    const float radius = glm::length(Vec2(own.y, own.z));
+    // Skin in front of the corners, farther from the axis, moves as far as they do.
+    const float slowing =
+        std::min(radius / glm::length(Vec2(p.y, p.z) - Vec2(kEyeCenter.y, kEyeCenter.z)), 1.0f);
+    Vec3 turned = turn_about_x(p, kEyeCenter, slowing * follow * turn) - kEyeCenter;
+    // Both edges meet at one distance from the axis, and stay clear of the cornea on their straight
+    // path there.
+    float scale = glm::mix(1.0f, glm::length(Vec2(other.y, other.z)) / radius, closing);
     if (point.loop > kLidLoop) {
         const float clear = (kEyeRadius + 0.12f) / glm::length(turned);
-        scale = std::max(scale, glm::mix(1.0f, clear, std::min(std::abs(share), 1.0f)));
+        scale = std::max(scale, glm::mix(1.0f, clear, std::min(std::abs(closing), 1.0f)));
     }
     scale = glm::mix(1.0f, scale, follow);
     turned.y *= scale;
@@ -313,14 +313,14 @@ Vec3 roll_lip(const ActionUnit& unit, const HeadPoint& point, const Vec3& p) {
     const float side = p.y > line.y ? 1.0f : -1.0f;
     const Vec3 axis = {p.x, line.y + 0.36f * side, line.z + 0.12f};
     const Vec3 q = (point.rest - axis) / kRollRadius;
-    const float share =
+    const float weight =
         fall_off(glm::dot(q, q)) * square(1 - square(c)) * std::abs(2 * point.upper_lip - 1);
     const float roll = side > 0 ? -unit.upper_roll : unit.lower_roll;
-    return turn_about_x(p, axis, share * radians(roll));
+    return turn_about_x(p, axis, weight * radians(roll));
 }
 
-float jaw_share(const HeadPoint& point, const Vec3& p) {
-    // Between the lips all of it changes; beside the mouth it changes over the cheek.
+float jaw_weight(const HeadPoint& point, const Vec3& p) {
+    // It changes abruptly between the lips, and gradually over the cheek beside the mouth.
     const float cheek = glm::smoothstep(0.9f, -5.4f, p.y);
     const float mouth =
         1 - glm::smoothstep(1.9f, 4.4f, glm::length(Vec2(p.x, 1.2f * (p.y + 3.4f))));
@@ -351,7 +351,7 @@ HeadPoint skin_point(const HeadVertex& vertex, const Vec3& rest) {
     point.upper_lip = vertex.loops == HeadLoops::Mouth
                           ? 0.5f + std::copysign(0.5f, std::sin(vertex.angle)) * open
                           : glm::smoothstep(-1.8f, 1.8f, rest.y + 3.4f);
-    point.jaw = vertex.loops == HeadLoops::Ear ? 0 : jaw_share(point, rest);
+    point.jaw = vertex.loops == HeadLoops::Ear ? 0 : jaw_weight(point, rest);
     return point;
 }
 
@@ -367,14 +367,14 @@ Vec3 action_offset(const ActionUnit& unit, const HeadPoint& point, const HeadSha
     Vec3 p = point.rest;
     if (point.skin) {
         for (const MusclePull& pull : unit.pulls) {
-            const Vec3 offset = pull.reach.x > 0 ? pull_offset(pull, point) : Vec3(0);
+            const Vec3 offset = pull.radii.x > 0 ? pull_offset(pull, point) : Vec3(0);
             if (offset == Vec3(0)) {
                 continue;
             }
             const Vec3 from = p;
             p += offset;
             if (pull.slides) {
-                const float side = p.x < 0 ? -1.0f : 1.0f;  // so that both agree to the last bit
+                const float side = p.x < 0 ? -1.0f : 1.0f;  // so that both sides are bit-identical
                 const Vec3 out = Vec3(side, 1, 1) * head_gradient({side * p.x, p.y, p.z}, shape, 1)
                                  * Vec3(std::abs(p.x) < 0.01f ? 0 : 1, 1, 1);
                 const float rise = head_distance(p, shape, 1) - head_distance(from, shape, 1);
@@ -392,7 +392,7 @@ Vec3 action_offset(const ActionUnit& unit, const HeadPoint& point, const HeadSha
     return p - point.rest;
 }
 
-float left_share(float x) {
+float left_weight(float x) {
     return glm::smoothstep(-1.0f, 1.0f, x);
 }
 

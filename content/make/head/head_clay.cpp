@@ -72,13 +72,13 @@ bool contains(const StrokePath& path, const PointOf<float>& p) {
            && p.y < path.high.y && p.z < path.high.z;
 }
 
-/// Each of the four.
+/// For each of the four points.
 auto contains(const StrokePath& path, const PointOf<Four>& p) {
     return (p.x > path.low.x) & (p.y > path.low.y) & (p.z > path.low.z) & (p.x < path.high.x)
            & (p.y < path.high.y) & (p.z < path.high.z);
 }
 
-/// To the curve, by its nearest chord [cm].
+/// Distance to the nearest chord of the curve [cm].
 template <typename Number>
 Number path_distance(const StrokePath& path, const PointOf<Number>& p) {
     Number nearest2 = same_for_all<Number>(kFar * kFar);
@@ -109,7 +109,7 @@ template float join(float, std::span<const Solid>, const PointOf<float>&);
 template Four join(Four, std::span<const Solid>, const PointOf<Four>&);
 
 std::vector<StrokePath>
-make_stroke_paths(std::span<const Stroke> strokes, const std::function<Vec3(const Vec3&)>& place) {
+make_stroke_paths(std::span<const Stroke> strokes, const std::function<Vec3(const Vec3&)>& map) {
     std::vector<StrokePath> paths(strokes.size());
     for (std::size_t i = 0; i < strokes.size(); ++i) {
         const Stroke& stroke = strokes[i];
@@ -120,7 +120,7 @@ make_stroke_paths(std::span<const Stroke> strokes, const std::function<Vec3(cons
             const float t = static_cast<float>(k) / static_cast<float>(path.points.size() - 1);
             const Vec3 p =
                 glm::mix(glm::mix(stroke.a, stroke.b, t), glm::mix(stroke.b, stroke.c, t), t);
-            path.points[k] = place ? place(p) : p;
+            path.points[k] = map ? map(p) : p;
             path.low = glm::min(path.low, path.points[k] - 3 * stroke.radius);
             path.high = glm::max(path.high, path.points[k] + 3 * stroke.radius);
         }

@@ -11,14 +11,14 @@
 
 namespace limn {
 
-// What implicit surfaces of a head are made of, in centimeters: solids that blend into one another,
+// Building blocks of a head's implicit surface, in centimeters: solids that blend into one another,
 // and strokes that raise or lower their surface.
 
 /// An ellipsoid swept from `a` to `b`, with radii that change from `ra` to `rb`.
 struct Solid {
     Vec3 a, b;
     Vec3 ra, rb;
-    float blend;  ///< width of the transition to the solids before [cm]; < 0: carved out
+    float blend;  ///< width of the transition to the previous solids [cm]; < 0: carved out
 };
 
 /// A quadratic Bezier curve of clay.
@@ -31,19 +31,19 @@ struct Stroke {
     float age = 0;    ///< ... and age - 0.3
 };
 
-/// Adds `solids` in order to the surface that is `distance` away from `p`. Number: float or Four.
+/// Adds `solids` in order to the surface at `distance` from `p`. Number: float or Four.
 template <typename Number>
 [[nodiscard]] Number join(Number distance, std::span<const Solid> solids, const PointOf<Number>& p);
 
-/// A stroke as chords, and the box beyond which less than exp(-9) of it is left.
+/// A stroke as chords, and the box beyond which less than exp(-9) of it remains.
 struct StrokePath {
     std::array<Vec3, 7> points;
     Vec3 low, high;
 };
 
-/// `place`: moves points of the curves, as onto a surface.
+/// `map`: moves points of the curves, for example onto a surface.
 [[nodiscard]] std::vector<StrokePath> make_stroke_paths(
-    std::span<const Stroke> strokes, const std::function<Vec3(const Vec3&)>& place = nullptr);
+    std::span<const Stroke> strokes, const std::function<Vec3(const Vec3&)>& map = nullptr);
 
 /// How much `strokes` raise the surface at `p` [cm]. Number: float or Four.
 template <typename Number>

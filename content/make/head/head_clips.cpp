@@ -23,7 +23,7 @@ namespace {
 
 struct Face {
     std::string_view name;
-    std::array<UnitWeight, 7> units;  ///< a sided unit without a side: both halves
+    std::array<UnitWeight, 7> units;  ///< sided units without a suffix: both halves
 };
 
 constexpr Face kFaces[] = {
@@ -48,15 +48,15 @@ constexpr Face kFaces[] = {
     {"gape", {{{"AU27", 0.9f}, {"AU25", 0.3f}, {"AU2", 0.3f}}}},
 };
 
-constexpr float kFaceTime = 2.4f;  ///< of one face, from rest to rest [s]
+constexpr float kFaceTime = 2.4f;  ///< duration of one expression, from rest to rest [s]
 
 struct Key {
     float time;
-    float share;  ///< of the face
+    float weight;  ///< of the expression
 };
 constexpr std::array<Key, 4> kRise = {{{0, 0}, {0.4f, 1}, {1.7f, 1}, {2.2f, 0}}};
 
-/// Adds a curve of a weight to `clip`.
+/// Adds the weight curve of one target to `clip`.
 void add_curve(
     ClipData& clip, std::uint16_t target, std::vector<float> times, std::vector<float> weights) {
     ClipSheet sheet;
@@ -96,14 +96,14 @@ ClipData make_face_clip(const Face& face) {
         std::vector<float> weights;
         for (const Key& key : kRise) {
             times.push_back(key.time);
-            weights.push_back(key.share * target.second);
+            weights.push_back(key.weight * target.second);
         }
         add_curve(clip, target.first, std::move(times), std::move(weights));
     }
     return clip;
 }
 
-/// Both eyes, converged on what is 0.8 m away, look up and aside by the angles [degrees].
+/// Adds a key of both eyes, converged at 0.8 m, turned sideways and up by angles [degrees].
 void add_gaze(ClipSheet& sheet, float time, const Vec2& look) {
     constexpr float kConverge = 2.2f;
     sheet.times.push_back(time);
@@ -123,7 +123,7 @@ ClipData make_all_faces() {
         for (const auto& target : targets_of(face)) {
             curves.resize(std::max(curves.size(), std::size_t{target.first} + 1));
             for (const Key& key : kRise) {
-                curves[target.first].emplace_back(start + key.time, key.share * target.second);
+                curves[target.first].emplace_back(start + key.time, key.weight * target.second);
             }
         }
         start += kFaceTime;
@@ -170,7 +170,7 @@ ClipData make_blink() {
     return clip;
 }
 
-/// What a speaker's mouth, lids, eyes and head do.
+/// Motion of a speaker's mouth, lids, eyes and head.
 ClipData make_talk(std::string_view says) {
     constexpr float kRate = 60.0f;  ///< keys per second
     constexpr std::uint64_t kSeed = 1;
@@ -210,7 +210,7 @@ ClipData make_talk(std::string_view says) {
     return clip;
 }
 
-/// The same, and brows that rise and relax.
+/// The same, with brows that rise and relax.
 ClipData make_relax(const ClipData& talk) {
     ClipData clip = talk;
     clip.name = "relax";
@@ -221,7 +221,7 @@ ClipData make_relax(const ClipData& talk) {
         for (float start = 0.3f; start + 2.2f < last; start += 2.6f) {
             for (const Key& key : kRise) {
                 times.push_back(start + key.time);
-                weights.push_back(0.8f * key.share);
+                weights.push_back(0.8f * key.weight);
             }
         }
         if (!times.empty()) {

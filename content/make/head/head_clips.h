@@ -7,14 +7,14 @@
 
 namespace limn {
 
-// Faces that people make, as action units: after P. Ekman and W. Friesen, "Emotional Facial Action
+// Facial expressions as action units: after P. Ekman and W. Friesen, "Emotional Facial Action
 // Coding System" (1983), and some of single muscles.
 
 /// Clips of make_head_rig: "smile", "surprise", "frown", "sadness", "disgust", "fear", "pucker",
 /// "puff", "wink", "doubt" and "gape", each from rest to rest; "expressions", all of them with a
-/// gaze that wanders; "talk", which says the English text `says` by the rules of content/speech,
-/// with its blinks, gaze and nods; "relax", the same with brows that rise and relax; "blink"; and,
-/// of a head that grows old, "old", a morph animation whose weight is its age.
+/// wandering gaze; "talk", which says the English text `says` by the rules of content/speech, with
+/// blinks, gaze and nods; "relax", the same with brows that rise and relax; "blink"; and, for a
+/// head that grows old, "old", a morph animation whose weight is its age.
 [[nodiscard]] std::vector<ClipData> make_head_clips(std::string_view says, bool grows_old);
 
 }  // namespace limn

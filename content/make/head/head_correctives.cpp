@@ -12,7 +12,7 @@ constexpr HeadCorrective kCorrectives[] = {
     {"AU45", "AU44"}, {"AU45", "AU64"},
 };
 
-/// The unit at `weight`, as its muscles would do it.
+/// The unit at `weight`, with every motion scaled.
 ActionUnit scaled(ActionUnit unit, float weight) {
     for (MusclePull& pull : unit.pulls) {
         pull.motion *= weight;
@@ -27,7 +27,7 @@ ActionUnit scaled(ActionUnit unit, float weight) {
     return unit;
 }
 
-/// Of all that the unit does, what the lids do.
+/// Only the lid motion of the unit.
 ActionUnit lids_of(const ActionUnit& unit) {
     ActionUnit lids;
     lids.upper_lid = unit.upper_lid;
@@ -35,8 +35,8 @@ ActionUnit lids_of(const ActionUnit& unit) {
     return lids;
 }
 
-/// Of the edges of closed lids, which muscles around the eye do not pull apart again.
-float lid_share(const HeadPoint& point) {
+/// Weight of the edges of closed lids, which muscles around the eye must not pull apart.
+float lid_weight(const HeadPoint& point) {
     constexpr float kLid = kLidLoop;
     return point.loops == HeadLoops::Eye
                ? glm::smoothstep(kLid - 4, kLid, static_cast<float>(point.loop))
@@ -61,7 +61,7 @@ Vec3 corrective_offset(
         return action_offset(both, point, shape) - action_offset(lids_of(both), point, shape);
     };
     return -action_offset(lids_of(other), point, shape)
-           - lid_share(point) * (pulls(unit) + pulls(other));
+           - lid_weight(point) * (pulls(unit) + pulls(other));
 }
 
 }  // namespace limn

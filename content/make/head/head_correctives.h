@@ -8,9 +8,9 @@
 
 namespace limn {
 
-// What action units of a head do beyond straight lines. Lids and the jaw turn: an in-between adds,
-// halfway, what the chord of a morph target lacks of the arc. While one unit has closed an eye,
-// lids follow no other: a corrective takes back what that one does to them.
+// Corrective shapes for action units of a head. Lids and the jaw rotate, but a morph target moves
+// along a chord: an in-between shape adds the rest of the arc halfway. While one unit closes an
+// eye, its lids ignore other units: a corrective cancels their effect on the lids.
 
 struct HeadCorrective {
     std::string_view unit;   ///< closes the eye, or turns

@@ -14,7 +14,7 @@ namespace {
 /// A ridge along a quadratic Bezier curve; backwards and up from the concha [cm].
 struct Ridge {
     Vec2 a, b, c;
-    float radius;  ///< half width, where exp(-1) of it is left
+    float radius;  ///< half width, where exp(-1) of it remains
     float height;  ///< at a; < 0: a groove
     float end;     ///< at c
 };
@@ -63,11 +63,11 @@ float bowl(const Vec2& at, const Vec2& center, const Vec2& radii) {
 }
 
 struct EarProfile {
-    float out;     ///< share of the outline's radius
+    float out;     ///< fraction of the outline's radius
     float height;  ///< above the plane of the ear [cm]
 };
 
-// From the head up the back of the ear; and from the cheek before it.
+// From the head up the back of the ear; and from the cheek in front of it.
 constexpr std::array<EarProfile, 6> kBack = {{
     {0.56f, -1.0f},
     {0.64f, -0.66f},
@@ -79,14 +79,14 @@ constexpr std::array<EarProfile, 6> kBack = {{
 constexpr std::array<float, kBack.size()> kBeforeEar = {1.36f, 1.28f, 1.2f, 1.13f, 1.06f, 1.0f};
 constexpr int kFrontLoops = kEarLoops - static_cast<int>(kBack.size());
 
-/// Of a loop on the front: closer together over the helix.
-float front_share(int loop) {
+/// Fraction of the outline's radius of a loop on the front: closer together over the helix.
+float front_radius(int loop) {
     const float t = static_cast<float>(loop - static_cast<int>(kBack.size())) / kFrontLoops;
     return 1 - 0.9f * t * (0.62f + 0.38f * t);
 }
 
-/// How much of what lies at `angle` joins the cheek.
-float cheek_share(float angle) {
+/// How much the ear at `angle` merges into the cheek, 0 .. 1.
+float cheek_weight(float angle) {
     const float up = std::sin(angle);
     return glm::smoothstep(-0.1f, -0.7f, std::cos(angle))
            * (1 - 0.8f * glm::smoothstep(0.55f, 0.9f, up))
@@ -106,18 +106,19 @@ float ear_outline(float angle) {
 
 float ear_relief(const Vec2& at) {
     const float angle = std::atan2(at.y, at.x);
-    const float share = glm::length(at) / ear_outline(angle);
-    // The helix follows the outline from the top to the lobe; inside of it runs the scapha.
+    const float radius = glm::length(at) / ear_outline(angle);
+    // The helix follows the outline from the top to the lobe; the scapha runs inside it.
     const float lobe = glm::smoothstep(-0.35f, -0.8f, std::sin(angle));
     const float front = glm::smoothstep(-0.2f, -0.75f, std::cos(angle))
                         * (1 - glm::smoothstep(0.75f, 0.95f, std::sin(angle)));
     const float free = (1 - lobe) * (1 - front);
-    float height = 0.26f * free * std::exp(-square((share - 0.955f) / 0.055f));
-    height -= 0.12f * free * std::exp(-square((share - 0.82f) / 0.075f));
+    float height = 0.26f * free * std::exp(-square((radius - 0.955f) / 0.055f));
+    height -= 0.12f * free * std::exp(-square((radius - 0.82f) / 0.075f));
     height += 0.06f * lobe;
     height -= 0.62f * bowl(at, {0.18f, -0.32f}, {0.95f, 0.95f});
     height -= 0.42f * bowl(at, {0.35f, 0.62f}, {0.85f, 0.5f});
-    // Nearly the highest ridge: where they meet, as at the top of the antihelix, a sum is a spike.
+    // A smooth maximum of the ridges: where they meet, as at the top of the antihelix, a sum would
+    // spike.
     float raised = 0;
     for (const Ridge& ridge : kRidges) {
         const float own = ridge_height(ridge, at);
@@ -136,10 +137,10 @@ Vec3 ear_point(const HeadVertex& vertex, const Vec3& root) {
     const Vec2 direction = {std::cos(vertex.angle), std::sin(vertex.angle)};
     const auto loop = static_cast<std::size_t>(vertex.loop);
     const bool behind = loop <= kBack.size();
-    const float cheek = behind ? cheek_share(vertex.angle) : 0;
-    const float out_share = behind ? glm::mix(kBack[loop - 1].out, kBeforeEar[loop - 1], cheek)
-                                   : front_share(vertex.loop);
-    const Vec2 at = out_share * ear_outline(vertex.angle) * direction;
+    const float cheek = behind ? cheek_weight(vertex.angle) : 0;
+    const float out_radius = behind ? glm::mix(kBack[loop - 1].out, kBeforeEar[loop - 1], cheek)
+                                    : front_radius(vertex.loop);
+    const Vec2 at = out_radius * ear_outline(vertex.angle) * direction;
     const float height = behind ? glm::mix(kBack[loop - 1].height, 0.1f, cheek) : ear_relief(at);
     return root + at.x * back + at.y * up + height * out;
 }
@@ -147,8 +148,8 @@ Vec3 ear_point(const HeadVertex& vertex, const Vec3& root) {
 float ear_on_cheek(const HeadVertex& vertex) {
     const float inner = vertex.loop <= static_cast<int>(kBack.size())
                             ? 1
-                            : glm::smoothstep(0.72f, 0.95f, front_share(vertex.loop));
-    return inner * cheek_share(vertex.angle);
+                            : glm::smoothstep(0.72f, 0.95f, front_radius(vertex.loop));
+    return inner * cheek_weight(vertex.angle);
 }
 
 }  // namespace limn

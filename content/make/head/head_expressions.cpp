@@ -20,10 +20,11 @@ namespace limn {
 namespace {
 
 constexpr float kExpressionMeters = 0.01f;  ///< per centimeter
-constexpr float kMinOffset = 2e-5f;         ///< [cm]: a fifth of a micrometer is no movement
+constexpr float kMinOffset =
+    2e-5f;  ///< [cm]; less than a fifth of a micrometer counts as no movement
 enum class FaceSide : std::uint8_t { Both, Left, Right };
 
-/// One of the three.
+/// A unit, a viseme or a corrective.
 struct Expression {
     std::string name;
     const ActionUnit* unit = nullptr;
@@ -32,13 +33,13 @@ struct Expression {
     FaceSide side = FaceSide::Both;
 };
 
-/// Names of `unit` on `side`.
+/// Name of `unit` on `side`.
 std::string sided_name(std::string_view unit, FaceSide side) {
     const char* const end = side == FaceSide::Left ? "_L" : side == FaceSide::Right ? "_R" : "";
     return std::string(unit) + end;
 }
 
-/// "AU43_L", in the list.
+/// Name in the list, as "AU43_L".
 std::string driver_name(std::string_view unit, FaceSide side) {
     return sided_name(unit, action_unit(unit).sided ? side : FaceSide::Both);
 }
@@ -78,14 +79,14 @@ Vec3 offset_of(const Expression& expression, const HeadPoint& point, const HeadS
     if (expression.viseme != nullptr) {
         return viseme_offset(*expression.viseme, point, shape);
     }
-    const float left = left_share(point.rest.x);
-    const float share = expression.side == FaceSide::Both   ? 1
-                        : expression.side == FaceSide::Left ? left
-                                                            : 1 - left;
-    if (share <= 0) {
+    const float left = left_weight(point.rest.x);
+    const float weight = expression.side == FaceSide::Both   ? 1
+                         : expression.side == FaceSide::Left ? left
+                                                             : 1 - left;
+    if (weight <= 0) {
         return Vec3(0);
     }
-    return share
+    return weight
            * (expression.unit != nullptr ? action_offset(*expression.unit, point, shape)
                                          : corrective_offset(*expression.corrective, point, shape));
 }

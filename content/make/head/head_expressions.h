@@ -10,19 +10,19 @@
 
 namespace limn {
 
-// The expressions of a head as morph targets: halves of action units that are sided, other units as
-// a whole, then visemes; last what follows these (head_correctives.h), as "AU43_L_half" and
+// The expressions of a head as morph targets: halves of sided action units, other units as a whole,
+// then visemes; last the shapes that these drive (head_correctives.h), such as "AU43_L_half" and
 // "AU43_L_AU7_L". All parts of a head have the same list.
 
-/// One target for each shape; a target without vertices moves none. `points`: one per vertex.
-/// Normals are left to generate_morph_normals.
+/// One target per shape, possibly without vertices. `points`: one per vertex. Normals are left to
+/// generate_morph_normals.
 [[nodiscard]] std::vector<MorphTarget>
 make_expressions(std::span<const HeadPoint> points, const HeadShape& shape);
 
-/// Of all targets that have no drivers, in their order, from the first on.
+/// Names of all targets without drivers, which come first, in order.
 [[nodiscard]] std::vector<std::string> expression_names();
 
-/// How many targets there are; the index of one that is added to them.
+/// Number of targets, and the index of one that is appended.
 [[nodiscard]] std::uint16_t expression_count();
 
 /// Index of the target called `name`, which must exist.

@@ -15,7 +15,7 @@ namespace limn {
 
 namespace {
 
-// Of an eye of 24 mm, scaled to kBallRadius: P. Riordan-Eva and J. Augsburger, "Vaughan & Asbury's
+// An eye of 24 mm, scaled to kBallRadius: P. Riordan-Eva and J. Augsburger, "Vaughan & Asbury's
 // General Ophthalmology" (2018): a cornea of 11.7 mm whose apex stands 1.1 mm proud, an iris 3 mm
 // behind it.
 constexpr float kLimbus = 0.61f;  ///< radius of the cornea's border [cm]
@@ -25,7 +25,7 @@ constexpr float kIrisDepth = 0.31f;
 constexpr std::uint32_t kSegments = 72;
 
 struct Ring {
-    float radius, z;  ///< about the axis, along it [cm]
+    float radius, z;  ///< around the axis, along it [cm]
 };
 
 /// Value noise along a circle, 0 .. 1: `count` values around.
@@ -61,7 +61,7 @@ Vec3 sclera_tint(float radius, float angle, float z) {
     const float corner = glm::smoothstep(0.75f, 1.2f, radius) * square(std::cos(angle));
     const float up = std::sin(angle) * radius;
     Vec3 color = glm::mix(Vec3(0.80f, 0.755f, 0.71f), Vec3(0.80f, 0.50f, 0.44f), 0.75f * corner);
-    color *= glm::mix(1.0f, 0.62f, glm::smoothstep(0.1f, 0.75f, up));  // in the lid's shade
+    color *= glm::mix(1.0f, 0.62f, glm::smoothstep(0.1f, 0.75f, up));  // shaded by the lid
     color = glm::mix(
         Vec3(0.12f, 0.11f, 0.10f), color,
         glm::smoothstep(kLimbus - 0.02f, kLimbus + 0.09f, radius));
@@ -94,7 +94,7 @@ float ball_z(float radius) {
 
 /// The pink flesh in the inner corner of an eye, fixed to the skull.
 void append_caruncle(HeadPart& part, bool left) {
-    constexpr Vec3 kPlace = {-1.2f, -0.1f, 0.5f};  // from the center of the ball [cm]
+    constexpr Vec3 kCenter = {-1.2f, -0.1f, 0.5f};  // from the center of the ball [cm]
     constexpr Vec3 kRadii = {0.2f, 0.15f, 0.15f};
     constexpr std::uint32_t kRows = 9;
     constexpr std::uint32_t kColumns = 16;
@@ -106,7 +106,7 @@ void append_caruncle(HeadPart& part, bool left) {
             const Vec3 out = {
                 std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
                 std::cos(polar)};
-            const Vec3 p = kEyeCenter + kPlace + kRadii * out;
+            const Vec3 p = kEyeCenter + kCenter + kRadii * out;
             part.points.push_back(bone_point(p * Vec3(side, 1, 1), 0));
             part.mesh.positions.push_back(part.points.back().rest);
             part.mesh.uvs.emplace_back(0.5f + 0.5f * out.x, 0.5f - 0.5f * out.y);
@@ -119,8 +119,8 @@ void append_caruncle(HeadPart& part, bool left) {
 /// The wet line where the lower lid touches the ball: a hollow film that moves with the lid.
 void append_tear_line(HeadPart& part, bool left) {
     struct Row {
-        float reach;  // from the center of the ball [cm]
-        float rise;   // above the edge of the lid [rad]
+        float radius;  // from the center of the ball [cm]
+        float rise;    // above the edge of the lid [rad]
     };
     constexpr std::array<Row, 5> kProfile = {{
         {kEyeRadius + 0.05f, 0},
@@ -133,15 +133,15 @@ void append_tear_line(HeadPart& part, bool left) {
     const float side = left ? 1.0f : -1.0f;
     for (const Row& row : kProfile) {
         for (std::uint32_t i = 0; i < kColumns; ++i) {
-            const float share = static_cast<float>(i) / (kColumns - 1);
-            const float angle = -kPi * glm::mix(0.12f, 0.86f, share);
+            const float along = static_cast<float>(i) / (kColumns - 1);
+            const float angle = -kPi * glm::mix(0.12f, 0.86f, along);
             const Vec3 out = glm::normalize(lid_margin(angle) - kEyeCenter);
-            // Towards its ends it runs out.
-            const float rise = row.rise * glm::smoothstep(0.0f, 0.2f, std::min(share, 1 - share));
+            // It tapers towards its ends.
+            const float rise = row.rise * glm::smoothstep(0.0f, 0.2f, std::min(along, 1 - along));
             const float c = std::cos(rise);
             const float s = std::sin(rise);
             const Vec3 p =
-                kEyeCenter + row.reach * Vec3(out.x, c * out.y + s * out.z, c * out.z - s * out.y);
+                kEyeCenter + row.radius * Vec3(out.x, c * out.y + s * out.z, c * out.z - s * out.y);
             HeadPoint point;
             point.rest = p * Vec3(side, 1, 1);
             point.loops = HeadLoops::Eye;
@@ -149,7 +149,7 @@ void append_tear_line(HeadPart& part, bool left) {
             point.angle = angle;
             part.points.push_back(point);
             part.mesh.positions.push_back(point.rest);
-            part.mesh.uvs.emplace_back(share, row.rise);
+            part.mesh.uvs.emplace_back(along, row.rise);
             part.mesh.colors.emplace_back(Vec3(1), 1.0f);
         }
     }
@@ -178,7 +178,7 @@ HeadPart make_eye_balls() {
     // From the pupil over the iris to its root, up to the sclera and around the ball.
     std::vector<Ring> rings;
     const float plane = kApex - kIrisDepth;
-    // A cone, which mirrors no lamp to the front: a pupil is a hole.
+    // A cone, which reflects no light to the front: a pupil is a hole.
     constexpr float kSteep = 2.5f;
     constexpr float kRim = kPupil - 0.012f;
     for (const float radius : {0.001f, 0.5f * kRim, kRim}) {
@@ -216,7 +216,7 @@ HeadPart make_corneas() {
     constexpr int kRings = 16;
     for (int i = 0; i <= kRings; ++i) {
         const float at = std::max(0.001f, 1.25f * kLimbus * static_cast<float>(i) / kRings);
-        // Beyond its border it lies on the ball, as a film of tears.
+        // Beyond the limbus it continues on the ball, as a film of tears.
         const float cap = at < radius ? kApex - radius + std::sqrt(square(radius) - square(at)) : 0;
         const float ball = ball_z(at) + 0.004f;
         const float blend = glm::smoothstep(0.85f * kLimbus, 1.15f * kLimbus, at);

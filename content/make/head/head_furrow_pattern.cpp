@@ -23,14 +23,14 @@ namespace limn {
 
 namespace {
 
-constexpr float kSize = 1024;         ///< [px] of the image that scales are of
-constexpr float kFineDepth = 1.2f;    ///< height of the relief by its width; by eye
-constexpr float kCoarseDepth = 3.0f;  ///< the same
-constexpr float kCoarseTurn = 0.25f;  ///< of the angle of fine furrows: folds are straighter
-constexpr float kCoarseWidth = 1.5f;  ///< of the width
+constexpr float kSize = 1024;         ///< [px] of the image that scales refer to
+constexpr float kFineDepth = 1.2f;    ///< height of the relief relative to its width; by eye
+constexpr float kCoarseDepth = 3.0f;  ///< likewise
+constexpr float kCoarseTurn = 0.25f;  ///< factor of the fine furrows' angle: folds are straighter
+constexpr float kCoarseWidth = 1.5f;  ///< factor of their width
 constexpr int kGutter = 4;
 
-/// Vectors of both fields at each vertex, and how much of it folds.
+/// Vectors of both fields at each vertex, and how much it folds.
 struct HeadFields {
     std::vector<FurrowVectors> vectors;
     std::vector<float> mask;
@@ -57,7 +57,7 @@ HeadFields make_fields(const MeshData& mesh) {
     return fields;
 }
 
-/// Rounded by the mean of 2 `radius` + 1 pixels, twice in each direction.
+/// Box-blurred over 2 `radius` + 1 pixels, twice in each direction.
 void blur(std::vector<float>& image, int size, int radius) {
     std::vector<float> other(image.size());
     const auto pass = [&](const std::vector<float>& from, std::vector<float>& to, bool down) {
@@ -90,7 +90,7 @@ Vec2 slope_at(const std::vector<float>& height, int size, int x, int y) {
     return 0.5f * Vec2(at(x + 1, y) - at(x - 1, y), at(x, y - 1) - at(x, y + 1));
 }
 
-/// x and y of the unit normal of a slope, as bytes whose flat value is 128.
+/// x and y of the unit normal of a slope, as bytes where 128 is flat.
 std::array<std::uint8_t, 2> encoded_normal(const Vec2& slope) {
     const Vec2 n = -slope / std::sqrt(1 + glm::dot(slope, slope));
     const float length2 = glm::dot(n, n);
@@ -116,7 +116,7 @@ HeadRelief grow_head(const HeadFurrowsPattern& pattern) {
     relief.second = relief.first;
     const Result<FurrowMap> map = make_furrow_map(mesh, fields.vectors, {.size = size});
     if (!map) {
-        return relief;  // too few texels for any triangle
+        return relief;  // no triangle covers a texel
     }
     const float scale =
         pattern.scale * (coarse ? pattern.coarse : 1.0f) * static_cast<float>(size) / kSize;

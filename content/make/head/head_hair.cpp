@@ -12,18 +12,18 @@ namespace limn {
 namespace {
 
 struct Strand {
-    Vec3 root, middle, tip;  ///< of a quadratic Bezier curve, on the left side
-    Vec3 across;             ///< direction of the ribbon's width, unit
-    float width;             ///< at the root [cm]
-    std::uint32_t rows = 5;  ///< of vertices: the fewer, the less it is bent
-    HeadPoint point;         ///< of the skin that it grows on
+    Vec3 root, control, tip;  ///< of a quadratic Bezier curve, on the left side
+    Vec3 across;              ///< direction of the ribbon's width, unit
+    float width;              ///< at the root [cm]
+    std::uint32_t rows = 5;   ///< of vertices: fewer suffice for straight strands
+    HeadPoint point;          ///< of the skin that it grows on
 };
 
 void append_strand(HeadPart& part, const Strand& strand, float side, float shade) {
     for (std::uint32_t row = 0; row < strand.rows; ++row) {
         const float t = static_cast<float>(row) / static_cast<float>(strand.rows - 1);
         const Vec3 at = glm::mix(
-            glm::mix(strand.root, strand.middle, t), glm::mix(strand.middle, strand.tip, t), t);
+            glm::mix(strand.root, strand.control, t), glm::mix(strand.control, strand.tip, t), t);
         const Vec3 half = 0.5f * strand.width * (1 - 0.85f * t * t) * strand.across;
         for (const float edge : {-1.0f, 1.0f}) {
             HeadPoint point = strand.point;
@@ -45,23 +45,23 @@ void append_both(HeadPart& part, const Strand& strand, float shade) {
 void add_lashes(HeadPart& part, Random& random, bool upper) {
     const int count = upper ? 120 : 55;  // a row of three, N. Elder (1997): 90 to 150, 70 to 80
     for (int i = 0; i < count; ++i) {
-        const float share = (static_cast<float>(i) + random.uniform()) / static_cast<float>(count);
-        const float turn = glm::mix(0.1f, 0.93f, share) * kPi;  // from the outer corner inwards
+        const float along = (static_cast<float>(i) + random.uniform()) / static_cast<float>(count);
+        const float turn = glm::mix(0.1f, 0.93f, along) * kPi;  // from the outer corner inwards
         const float angle = upper ? turn : -turn;
         const Vec3 root = lid_margin(angle);
         const Vec3 beside = lid_margin(angle + 0.02f);
         const Vec3 out = glm::normalize(root - kEyeCenter);
         const float fan = 0.55f * std::cos(turn) + 0.12f * (random.uniform() - 0.5f);
-        const float middle = std::sin(turn);
-        const float length = (upper ? 0.62f + 0.28f * middle : 0.34f + 0.16f * middle)
+        const float arch = std::sin(turn);
+        const float length = (upper ? 0.62f + 0.28f * arch : 0.34f + 0.16f * arch)
                              * (0.8f + 0.35f * random.uniform());
         const float curl = upper ? 1.0f : -0.8f;
         Strand strand;
         strand.root = root - 0.02f * out;
         const Vec3 forward = glm::normalize(out + Vec3(fan, -0.12f * curl, 0.35f));
         const Vec3 up = glm::normalize(out + Vec3(1.5f * fan, 0.95f * curl, 0.25f));
-        strand.middle = strand.root + 0.55f * length * forward;
-        strand.tip = strand.middle + 0.6f * length * up;
+        strand.control = strand.root + 0.55f * length * forward;
+        strand.tip = strand.control + 0.6f * length * up;
         strand.across = glm::normalize(beside - root);
         strand.width = upper ? 0.015f : 0.010f;
         strand.point.loops = HeadLoops::Eye;
@@ -71,7 +71,7 @@ void add_lashes(HeadPart& part, Random& random, bool upper) {
     }
 }
 
-/// The brow's line from the nose outwards, and its half height.
+/// The center line of the brow from the nose outwards, as x and y.
 Vec3 brow_line(float t) {
     const Vec2 line = glm::mix(
         glm::mix(Vec2(1.2f, 4.95f), Vec2(3.5f, 5.85f), t),
@@ -88,7 +88,7 @@ void add_brows(HeadPart& part, Random& random, const HeadShape& shape) {
         const float v = random.uniform() + random.uniform() - 1;
         Vec3 root = brow_line(t) + Vec3(0, v * height, 10);
         root = project_forwards(root, shape, 1);
-        // Upright beside the nose, then along the brow and towards its middle.
+        // Upright beside the nose, then along the brow and towards its center line.
         const Vec3 ahead =
             glm::normalize(brow_line(std::min(t + 0.02f, 1.0f)) - brow_line(t - 0.01f));
         const float rise = glm::mix(1.6f, 0.1f, glm::smoothstep(-0.1f, 0.4f, t)) - 0.75f * v * t;
@@ -100,11 +100,11 @@ void add_brows(HeadPart& part, Random& random, const HeadShape& shape) {
         const float length = (0.75f - 0.25f * t) * (0.7f + 0.5f * random.uniform());
         Strand strand;
         strand.root = root - 0.02f * out;
-        strand.middle = root + 0.5f * length * along + 0.09f * out;
+        strand.control = root + 0.5f * length * along + 0.09f * out;
         strand.tip = root + length * along + 0.055f * out;
         strand.tip -= head_distance(strand.tip, shape, 1) * out - 0.05f * out;
         strand.across = glm::normalize(glm::cross(out, along));
-        strand.rows = 3;  // to 0.1 mm of the curve
+        strand.rows = 3;  // within 0.1 mm of the curve
         strand.width = 0.017f * glm::smoothstep(-0.3f, 0.15f, t) + 0.002f;
         append_both(part, strand, 0.7f + 0.6f * random.uniform());
     }

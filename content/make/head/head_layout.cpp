@@ -15,7 +15,7 @@ namespace limn {
 
 namespace {
 
-/// A row of the grid: where it crosses the middle of the face, the side and the back [cm].
+/// A row of the grid: where it crosses the midline of the face, the side and the back [cm].
 struct KeyRow {
     float row;
     Vec2 front;  ///< y, z
@@ -91,7 +91,7 @@ constexpr std::array<Block, 7> kBlocks = {{
     {HeadLoops::Ear, -34, -29, 27, 43, kEarLoops},
 }};
 
-/// The loop whose place is known, or 0.
+/// The loop along the edge of the opening, whose position is given, or 0.
 int edge_loop(HeadLoops loops) {
     switch (loops) {
     case HeadLoops::Eye:
@@ -233,9 +233,9 @@ class Builder {
     }
 
     void add_loops(const Block& block) {
-        // The border counter-clockwise, seen from outside, from the middle of its lateral side; on
-        // the right side clockwise, so that angles are those of the mirror image.
-        const bool left = block.column0 + block.column1 >= 0;  // the mouth as the left
+        // The border counter-clockwise, viewed from outside, from the center of its lateral side;
+        // on the right side clockwise, so that angles are those of the mirror image.
+        const bool left = block.column0 + block.column1 >= 0;  // the mouth counts as left
         const int width = block.column1 - block.column0;
         const int height = block.row1 - block.row0;
         const int count = 2 * (width + height);
@@ -258,7 +258,7 @@ class Builder {
             border.push_back(
                 at(left ? block.column0 + column : block.column1 - column, block.row0 + row));
         }
-        Vec2 middle = {
+        Vec2 chart_center = {
             0.5f * static_cast<float>(block.column0 + block.column1),
             0.5f * static_cast<float>(block.row0 + block.row1)};
         Vec3 center = Vec3(0);
@@ -267,12 +267,12 @@ class Builder {
         }
         std::vector<std::uint32_t> outer = border;
         for (int loop = 1; loop <= block.count; ++loop) {
-            const float share = static_cast<float>(loop) / static_cast<float>(block.count + 1);
+            const float inwards = static_cast<float>(loop) / static_cast<float>(block.count + 1);
             std::vector<std::uint32_t> inner;
             for (int k = 0; k < count; ++k) {
                 HeadVertex vertex;
-                vertex.start = glm::mix(layout_.vertices[border[k]].start, center, share);
-                vertex.chart = glm::mix(layout_.vertices[border[k]].chart, middle, share);
+                vertex.start = glm::mix(layout_.vertices[border[k]].start, center, inwards);
+                vertex.chart = glm::mix(layout_.vertices[border[k]].chart, chart_center, inwards);
                 vertex.loops = block.loops;
                 vertex.loop = static_cast<std::int16_t>(loop);
                 vertex.angle = 2 * kPi * static_cast<float>(k) / static_cast<float>(count);
@@ -313,23 +313,23 @@ class Builder {
     }
 
     void find_mirror() {
-        using Place = std::array<long, 4>;
-        std::map<Place, std::uint32_t> places;
-        const auto place = [](const HeadVertex& v) {
-            return Place{
+        using VertexKey = std::array<long, 4>;  // rounded position and loop
+        std::map<VertexKey, std::uint32_t> indices;
+        const auto key_of = [](const HeadVertex& v) {
+            return VertexKey{
                 std::lround(v.start.x * 1000), std::lround(v.start.y * 1000),
                 std::lround(v.start.z * 1000), v.loop};
         };
         for (std::uint32_t i = 0; i < layout_.vertices.size(); ++i) {
-            places[place(layout_.vertices[i])] = i;
+            indices[key_of(layout_.vertices[i])] = i;
         }
         for (std::uint32_t i = 0; i < layout_.vertices.size(); ++i) {
-            const Place p = place(layout_.vertices[i]);
+            const VertexKey key = key_of(layout_.vertices[i]);
             std::uint32_t found = i;
-            for (int k = 0; k < 27; ++k) {  // rounded to a neighboring place
-                const auto other =
-                    places.find({-p[0] + k % 3 - 1, p[1] + k / 3 % 3 - 1, p[2] + k / 9 - 1, p[3]});
-                found = other == places.end() ? found : other->second;
+            for (int k = 0; k < 27; ++k) {  // it may be rounded differently
+                const auto other = indices.find(
+                    {-key[0] + k % 3 - 1, key[1] + k / 3 % 3 - 1, key[2] + k / 9 - 1, key[3]});
+                found = other == indices.end() ? found : other->second;
             }
             layout_.mirror.push_back(found);
         }

@@ -27,7 +27,7 @@ struct GridRow {
 };
 
 constexpr GridRow kGrid[] = {
-    {-12, {48, kEnd}},  // the middle of the crown
+    {-12, {48, kEnd}},  // center of the crown
     {0, {0, 16, 32, 48, kEnd}},
     {10, {0, 10, 22, 35, 48, kEnd}},  // hairline
     {15, {0, 6, 12, 18, kEnd}},
@@ -85,7 +85,7 @@ constexpr LoopRing kLoopRings[] = {
     {"ear", HeadLoops::Ear, 20, {0, 90, 180, 270, kEnd}},
 };
 
-/// The vertex of the left half, or the middle, that `distance` of is the least.
+/// The vertex with the smallest `distance`, INFINITY for those that are not candidates.
 template <typename Distance>
 std::uint32_t nearest_vertex(const HeadLayout& layout, const Distance& distance) {
     float nearest = INFINITY;
@@ -141,15 +141,15 @@ class MarkerBuilder {
     }
 
   private:
-    /// Of the left half; on x = 0 they are in the middle.
+    /// Adds a marker of the left half, or of the midline x = 0.
     void add(const std::string& name, std::uint32_t vertex, const Vec2& chart) {
-        const bool middle = layout_.mirror[vertex] == vertex;
-        markers_.names.push_back(name + (middle ? "_M" : "_L"));
+        const bool on_midline = layout_.mirror[vertex] == vertex;
+        markers_.names.push_back(name + (on_midline ? "_M" : "_L"));
         markers_.vertices.push_back(vertex);
         markers_.charts.push_back(chart);
     }
 
-    /// Those of the left half, and their mirror images.
+    /// Adds the triangles of the left half and their mirror images.
     void add_triangles() {
         std::vector<glm::dvec2> flat;
         for (const Vec2& chart : markers_.charts) {
@@ -165,7 +165,7 @@ class MarkerBuilder {
         }
     }
 
-    /// Of each vertex of the left half its mirror image.
+    /// Returns the index of the mirror image of each vertex of the left half.
     std::vector<std::uint32_t> add_mirror_images() {
         std::vector<std::uint32_t> mirrored;
         const std::size_t count = markers_.names.size();

@@ -16,7 +16,7 @@ constexpr Vec3 kEnamel = {1.0f, 0.97f, 0.9f};
 constexpr Vec3 kGum = {0.80f, 0.36f, 0.34f};
 constexpr Vec3 kTongue = {0.85f, 0.42f, 0.40f};
 
-/// From the middle backwards [cm]: incisors, canine, premolars, molars (R. Nelson, "Wheeler's
+/// From the midline backwards [cm]: incisors, canine, premolars, molars (R. Nelson, "Wheeler's
 /// Dental Anatomy", 2015).
 struct Tooth {
     float width, height, depth;
@@ -43,31 +43,31 @@ constexpr std::array<Tooth, 7> kLowerTeeth = {{
 struct Jaw {
     const std::array<Tooth, 7>& teeth;
     float edge;   ///< y of the cutting edge
-    float side;   ///< 1: teeth hang down from above, -1: stand
+    float side;   ///< 1: upper teeth, -1: lower teeth
     float front;  ///< z of the first teeth
-    float width;  ///< half, of the arch
-    float depth;  ///< of the ellipse that it is a part of
-    float bound;  ///< to the jaw
+    float width;  ///< half the width of the arch
+    float depth;  ///< semi-axis of its ellipse along z
+    float bound;  ///< 0: to the skull, 1: to the jaw
 };
 const std::array<Jaw, 2> kJaws = {{
     {kUpperTeeth, -3.72f, 1, 10.40f, 2.75f, 4.3f, 0},
     {kLowerTeeth, -3.55f, -1, 10.10f, 2.55f, 4.1f, 1},
 }};
 
-/// A point of the arch, and its direction.
+/// A point of the arch at the parameter `turn` of its ellipse.
 Vec3 arch_point(const Jaw& jaw, float turn, float inwards) {
     return {
         (jaw.width - inwards) * std::sin(turn), 0,
         jaw.front - inwards - (jaw.depth - inwards) * (1 - std::cos(turn))};
 }
 
-/// The turn of the arch's ellipse at this length from its middle.
+/// The parameter of the arch's ellipse at this arc length from the midline.
 float arch_turn(const Jaw& jaw, float length) {
     float turn = 0;
     Vec3 from = arch_point(jaw, 0, 0);
-    for (float gone = 0; gone < length && turn < 1.5f; turn += 0.004f) {
+    for (float arc = 0; arc < length && turn < 1.5f; turn += 0.004f) {
         const Vec3 to = arch_point(jaw, turn + 0.004f, 0);
-        gone += glm::distance(from, to);
+        arc += glm::distance(from, to);
         from = to;
     }
     return turn;
@@ -84,7 +84,7 @@ void append(HeadPart& part, const HeadPoint& point, const Vec3& color, const Vec
     part.points.push_back(point);
 }
 
-/// A box with round edges, narrower and thicker at its root.
+/// A box with rounded edges, narrower and thicker at its root.
 void append_tooth(HeadPart& part, const Jaw& jaw, const Tooth& tooth, float along, float side) {
     constexpr std::uint32_t kAround = 16;
     constexpr std::uint32_t kRows = 9;
@@ -124,16 +124,16 @@ void append_gum(HeadPart& part, const Jaw& jaw) {
         // From the root outside over the edge of the gum to the inside.
         const float around = kPi * static_cast<float>(row) / (kRows - 1);
         for (std::uint32_t i = 0; i < kColumns; ++i) {
-            const float share = 2 * static_cast<float>(i) / (kColumns - 1) - 1;
-            const float scallop = 0.05f * std::cos(share * 7 * 2 * kPi);
-            const float thick = 0.36f - 0.02f * std::abs(share);
-            Vec3 p = arch_point(jaw, 1.42f * share, 0.33f - thick * std::cos(around));
+            const float along = 2 * static_cast<float>(i) / (kColumns - 1) - 1;
+            const float scallop = 0.05f * std::cos(along * 7 * 2 * kPi);
+            const float thick = 0.36f - 0.02f * std::abs(along);
+            Vec3 p = arch_point(jaw, 1.42f * along, 0.33f - thick * std::cos(around));
             p.y = jaw.edge
                   + jaw.side
                         * (1.45f
                            - (0.62f + scallop) * std::pow(std::max(std::sin(around), 0.0f), 0.6f)
-                           - 0.1f * std::abs(share));
-            append(part, bone_point(p, jaw.bound), kGum, {share, around});
+                           - 0.1f * std::abs(along));
+            append(part, bone_point(p, jaw.bound), kGum, {along, around});
         }
     }
     append_grid(part.mesh, kRows, kColumns, false, jaw.side > 0);

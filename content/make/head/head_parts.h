@@ -12,14 +12,14 @@ namespace limn {
 struct HeadPart {
     MeshData mesh;                  ///< positions, uvs, colors and indices [cm]
     std::vector<HeadPoint> points;  ///< one per vertex
-    std::vector<bool> covered;      ///< per triangle, left out in the end; or empty
+    std::vector<bool> covered;      ///< per triangle: removed in the end; or empty
 };
 
-/// Both balls, of the radius kBallRadius, with an iris that lies as deep behind the cornea as in a
-/// real eye, and a pupil of 3 mm; and the caruncles in their inner corners.
+/// Both eyeballs, of radius kBallRadius, with an iris as deep behind the cornea as in a real eye,
+/// and a pupil of 3 mm; and the caruncles in the inner corners of the eyes.
 [[nodiscard]] HeadPart make_eye_balls();
 
-/// The clear shells before them, and the tear lines along the lower lids.
+/// The clear shells in front of them, and the tear lines along the lower lids.
 [[nodiscard]] HeadPart make_corneas();
 
 /// 14 teeth in each jaw.
@@ -32,26 +32,26 @@ struct HeadPart {
 [[nodiscard]] HeadPart make_face_hair(const HeadShape& shape);
 
 /// The hair of the scalp in a short cut: cards in layers, v from roots to tips, normals those of
-/// the scalp so that cards catch light as one body.
+/// the scalp so that all cards are lit as one body.
 [[nodiscard]] HeadPart make_scalp_hair(const HeadShape& shape);
 
-/// A shirt on the shoulders that `shape` has; it hangs a little lower than their skin ends. Its
-/// points move as skin does.
+/// A shirt on the shoulders of `shape`, which hangs a little below the end of their skin. Its
+/// points move like skin.
 [[nodiscard]] HeadPart make_shirt(const HeadShape& shape);
 
-/// Of each vertex of head_layout(true), which lie at `skin` [cm] at rest: whether it lies so far
-/// below the neckline of the shirt that it cannot be seen, however the head turns.
+/// For each vertex of head_layout(true), at `skin` [cm] at rest: whether it is so far below the
+/// neckline of the shirt that it stays hidden however the head turns.
 [[nodiscard]] std::vector<bool> find_covered_skin(const std::vector<Vec3>& skin);
 
-/// How much hair grows at `p` on a head, 0 .. 1.
+/// Density of hair at `p` on a head, 0 .. 1.
 [[nodiscard]] float scalp_hair_cover(const Vec3& p);
 
 /// Radius of an eye without its cornea [cm]: the lids lie on a ball that is a little larger.
 inline constexpr float kBallRadius = 1.27f;
 
-/// Adds a grid of `rows` x `columns` vertices, which have been appended row after row, as
-/// triangles; `closed`: the last column joins the first. They face the side from which rows run
-/// down and columns to the left; flipped, the other.
+/// Adds the triangles of a grid of `rows` x `columns` vertices, which have been appended row by
+/// row; `closed`: the last column joins the first. They face the side from which rows run down and
+/// columns to the left, or with `flip` the other side.
 void append_grid(
     MeshData& mesh, std::uint32_t rows, std::uint32_t columns, bool closed, bool flip = false);
 

@@ -13,11 +13,11 @@ namespace limn {
 
 namespace {
 
-constexpr Vec3 kMiddle = {0, 5.5f, -0.5f};  ///< of the skull [cm]
-constexpr float kImageWidth = 1.0f;         ///< of the image of strands [cm]
+constexpr Vec3 kSkullCenter = {0, 5.5f, -0.5f};  ///< [cm]
+constexpr float kImageWidth = 1.0f;              ///< of the image of strands [cm]
 constexpr Vec3 kWhorl = {-0.9f, 13.0f, -4.5f};
 
-/// Height of the hairline by the angle around the head from its front, left and right alike.
+/// Height of the hairline by the angle around the head from its front, on both sides.
 struct HairlineKey {
     float angle;   ///< [degrees]
     float height;  ///< [cm]
@@ -48,7 +48,7 @@ float hairline(const Vec3& p) {
     return glm::mix(a.height, b.height, glm::smoothstep(a.angle, b.angle, angle));
 }
 
-/// The way hair lies at `p`: away from the whorl, across the forehead and down the sides.
+/// The direction of hair at `p`: away from the whorl, across the forehead and down the sides.
 Vec3 hair_flow(const Vec3& p, const Vec3& out) {
     const Vec3 away = glm::normalize(p - kWhorl);
     const float fringe = glm::smoothstep(7.5f, 10.5f, p.y) * glm::smoothstep(-2.0f, 5.0f, p.z);
@@ -61,9 +61,9 @@ struct Card {
     Vec3 root, out, flow;  ///< out and flow: unit
     float length, width;   ///< [cm]
     float lift;            ///< of its tip from the scalp [cm]
-    float strand;          ///< u of the image in the middle
+    float strand;          ///< u of the image at its center line
     float shade;
-    float root_shade;  ///< factor of the shade at the root: less light comes there
+    float root_shade;  ///< factor of the shade at the root, where less light arrives
 };
 
 /// Roots evenly over the skull (R. Swinbank and R. Purser, "Fibonacci Grids", 2006), from below, so
@@ -72,7 +72,8 @@ Vec3 scalp_root(int i, int count, const Vec3& jitter, const HeadShape& shape) {
     const float up = -1 + 2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
     const float turn = kPi * (3 - std::sqrt(5.0f)) * static_cast<float>(i);
     const float ring = std::sqrt(1 - up * up);
-    Vec3 root = kMiddle + 9.0f * Vec3(ring * std::sin(turn), up, ring * std::cos(turn)) + jitter;
+    Vec3 root =
+        kSkullCenter + 9.0f * Vec3(ring * std::sin(turn), up, ring * std::cos(turn)) + jitter;
     for (int step = 0; step < 3; ++step) {
         root = project_to_head(root, shape, 0);
     }
@@ -108,7 +109,7 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
     append_grid(part.mesh, kRows, 2, false);
 }
 
-/// Wide cards that lie on the scalp, so that hair is seen between locks, not skin.
+/// Wide cards that lie on the scalp, so that hair, not skin, is visible between locks.
 void append_undercoat(HeadPart& part, const HeadShape& shape) {
     constexpr int kCards = 700;
     for (int i = 0; i < kCards; ++i) {
@@ -136,7 +137,7 @@ float scalp_hair_cover(const Vec3& p) {
 }
 
 HeadPart make_scalp_hair(const HeadShape& shape) {
-    constexpr int kCards = 3900;  // on the whole ball around the skull; some 2520 grow
+    constexpr int kCards = 3900;  // on the whole sphere around the skull; some 2520 are kept
     HeadPart part;
     part.mesh.name = "scalp";
     append_undercoat(part, shape);

@@ -20,12 +20,12 @@ namespace limn {
 
 namespace {
 
-constexpr float kLoose = 0.3f;   ///< of the skin [cm]
+constexpr float kLoose = 0.3f;   ///< distance from the skin [cm]
 constexpr int kRows = 34;        ///< of the grid from the neckline to the end of the shoulders
-constexpr int kHangingRows = 6;  ///< below
+constexpr int kHangingRows = 6;  ///< of the grid below
 constexpr int kAllRows = kRows + kHangingRows;
 constexpr float kHanging = 5;      ///< [cm]
-constexpr int kSmoothRounds = 40;  ///< it spans hollows
+constexpr int kSmoothRounds = 40;  ///< so that it spans hollows
 constexpr int kBodyRows = 30;      ///< of vertices below the collar
 
 /// A row of the collar: a band that folds over the neckline, and its seam.
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> column_vertices(int column) {
     return vertices;
 }
 
-/// Places of all columns, from the back to the left.
+/// Positions of all columns, from the back to the left.
 std::vector<std::vector<Vec3>> skin_columns(const std::vector<Vec3>& skin) {
     std::vector<std::vector<Vec3>> lines(kHeadColumns);
     for (int column = 0; column < kHeadColumns; ++column) {
@@ -82,7 +82,7 @@ std::vector<std::vector<Vec3>> skin_columns(const std::vector<Vec3>& skin) {
     return lines;
 }
 
-/// Lengths of a line from its first point to each.
+/// Arc length of a line from its first point to each point.
 std::vector<float> lengths_along(const std::vector<Vec3>& line) {
     std::vector<float> lengths = {0};
     for (std::size_t i = 1; i < line.size(); ++i) {
@@ -100,7 +100,7 @@ Vec3 point_along(const std::vector<Vec3>& line, const std::vector<float>& length
     return glm::mix(line[i - 1], line[i], glm::clamp((at - lengths[i - 1]) / step, 0.0f, 1.0f));
 }
 
-/// Where it crosses the neckline.
+/// Arc length at which a line crosses the neckline.
 float neckline_along(const std::vector<Vec3>& line, const std::vector<float>& lengths) {
     std::size_t i = 1;
     while (i + 1 < line.size() && above_neckline(line[i]) > 0) {
@@ -111,7 +111,7 @@ float neckline_along(const std::vector<Vec3>& line, const std::vector<float>& le
     return glm::mix(lengths[i - 1], lengths[i], before / (before - here));
 }
 
-/// Without corners where it crosses bones.
+/// Smooths the neckline where it crosses bones.
 void smooth_around(std::vector<float>& values) {
     constexpr int kRounds = 60;
     const std::size_t count = values.size();
@@ -124,7 +124,7 @@ void smooth_around(std::vector<float>& values) {
     }
 }
 
-/// Where each column crosses the neckline, a length from its first point.
+/// Arc length at which each column crosses the neckline.
 std::vector<float> necklines(const std::vector<std::vector<Vec3>>& lines) {
     std::vector<float> starts;
     for (const std::vector<Vec3>& line : lines) {
@@ -134,7 +134,7 @@ std::vector<float> necklines(const std::vector<std::vector<Vec3>>& lines) {
     return starts;
 }
 
-/// Points of the shirt before it is sewn: of each column of the skin, rows downwards.
+/// Points of the shirt before it is sewn: rows downwards for each column of the skin.
 struct ShirtGrid {
     std::vector<Vec3> points;
 
@@ -143,7 +143,7 @@ struct ShirtGrid {
     }
 };
 
-/// As tight as cloth over hollows: smooth, but nowhere nearer to the skin.
+/// Spans hollows like tight cloth: smooth, but nowhere closer to the skin than kLoose.
 void smooth(ShirtGrid& grid, const HeadShape& shape) {
     for (int round = 0; round < kSmoothRounds; ++round) {
         ShirtGrid before = grid;
@@ -193,7 +193,8 @@ ShirtGrid make_grid(const HeadShape& shape) {
     return grid;
 }
 
-/// A column of vertices, from the fold of the collar to the hem, and on to close the shirt below.
+/// A column of vertices, from the fold of the collar to the hem, and further to close the shirt
+/// below.
 std::vector<Vec3> sew_column(ShirtGrid& grid, int column, const HeadShape& shape) {
     std::vector<Vec3> cloth;
     for (int row = 0; row < kAllRows; ++row) {
@@ -211,9 +212,9 @@ std::vector<Vec3> sew_column(ShirtGrid& grid, int column, const HeadShape& shape
     }
     sewn[0] = project_to_head(sewn[0], shape, 1);
     for (int row = 1; row <= kBodyRows; ++row) {
-        const float share = static_cast<float>(row) / kBodyRows;
+        const float down = static_cast<float>(row) / kBodyRows;
         sewn.push_back(
-            point_along(cloth, lengths, glm::mix(kCollar.back().down, lengths.back(), share)));
+            point_along(cloth, lengths, glm::mix(kCollar.back().down, lengths.back(), down)));
     }
     sewn.push_back(glm::mix(cloth.back(), Vec3(0, cloth.back().y, -3), 0.6f));
     return sewn;
@@ -222,7 +223,7 @@ std::vector<Vec3> sew_column(ShirtGrid& grid, int column, const HeadShape& shape
 }  // namespace
 
 std::vector<bool> find_covered_skin(const std::vector<Vec3>& skin) {
-    constexpr float kMargin = 2;  // [cm], more than skin there moves with the head
+    constexpr float kMargin = 2;  // [cm], more than the skin there moves with the head
     LIMN_CHECK(skin.size() == head_layout(true).vertices.size());
     const std::vector<float> starts = necklines(skin_columns(skin));
     std::vector<bool> covered(skin.size(), false);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr Vec3 kShoulderAxis = {0, 0, -3};
 
-constexpr float kTop = -2;  ///< y above which shoulders change nothing
+constexpr float kTop = -2;  ///< y above which shoulders have no effect
 
 constexpr std::array<Solid, 8> kSolids = {{
     // chest, from the root of the neck
@@ -46,7 +46,7 @@ constexpr std::array<Stroke, 16> kStrokes = {{
     // hollows above and below it
     {{4.4f, -16.8f, 2}, {7, -16.6f, 2}, {10, -16.4f, 1}, 1.5f, -0.4f, 0, 0.3f},
     {{12.8f, -20, 2.4f}, {13.8f, -20.5f, 2.2f}, {14.4f, -21.5f, 2}, 1.6f, -0.3f, 0, 0.2f},
-    // muscle from behind the ear, its end on the breastbone, and that on the collar bone
+    // sternocleidomastoid: from behind the ear, its end on the breastbone, and on the collar bone
     {{5.8f, -6, -1.4f}, {4.7f, -10.5f, 1}, {1.5f, -15.4f, 2.8f}, 0.8f, 0.24f, 0.08f, -0.15f},
     {{1.3f, -15.8f, 2.9f}, {1.2f, -16.6f, 3}, {1, -17.4f, 3.2f}, 0.75f, 0.3f, 0.05f, -0.15f},
     {{3, -12.4f, 2}, {3.6f, -15, 2}, {3.9f, -17.2f, 2.4f}, 0.8f, 0.15f, 0.04f, -0.1f},
@@ -75,7 +75,7 @@ const std::vector<StrokePath>& stroke_paths() {
     return paths;
 }
 
-/// Of shoulders, by that of neutral ones: men's are broad.
+/// Size of shoulders relative to neutral ones: men's are broader.
 Vec3 shoulder_size(float y, const HeadShape& shape) {
     const float low = glm::smoothstep(-10.0f, -17.0f, y);
     const float neck = glm::smoothstep(-7.5f, -10.5f, y) * (1 - low);
@@ -117,7 +117,7 @@ template float shoulder_relief(const PointOf<float>&, const HeadShape&);
 template Four shoulder_relief(const PointOf<Four>&, const HeadShape&);
 
 Vec3 shoulder_start(const Vec3& neck, float turn, float down) {
-    // Of the end: an ellipse at nearly even distances, a little closer in front.
+    // The end is an ellipse with nearly even spacing, a little closer in front.
     const float closer = turn - 0.2f * std::sin(turn);
     const float angle = closer - 0.2f * std::sin(2 * closer);
     const float s = std::sin(angle);

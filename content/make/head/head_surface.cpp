@@ -15,12 +15,12 @@ namespace limn {
 namespace {
 
 constexpr std::array<Solid, 7> kBase = {{
-    // cranium, and the forehead before it
+    // cranium, and the forehead in front of it
     {{0, 6.41f, 0.28f}, {0, 6.41f, 0.28f}, {7.86f, 8.16f, 10.02f}, {7.86f, 8.16f, 10.02f}, 0.1f},
     {{0, 5.29f, 2.99f}, {0, 5.29f, 2.99f}, {6.83f, 4.95f, 7.48f}, {6.83f, 4.95f, 7.48f}, 1.5f},
     // base of the skull, from ear to ear
     {{0, 2.28f, 0.17f}, {0, 2.28f, 0.17f}, {7.94f, 6.4f, 8.71f}, {7.94f, 6.4f, 8.71f}, 1.5f},
-    // middle of the face, from cheekbone to cheekbone
+    // midface, from cheekbone to cheekbone
     {{0, -1.47f, 4.97f}, {0, -1.47f, 4.97f}, {7.01f, 5.65f, 5.15f}, {7.01f, 5.65f, 5.15f}, 1.5f},
     // upper jaw and lower jaw
     {{0, -2.69f, 4.82f}, {0, -3.93f, 4.91f}, {4.24f, 2.53f, 7.07f}, {4.8f, 4.69f, 6.56f}, 1.5f},
@@ -119,7 +119,7 @@ constexpr std::array<Stroke, 32> kSurfaceStrokes = {{
     // Root of the nose, its back.
     {{0, 4, 9.77f}, {0, 3.91f, 9.78f}, {0.48f, 3.8f, 9.74f}, 0.83f, -0.37f, 0.02f},
     {{0, 2.31f, 10.51f}, {0, 2.1f, 10.6f}, {0, 1.9f, 10.7f}, 0.6f, 0.06f, 0.07f, 0, 0.1f},
-    // Groove around the wing, dimple before it.
+    // Groove around the wing, dimple in front of it.
     {{1.3f, 0.95f, 11.3f}, {1.95f, 0.75f, 10.6f}, {1.85f, -0.5f, 10.75f}, 0.22f, -0.13f},
     {{0.5f, 0.95f, 11.5f}, {0.74f, 0.6f, 11.2f}, {0.85f, 0.44f, 11}, 0.3f, -0.04f},
     // Nasolabial fold, and the roll beside it.
@@ -165,7 +165,7 @@ constexpr std::array<Stroke, 32> kSurfaceStrokes = {{
     // Corner of the mouth; groove above the chin.
     {{2.5f, -3.2f, 9.31f}, {2.6f, -3.25f, 9.2f}, {2.8f, -3.35f, 9}, 0.45f, -0.07f, 0, 0, -0.1f},
     {{0, -4.91f, 10.1f}, {0.95f, -4.88f, 9.92f}, {1.73f, -3.86f, 9.74f}, 0.86f, -0.79f},
-    // Throat, and the muscle from behind the ear to the breastbone.
+    // Throat, and the sternocleidomastoid from behind the ear to the breastbone.
     {{0, -9.91f, 4.19f}, {0, -10.51f, 3.51f}, {0, -10.97f, 3.35f}, 1.57f, 0.86f, 0.18f},
     {{6, -3.47f, -1.75f},
      {4.95f, -7.97f, 0.89f},
@@ -182,7 +182,7 @@ const std::vector<StrokePath>& head_paths() {
     return paths;
 }
 
-/// As Vec3, for functions of one point.
+/// One point as a Vec3.
 Vec3 one_of(const PointOf<float>& p, int /*index*/) {
     return {p.x, p.y, p.z};
 }
@@ -198,8 +198,8 @@ void set_one(PointOf<Four>& p, int index, const Vec3& one) {
     p.z[index] = one.z;
 }
 
-/// Where `p` is on a neutral head. Women's faces are smaller below the brow, more so the lower;
-/// heavy ones broader.
+/// Maps `p` to a neutral head. Women's faces are smaller below the brow, increasingly downwards;
+/// heavy ones are broader.
 Vec3 to_neutral_head(const Vec3& point, const HeadShape& shape) {
     const float low = glm::smoothstep(6.0f, -7.0f, point.y);
     Vec3 p = {std::abs(point.x), point.y, point.z};
@@ -208,7 +208,7 @@ Vec3 to_neutral_head(const Vec3& point, const HeadShape& shape) {
     return shape.shoulders ? to_neutral_shoulders(p, shape) : p;
 }
 
-/// Number: float, of one point, or Four, of four.
+/// Number: float for one point, or Four for four points.
 template <typename Number>
 Number distance_of(PointOf<Number> p, const HeadShape& shape, float detail) {
     for (int i = 0; i < static_cast<int>(sizeof(Number) / sizeof(float)); ++i) {
@@ -235,7 +235,7 @@ struct DistanceAndGradient {
     Vec3 gradient;
 };
 
-/// By differences from `p`.
+/// By finite differences from `p`.
 DistanceAndGradient distance_and_gradient(const Vec3& p, const HeadShape& shape, float detail) {
     constexpr float kStep = 0.01f;
     const PointOf<Four> points = {
@@ -254,7 +254,7 @@ void step_forwards(PointOf<Number>& p, const HeadShape& shape, float detail) {
         const Number before = p.z;
         p.z -= 0.6f * distance_of(p, shape, detail);
         if (!any_of(p.z != before)) {
-            break;  // no later step moves it
+            break;  // converged
         }
     }
 }
@@ -307,21 +307,21 @@ void project_forwards(std::span<Vec3> points, const HeadShape& shape, float deta
 Vec3 lid_margin(float angle) {
     const float c = std::cos(angle);
     const float s = std::sin(angle);
-    // The outer corner lies higher; the upper lid is highest inwards, the lower lowest outwards of
-    // the middle.
+    // The outer corner is higher; the upper lid is highest medially, the lower lid lowest
+    // laterally.
     const float x = 1.36f * c;
     const float shift = s > 0 ? -0.12f : 0.12f;
     const float skew = std::pow(std::max(0.0f, 1 - square(c)), 0.72f) * (1 + shift * c);
     const float y = 0.08f * c - 0.02f + (s > 0 ? 0.50f : -0.46f) * skew;
-    const float reach = kEyeRadius + kLidThickness * 0.9f;
-    // Beyond the ball, corners run on forward of it.
-    const float depth = std::sqrt(std::max(square(reach) - x * x - y * y, 0.0f));
+    const float radius = kEyeRadius + kLidThickness * 0.9f;
+    // Corners beyond the ball continue in front of it.
+    const float depth = std::sqrt(std::max(square(radius) - x * x - y * y, 0.0f));
     const float inner = 0.35f * glm::smoothstep(-0.75f, -1.0f, c);
     return kEyeCenter + Vec3(x, y, std::max(depth, 0.45f) + inner);
 }
 
 Vec3 nostril_rim(float angle) {
-    // An oval that points to the tip, wider behind; its outer side lies higher.
+    // An oval that points to the tip, wider at the back; its outer side is higher.
     const float c = std::cos(angle);
     const float s = std::sin(angle);
     const float width = 1 - 0.22f * s;
@@ -335,7 +335,7 @@ float across_mouth(float angle) {
 
 Vec3 lip_line(float angle) {
     const float c = across_mouth(angle);
-    const float bow = 0.07f * std::cos(3 * kPi * c * 0.5f) * (1 - c * c);  // dips in the middle
+    const float bow = 0.07f * std::cos(3 * kPi * c * 0.5f) * (1 - c * c);  // dips at the center
     const float y = -3.32f - 0.16f * square(c) * square(c) - bow;
     return {2.5f * c, y, 11.1f - 0.95f * std::pow(std::abs(c), 2.2f)};
 }

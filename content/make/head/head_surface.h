@@ -19,31 +19,31 @@ inline constexpr float kLidThickness = 0.17f;
 // The jaw turns about this axis, parallel to x (y, z).
 inline constexpr Vec2 kJawAxis = {-0.55f, 1.82f};
 
-/// < 0 inside; about the distance near the surface. `detail` 0: cranium, face and neck alone, 1:
-/// with nose, lids, lips and all strokes.
+/// Approximate signed distance near the surface, < 0 inside. `detail` 0: cranium, face and neck
+/// only, 1: with nose, lids, lips and all strokes.
 [[nodiscard]] float head_distance(const Vec3& p, const HeadShape& shape, float detail);
 
-/// Of head_distance: about unit, outwards.
+/// Gradient of head_distance: outwards, approximately unit.
 [[nodiscard]] Vec3 head_gradient(const Vec3& p, const HeadShape& shape, float detail);
 
-/// Moves `p` along the gradient onto the surface, by so many steps of Newton's method; one is
-/// enough for a point that is on it but for a little.
+/// Moves `p` along the gradient onto the surface by `steps` of Newton's method; one suffices for a
+/// point close to it.
 [[nodiscard]] Vec3 project_to_head(Vec3 p, const HeadShape& shape, float detail, int steps = 3);
 
-/// Likewise along z, to the foremost point: for the nose, where gradients would fold the mesh.
+/// Likewise along z to the foremost point: for the nose, where gradients would fold the mesh.
 [[nodiscard]] Vec3 project_forwards(const Vec3& p, const HeadShape& shape, float detail);
-/// The same of many points, faster.
+/// The same for many points, faster.
 void project_forwards(std::span<Vec3> points, const HeadShape& shape, float detail);
 
-/// Of the left lids: outer edge of the margin at `angle` [rad], 0 lateral, pi / 2 up.
+/// Outer edge of the margin of the left lids at `angle` [rad], 0 lateral, pi / 2 up.
 [[nodiscard]] Vec3 lid_margin(float angle);
 
-/// Of the left nostril: its rim at `angle`, 0 lateral, pi / 2 towards the tip of the nose; near the
+/// Rim of the left nostril at `angle`, 0 lateral, pi / 2 towards the tip of the nose; near the
 /// surface.
 [[nodiscard]] Vec3 nostril_rim(float angle);
 
-/// From 1 at the left corner of the mouth, where `angle` is 0, to -1 at the right one: even steps,
-/// as its corners are sharp.
+/// From 1 at the left corner of the mouth, where `angle` is 0, to -1 at the right one, in even
+/// steps, since its corners are sharp.
 [[nodiscard]] float across_mouth(float angle);
 
 /// Where the lips touch, at `angle` around the mouth.

@@ -9,8 +9,8 @@
 
 namespace limn {
 
-// Static poses of speech, one for each class of sounds that look alike (face.viseme), in the order
-// of MPEG-4: weighted sums of action units. Jaw 1 opens the incisors by 15 mm; a tongue is bent.
+// Static mouth poses, one per class of sounds that look alike (face.viseme), in the order of
+// MPEG-4: weighted sums of action units. Jaw 1 opens the incisors by 15 mm; the tongue bends.
 
 struct UnitWeight {
     std::string_view unit;
@@ -26,7 +26,7 @@ struct HeadViseme {
 
 [[nodiscard]] std::span<const HeadViseme> head_visemes();
 
-/// How far the pose moves `point` [cm].
+/// Offset by which the pose moves `point` [cm].
 [[nodiscard]] Vec3
 viseme_offset(const HeadViseme& viseme, const HeadPoint& point, const HeadShape& shape);
 

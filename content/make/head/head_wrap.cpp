@@ -36,10 +36,10 @@ Vec3 lid_point(const HeadVertex& vertex) {
     constexpr std::array<float, 4> kOpen = {0, 0.3f, 0.65f, 1};
     const float angle =
         inwards < 5 ? glm::mix(opening, std::max(opening, 1.75f), kOpen[inwards - 1]) : 2.6f;
-    const float reach = inwards == 1 ? std::max(kEyeRadius + 0.015f, glm::length(offset) - 0.2f)
-                                     : kEyeRadius + 0.05f;
+    const float radius = inwards == 1 ? std::max(kEyeRadius + 0.015f, glm::length(offset) - 0.2f)
+                                      : kEyeRadius + 0.05f;
     return kEyeCenter
-           + reach
+           + radius
                  * Vec3(
                      std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around),
                      std::cos(angle));
@@ -51,12 +51,12 @@ bool on_nose(const HeadVertex& vertex) {
            && start.y > -2 && start.y < 5;
 }
 
-/// A membrane from the rim to the grid until the nose is there; then, a rounded rim.
+/// A membrane from the rim to the grid until the nose has grown; then a rounded rim.
 bool is_free_of_surface(const HeadVertex& vertex, float detail) {
     return vertex.loops == HeadLoops::Nostril && (detail < 1 || vertex.loop > kNostrilRim - 3);
 }
 
-/// Onto the surface.
+/// Projects `p` onto the surface.
 Vec3 project(
     const HeadVertex& vertex, const Vec3& p, const HeadShape& shape, float detail, int steps = 3) {
     if (is_free_of_surface(vertex, detail)) {
@@ -69,7 +69,8 @@ Vec3 project(
 /// From where the lips touch to the back of the mouth.
 Vec3 mouth_point(const HeadVertex& vertex, const HeadShape& shape, float detail) {
     struct Profile {
-        float depth, open, width;  // behind the lips, above or below their line, share of its width
+        float depth, open,
+            width;  // behind the lips, above or below their line, fraction of its width
     };
     constexpr std::array<Profile, 7> kProfile = {{
         {0.10f, 0, 1},
@@ -91,7 +92,7 @@ Vec3 mouth_point(const HeadVertex& vertex, const HeadShape& shape, float detail)
 Vec3 nostril_point(const HeadVertex& vertex, const HeadShape& shape, float detail) {
     struct Profile {
         float depth;  // [cm]
-        float width;  // share of the rim's
+        float width;  // fraction of the rim's
     };
     constexpr std::array<Profile, kNostrilLoops - kNostrilRim + 1> kProfile = {{
         {0, 1},
@@ -148,8 +149,8 @@ class HeadWrap {
     }
 
   private:
-    /// Where `p` of a neutral head begins: outside of the shoulders, above them, since the nearest
-    /// surface may be below.
+    /// Initial position of `p` of a neutral head: outside of and above the shoulders, since the
+    /// nearest surface may be below.
     Vec3 raise(Vec3 p) const {
         constexpr float kStep = 0.2f;
         constexpr float kBelow = -8;  // [cm]
@@ -180,7 +181,7 @@ class HeadWrap {
                 positions_[v] = to_side(vertex, nostril_point(vertex, shape_, detail));
                 free_[v] = false;
             } else if (at_end(vertex)) {
-                for (int step = 0; step < 2; ++step) {  // a plane ring, where a body begins
+                for (int step = 0; step < 2; ++step) {  // a planar ring, where a body begins
                     positions_[v] = project_to_head(positions_[v], shape_, detail);
                     positions_[v].y = vertex.start.y;
                 }
@@ -188,7 +189,7 @@ class HeadWrap {
         }
     }
 
-    /// Between the grid and the rims, which have moved.
+    /// Interpolates between the grid and the rims, which have moved.
     void stretch_nostrils() {
         for (int round = 0; round < 30; ++round) {
             for (std::size_t v = 0; v < positions_.size(); ++v) {
@@ -223,7 +224,7 @@ class HeadWrap {
         });
     }
 
-    /// Smooths the mesh where it is folded: its normal is not that of the surface.
+    /// Smooths the mesh where it is folded, where its normal differs from that of the surface.
     void heal() {
         std::vector<Vec3> normals(positions_.size(), Vec3(0));
         for (const auto& quad : layout_.quads) {
@@ -262,8 +263,8 @@ class HeadWrap {
         }
     }
 
-    /// At the corners of eyes and mouth, where loops turn sharply, mostly of neighbors on other
-    /// loops: along a loop the mean lies beyond the opening.
+    /// At the corners of eyes and mouth, where loops turn sharply, mostly the mean of neighbors on
+    /// other loops: along a loop the mean lies beyond the opening.
     Vec3 mean_around(const std::vector<Vec3>& positions, std::size_t v) const {
         const HeadVertex& vertex = layout_.vertices[v];
         const bool opening = vertex.loops == HeadLoops::Eye || vertex.loops == HeadLoops::Mouth;

@@ -7,13 +7,13 @@
 
 namespace limn {
 
-/// Places the vertices of head_layout() on the skin of a head, at rest [cm]: grows the features out
-/// of a plain head while loops relax along the surface; then sets lids, lips and ears, which have
-/// curves of their own. Symmetric but for HeadShape::asymmetry.
+/// Positions of the vertices of head_layout() on the skin of a head, at rest [cm]: grows the
+/// features out of a plain head while loops relax along the surface; then sets lids, lips and ears,
+/// which have their own curves. Symmetric except for HeadShape::asymmetry.
 [[nodiscard]] std::vector<Vec3> wrap_head(const HeadShape& shape);
 
-/// Where a point of a symmetric head is on one with HeadShape::asymmetry: one side a little higher,
-/// chin and nose a little aside.
+/// Maps a point of a symmetric head to one with HeadShape::asymmetry: one side a little higher,
+/// chin and nose shifted a little sideways.
 [[nodiscard]] Vec3 skew_head(Vec3 p, const HeadShape& shape);
 
 }  // namespace limn

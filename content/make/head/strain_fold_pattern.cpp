@@ -71,7 +71,7 @@ std::vector<Vec2> slopes_of(const ImageData& map) {
     return slopes;
 }
 
-/// Factor on the slopes that takes up a small excess of length 1.
+/// Factor of the slopes for a unit excess length, in the limit of small ones.
 float unit_factor(std::span<const Vec2> slopes) {
     double sum = 0;
     double count = 0;
@@ -83,7 +83,7 @@ float unit_factor(std::span<const Vec2> slopes) {
     return sum > 0 ? static_cast<float>(std::sqrt(2 * count / sum)) : 0.0f;
 }
 
-/// Where the skin of a mesh may fold, and across which direction in its tangent frame.
+/// Where the skin of a mesh may fold, and the direction across the folds in its tangent frame.
 struct Foldable {
     std::vector<float> mask;
     std::vector<Vec2> across;
@@ -107,7 +107,7 @@ Foldable find_foldable_texels(const MeshData& mesh) {
     return found;
 }
 
-/// Strength of folds that keep the length of the skin, where their slopes are small.
+/// Strength of folds that preserve the length of the skin, for small slopes.
 float strength_of(const Vec3& strain, const Vec2& across, const StrainFoldsPattern& pattern) {
     const Vec2 now = {
         (1 + strain.x) * across.x + strain.z * across.y,

@@ -4,8 +4,8 @@
 
 namespace limn {
 
-/// Folds of skin along u: round crests with narrow valleys between, that wander and fade out. Its
-/// normals are a wrinkle map.
+/// Folds of skin along u: round crests between narrow valleys, which wander and fade out. The
+/// normal map is a wrinkle map.
 struct FoldsPattern {
     PatternSize image;
     int count = 12;
@@ -20,16 +20,15 @@ struct FoldsPattern {
 LIMN_FIELDS(FoldsPattern) {
     visit_fields(self.image, visit);
     LIMN_FIELD(count, "folds along v", "", 1, 256);
-    LIMN_FIELD(depth, "from crest to valley as a share of their distance", "", 0, 1);
-    LIMN_FIELD(wander, "to the sides, as a share of their distance", "", 0, 2);
+    LIMN_FIELD(depth, "depth from crest to valley, relative to the spacing of folds", "", 0, 1);
+    LIMN_FIELD(wander, "sideways irregularity, relative to the spacing of folds", "", 0, 2);
     LIMN_FIELD(breaks, "how much folds fade out along u", "", 0, 1);
     LIMN_FIELD(sharpness, "0: a sine; 1: creases between round crests", "", 0, 1);
     LIMN_FIELD(
         steepest,
-        "limit of x^2 + y^2 of the normals, which are moved back to it; the wrinkle method sphere "
-        "needs 0.6",
+        "limit to which x^2 + y^2 of the normals is clamped; the wrinkle method sphere needs 0.6",
         "", 0.01, 1);
-    LIMN_FIELD(color, .doc = "of the skin", .min = 0, .max = 1, .color = true);
+    LIMN_FIELD(color, .doc = "color of the skin", .min = 0, .max = 1, .color = true);
 }
 
 [[nodiscard]] PatternMaps make_folds(const FoldsPattern& pattern);

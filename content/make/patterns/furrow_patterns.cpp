@@ -31,7 +31,7 @@ Vec3 pad_at(const Vec2& p) {
     return {kPadHeight * q * q, slope.x, slope.y};
 }
 
-/// What the maps are made of, in rows from top to bottom.
+/// Height and normals that become maps, in rows from top to bottom.
 struct Relief {
     IVec2 size = {0, 0};
     std::vector<float> height;
@@ -55,8 +55,8 @@ Relief grow(const FurrowMap& map, const FurrowsPattern& pattern) {
     return relief;
 }
 
-/// The relief of a limb as a planar projection from the front and, mirrored, the back sees it, in
-/// the image of the unrolled limb.
+/// The relief of a limb by planar projection from the front and, mirrored, from the back, resampled
+/// to the image of the unrolled limb.
 Relief unroll_planar(const Relief& planar, const MeshData& mesh) {
     Relief limb = planar;
     float radius = 0;
