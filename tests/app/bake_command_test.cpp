@@ -303,7 +303,7 @@ TEST_CASE("bake: a strain model of wrong shapes, maps or faces is refused by nam
     says(R"({"face": "no.glb", "poses": [{"image": "a.png"}]})", "no.glb");
     says(
         R"({"face": "skin.glb", "uv_set": 1, "poses": [{"image": "a.png"}]})",
-        "skin.glb: found no texture coordinates 1, expected the maps' ones");
+        "skin.glb: found no texture coordinates 1, expected those of the maps");
     says(R"({"face": "skin.glb", "size": 0, "poses": [{"image": "a.png"}]})", "size");
 }
 

@@ -69,7 +69,7 @@ TEST_CASE("bench_fakephong: every method is timed on every model under 1, 4 and 
     CHECK(csv.find("sphere,16,quadratic_blinn,1,") != std::string::npos);
     CHECK(csv.find("sphere,\"quadratic-blinn\",6,") != std::string::npos);
     CHECK(csv.find("triangle,\"cubic, stepped\",10,") != std::string::npos);
-    CHECK(run.out.find("Counted on a processor") != std::string::npos);
+    CHECK(run.out.find("Counted on a CPU") != std::string::npos);
 }
 
 }  // namespace limn::bench_fakephong_test

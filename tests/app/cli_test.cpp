@@ -366,8 +366,8 @@ TEST_CASE("cli: info tells what particles may cost, by emitter and in all") {
                      "       3      3072 particles      108.0 KiB  cpu  smoke\n"
                      "       1       512 particles       18.0 KiB  cpu  spark\n"
                      "       1    300000 particles    18750.0 KiB  gpu  dust\n"
-                     "       4      3584 particles      126.0 KiB  cpu, in all\n"
-                     "       1    300000 particles    18750.0 KiB  gpu, in all\n")
+                     "       4      3584 particles      126.0 KiB  cpu, total\n"
+                     "       1    300000 particles    18750.0 KiB  gpu, total\n")
         != std::string::npos);
     test::write_text(folder.file("none.level.json"), R"({"entities": [{"name": "post"}]})");
     CHECK(run_limn(folder, {"info", "none.level.json"}).out.find("emitter") == std::string::npos);

@@ -185,7 +185,7 @@ TEST_CASE(
         [&](Entity entity, const MeshInstance&) { nameless = entity; });
     const auto [json, text] = json_of_entity(nameless);
     CHECK(json.members.size() == 1);
-    CHECK(text.find("// this node has no name") != std::string::npos);
+    CHECK(text.find("// unnamed node") != std::string::npos);
 }
 
 TEST_CASE("edit_json: an edit of a node of a glTF file is a change of nodes") {
@@ -290,7 +290,7 @@ TEST_CASE(
         return edits_as_json(world, std::vector{edit}).find("scale") != std::string::npos;
     };
     const auto cannot = [](const std::string& note) {
-        return note.find("cannot be saved") != std::string::npos;
+        return note.find("cannot be copied") != std::string::npos;
     };
     for (const Entity kept : {level.find("single"), child_of("single", 0)}) {
         CHECK(edit_note(world, kept).empty());
@@ -299,7 +299,7 @@ TEST_CASE(
     CHECK(edit_note(world, child_of("single", 1)).starts_with("has no name"));
     CHECK_FALSE(is_kept(child_of("single", 1)));
     const std::string copy = edit_note(world, level.find("row[1]"));
-    CHECK(copy.starts_with("one of 3 copies of row by repeat: its edits are saved as an event"));
+    CHECK(copy.starts_with("one of 3 copies of row by repeat: its edits are copied as an event"));
     CHECK(is_kept(level.find("row[1]")));
     const std::string part = edit_note(world, child_of("row[1]", 0));
     CHECK(part.starts_with("part of one of 3 copies of row by repeat"));

@@ -13,7 +13,7 @@ namespace limn::key_list_test {
 namespace {
 
 /// 200 x 100 pixels from (10, 20); a value of 2 is at the upper edge.
-constexpr KeyPlot kPlot{.corner = {10, 20}, .size = {200, 100}, .top = 2, .reach = 8};
+constexpr KeyPlot kPlot{.corner = {10, 20}, .size = {200, 100}, .top = 2, .pick_radius = 8};
 
 std::vector<CurveKey> curve() {
     return {{0, 1}, {0.5f, 2}, {1, 0}};
@@ -21,9 +21,9 @@ std::vector<CurveKey> curve() {
 
 }  // namespace
 
-TEST_CASE("key list: keys are hit within reach, the nearest one first") {
-    CHECK(key_place(kPlot, CurveKey{0.5f, 2}) == Vec2(110, 20));
-    CHECK(key_place(kPlot, CurveKey{0, 1}) == Vec2(10, 70));
+TEST_CASE("key list: keys are picked within the pick radius, the nearest one first") {
+    CHECK(key_position(kPlot, CurveKey{0.5f, 2}) == Vec2(110, 20));
+    CHECK(key_position(kPlot, CurveKey{0, 1}) == Vec2(10, 70));
     CHECK(hit_key(kPlot, curve(), {110, 20}) == 1);
     CHECK(hit_key(kPlot, curve(), {110, 28}) == 1);
     CHECK(hit_key(kPlot, curve(), {110, 28.5f}) == -1);
@@ -142,7 +142,7 @@ TEST_CASE("emitter controls: counts, drops told, a restart without particles, an
     CHECK(counts.born == 80);
     CHECK(counts.dropped == 5);
     CHECK_FALSE(counts.on_gpu);
-    CHECK(describe_drops(world).starts_with("no room for 5 births of 1 emitter:"));
+    CHECK(describe_drops(world).starts_with("5 particles of 1 emitter dropped:"));
     restart_emitter(world, emitter);
     CHECK(describe_drops(world).empty());
     CHECK(count_particles(world, emitter).alive == 0);
