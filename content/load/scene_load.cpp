@@ -189,7 +189,7 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
             : entity != entities.end()
                 ? entity_positions[static_cast<std::size_t>(entity - entities.begin())]
                 : SourcePosition{};
-        log_warn("{}: {}", place_text(path, at), warning.text);
+        log_warn("{}: {}", location_text(path, at), warning.text);
     }
     scene.camera = find_camera(world);
     if (scene.camera.is_null()) {

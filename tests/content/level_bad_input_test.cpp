@@ -98,7 +98,7 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
         {R"({"materials": {"m": {"base_color": [1, 1]}}})",
          R"(expected [r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"},
         {R"({"materials": {"m": {"pattern": "leaf.png"}}})",
-         R"(expected the name of a made image in "images" (for a file write )"
+         R"(expected the name of a generated image in "images" (for a file write )"
          R"("base_color_texture": {"image": "leaf"}, and "leaf": {"file": "leaf.png"} in "images"))"},
         {R"({"images": {"leaf": {"file": "leaf.png"}}, "materials": {"m": {"pattern": "leaf"}}})",
          R"((for a single image write "base_color_texture": {"image": "leaf"}))"},

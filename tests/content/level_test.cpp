@@ -589,7 +589,7 @@ TEST_CASE("set: a component that the entity lacks is added, with its defaults an
     REQUIRE(messages.size() == 1);
     CHECK(
         messages[0]
-        == "--set lamp.point_light.intensity: the entity has no point_light; it is added, with "
+        == "--set lamp.point_light.intensity: the entity has no point_light; it is added with "
            "defaults");
 }
 

@@ -184,7 +184,7 @@ TEST_CASE("level update: a broken file is told with its line, and changes nothin
 TEST_CASE("level update: other entities, components or assets need the level loaded again") {
     Playing level;
     const std::string refusal =
-        "t.level.json: entities, components or assets were added or removed: load it again";
+        "t.level.json: entities, components or assets were added or removed: reload the level";
     level.write_level(R"(, {"name": "three"})");
     CHECK(level.update() == refusal);
     level.write_level("");

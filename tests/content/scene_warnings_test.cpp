@@ -52,13 +52,14 @@ TEST_CASE("scene warnings: keyframes whose times do not increase") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "eye", "camera": {},
         "camera_path": {"keys": [{"time": 0}, {"time": 2}, {"time": 1}]}}]})")
-        == Warnings{"entity \"eye\": camera_path.keys[2].time is 1 s, not after the key before it "
+        == Warnings{"entity \"eye\": camera_path.keys[2].time is 1 s, not after the previous key "
                     "(2 s)"});
     CHECK(
         warnings_of(R"({"entities": [{"name": "pot",
         "rotation_track": {"keys": [{"time": 1}, {"time": 1}]}}]})")
-        == Warnings{"entity \"pot\": rotation_track.keys[1].time is 1 s, not after the key before "
-                    "it (1 s)"});
+        == Warnings{
+            "entity \"pot\": rotation_track.keys[1].time is 1 s, not after the previous key "
+            "(1 s)"});
 }
 
 TEST_CASE("scene warnings: components that do nothing without another") {
@@ -92,7 +93,7 @@ TEST_CASE("scene warnings: surfaces that are not there, or on which nothing is b
             "entity \"c\": particle_surface on a path needs a path",
             "entity \"d\": particle_surface on pieces needs a particle_mesh of \"fragments\"",
             "entity \"f\": particle_surface has no effect beside a particle_source",
-            "entity \"e\": particle_surface has no effect on particles of the GPU; set "
+            "entity \"e\": particle_surface has no effect on GPU particles; set "
             "particle_emitter.executor to cpu"});
 }
 
@@ -113,11 +114,11 @@ TEST_CASE("scene warnings: colliders that are not there") {
             "entity \"c\": particle_collider of this shape needs noise_surface"});
 }
 
-TEST_CASE("scene warnings: what particles of the GPU cannot do") {
+TEST_CASE("scene warnings: what GPU particles cannot do") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "sparks", "particle_look": {},
         "particle_emitter": {"executor": "gpu"}, "particle_light": {}}]})")
-        == Warnings{"entity \"sparks\": particle_light has no effect on particles of the GPU; set "
+        == Warnings{"entity \"sparks\": particle_light has no effect on GPU particles; set "
                     "particle_emitter.executor to cpu"});
     CHECK(
         warnings_of(R"({"entities": [
@@ -125,7 +126,7 @@ TEST_CASE("scene warnings: what particles of the GPU cannot do") {
         {"name": "smoke", "particle_look": {"lit_at": "middle"}, "particle_emitter": {}},
         {"name": "mist", "particle_look": {}, "particle_emitter": {"executor": "gpu"}}]})")
         == Warnings{
-            "entity \"sparks\": particle_look.lit_at has no effect on particles of the GPU, "
+            "entity \"sparks\": particle_look.lit_at has no effect on GPU particles, "
             "whose light is evaluated at their corners; set particle_emitter.executor to cpu"});
 }
 
@@ -165,7 +166,7 @@ TEST_CASE("scene warnings: events on a component that the entity lacks") {
     CHECK(warnings_of(with(R"(, "spin": {})", "set")).empty());
     CHECK(
         warnings_of(with("", "set"))
-        == Warnings{"events[0]: entity \"box\" has no spin; the event adds it, with defaults"});
+        == Warnings{"events[0]: entity \"box\" has no spin; the event adds it with defaults"});
     CHECK(
         warnings_of(with("", "impulse"))
         == Warnings{"events[0]: entity \"box\" has no spin; the event does nothing"});
@@ -186,7 +187,7 @@ TEST_CASE("scene warnings: a camera inside of what is solid") {
     };
     const std::string box = R"("make": "box", "size": [1, 1, 1])";
     const Warnings inside = {
-        "entity \"eye\": the camera starts inside of entity \"stone\", at [5, 3, 0]"};
+        "entity \"eye\": the camera starts inside entity \"stone\", at [5, 3, 0]"};
     // The box is 2 x 3 x 4 m about (5, 3, 0).
     CHECK(warnings_of(with("[4, 3, 0]", box.c_str(), "")) == inside);
     CHECK(warnings_of(with("[4, 4.4, 0]", box.c_str(), "")).size() == 1);
@@ -251,7 +252,7 @@ TEST_CASE("scene warnings: a sun far brighter than the exposure is made for") {
     CHECK(
         warnings_of(level("", "40000"))
         == Warnings{
-            "entity \"sun\": 40000 lx are far too bright for the exposure, which suits about "
+            "entity \"sun\": 40000 lx is far too bright for the exposure, which suits about "
             "5 lx, as skies and effects do; \"exposure\": {\"metering\": \"auto\"} follows any "
             "light"});
     CHECK(warnings_of(level(R"("exposure": {"ev": 2})", "30")).size() == 1);
@@ -288,8 +289,8 @@ TEST_CASE("scene warnings: events on an entity that is destroyed before") {
                             {"at": 1, "destroy": ["box"]},
                             {"at": 1, "destroy": ["box"], "set_resources": {"glow": {"strength": 1}}})"))
         == Warnings{
-            "events[0]: entity \"lid\" does not exist any more: events[1] destroys it at 1 s",
-            "events[2]: entity \"box\" does not exist any more: events[1] destroys it at 1 s"});
+            "events[0]: entity \"lid\" no longer exists: events[1] destroys it at 1 s",
+            "events[2]: entity \"box\" no longer exists: events[1] destroys it at 1 s"});
 }
 
 TEST_CASE("scene warnings: a line of a level names the place in its file") {
@@ -435,7 +436,7 @@ TEST_CASE("scene warnings: wrinkles whose material has no map of them") {
         lines.push_back(warning.text);
     }
     const char* const kText =
-        "wrinkle_surface draws nothing without a wrinkle_texture of its material";
+        "wrinkle_surface draws nothing unless its material has a wrinkle_texture";
     CHECK(
         lines
         == Warnings{

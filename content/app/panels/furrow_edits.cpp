@@ -235,15 +235,15 @@ Status save_furrows(const std::string& path, const FurrowFile& file) {
 
 Result<FurrowFile> load_furrows(const std::string& path) {
     const JsonValue json = LIMN_TRY(load_json(path));
-    const JsonPlace place = {path, ""};
+    const JsonLocation location = {path, ""};
     constexpr std::string_view kKeys[] = {"furrows", "skin"};
-    LIMN_TRY(expect_keys(json, place, kKeys));
+    LIMN_TRY(expect_keys(json, location, kKeys));
     FurrowFile file;
     if (const JsonValue* const furrows = json.find("furrows")) {
-        LIMN_TRY(read_struct(*furrows, file.furrows, place_in(place, "furrows"), {}));
+        LIMN_TRY(read_struct(*furrows, file.furrows, location_in(location, "furrows"), {}));
     }
     if (const JsonValue* const skin = json.find("skin")) {
-        LIMN_TRY(read_struct(*skin, file.skin, place_in(place, "skin"), {}));
+        LIMN_TRY(read_struct(*skin, file.skin, location_in(location, "skin"), {}));
     }
     file.furrows.hold = {};
     return file;
