@@ -127,7 +127,7 @@ TEST_CASE("wrinkle trial: ten answers as the source's are counted as 2/3, 1/4 an
     }
     const std::string text = describe_tally(tally_trials(records));
     for (const char* const pair :
-         {"2/3, the source 2/3", "1/4, the source 1/4", "8/2, the source 8/2"}) {
+         {"2/3, original study 2/3", "1/4, original study 1/4", "8/2, original study 8/2"}) {
         CHECK(text.find(pair) != std::string::npos);
     }
     const auto again = parse_trials(write_trials(records), "answers.csv");
