@@ -41,13 +41,13 @@ TEST_CASE("masonry: the curve goes from the springing to the point, upright at i
     for (const float radius : {0.0f, 0.5f, 0.8f, 1.0f, 3.0f}) {
         const std::vector<CurvePoint> curve = pointed_curve(3.0f, 2.5f, radius, 9);
         REQUIRE(curve.size() == 10);
-        CHECK(curve.front().place == Vec2(1.5f, 0));
+        CHECK(curve.front().position == Vec2(1.5f, 0));
         CHECK(curve.front().normal == Vec2(1, 0));
-        CHECK(curve.back().place == Vec2(0, 2.5f));
+        CHECK(curve.back().position == Vec2(0, 2.5f));
         for (std::size_t i = 1; i < curve.size(); ++i) {
-            CHECK(curve[i].place.x < curve[i - 1].place.x);
-            CHECK(curve[i].place.y > curve[i - 1].place.y);
-            const Vec2 chord = glm::normalize(curve[i].place - curve[i - 1].place);
+            CHECK(curve[i].position.x < curve[i - 1].position.x);
+            CHECK(curve[i].position.y > curve[i - 1].position.y);
+            const Vec2 chord = glm::normalize(curve[i].position - curve[i - 1].position);
             const Vec2 between = glm::normalize(curve[i].normal + curve[i - 1].normal);
             CHECK(std::abs(glm::dot(chord, between)) < 0.02f);
         }
@@ -58,12 +58,12 @@ TEST_CASE("masonry: an equilateral arch has its arcs about the opposite springin
     const float rise = std::sqrt(3.0f);
     for (const float radius : {0.0f, 1.0f}) {  // by its rise, or by its name
         for (const CurvePoint& point : pointed_curve(2.0f, rise, radius, 16)) {
-            CHECK(glm::distance(point.place, Vec2(-1, 0)) == test::near(2.0f));
+            CHECK(glm::distance(point.position, Vec2(-1, 0)) == test::near(2.0f));
         }
     }
     // What is too low for two arcs is half an ellipse; half a circle has no point.
     for (const CurvePoint& point : pointed_curve(4.0f, 1.0f, 0.0f, 16)) {
-        CHECK(glm::length(point.place * Vec2(0.5f, 1)) == test::near(1.0f));
+        CHECK(glm::length(point.position * Vec2(0.5f, 1)) == test::near(1.0f));
     }
     CHECK(pointed_curve(2.0f, 1.0f, 0.5f, 4).back().normal == Vec2(0, 1));
 }
@@ -130,10 +130,11 @@ TEST_CASE("masonry: a vault is as thick everywhere, and lies on the arch over it
     CHECK(vault.bounds.max == Vec3(3, 3.2f, 2));
     const float diagonal = std::sqrt(52.0f);
     for (const CurvePoint& rib : pointed_curve(diagonal, 3, 0.8f, shape.segments)) {
-        const Vec3 place = {rib.place.x * 6 / diagonal, rib.place.y, rib.place.x * 4 / diagonal};
+        const Vec3 position = {
+            rib.position.x * 6 / diagonal, rib.position.y, rib.position.x * 4 / diagonal};
         float nearest = 1;
         for (const Vec3& p : vault.positions) {
-            nearest = std::min(nearest, glm::distance(p, place));
+            nearest = std::min(nearest, glm::distance(p, position));
         }
         CHECK(nearest < 1e-5f);
     }

@@ -172,7 +172,7 @@ TEST_CASE("patterns: a frame of fire moved by its motion map is closer to the ne
                 for (int x = 0; x < kSide; ++x) {
                     const auto motion = [&](int c) {
                         const int encoded = at(maps.motion, frame, x, y, c);
-                        return kMotionReach * kSide * static_cast<float>(encoded - 128) / 127;
+                        return kMotionRange * kSide * static_cast<float>(encoded - 128) / 127;
                     };
                     // Nearest texel: half a pixel of error at most.
                     const int from_x =

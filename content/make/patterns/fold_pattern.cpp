@@ -21,7 +21,7 @@ PatternMaps make_folds(const FoldsPattern& pattern) {
         const float wave = 0.5f - 0.5f * std::cos(2 * kPi * fold);         // 0 in the valley
         const float crest = std::sqrt(wave + 0.004f) - std::sqrt(0.004f);  // round above a crease
         const float profile = glm::mix(wave, crest, pattern.sharpness);
-        // Each stretch of a fold has a strength of its own.
+        // Each stretch of a fold has its own strength.
         const float strength = glm::smoothstep(-0.45f, 0.25f, fbm(uv, pattern.count, seed + 2, 2));
         const float height = 1 - glm::mix(1.0f, strength, pattern.breaks) * (1 - profile);
         PatternTexel t;

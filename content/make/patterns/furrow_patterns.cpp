@@ -19,7 +19,7 @@ constexpr int kDivisions = 32;       // quads along each side of a surface
 constexpr float kPadHeight = 0.22f;  // [m]; by eye
 constexpr float kPadRadius = 0.46f;  // [m]
 
-/// Height and slopes of the elevation at a point: a smooth bump that ends flat.
+/// Height and slopes of the elevation at a point: a smooth bump that flattens out at its rim.
 Vec3 pad_at(const Vec2& p) {
     const float q = 1.0f - glm::dot(p, p) / square(kPadRadius);
     if (q <= 0) {
@@ -29,7 +29,7 @@ Vec3 pad_at(const Vec2& p) {
     return {kPadHeight * q * q, slope.x, slope.y};
 }
 
-/// What the maps are made of, in rows from top to bottom.
+/// Input of the maps, in rows from top to bottom.
 struct Relief {
     IVec2 size = {0, 0};
     std::vector<float> height;
@@ -53,8 +53,8 @@ Relief grow(const FurrowMap& map, const FurrowsPattern& pattern) {
     return relief;
 }
 
-/// The relief of a limb as a planar projection from the front and, mirrored, the back sees it, in
-/// the image of the unrolled limb.
+/// The relief of a limb by planar projection from the front and, mirrored, from the back, resampled
+/// to the image of the unrolled limb.
 Relief unroll_planar(const Relief& planar, const MeshData& mesh) {
     Relief limb = planar;
     float radius = 0;

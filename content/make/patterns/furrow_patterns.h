@@ -7,10 +7,10 @@
 
 namespace limn {
 
-// Skin with wrinkle furrows, as a procedural material: a sample of a surface goes through all that
-// a mesh does in `limn bake furrows`.
+// Skin with wrinkle furrows, as a procedural material: a sample surface is processed like a mesh
+// in `limn bake furrows`.
 
-/// What furrows grow on.
+/// The surface on which furrows grow.
 enum class FurrowSurface : std::uint8_t {
     Square,  ///< flat, faces +z, from -0.5 to 0.5 m; by uv its image tiles
     Pad,     ///< the same with a round elevation
@@ -29,11 +29,11 @@ struct FurrowsPattern {
 
 LIMN_FIELDS(FurrowsPattern) {
     visit_fields(self.recipe, visit);
-    LIMN_FIELD(surface, .doc = "what they grow on", .values = "square pad limb");
-    LIMN_FIELD(smooth_normals, "normals have the curvature of the surface laid flat");
+    LIMN_FIELD(surface, .doc = "surface on which they grow", .values = "square pad limb");
+    LIMN_FIELD(smooth_normals, "normals include the curvature of the flattened surface");
     LIMN_FIELD(
         cells, "finest relief: cells along each side, without direction; 0: none", "", 0, 256);
-    LIMN_FIELD(cell_depth, "of the edges between them", "", 0, 1);
+    LIMN_FIELD(cell_depth, "depth of the edges between cells", "", 0, 1);
     LIMN_FIELD(color, .doc = "of the skin", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(roughness, "perceptual roughness", "", 0, 1);
 }
@@ -41,7 +41,7 @@ LIMN_FIELDS(FurrowsPattern) {
 /// The mesh of a surface, with normals and uvs.
 [[nodiscard]] MeshData make_furrow_surface(FurrowSurface surface);
 
-/// Where the surface cannot be laid flat that way, skin without furrows.
+/// Skin without furrows if the surface cannot be flattened by the projection.
 [[nodiscard]] PatternMaps make_furrows(const FurrowsPattern& pattern);
 
 }  // namespace limn

@@ -16,10 +16,10 @@ namespace {
 
 struct PatternStrand {
     float u;       ///< at the root
-    float bend;    ///< to the side at the tip, in units of the image
-    float sway;    ///< to both sides
-    float phase;   ///< of that [rad]
-    float length;  ///< share of v
+    float bend;    ///< sideways at the tip, in units of the image
+    float sway;    ///< amplitude of sideways waves
+    float phase;   ///< of the waves [rad]
+    float length;  ///< in units of v
     float shade;   ///< factor of the color
     float slope;   ///< toward the viewer, rise per length: moves highlights
     float layer;   ///< 0 lies below, 1 on top

@@ -4,7 +4,7 @@
 
 namespace limn {
 
-/// Strands of hair along v, from roots at v = 0 to tips, with gaps between that opacity leaves out:
+/// Strands of hair along v, from roots at v = 0 to tips, with transparent gaps between:
 /// for cards of the mesh "head", part "scalp", with the shading model hair.
 struct HairPattern {
     PatternSize image;
@@ -18,8 +18,8 @@ struct HairPattern {
 LIMN_FIELDS(HairPattern) {
     visit_fields(self.image, visit);
     LIMN_FIELD(count, "strands along u", "", 1, 256);
-    LIMN_FIELD(width, "of a strand at its root, in units of their distance", "", 0, 4);
-    LIMN_FIELD(wander, "of strands to the sides, in units of their distance", "", 0, 8);
+    LIMN_FIELD(width, "width of a strand at its root / distance between strands", "", 0, 4);
+    LIMN_FIELD(wander, "sideways wander of strands / distance between strands", "", 0, 8);
     LIMN_FIELD(shortest, "length of the shortest strand; the longest is 1", "", 0, 1);
     LIMN_FIELD(variation, "of brightness between strands", "", 0, 1);
 }
