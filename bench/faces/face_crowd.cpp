@@ -122,7 +122,7 @@ std::vector<CrowdFace> crowd_faces(FaceCrowd& crowd, std::size_t count) {
     for (CrowdMember& member : std::span(crowd.members).first(count)) {
         const float age = static_cast<float>(faces.size()) / kCrowd;
         faces.push_back(
-            {.deformed = member.deformed, .intensity = member.intensity, .resting_share = age});
+            {.deformed = member.deformed, .intensity = member.intensity, .resting_weight = age});
     }
     return faces;
 }

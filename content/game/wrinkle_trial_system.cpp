@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+// Techniques: wrinkle.compression.ab-evaluation
+
 namespace limn {
 
 namespace {

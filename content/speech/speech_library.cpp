@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+// Techniques: face.speech-fragments
+
 namespace limn {
 
 namespace {

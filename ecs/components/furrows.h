@@ -14,13 +14,14 @@
 
 namespace limn {
 
-// Wrinkle furrows: fine lines of skin, grown along two vector fields over a surface (Bando, "Human
-// Skin Simulation by Generating Wrinkles along Vector Fields", 2001). What an author writes is
-// here, and the surface laid flat that furrows are drawn on. Field 0 is the first field (F1), field
-// 1 the second (F2); a vector's magnitude, 0 .. 2, is how pronounced furrows are.
+// Wrinkle furrows: fine lines in skin, grown along two vector fields on a surface (Bando, "Human
+// Skin Simulation by Generating Wrinkles along Vector Fields", 2001). This header has the author's
+// settings and the flattened surface that furrows are drawn on. Field 0 is the first field (F1),
+// field 1 the second (F2); a vector's magnitude, 0 .. 2, is how pronounced furrows are.
+// Techniques: wrinkle.furrow.functions
 
-/// How the local magnitude x of a field becomes a furrow; k is FurrowStyle::scale. Pairs are {value
-/// at x = 0, increase with x}.
+/// Furrow parameters as linear functions of the local field magnitude x; k is FurrowStyle::scale.
+/// Pairs are {value at x = 0, increase with x}.
 struct FurrowFunctions {
     Vec2 angle = {1.0f, -0.4f};
     Vec2 length = {4, 1};
@@ -33,13 +34,13 @@ struct FurrowFunctions {
 
 LIMN_FIELDS(FurrowFunctions) {
     LIMN_FIELD(
-        angle, "largest turn between field and segment: at magnitude 0, and more with each 1",
+        angle, "maximum angle between field and segment: at magnitude 0, and change per unit",
         "rad", -1.2, 1.2);
-    LIMN_FIELD(length, "of a segment, times the scale", "px", 0, 64);
-    LIMN_FIELD(density, "band in which no other furrow starts, times the scale", "px", 0, 64);
-    LIMN_FIELD(width, "of a furrow, times magnitude and scale", "px", 0, 32);
-    LIMN_FIELD(depth, "times the magnitude squared; 1 is the deepest", "", 0, 1);
-    LIMN_FIELD(limit, "segments of half a furrow, less one", "", -100, 100);
+    LIMN_FIELD(length, "length of a segment, times the scale", "px", 0, 64);
+    LIMN_FIELD(density, "margin in which no other furrow starts, times the scale", "px", 0, 64);
+    LIMN_FIELD(width, "width of a furrow, times magnitude and scale", "px", 0, 32);
+    LIMN_FIELD(depth, "depth of a furrow, times the squared magnitude; 1 is the deepest", "", 0, 1);
+    LIMN_FIELD(limit, "maximum number of segments in half a furrow, minus one", "", -100, 100);
 }
 
 struct FurrowStyle {
@@ -53,12 +54,12 @@ struct FurrowStyle {
 };
 
 LIMN_FIELDS(FurrowStyle) {
-    LIMN_FIELD(functions, "how the magnitude of a field becomes a furrow");
-    LIMN_FIELD(scale, "of all lengths of furrows", "", 0.5, 2);
-    LIMN_FIELD(noise, "roughness: height taken away at random", "", 0, 1);
+    LIMN_FIELD(functions, "furrow parameters as functions of the field magnitude");
+    LIMN_FIELD(scale, "scale of all furrow lengths", "", 0.5, 2);
+    LIMN_FIELD(noise, "roughness: height removed at random", "", 0, 1);
     LIMN_FIELD(bump, "height of the relief", "px", 0, 1);
     LIMN_FIELD(seed, "random seed", "", 0, 2147483647);
-    LIMN_FIELD(literal_turn, "every segment turns by the largest angle, to one side");
+    LIMN_FIELD(literal_turn, "every segment turns by the maximum angle, to one side");
 }
 
 /// Sets the two fields at one point of a surface.
@@ -71,20 +72,21 @@ struct FurrowArrow {
 };
 
 LIMN_FIELDS(FurrowArrow) {
-    LIMN_FIELD(at, "sets the vertex that is nearest to this point", "m");
-    LIMN_FIELD(first, "first field there; its magnitude, at most 2, is the furrows' strength");
+    LIMN_FIELD(at, "position; the nearest vertex is set", "m");
+    LIMN_FIELD(
+        first, "first field there; its magnitude, at most 2, is the strength of the furrows");
     LIMN_FIELD(second, "second field there");
-    LIMN_FIELD(weight, "on the fields around", "", 0, 10);
+    LIMN_FIELD(weight, "influence on the fields around it", "", 0, 10);
 }
 
-/// How a surface is laid flat.
+/// How a surface is flattened.
 enum class FurrowProjection : std::uint8_t {
     Uv,        ///< by its texture coordinates
-    Planar,    ///< seen from +z
+    Planar,    ///< viewed from +z
     Cylinder,  ///< unrolled around the axis x = z = 0
 };
 
-/// A triangle of a FurrowMap. What varies over it is a value at corner 0 with the increase per
+/// A triangle of a FurrowMap. Attributes are stored as the value at corner 0 and the increase per
 /// pixel to the right and downwards. Read by furrow_trace.comp as floats.
 struct FurrowTriangle {
     Vec2 corner[3];  ///< [px], clockwise on the screen: rows run downwards
@@ -97,8 +99,8 @@ struct FurrowTriangle {
 };
 static_assert(sizeof(FurrowTriangle) == 27 * sizeof(float));
 
-/// A surface laid flat on an image whose rows run from top to bottom; pixel (i, j) has its center
-/// at (i + 0.5, j + 0.5). Of triangles that overlap the first counts.
+/// A surface flattened to an image whose rows run from top to bottom; pixel (i, j) has its center
+/// at (i + 0.5, j + 0.5). Where triangles overlap, the first one wins.
 struct FurrowMap {
     IVec2 size = {512, 512};  ///< [px]
     bool wrap_s = false;      ///< the image repeats to the right
@@ -110,16 +112,16 @@ struct FurrowMap {
 /// The two vectors of a vertex: first and second field.
 using FurrowVectors = std::array<Vec3, 2>;
 
-/// What was grown, without noise. h1 and h2 stay apart, for wrinkles that deepen one of the fields.
+/// Grown furrows, without noise. h1 and h2 are kept separate for wrinkles that deepen one field.
 struct FurrowGrowth {
     IVec2 size = {0, 0};              ///< [px]
     std::vector<std::int32_t> cover;  ///< triangle of the map per pixel, or -1
     std::vector<float> first;         ///< h1: furrows of field 0; 1 = skin without a furrow .. 0
     std::vector<float> second;        ///< h2: furrows of field 1
-    std::vector<float> height;        ///< the lesser of both
+    std::vector<float> height;        ///< the minimum of both
 };
 
-/// What furrows still show while edits of Furrows wait.
+/// The settings that furrows still show while edits of Furrows are pending.
 struct FurrowHold {
     bool waits = false;
     std::vector<FurrowArrow> spread = {};
@@ -129,13 +131,13 @@ struct FurrowHold {
 };
 
 LIMN_FIELDS(FurrowHold) {
-    LIMN_FIELD(waits, "edits show after their step: interpolate, generate, remake");
+    LIMN_FIELD(waits, "edits are pending until their step: interpolate, generate, remake");
     LIMN_FIELD(spread, "arrows that the fields were last interpolated from");
     LIMN_FIELD(grown, "arrows that furrows were last grown from");
-    LIMN_FIELD(style, "furrows were last grown with");
+    LIMN_FIELD(style, "style that furrows were last grown with");
 }
 
-/// With a MeshInstance: grows furrows over the mesh at rest, by its texture coordinates, into
+/// With a MeshInstance: grows furrows over the mesh at rest, in its texture coordinates, into
 /// images that its material uses. They follow every edit.
 struct Furrows {
     ImageId normals = {};
@@ -151,13 +153,12 @@ LIMN_FIELDS(Furrows) {
     LIMN_FIELD(normals, "square image to write normals to, green up; keeps its size");
     LIMN_FIELD(heights, "image of that size to write heights to: white is skin without a furrow");
     LIMN_FIELD(tiles, "the image repeats in both directions");
-    LIMN_FIELD(
-        arrows, "the fields at some points; without any, one points upwards, the other across");
+    LIMN_FIELD(arrows, "the fields at some points; if empty, one points upwards, the other across");
     visit_fields(self.style, visit);
-    LIMN_FIELD(hold, "what is shown of edits that wait");
+    LIMN_FIELD(hold, "what is shown while edits are pending");
 }
 
-/// What of Furrows is shown on the mesh (wrinkle.furrow.view-modes).
+/// How Furrows are visualized on the mesh (wrinkle.furrow.view-modes).
 enum class FurrowMode : std::uint8_t {
     Overview,  ///< skin without furrows
     Vectors,   ///< white faces, vertices, and the fields there
@@ -165,7 +166,7 @@ enum class FurrowMode : std::uint8_t {
     Wrinkles,  ///< skin with furrows
 };
 
-/// With Furrows: looks at how they are made. Drawn over the image, at the rest pose.
+/// With Furrows: visualizes how they are made. Drawn over the image, in the rest pose.
 struct FurrowView {
     FurrowMode mode = FurrowMode::Vectors;
     bool only_edited = false;
@@ -180,28 +181,29 @@ LIMN_FIELDS(FurrowView) {
         .doc = "overview: skin without furrows; vectors: white faces with vertices in blue, the "
                "first field in red, the second in green; height: furrows are dark; wrinkles: skin",
         .values = "overview vectors height wrinkles");
-    LIMN_FIELD(only_edited, "fields are drawn where arrows set them, and nowhere else");
+    LIMN_FIELD(only_edited, "fields are drawn only where arrows set them");
     LIMN_FIELD(
-        length, "of a vector of magnitude 1; 0: less than the distance of vertices", "m", 0, 1e6);
-    LIMN_FIELD(selected, "vertex that is highlighted; -1: none", "", -1, 2147483647);
+        length, "length of a vector of magnitude 1; 0: automatic, below the vertex spacing", "m", 0,
+        1e6);
+    LIMN_FIELD(selected, "highlighted vertex; -1: none", "", -1, 2147483647);
 }
 
 /// What is grown for each Furrows; rows of images from top to bottom.
 struct FurrowSkin {
-    Furrows source;  ///< it was made from, with `mesh` and `flat`
+    Furrows source;  ///< settings it was made from, with `mesh` and `flat`
     MeshId mesh;
     std::uint32_t mesh_version = 0;
-    bool flat = false;                  ///< images are those of smooth skin
-    std::vector<FurrowVectors> field;   ///< per vertex: as shown
+    bool flat = false;                  ///< the images show smooth skin
+    std::vector<FurrowVectors> field;   ///< per vertex, as shown
     std::vector<std::uint32_t> edited;  ///< vertices that arrows set, in their order
     float spacing = 0;                  ///< mean length of the edges of the mesh [m]
     FurrowMap map;
     FurrowGrowth growth;
     std::vector<float> height;          ///< with noise
-    std::vector<std::uint8_t> normals;  ///< RGBA of the image
-    std::vector<std::uint8_t> heights;  ///< likewise
-    std::string fault;                  ///< why nothing was grown; empty: it was
-    std::uint32_t version = 0;          ///< changes with all of it
+    std::vector<std::uint8_t> normals;  ///< RGBA of the normal map
+    std::vector<std::uint8_t> heights;  ///< RGBA of the height map
+    std::string fault;                  ///< why nothing was grown; empty on success
+    std::uint32_t version = 0;          ///< changes with any of the above
 };
 
 template <>
@@ -211,13 +213,13 @@ struct ComponentTraits<FurrowSkin> : DefaultTraits {
     static constexpr bool in_prefabs = false;
 };
 
-/// How long a vector of magnitude 1 is drawn [m].
+/// Length at which a vector of magnitude 1 is drawn [m].
 [[nodiscard]] inline float furrow_vector_length(const FurrowView& view, const FurrowSkin& skin) {
     constexpr float kOfSpacing = 0.6f;  // by eye
     return view.length > 0 ? view.length : kOfSpacing * skin.spacing;
 }
 
-/// Random numbers for the turn of a segment: of field `stream`, furrow `furrow`, its half.
+/// Random numbers for the turn of a segment in one half of furrow `furrow` of field `stream`.
 [[nodiscard]] inline Random furrow_turns(
     const FurrowStyle& style, std::uint32_t stream, std::uint32_t furrow, bool backward,
     std::uint32_t segment) {

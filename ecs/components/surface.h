@@ -15,6 +15,7 @@ namespace limn {
 
 // Meshes, images and materials. They are stored in the Assets resource and referenced by index.
 // Loaders and generators append to it; the renderer uploads new entries. Indices never change.
+// Techniques: char.skin-shade, env.control-map, shade.inflate, skin.melanin-blood
 
 /// Index into Assets; kNoAsset = none.
 inline constexpr std::uint32_t kNoAsset = 0xffffffffu;
@@ -45,15 +46,15 @@ struct MeshPiece {
     MeshId mesh = {};
 };
 
-/// A named region of a mesh, such as "forehead": how much each vertex belongs to it and, where skin
-/// folds there, across which direction. In glTF: the vertex attributes `_REGION_<NAME>` (float) and
+/// A named region of a mesh, such as "forehead": a weight per vertex and, where skin folds there,
+/// the direction across the folds. In glTF: the vertex attributes `_REGION_<NAME>` (float) and
 /// `_ACROSS_<NAME>` (vec3), with the name in capitals.
 struct VertexRegion {
     std::string name;            ///< a-z, 0-9 and _
     std::vector<float> weights;  ///< one per vertex, 0 .. 1
     std::vector<Vec3>
-        across;  ///< one per vertex, mesh space at rest: unit, along which shortening raises
-                 ///< wrinkles, perpendicular to the wrinkles' lines; 0: none there. Or empty
+        across;  ///< one per vertex, mesh space at rest: unit; shortening along it raises wrinkles,
+                 ///< whose lines are perpendicular to it; 0: none there. Or empty
 };
 
 /// Triangle mesh. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be
@@ -129,11 +130,11 @@ enum class ShadingModel : std::uint8_t {
     Hair,        ///< strands along v, from roots to tips: reflected, transmitted, scattered light
 };
 
-/// How the amounts of melanin and blood color skin.
+/// How the amounts of melanin and blood affect the color of skin.
 enum class Pigments : std::uint8_t {
-    None,     ///< they do not
-    Plane,    ///< each takes away a multiple of a color (skin.melanin-blood)
-    Density,  ///< each absorbs, as measured skin of types I to VI does
+    None,     ///< not at all
+    Plane,    ///< each subtracts a multiple of a color (skin.melanin-blood)
+    Density,  ///< each absorbs light, as in measured skin of types I to VI
 };
 
 /// One lobe of a BRDF (Lafortune et al. 1997), for red, green and blue: (across (ux vx + uy vy) +
@@ -226,11 +227,12 @@ LIMN_FIELDS(Material) {
         scatter,
         "subsurface: mean free path of diffuse light, for red, green and blue; 0: none passes", "m",
         0, 1);
-    LIMN_FIELD(gloss, "subsurface: share of the second lobe, that of the oily film", "", 0, 1);
+    LIMN_FIELD(gloss, "subsurface: weight of the second lobe, that of the oily film", "", 0, 1);
     LIMN_FIELD(gloss_roughness, "subsurface: perceptual roughness of the second lobe", "", 0, 1);
     LIMN_FIELD(
-        roughness_across, "hair: perceptual roughness around a strand, of light that passes it", "",
-        0, 1);
+        roughness_across,
+        "hair: perceptual roughness around a strand (azimuthal), of light that passes it", "", 0,
+        1);
     LIMN_FIELD(
         scale_tilt,
         "hair: tilt of a strand's scales, which shifts the white highlight toward the root and the "
@@ -238,8 +240,8 @@ LIMN_FIELDS(Material) {
         "rad", 0, 0.35);
     LIMN_FIELD(
         hair_scatter,
-        "hair: share of the light through a strand that others scatter, in the base color; 0: a "
-        "single strand, 1: a dense mass",
+        "hair: fraction of the light through a strand that other strands scatter, in the base "
+        "color; 0: a single strand, 1: a dense mass",
         "", 0, 1);
     LIMN_FIELD(normal_scale, "strength of the normal map", "", 0, 10);
     LIMN_FIELD(occlusion_strength, "strength of the occlusion map", "", 0, 1);

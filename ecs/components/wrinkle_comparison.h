@@ -9,14 +9,16 @@
 
 namespace limn {
 
+// Techniques: wrinkle.comparison
+// Source of wrinkle.comparison: a split screen, as of renderers that are compared
+
 inline constexpr std::size_t kMaxWrinkleColumns = 8;
 
-/// Resource: the image is split into columns of the same width between `left` and `right`, in each
-/// of which wrinkles are drawn by another method; their names stand below. What lies beyond belongs
-/// to the outer columns. Light, skin and what is
-/// measured are the same in all. Holds for each WrinkleSurface on a mesh with tangents whose own
-/// method could be one of them, whatever its distances `shade_from` and `none_from`, but for
-/// wrinkles of two layers.
+/// Resource: the image is split into columns of equal width between `left` and `right`, each with
+/// another method of drawing wrinkles, whose name is shown below. What lies beyond belongs to the
+/// outer columns. Light, skin and measured compression are the same in all. Applies to each
+/// WrinkleSurface on a mesh with tangents whose own method could be one of them, regardless of
+/// `shade_from` and `none_from`, except wrinkles of two layers.
 struct WrinkleComparison {
     bool shown = true;
     std::vector<WrinkleMethod> methods = {
@@ -29,16 +31,16 @@ LIMN_FIELDS(WrinkleComparison) {
     LIMN_FIELD(shown, "the columns; otherwise every surface is drawn by its own method");
     LIMN_FIELD(
         methods,
-        .doc = "of the columns, at most 8; strain_view and model, which need another map, are left "
-               "out",
+        .doc = "methods of the columns, at most 8; strain_view and model, which need another map, "
+               "are skipped",
         .values = kWrinkleMethodNames);
     LIMN_FIELD(
-        left, "where the columns begin, between the left (0) and right (1) border of the image", "",
-        0, 1);
-    LIMN_FIELD(right, "where they end; right of `left`", "", 0, 1);
+        left, "left border of the columns, from the left (0) to the right (1) edge of the image",
+        "", 0, 1);
+    LIMN_FIELD(right, "right border of the columns, greater than `left`", "", 0, 1);
 }
 
-/// Whether methods like it can share an image: all are drawn from one map and one measure.
+/// Whether the method can be compared in one image: all such use the same map and measurement.
 [[nodiscard]] inline bool is_comparable(WrinkleMethod method) {
     return method != WrinkleMethod::StrainView && method != WrinkleMethod::Model;
 }
@@ -57,14 +59,14 @@ wrinkle_columns(const WrinkleComparison* comparison) {
     return columns;
 }
 
-/// Where the columns begin and end, 0 .. 1 of the width; all of it where that is no width.
+/// Left and right border of the columns, 0 .. 1 of the width; (0, 1) if they are invalid.
 [[nodiscard]] inline Vec2 column_borders(const WrinkleComparison* comparison) {
     const bool has_width = comparison != nullptr && comparison->left >= 0
                            && comparison->right > comparison->left && comparison->right <= 1;
     return has_width ? Vec2(comparison->left, comparison->right) : Vec2(0, 1);
 }
 
-/// Whether columns show in place of a surface's own method.
+/// Whether columns replace a surface's own method.
 [[nodiscard]] inline bool has_columns(const WrinkleSurface& surface) {
     return is_comparable(surface.method) && surface.method != WrinkleMethod::None
            && !has_layers(surface);

@@ -9,10 +9,12 @@
 
 namespace limn {
 
-// Wrinkles that an animator sets (wrinkle.maps.*): a face has two wrinkle maps for its two
-// extremes, skin that is stretched (surprise) and skin that is compressed (a sour lemon); masks
-// divide it into regions, and each region shows as much of one map or the other as its weight says.
+// Wrinkles under an animator's control (wrinkle.maps.*): a face has wrinkle maps for its two
+// extremes, stretched skin (surprise) and compressed skin (a sour lemon); masks divide it into
+// regions, and the weight of each region blends in one map or the other.
 // After Oat, "Animated Wrinkle Maps", 2007.
+// Techniques: wrinkle.maps.animation, wrinkle.maps.masks, wrinkle.maps.texture-set,
+//     wrinkle.maps.weights
 
 /// How far each region shows a wrinkle map: -1 the stretched one, 0 none, 1 the compressed one.
 struct WrinkleWeights {
@@ -46,13 +48,13 @@ inline constexpr std::array<float WrinkleWeights::*, 8> kWrinkleRegions = {
     &WrinkleWeights::left_cheek,       &WrinkleWeights::right_cheek,
     &WrinkleWeights::upper_left_cheek, &WrinkleWeights::upper_right_cheek};
 
-/// How two wrinkle maps and the skin's own normals become one normal.
+/// How two wrinkle maps and the skin's own normals are combined.
 enum class WrinkleBlend : std::uint8_t {
     Lerp,    ///< towards each map in turn, then x and y are added and z multiplied (Oat)
     Slopes,  ///< slopes of all three add up: wrinkles as high as their influence, in any order
 };
 
-/// Whether images can lie over each other on a face.
+/// Whether both images have the same aspect ratio.
 inline bool have_one_aspect(const ImageData& a, const ImageData& b) {
     return std::int64_t{a.width} * b.height == std::int64_t{a.height} * b.width;
 }
@@ -73,15 +75,15 @@ LIMN_FIELDS(WrinkleMaps) {
     LIMN_FIELD(base, "normal map of skin without wrinkles, green up");
     LIMN_FIELD(stretched, "wrinkle map of skin that is stretched everywhere: weight -1");
     LIMN_FIELD(compressed, "wrinkle map of skin that is compressed everywhere: weight 1");
-    LIMN_FIELD(first_masks, "where four regions are: one in each channel");
+    LIMN_FIELD(first_masks, "masks of four regions, one per channel");
     LIMN_FIELD(second_masks, "four more; without it there are four");
     LIMN_FIELD(target, "image to render to");
     LIMN_FIELD(
-        blend, .doc = "from normal to normal and then added, or slopes added: higher in between",
+        blend, .doc = "normals interpolated and then added, or slopes added: higher in between",
         .values = "lerp slopes");
 }
 
-/// Weights at a time.
+/// A keyframe of the weights.
 struct WrinkleKey {
     float time = 0;
     WrinkleWeights weights;
@@ -101,7 +103,7 @@ struct WrinkleTrack {
 
 LIMN_FIELDS(WrinkleTrack) {
     LIMN_FIELD(keys, "keyframes, in order of time");
-    LIMN_FIELD(smooth, "slow at both keys; otherwise with a corner at each");
+    LIMN_FIELD(smooth, "eases in and out at keys; otherwise linear");
     LIMN_FIELD(loop, "starts over after the last key");
 }
 

@@ -17,6 +17,9 @@
 #include <span>
 #include <vector>
 
+// Techniques: wrinkle.compression.fallback, wrinkle.compression.integration,
+//     wrinkle.compression.interp-bump, wrinkle.dimples, wrinkle.smoothing
+
 namespace limn {
 namespace {
 
@@ -184,9 +187,9 @@ bool is_shade(WrinkleMethod method) {
 }
 
 TierShares tier_shares(const WrinkleSurface& surface, float distance, bool tangents) {
-    const float any = share_until(surface.none_from, distance);
+    const float any = fade_until(surface.none_from, distance);
     const float own = is_shade(surface.method) ? 1.0f
-                      : tangents               ? share_until(surface.shade_from, distance)
+                      : tangents               ? fade_until(surface.shade_from, distance)
                                                : 0.0f;
     return {.own = any * own, .shade = any * (1 - own)};
 }

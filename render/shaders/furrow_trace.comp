@@ -1,6 +1,7 @@
 // Grows the furrows of one field per work group, one after another as content/bake/furrow_trace.cpp does, with the same
 // bits: the 64 invocations share the pixels along and around a segment, and look for the next start together. Stops
 // after `budget` segments, and the next dispatch goes on: software OpenGL ends a shader after 65,535 rounds of loops.
+// Techniques: wrinkle.furrow.trace
 #version 450
 #include "lib/furrow.glsl"
 #include "lib/philox.glsl"

@@ -1,5 +1,9 @@
 // How strong wrinkles are at each vertex of deformed skin: measures how much shorter its triangles are across them, in
 // the buffers that deform.comp wrote, and how far folds move it. One invocation per vertex gathers its triangles in a fixed order.
+// Techniques: face.strain, face.wrinkle-options, wrinkle.comparison, wrinkle.compression.factor,
+//     wrinkle.compression.fallback, wrinkle.compression.overlap, wrinkle.compression.skin-model,
+//     wrinkle.compression.square-length, wrinkle.displacement, wrinkle.natural-width,
+//     wrinkle.resting, wrinkle.smoothing
 #version 450
 #include "lib/wrinkle.glsl"
 

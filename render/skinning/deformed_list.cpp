@@ -19,6 +19,8 @@
 #include <algorithm>
 #include <bit>
 
+// Techniques: char.skin-gpu
+
 namespace limn {
 namespace {
 
@@ -232,8 +234,8 @@ void DeformedList::find_wrinkles(
     const Vec3 middle = transform_point(
         world.get<WorldTransform>(entry.entity).world,
         center(meshes_->meshes()[entry.mesh.index].bounds));
-    entry.displacement = surface->displacement
-                         * share_until(surface->displacement_until, glm::distance(middle, eye));
+    entry.displacement =
+        surface->displacement * fade_until(surface->displacement_until, glm::distance(middle, eye));
     if (entry.displacement > 0) {
         entry.largest_fold = wrinkles->largest_fold;
         entry.folds = hash_folds(*surface, wrinkles->source, entry.displacement);

@@ -179,8 +179,8 @@ void compute_dual_palette(std::span<const Affine> palette, std::span<DualQuatern
             axes[k] = Vec3(m.row[0][k], m.row[1][k], m.row[2][k]);
         }
         const Quat real = extract_rotation(axes).value_or(Quat(1, 0, 0, 0));
-        const Quat way(0, m.row[0].w, m.row[1].w, m.row[2].w);
-        duals[i] = {real, 0.5f * (way * real)};
+        const Quat translation(0, m.row[0].w, m.row[1].w, m.row[2].w);
+        duals[i] = {real, 0.5f * (translation * real)};
     }
 }
 

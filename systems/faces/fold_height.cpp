@@ -13,6 +13,9 @@
 #include <cstdint>
 #include <span>
 
+// Techniques: wrinkle.displacement
+// Source of wrinkle.displacement: Cerda and Mahadevan 2003
+
 namespace limn {
 
 namespace {
@@ -22,13 +25,13 @@ constexpr int kMaxSamples = 64;          ///< of the map along an edge
 constexpr int kMaxIterations = 2000;     ///< of conjugate gradients
 constexpr double kPrecision = 1e-6;      ///< of the residual
 constexpr float kSameNormal = 0.9f;      ///< cosine
-constexpr float kMinFoldHeight = 1e-6f;  ///< [m]; less is nothing
-constexpr float kNoneCarried = 0.45f;    ///< energy of slopes that edges of half a wave keep
-constexpr float kAllCarried = 0.8f;      ///< and of a quarter
-constexpr float kFarthest = 1e8f;        ///< place on the map [texels]
-constexpr int kCarryRings = 2;           ///< of neighbors that share what they carry
+constexpr float kMinFoldHeight = 1e-6f;  ///< [m]; less counts as none
+constexpr float kNoneCarried = 0.45f;    ///< slope energy kept by edges of half a wavelength
+constexpr float kAllCarried = 0.8f;      ///< and of a quarter wavelength
+constexpr float kFarthest = 1e8f;        ///< position on the map [texels]
+constexpr int kCarryRings = 2;           ///< of neighbors over which the energy is summed
 
-/// Slopes of both layers, as a texture unit reads them.
+/// Slopes of both layers, sampled as a texture unit does.
 class SlopeMap {
   public:
     SlopeMap(const ImageData& map, const TextureSlot& slot, bool layers)
@@ -48,15 +51,15 @@ class SlopeMap {
     [[nodiscard]] bool empty() const { return slopes_.empty(); }
 
     /// In texels, from the center of the first one.
-    [[nodiscard]] Vec2 place(const Vec2& uv) const {
+    [[nodiscard]] Vec2 texel_position(const Vec2& uv) const {
         const Vec2 moved = Vec2(glm::dot(u_row_, uv), glm::dot(v_row_, uv)) + slot_.offset;
         return moved * Vec2(width_, height_) - 0.5f;
     }
 
-    /// The slope of the first layer, and of the second, between texels.
-    [[nodiscard]] Vec4 at(const Vec2& place) const {
-        const Vec2 low = glm::floor(place);
-        const Vec2 t = place - low;
+    /// The slopes of the first and the second layer, bilinearly filtered.
+    [[nodiscard]] Vec4 at(const Vec2& position) const {
+        const Vec2 low = glm::floor(position);
+        const Vec2 t = position - low;
         const auto x = static_cast<int>(low.x);
         const auto y = static_cast<int>(low.y);
         return glm::mix(
@@ -90,25 +93,25 @@ class SlopeMap {
     Vec2 v_row_ = {0, 1};
 };
 
-/// Between two positions, each by its first vertex; a < b.
+/// An edge between two positions, each given by its first vertex; a < b.
 struct FoldEdge {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
-    glm::dvec2 rise = {0, 0};    ///< from a to b, of both layers [m]
-    glm::dvec2 energy = {0, 0};  ///< mean square of what it rises by if it went on so
-    int count = 1;               ///< of triangles' edges it is the mean of
+    glm::dvec2 rise = {0, 0};    ///< height difference from a to b, of both layers [m]
+    glm::dvec2 energy = {0, 0};  ///< mean square of the local slope times its length [m^2]
+    int count = 1;               ///< number of triangle edges that are averaged
 };
 
-/// What the map rises by along an edge of a triangle, from vertex `a` to `b`.
+/// The height by which the map rises along an edge of a triangle, from vertex `a` to `b`.
 FoldEdge rise_along(
     const MeshData& mesh, std::span<const Vec2> uvs, const SlopeMap& map, std::uint32_t a,
     std::uint32_t b) {
-    const Vec3 way = mesh.positions[b] - mesh.positions[a];
-    const Vec2 from = map.place(uvs[a]);
-    const Vec2 to = map.place(uvs[b]);
+    const Vec3 edge_vector = mesh.positions[b] - mesh.positions[a];
+    const Vec2 from = map.texel_position(uvs[a]);
+    const Vec2 to = map.texel_position(uvs[b]);
     const float texels = glm::length(to - from);
     FoldEdge edge;
-    if (!(texels < kFarthest && glm::length(from) < kFarthest) || !is_finite(way)) {
+    if (!(texels < kFarthest && glm::length(from) < kFarthest) || !is_finite(edge_vector)) {
         return edge;
     }
     const int samples = std::clamp(static_cast<int>(std::ceil(texels)), 4, kMaxSamples);
@@ -117,7 +120,7 @@ FoldEdge rise_along(
         const Vec3 normal = glm::mix(mesh.normals[a], mesh.normals[b], t);
         const Vec3 tangent = glm::mix(Vec3(mesh.tangents[a]), Vec3(mesh.tangents[b]), t);
         const Vec3 bitangent = mesh.tangents[a].w * glm::cross(normal, tangent);
-        const Vec2 along = {glm::dot(tangent, way), glm::dot(bitangent, way)};
+        const Vec2 along = {glm::dot(tangent, edge_vector), glm::dot(bitangent, edge_vector)};
         const Vec4 slopes = map.at(glm::mix(from, to, t));
         const glm::dvec2 rise = {
             glm::dot(Vec2(slopes), along), glm::dot(Vec2(slopes.z, slopes.w), along)};
@@ -127,7 +130,7 @@ FoldEdge rise_along(
     return edge;
 }
 
-/// One for each pair of positions that triangles join, in their order.
+/// One edge for each pair of positions that a triangle joins, sorted by them.
 std::vector<FoldEdge> find_edges(
     const MeshData& mesh, std::span<const Vec2> uvs, const SlopeMap& map,
     std::span<const std::uint32_t> welded) {
@@ -167,7 +170,7 @@ std::vector<FoldEdge> find_edges(
     return edges;
 }
 
-/// The heights of a layer that fit its edges best.
+/// The heights of a layer that fit its edges best, in the least-squares sense.
 std::vector<double> solve(std::span<const FoldEdge> edges, int layer, std::size_t vertices) {
     // Conjugate gradients on (D^T D + anchor) h = D^T g, with D the differences along edges.
     const auto apply = [&](const std::vector<double>& h, std::vector<double>& out) {
@@ -222,10 +225,10 @@ std::vector<double> solve(std::span<const FoldEdge> edges, int layer, std::size_
     return heights;
 }
 
-/// 0 .. 1 at each vertex: how much of the folds straight edges between vertices can show, by the
-/// energy of the slopes that is left when each edge has its mean.
+/// 0 .. 1 at each vertex: how much of the folds the mesh can represent, by the slope energy that
+/// remains when each edge has its mean slope.
 std::vector<float> find_carried(std::span<const FoldEdge> edges, int layer, std::size_t vertices) {
-    std::vector<glm::dvec2> energy(vertices, glm::dvec2(0));  // what is left, and all
+    std::vector<glm::dvec2> energy(vertices, glm::dvec2(0));  // remaining, total
     for (const FoldEdge& edge : edges) {
         const glm::dvec2 terms = {edge.rise[layer] * edge.rise[layer], edge.energy[layer]};
         energy[edge.a] += terms;

@@ -9,14 +9,17 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: wrinkle.smoothing
+
 namespace limn {
 
 namespace {
 
-constexpr double kMinDiffusionWeight = 0.0025;  ///< less of both vertices' values is not moved
-constexpr double kMaxStep = 2.0 / 3;  ///< moved away in one step; of equal triangles, S >= 0 then
+constexpr double kMinDiffusionWeight =
+    0.0025;                           ///< smaller weights, in both directions, are dropped
+constexpr double kMaxStep = 2.0 / 3;  ///< fraction moved per step; keeps S >= 0 for equal triangles
 
-/// Neighbors of each vertex, in order.
+/// Neighbors of each vertex, sorted.
 std::vector<std::vector<std::uint32_t>> find_neighbors(
     std::span<const std::uint32_t> welded, std::span<const std::uint32_t> indices,
     std::span<const char> used) {
@@ -56,28 +59,28 @@ std::vector<float> find_areas(
     return area;
 }
 
-/// Sums of shares by vertex.
+/// A sparse row: sums of weights by vertex.
 class DiffusionRow {
   public:
     explicit DiffusionRow(std::size_t vertices) : sums_(vertices, 0.0) {}
 
-    void add(std::uint32_t vertex, double share) {
+    void add(std::uint32_t vertex, double weight) {
         if (sums_[vertex] == 0) {
             touched_.push_back(vertex);
         }
-        sums_[vertex] += share;
+        sums_[vertex] += weight;
     }
 
-    /// In the order of the vertices; empty afterwards.
+    /// Sorted by vertex; the row is empty afterwards.
     std::vector<std::pair<std::uint32_t, double>> take() {
         std::ranges::sort(touched_);
-        std::vector<std::pair<std::uint32_t, double>> shares;
+        std::vector<std::pair<std::uint32_t, double>> weights;
         for (const std::uint32_t vertex : touched_) {
-            shares.emplace_back(vertex, sums_[vertex]);
+            weights.emplace_back(vertex, sums_[vertex]);
             sums_[vertex] = 0;
         }
         touched_.clear();
-        return shares;
+        return weights;
     }
 
   private:
@@ -106,31 +109,31 @@ SkinDiffusion make_skin_diffusion(
 
     DiffusionRow row(positions.size());
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
-        diffusion.first.push_back(static_cast<std::uint32_t>(diffusion.shares.size()));
-        std::vector<std::pair<std::uint32_t, double>> shares = {{welded[v], 1.0}};
+        diffusion.first.push_back(static_cast<std::uint32_t>(diffusion.weights.size()));
+        std::vector<std::pair<std::uint32_t, double>> weights = {{welded[v], 1.0}};
         for (int n = 0; n < steps && area[welded[v]] > 0; ++n) {
-            for (const auto& [i, share] : shares) {
-                double left = share;
+            for (const auto& [i, weight] : weights) {
+                double kept = weight;
                 for (const std::uint32_t j : neighbors[i]) {
-                    const double moved = share * step * std::min(per_neighbor(i), per_neighbor(j))
+                    const double moved = weight * step * std::min(per_neighbor(i), per_neighbor(j))
                                          / std::max(double{area[i]}, 1e-300);
-                    left -= moved;
+                    kept -= moved;
                     row.add(j, moved);
                 }
-                row.add(i, left);
+                row.add(i, kept);
             }
-            shares = row.take();
+            weights = row.take();
         }
         const double own_area = double{area[welded[v]]};
-        for (const auto& [vertex, share] : shares) {
-            const double back = share * own_area / std::max(double{area[vertex]}, 1e-300);
-            row.add(std::max(share, back) < kMinDiffusionWeight ? welded[v] : vertex, share);
+        for (const auto& [vertex, weight] : weights) {
+            const double back = weight * own_area / std::max(double{area[vertex]}, 1e-300);
+            row.add(std::max(weight, back) < kMinDiffusionWeight ? welded[v] : vertex, weight);
         }
-        for (const auto& [vertex, share] : row.take()) {
-            diffusion.shares.emplace_back(vertex, static_cast<float>(share));
+        for (const auto& [vertex, weight] : row.take()) {
+            diffusion.weights.emplace_back(vertex, static_cast<float>(weight));
         }
     }
-    diffusion.first.push_back(static_cast<std::uint32_t>(diffusion.shares.size()));
+    diffusion.first.push_back(static_cast<std::uint32_t>(diffusion.weights.size()));
     return diffusion;
 }
 
@@ -141,10 +144,10 @@ diffuse_corners(const SkinDiffusion& diffusion, const WrinkleRest& rest, std::ui
     for (std::size_t v = 0; v + 1 < rest.first.size(); ++v) {
         diffused.first.push_back(static_cast<std::uint32_t>(diffused.around.size()));
         for (std::uint32_t i = diffusion.first[v]; i < diffusion.first[v + 1]; ++i) {
-            const auto& [from, share] = diffusion.shares[i];
+            const auto& [from, weight] = diffusion.weights[i];
             for (std::uint32_t k = rest.first[from]; k < rest.first[from + 1]; ++k) {
                 const WrinkleCorner& at = rest.around[k];
-                groups.add(at.corner / group, double{share} * double{at.weight});
+                groups.add(at.corner / group, double{weight} * double{at.weight});
             }
         }
         for (const auto& [number, weight] : groups.take()) {

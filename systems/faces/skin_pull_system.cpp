@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: face.pull
+
 namespace limn {
 
 namespace {
@@ -20,31 +22,30 @@ constexpr float kFollow = 3.0f;       ///< how much faster skin follows than it 
 constexpr float kRestOffset = 1e-6f;  ///< [m]
 constexpr float kRestSpeed = 1e-5f;   ///< [m/s]
 
-/// The ray of the pointer.
-struct Pointing {
+struct PointerRay {
     Vec3 eye{0, 0, 0};
     Vec3 direction{0, 0, 0};  ///< unit, or 0: none
 };
 
-/// What a pull begins with.
-struct Taken {
+/// A pull that begins in this step.
+struct NewSkinPull {
     Entity entity;
     SkinPull pull;
 };
 
-Vec3 between(
+Vec3 interpolated_position(
     const std::vector<Vec3>& positions, const MeshData& mesh, std::uint32_t triangle,
-    const Vec3& shares) {
-    Vec3 place(0);
+    const Vec3& barycentric) {
+    Vec3 position(0);
     for (std::uint32_t k = 0; k < 3; ++k) {
-        place += shares[static_cast<int>(k)] * positions[mesh.indices[3 * triangle + k]];
+        position += barycentric[static_cast<int>(k)] * positions[mesh.indices[3 * triangle + k]];
     }
-    return place;
+    return position;
 }
 
 /// The skin under the pointer, not pulled yet.
-std::optional<SkinPull> take_skin(
-    const MeshSource& source, const Affine& world, const Pointing& pointing,
+std::optional<SkinPull> grab_skin(
+    const MeshSource& source, const Affine& world, const PointerRay& ray,
     const PullableSkin& skin) {
     const Mat4 world_from_mesh = to_mat4(world);
     if (source.data == nullptr || glm::determinant(Mat3(world_from_mesh)) == 0.0f) {
@@ -59,8 +60,8 @@ std::optional<SkinPull> take_skin(
         return std::nullopt;
     }
     const auto hit = hit_skin(
-        positions, mesh.indices, transform_point(mesh_from_world, pointing.eye),
-        transform_vector(mesh_from_world, pointing.direction));
+        positions, mesh.indices, transform_point(mesh_from_world, ray.eye),
+        transform_vector(mesh_from_world, ray.direction));
     if (!hit) {
         return std::nullopt;
     }
@@ -68,17 +69,17 @@ std::optional<SkinPull> take_skin(
         mesh, *source.deformed, nullptr, nullptr, source.morphs, source.deformers, positions,
         source.surface);
     SkinPull pull;
-    pull.tug.at = between(positions, mesh, hit->triangle, hit->shares);
+    pull.tug.at = interpolated_position(positions, mesh, hit->triangle, hit->barycentric);
     pull.tug.radius = skin.radius;
     pull.held = true;
     pull.distance = hit->distance;
     pull.triangle = hit->triangle;
-    pull.shares = hit->shares;
+    pull.shares = hit->barycentric;
     return pull;
 }
 
-/// Where joints take what is before them, at the place of a pull: the mean of its corners.
-Mat4 joints_at(const MeshSource& source, const SkinPull& pull) {
+/// The transform by joints at the point of a pull: the mean over the corners of its triangle.
+Mat4 skin_matrix_at(const MeshSource& source, const SkinPull& pull) {
     const MeshData& mesh = *source.data;
     if (source.skin == nullptr || source.pose == nullptr || mesh.skin.empty()) {
         return Mat4(1.0f);
@@ -90,26 +91,26 @@ Mat4 joints_at(const MeshSource& source, const SkinPull& pull) {
         const std::uint32_t vertex = mesh.indices[3 * pull.triangle + k];
         const std::uint32_t first = mesh.skin.first[vertex];
         const std::uint32_t end = mesh.skin.first[vertex + 1];
-        const float share = pull.shares[static_cast<int>(k)];
+        const float weight = pull.shares[static_cast<int>(k)];
         if (first == end) {
-            mean += share * Mat4(1.0f);  // no joint moves it
+            mean += weight * Mat4(1.0f);  // no joint moves it
         }
         for (std::uint32_t i = first; i < end; ++i) {
-            mean += share * mesh.skin.weights[i] * to_mat4(palette[mesh.skin.joints[i]]);
+            mean += weight * mesh.skin.weights[i] * to_mat4(palette[mesh.skin.joints[i]]);
         }
     }
     return mean;
 }
 
-/// The offset that takes the place to the pointer, as far as it reaches; none where joints or the
-/// entity leave no space.
+/// The offset that moves the point to the pointer, within the limit of a pull; 0 where the
+/// transform is singular.
 Vec3 pointer_offset(
-    const MeshSource& source, const Affine& world, const Pointing& pointing,
-    const PullableSkin& skin, const SkinPull& pull) {
-    const Mat4 world_from_before = to_mat4(world) * joints_at(source, pull);
-    const Vec4 target(pointing.eye + pull.distance * pointing.direction, 1.0f);
-    const Vec3 place = Vec3(glm::inverse(world_from_before) * target);
-    return limited_pull(place - pull.tug.at, skin.reach);
+    const MeshSource& source, const Affine& world, const PointerRay& ray, const PullableSkin& skin,
+    const SkinPull& pull) {
+    const Mat4 world_from_unskinned = to_mat4(world) * skin_matrix_at(source, pull);
+    const Vec4 target(ray.eye + pull.distance * ray.direction, 1.0f);
+    const Vec3 position = Vec3(glm::inverse(world_from_unskinned) * target);
+    return limited_pull(position - pull.tug.at, skin.reach);
 }
 
 bool is_at_rest(const SkinPull& pull) {
@@ -117,7 +118,7 @@ bool is_at_rest(const SkinPull& pull) {
            && glm::length(pull.velocity) < kRestSpeed;
 }
 
-/// False once the entity has another mesh.
+/// False after the entity got another mesh.
 bool has_triangle(const MeshSource& source, std::uint32_t triangle) {
     return source.data != nullptr && 3 * std::size_t{triangle} + 2 < source.data->indices.size();
 }
@@ -142,13 +143,13 @@ void step_pull(SkinPull& pull, const Vec3& goal, float rate, float dt) {
 SpringState spring_after(const SpringState& spring, const Vec3& goal, float rate, float dt) {
     const Vec3 from = spring.offset - goal;
     const Vec3 slope = spring.velocity + rate * from;
-    const float left = std::exp(-rate * dt);
-    return {goal + left * (from + dt * slope), left * (spring.velocity - dt * rate * slope)};
+    const float decay = std::exp(-rate * dt);
+    return {goal + decay * (from + dt * slope), decay * (spring.velocity - dt * rate * slope)};
 }
 
-Vec3 limited_pull(const Vec3& offset, float reach) {
+Vec3 limited_pull(const Vec3& offset, float limit) {
     const float length = glm::length(offset);
-    return std::isfinite(length) && reach > 0.0f ? offset / std::sqrt(1.0f + square(length / reach))
+    return std::isfinite(length) && limit > 0.0f ? offset / std::sqrt(1.0f + square(length / limit))
                                                  : Vec3(0);
 }
 
@@ -189,8 +190,8 @@ void update_skin_pulls(
     Query<const DeformerState> deformers, Query<const Pose> poses, Query<const MorphWeights> morphs,
     Query<const SurfaceBindingState> bindings, Res<const Assets> assets, Res<const Input> input,
     Res<const FrameTime> time) {
-    const Pointing pointing = {input->eye, normalize_or(input->pointing, Vec3(0))};
-    const bool points = pointing.direction != Vec3(0);
+    const PointerRay ray = {input->eye, normalize_or(input->pointing, Vec3(0))};
+    const bool points = ray.direction != Vec3(0);
     const auto source_of = [&](Entity entity, const MeshInstance& instance,
                                const Deformed& deformed) {
         return find_mesh_source(
@@ -198,30 +199,30 @@ void update_skin_pulls(
             *assets, bindings.find<const SurfaceBindingState>(entity));
     };
     const bool holds = action_value(*input, "pull_skin") > 0;
-    std::optional<Taken> taken;
+    std::optional<NewSkinPull> grabbed;
     skins.each([&](Entity entity, const PullableSkin& skin, SkinPulls& state,
                    const MeshInstance& instance, const Deformed& deformed,
-                   const WorldTransform& place) {
+                   const WorldTransform& transform) {
         if (std::exchange(state.asked, holds) || !holds || !points) {
             return;
         }
         const auto pull =
-            take_skin(source_of(entity, instance, deformed), place.world, pointing, skin);
-        if (pull && (!taken || pull->distance < taken->pull.distance)) {
-            taken = Taken{entity, *pull};
+            grab_skin(source_of(entity, instance, deformed), transform.world, ray, skin);
+        if (pull && (!grabbed || pull->distance < grabbed->pull.distance)) {
+            grabbed = NewSkinPull{entity, *pull};
         }
     });
     skins.each([&](Entity entity, const PullableSkin& skin, SkinPulls& state,
                    const MeshInstance& instance, const Deformed& deformed,
-                   const WorldTransform& place) {
-        if (taken && taken->entity == entity) {
-            add_skin_pull(state.pulls, taken->pull);
+                   const WorldTransform& transform) {
+        if (grabbed && grabbed->entity == entity) {
+            add_skin_pull(state.pulls, grabbed->pull);
         }
         for (SkinPull& pull : state.pulls) {
             const MeshSource source = source_of(entity, instance, deformed);
             pull.held = pull.held && holds && has_triangle(source, pull.triangle);
             const Vec3 goal = !pull.held ? Vec3(0)
-                              : points   ? pointer_offset(source, place.world, pointing, skin, pull)
+                              : points   ? pointer_offset(source, transform.world, ray, skin, pull)
                                          : pull.tug.offset;
             step_pull(pull, goal, skin.rate, time->step);
         }

@@ -17,19 +17,19 @@
 
 namespace limn {
 
-// Skin follows the pointer and springs back (face.pull). The place that is taken is the nearest
-// front face under the pointer, as posed in the previous step; it follows the ray of the pointer at
-// the distance at which it was taken. Offsets are before joints, whose mean at the place is taken
-// as linear, also with dual quaternions.
+// Skin follows the pointer and springs back (face.pull). The pointer grabs the nearest front face
+// under it, as posed in the previous step; that point follows the ray of the pointer at the
+// distance at which it was grabbed. Offsets apply before joints, whose mean at the point is
+// treated as linear, even with dual quaternions.
 
-inline constexpr std::size_t kMaxSkinPulls = 8;  ///< per mesh; of more, the oldest ends at once
+inline constexpr std::size_t kMaxSkinPulls = 8;  ///< per mesh; one more ends the oldest at once
 
 /// Adds SkinPulls and Deformers to each PullableSkin that lacks them.
 void add_skin_pulls(
     Query<const PullableSkin, Without<SkinPulls>> bare, Query<const Deformers> deformers,
     Commands commands);
 
-/// Takes skin where the action pull_skin begins, moves what is held, and lets go of the rest.
+/// Grabs skin where the action pull_skin begins, moves what is held, and lets the rest spring back.
 /// Before update_deformers, which packs the pulls.
 void update_skin_pulls(
     Query<const PullableSkin, SkinPulls, const MeshInstance, const Deformed, const WorldTransform>
@@ -40,23 +40,23 @@ void update_skin_pulls(
 
 // ---- parts of the above ----
 
-/// Of a critically damped spring.
+/// State of a critically damped spring.
 struct SpringState {
     Vec3 offset{0, 0, 0};    ///< [m]
     Vec3 velocity{0, 0, 0};  ///< [m/s]
 };
 
-/// `dt` [s] later, with the spring at rest at `goal`; exact, so that steps of any length agree.
+/// The state `dt` [s] later, at rest at `goal`; exact, so that steps of any length agree.
 [[nodiscard]] SpringState
 spring_after(const SpringState& spring, const Vec3& goal, float rate, float dt);
 
-/// `offset` shortened toward `reach` [m], of which it never has more; short ones hardly.
-[[nodiscard]] Vec3 limited_pull(const Vec3& offset, float reach);
+/// `offset`, smoothly limited to a length below `limit` [m]; short offsets hardly change.
+[[nodiscard]] Vec3 limited_pull(const Vec3& offset, float limit);
 
 struct SkinHit {
     std::uint32_t triangle = 0;
-    Vec3 shares{1, 0, 0};  ///< of its corners
-    float distance = 0;    ///< along the ray, in units of its direction
+    Vec3 barycentric{1, 0, 0};
+    float distance = 0;  ///< along the ray, in units of its direction
 };
 
 /// The nearest triangle that the ray hits on its front, counterclockwise side.

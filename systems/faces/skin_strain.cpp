@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 
+// Techniques: face.strain
+
 namespace limn {
 
 namespace {
@@ -115,7 +117,7 @@ void average_strain(
     for (std::size_t i = 0; i < skin.corners.size(); ++i) {
         const std::size_t t = i / 3;
         const std::uint32_t vertex = skin.welded[skin.corners[i]];
-        // The tensor of the triangle, seen in the axes of the vertex.
+        // The tensor of the triangle in the axes of the vertex.
         const Vec3& u = skin.vertex_u[vertex];
         const Vec3& v = skin.vertex_v[vertex];
         const Vec2 tu = {glm::dot(u, skin.u[t]), glm::dot(u, skin.v[t])};

@@ -9,7 +9,7 @@
 namespace limn {
 
 // Strain of skin in its tangent plane: how much, and in which direction, a deformed triangle mesh
-// is shorter or longer than at rest (face.strain).
+// is compressed or stretched (face.strain).
 //
 //     F = Ds Dm^-1,    S = sqrt(F^T F),    strain = S - I
 //
@@ -37,7 +37,7 @@ struct PrincipalStrain {
 /// A mesh at rest, prepared for find_strain. Arrays with one element per triangle.
 struct SkinTriangles {
     std::vector<std::uint32_t> corners;  ///< three vertices per triangle
-    std::vector<std::uint32_t> source;   ///< triangle of the mesh that it was
+    std::vector<std::uint32_t> source;   ///< index of the triangle in the mesh
     std::vector<Vec4> rest_inverse;      ///< Dm^-1 in u, v [1/m], rows (x, y) and (z, w)
     std::vector<float> area;             ///< at rest [m^2]
     std::vector<Vec3> u;                 ///< unit
@@ -47,20 +47,20 @@ struct SkinTriangles {
     std::vector<Vec3> vertex_v;          ///< the same
 };
 
-/// Leaves out triangles that have an edge shorter than `min_edge` [m], no area, a coordinate that
-/// is not finite or an index beyond the positions.
+/// Skips triangles that have an edge shorter than `min_edge` [m], no area, a coordinate that is not
+/// finite or an index out of range.
 [[nodiscard]] SkinTriangles make_skin_triangles(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
     float min_edge = 2e-4f);
 
-/// One strain per element of `skin`; 0 where a deformed position is not finite. `deformed` has as
+/// One strain per triangle of `skin`; 0 where a deformed position is not finite. `deformed` has as
 /// many positions as the mesh at rest.
 void find_strain(
     const SkinTriangles& skin, std::span<const Vec3> deformed, std::span<SkinStrain> strain);
 
 /// Averages of `strain` over the triangles at each vertex, weighted by area, in the axes of the
-/// vertex. Vertices at one position get the same value, so that UV seams do not show. 0 where no
-/// triangle is.
+/// vertex. Vertices at one position get the same value, so that UV seams do not show. 0 at a vertex
+/// without triangles.
 void average_strain(
     const SkinTriangles& skin, std::span<const SkinStrain> strain, std::span<SkinStrain> vertices);
 

@@ -21,11 +21,13 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+// Techniques: wrinkle.compression.integration, wrinkle.natural-width
+
 #ifndef LIMN_WRINKLE_BATCH
 #define LIMN_WRINKLE_BATCH
 namespace limn::wrinkle {
 
-/// Faces that are measured at once. As many numbers, one of each, are a row.
+/// Faces that are measured at once. A row has one number per face.
 inline constexpr std::size_t kFaces = 8;
 
 /// Up to eight faces with one mesh; memory of the rows is reused.
@@ -33,11 +35,11 @@ struct Batch {
     std::span<const WrinkleRest> rests;
     std::span<const float> resting;  ///< per vertex, or empty
     std::size_t vertices = 0;
-    std::array<const float*, kFaces> from = {};  ///< positions; the last face fills up
-    std::array<float*, kFaces> to = {};          ///< intensities; null: not wanted
+    std::array<const float*, kFaces> from = {};  ///< positions; unused lanes repeat the last face
+    std::array<float*, kFaces> to = {};          ///< intensities; null: unused lane
     alignas(64) std::array<float, kFaces> lambda = {};
     alignas(64) std::array<float, kFaces> beta = {};
-    alignas(64) std::array<float, kFaces> resting_share = {};
+    alignas(64) std::array<float, kFaces> resting_weight = {};
     float* positions = nullptr;              ///< row 3 v + axis
     float* triangles = nullptr;              ///< a row per triangle
     std::array<float*, 3> compression = {};  ///< a row per vertex, of each rest
@@ -63,7 +65,7 @@ constexpr hn::FixedTag<float, 4> four;
 using V = hn::Vec<decltype(d)>;
 constexpr std::size_t kLanes = hn::MaxLanes(d);  // a row is one vector, or two
 
-/// Rows and columns of four by four numbers change places.
+/// Transposes a 4x4 matrix.
 template <typename Load, typename Store>
 HWY_INLINE void transpose_four(Load load, Store store) {
     constexpr hn::RepartitionToWide<decltype(four)> pairs;
@@ -101,13 +103,13 @@ HWY_INLINE void interleave(const wrinkle::Batch& batch) {
     }
 }
 
-/// find_compression of all faces; roots of it if means are of lengths.
+/// find_compression of all faces; square roots of it if lengths are averaged.
 HWY_INLINE void measure_triangles(const WrinkleRest& rest, const wrinkle::Batch& batch) {
     const V infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const V one = hn::Set(d, 1.0f);
     for (std::size_t t = 0; t < rest.across.size(); ++t) {
         if (rest.across[t] == Vec2{0, 0}) {
-            continue;  // counts nowhere
+            continue;  // has no weight at any vertex
         }
         const float* const a = batch.positions + 3 * wrinkle::kFaces * rest.corners[3 * t];
         const float* const b = batch.positions + 3 * wrinkle::kFaces * rest.corners[3 * t + 1];
@@ -186,12 +188,12 @@ HWY_INLINE V intensity_of(V ratio, V lambda, V beta) {
 /// rested_ratio of the lanes of a row.
 HWY_INLINE V
 rested_ratio_of(const wrinkle::Batch& batch, std::size_t v, std::size_t lane, V ratio) {
-    const V share = hn::Load(d, batch.resting_share.data() + lane);
-    const V left = hn::Sub(hn::Set(d, 1.0f), hn::Mul(share, hn::Set(d, batch.resting[v])));
-    return hn::Mul(ratio, hn::Mul(left, left));
+    const V weight = hn::Load(d, batch.resting_weight.data() + lane);
+    const V length = hn::Sub(hn::Set(d, 1.0f), hn::Mul(weight, hn::Set(d, batch.resting[v])));
+    return hn::Mul(ratio, hn::Mul(length, length));
 }
 
-/// Whether no triangle counts at any of these vertices, and none has folds at rest.
+/// Whether these vertices have no triangles with a direction and no folds at rest.
 HWY_INLINE bool is_smooth(const wrinkle::Batch& batch, std::size_t v, std::size_t count) {
     if (batch.rests.empty()) {
         return true;
@@ -257,7 +259,7 @@ HWY_INLINE void write_intensities(const wrinkle::Batch& batch) {
     }
 }
 
-/// False where there is no vector for it.
+/// False on CPUs without suitable vectors.
 bool measure_batch(const wrinkle::Batch& batch) {
     interleave(batch);
     for (std::size_t i = 0; i < batch.rests.size(); ++i) {
@@ -280,13 +282,13 @@ HWY_EXPORT(measure_batch);
 
 namespace {
 
-/// Memory that grows.
+/// A buffer that grows on demand.
 struct FoldRows {
     hwy::AlignedFreeUniquePtr<float[]> data;
     std::size_t size = 0;
 };
 
-/// Memory of a batch.
+/// Buffers of a batch.
 struct BatchMemory {
     FoldRows positions;
     FoldRows triangles;
@@ -319,7 +321,7 @@ void check_faces(
 void measure(
     std::span<const WrinkleRest> rests, std::span<const CrowdFace> faces,
     std::span<const float> resting) {
-    thread_local BatchMemory memory;  // is reused
+    thread_local BatchMemory memory;  // reused
     wrinkle::Batch batch;
     batch.rests = rests;
     batch.resting = resting;
@@ -330,7 +332,7 @@ void measure(
         batch.to[lane] = lane < faces.size() ? face.intensity.data() : nullptr;
         batch.lambda[lane] = face.lambda;
         batch.beta[lane] = face.beta;
-        batch.resting_share[lane] = face.resting_share;
+        batch.resting_weight[lane] = face.resting_weight;
     }
     batch.positions = make_rows(memory.positions, 3 * batch.vertices);
     std::size_t triangles = 0;
@@ -365,7 +367,7 @@ void find_intensities_scalar(
     for (const CrowdFace& face : faces) {
         const std::vector<float> ratio = vertex_compression(rests, face.deformed);
         for (std::size_t v = 0; v < ratio.size(); ++v) {
-            const float fold = resting.empty() ? 0 : face.resting_share * resting[v];
+            const float fold = resting.empty() ? 0 : face.resting_weight * resting[v];
             face.intensity[v] =
                 wrinkle_intensity(rested_ratio(ratio[v], fold), face.lambda, face.beta);
         }

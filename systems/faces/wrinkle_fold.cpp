@@ -4,18 +4,20 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: wrinkle.compression.skin-model, wrinkle.resting
+
 namespace limn {
 
 namespace {
 
 constexpr float kFlat = 1e-6f;        ///< square of a slope that counts as flat
-constexpr float kMinNormalZ = 0.05f;  ///< steeper ones are cut off
+constexpr float kMinNormalZ = 0.05f;  ///< steeper slopes are clamped
 constexpr std::size_t kFoldBins = 256;
 
-/// Slopes by size: few numbers for many texels.
+/// A histogram bin of slope magnitudes.
 struct SlopeBin {
-    double square = 0;  ///< mean of the squares of its slopes
-    double share = 0;   ///< of all slopes
+    double square = 0;    ///< mean square of its slopes
+    double fraction = 0;  ///< of all slopes
 };
 
 std::vector<SlopeBin> sort_into_bins(std::span<const Vec2> slopes) {
@@ -30,23 +32,23 @@ std::vector<SlopeBin> sort_into_bins(std::span<const Vec2> slopes) {
         if (square > kFlat) {
             const auto bin = static_cast<std::size_t>(square / largest * (kFoldBins - 1));
             bins[bin].square += double{square};
-            bins[bin].share += 1;
+            bins[bin].fraction += 1;
             count += 1;
         }
     }
-    std::erase_if(bins, [](const SlopeBin& bin) { return bin.share == 0; });
+    std::erase_if(bins, [](const SlopeBin& bin) { return bin.fraction == 0; });
     for (SlopeBin& bin : bins) {
-        bin.square /= bin.share;
-        bin.share /= count;
+        bin.square /= bin.fraction;
+        bin.fraction /= count;
     }
     return bins;
 }
 
-/// Length of the folded profile, as a share of its place.
+/// Length of the folded profile relative to the unfolded one.
 double length_of(const std::vector<SlopeBin>& bins, double factor) {
     double length = 0;
     for (const SlopeBin& bin : bins) {
-        length += bin.share * std::sqrt(1 + factor * factor * bin.square);
+        length += bin.fraction * std::sqrt(1 + factor * factor * bin.square);
     }
     return length;
 }
@@ -59,8 +61,8 @@ double find_factor(const std::vector<SlopeBin>& bins, double e) {
         high *= 2;
     }
     for (int i = 0; i < 50; ++i) {
-        const double middle = 0.5 * (low + high);
-        (length_of(bins, middle) < 1 + e ? low : high) = middle;
+        const double center = 0.5 * (low + high);
+        (length_of(bins, center) < 1 + e ? low : high) = center;
     }
     return high;
 }
@@ -75,7 +77,7 @@ FoldTable make_fold_table(std::span<const Vec2> slopes) {
     }
     double mean_square = 0;
     for (const SlopeBin& bin : bins) {
-        mean_square += bin.share * bin.square;
+        mean_square += bin.fraction * bin.square;
     }
     table[0] = static_cast<float>(std::sqrt(2 / mean_square));  // the limit for small e
     for (std::size_t i = 1; i < table.size(); ++i) {
@@ -97,9 +99,9 @@ float rested_ratio(float ratio, float resting) {
     return ratio * square(1 - resting);
 }
 
-float fold_excess(float ratio, float slack, float share) {
+float fold_excess(float ratio, float slack, float folding) {
     const float shortening = std::max(1 - std::sqrt(std::max(ratio, 0.0f)) - slack, 0.0f);
-    return 1 / std::max(1 - share * shortening, 0.5f) - 1;
+    return 1 / std::max(1 - folding * shortening, 0.5f) - 1;
 }
 
 std::vector<Vec2> wrinkle_slopes(const ImageData& map) {

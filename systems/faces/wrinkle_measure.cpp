@@ -12,11 +12,17 @@
 #include <numeric>
 #include <vector>
 
+// Techniques: face.strain, wrinkle.compression.direction, wrinkle.compression.factor,
+//     wrinkle.compression.intensity, wrinkle.compression.prior-models,
+//     wrinkle.compression.rest-measure, wrinkle.compression.square-length,
+//     wrinkle.compression.vertex-weight, wrinkle.dimples, wrinkle.natural-width, wrinkle.smoothing
+// Source of wrinkle.dimples: mean of the squared stretch over all directions, half the trace of C
+
 namespace limn {
 
 namespace {
 
-/// Directions of either sign that are shorter after averaging than this have canceled.
+/// Directions of either sign whose mean is shorter than this cancel.
 constexpr float kMinDirection = 1e-6f;
 
 /// A triangle at rest in the plane of its edges.
@@ -24,7 +30,7 @@ struct RestTriangle {
     Vec3 e1;
     Vec3 e2;
     Vec3 normal;       ///< unit
-    float twice_area;  ///< [m^2], > 0, or not a number: has none
+    float twice_area;  ///< [m^2]; 0 or NaN: degenerate
 };
 
 RestTriangle rest_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -80,7 +86,7 @@ struct VertexCorner {
     WrinkleCorner at;      ///< weight not yet normalized
 };
 
-/// Fills `around` and `first` from the corners of all vertices.
+/// Fills `around` and `first` with the corners of all vertices.
 void collect_corners(
     WrinkleRest& rest, std::vector<VertexCorner>& corners, std::span<const std::uint32_t> welded) {
     std::ranges::stable_sort(corners, {}, &VertexCorner::vertex);
@@ -90,7 +96,7 @@ void collect_corners(
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
 
-    // Triangles of the first vertex at a position, for all that are there.
+    // All vertices at a position get the triangles of the first one.
     for (const std::uint32_t vertex : welded) {
         rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
         float sum = 0;
@@ -104,7 +110,7 @@ void collect_corners(
     rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
 }
 
-/// Calls f(vertices, triangle) for each triangle that has an area.
+/// Calls f(vertices, triangle, has_area) for each triangle.
 template <typename F>
 void each_triangle(std::span<const Vec3> positions, std::span<const std::uint32_t> indices, F&& f) {
     for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
@@ -122,14 +128,14 @@ void each_triangle(std::span<const Vec3> positions, std::span<const std::uint32_
 Vec3 turn_with(const Vec3& direction, const Vec3& from, const Vec3& to) {
     const Vec3 axis = glm::cross(from, to);
     const float cosine =
-        std::max(glm::dot(from, to), -0.999f);  // any axis will do for the opposite
+        std::max(glm::dot(from, to), -0.999f);  // opposite vectors: any axis will do
     return cosine * direction + glm::cross(axis, direction)
            + axis * (glm::dot(axis, direction) / (1 + cosine));
 }
 
-/// Of all triangles. `visit(v, triangle, has_area, pass, rest, add)` appends its corners to `rest`,
-/// and calls add(k, corner) with those that count at its vertex v[k]; those of a second pass count
-/// by their stretch.
+/// Builds a rest from all triangles. `visit(v, triangle, has_area, pass, rest, add)` appends its
+/// corners to `rest`, and calls add(k, corner) with those that have a weight at its vertex v[k];
+/// those of the second pass count by their stretch.
 template <typename Visit>
 WrinkleRest rest_of_triangles(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices, int passes,
@@ -169,7 +175,7 @@ void append_axes(
     }
 }
 
-/// `rests` measure each triangle three times, in the axes of its corners; now also in those of the
+/// Extends `rests`, which measure each triangle in the axes of its corners, to the axes of the
 /// vertices that it diffuses to.
 std::array<WrinkleRest, 3> diffuse_strain_rests(
     const std::array<WrinkleRest, 3>& rests, std::span<const Vec3> positions,
@@ -208,7 +214,7 @@ float region_weight(const VertexRegion& region, std::size_t v) {
     return std::clamp(finite_or(region.weights[v], 0), 0.0f, 1.0f);
 }
 
-/// Of the vertices of a triangle that fold.
+/// Mean over the vertices of a triangle that fold.
 float mean_aside(
     const std::array<std::uint32_t, 3>& v, std::span<const Vec3> across,
     std::span<const float> aside) {
@@ -221,8 +227,8 @@ float mean_aside(
     return count > 0 ? sum / count : 0.0f;
 }
 
-/// Where several regions have some weight: the axis of the mean of their tensors, and its other
-/// eigenvalue as a share of both.
+/// Where several regions have weight: the major axis of their mean tensor, and its minor eigenvalue
+/// as a fraction of the trace.
 void blend_directions(
     std::span<const VertexRegion* const> regions, const Vec3& normal, std::size_t v,
     FoldField& field) {
@@ -300,13 +306,13 @@ WrinkleRest make_wrinkle_rest(
         positions, indices, along.narrowing > 0 ? 2 : 1,
         [&](const std::array<std::uint32_t, 3>& v, const RestTriangle& triangle, bool has_area,
             int pass, WrinkleRest& rest, const auto& add) {
-            const auto append = [&](const Vec2& coefficients, float share) {
+            const auto append = [&](const Vec2& coefficients, float factor) {
                 const auto first = static_cast<std::uint32_t>(rest.corners.size());
                 rest.corners.insert(rest.corners.end(), v.begin(), v.end());
                 rest.across.push_back(coefficients);
                 const std::array<float, 3> weights = corner_weights(triangle, weight);
-                for (std::uint32_t k = 0; k < 3 && share > 0; ++k) {
-                    add(k, {first + k, share * weights[k]});
+                for (std::uint32_t k = 0; k < 3 && factor > 0; ++k) {
+                    add(k, {first + k, factor * weights[k]});
                 }
             };
             Vec3 direction =
@@ -453,7 +459,7 @@ vertex_compression(std::span<const WrinkleRest> rests, std::span<const Vec3> def
 }
 
 float wrinkle_intensity(float ratio, float lambda, float beta) {
-    // As a hyperbolic tangent, which does not overflow; log(0) = -infinity gives 1.
+    // A hyperbolic tangent does not overflow; log(0) = -infinity gives 1.
     return -std::tanh(0.5f * beta * std::log(lambda * std::max(ratio, 0.0f)));
 }
 

@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <utility>
 
+// Techniques: skin.pipeline
+
 namespace limn {
 
 namespace {
@@ -28,12 +30,13 @@ std::array<float, 4> mask_at(const ImageData* mask, const Vec2& uv) {
         || !std::isfinite(uv.x + uv.y)) {
         return found;
     }
-    const auto place = [](float x, int count) {
+    const auto texel_index = [](float x, int count) {
         const auto at = static_cast<int>((x - std::floor(x)) * static_cast<float>(count));
         return static_cast<std::size_t>(std::min(at, count - 1));
     };
-    const std::size_t texel = place(uv.y, mask->height) * static_cast<std::size_t>(mask->width)
-                              + place(uv.x, mask->width);
+    const std::size_t texel =
+        texel_index(uv.y, mask->height) * static_cast<std::size_t>(mask->width)
+        + texel_index(uv.x, mask->width);
     for (std::size_t c = 0; c < 4; ++c) {
         found[c] = static_cast<float>(mask->pixels[4 * texel + c]) / 255.0f;
     }
@@ -117,7 +120,7 @@ make_response_rest(const WrinkleMaps& maps, const MeshInstance& instance, const 
         const std::array<float, 4> high = mask_at(second, mesh.uvs[v]);
         for (std::size_t m = 0; m < kRegions; ++m) {
             const float mask = m < 4 ? low[m] : high[m - 4];
-            // Where no region says across what, nothing is measured.
+            // Nothing is measured where no region has a direction.
             rest.areas[v][m] = folds.mask[v] > 0 ? mask * areas[v] : 0.0f;
             rest.total[m] += rest.areas[v][m];
         }

@@ -13,23 +13,23 @@
 
 namespace limn {
 
-// From the deformed skin to the weights of wrinkle maps, region by region (skin.pipeline, stages 2
-// to 5). With the strengths s of compression at the vertices, of area A and mask M, across the
-// wrinkles (2) and along them (1),
+// From the deformed skin to the weights of wrinkle maps, per region (skin.pipeline, stages 2 to 5).
+// With the strengths s of compression across the wrinkles (2) and along them (1) at vertices of
+// area A and mask M,
 //
 //     S = sum M A max(s, 0) / sum M A,    w = clamp(animated + gain2 S2 - gain1 S1 + bias, -1, 1)
 //
-// and weights move towards w by 1 - exp(-dt / smoothing). Regions are the channels of the masks.
-// On the CPU, in the vertices' order: about a millisecond for 10,000 vertices.
+// and weights approach w by the fraction 1 - exp(-dt / smoothing). Regions are the channels of the
+// masks. On the CPU: about a millisecond for 10,000 vertices.
 
-/// Adds and renews the ResponseRest and MeasuredWrinkles of each WrinkleResponse on a deformed mesh
-/// with uvs and regions that have directions, and removes them where there is none.
+/// Adds and updates the ResponseRest and MeasuredWrinkles of each WrinkleResponse on a deformed
+/// mesh with uvs and regions that have directions, and removes them from others.
 void prepare_wrinkle_responses(
     Query<const WrinkleResponse, const WrinkleMaps, const MeshInstance, const Deformed> faces,
     Query<const ResponseRest> rests, Query<const MeasuredWrinkles> measured,
     Res<const Assets> assets, Commands commands);
 
-/// Moves MeasuredWrinkles. After poses and deformers.
+/// Steps MeasuredWrinkles. After poses and deformers.
 void update_wrinkle_responses(
     Query<
         const WrinkleResponse, const ResponseRest, const MeshInstance, const Deformed,
@@ -41,11 +41,12 @@ void update_wrinkle_responses(
 
 // ---- parts of the above ----
 
-/// `source` 0: there is nothing to measure. A region of less than 1e-4 of the mesh's area has none.
+/// `source` 0: there is nothing to measure. A region of less than 1e-4 of the mesh's area is
+/// ignored.
 [[nodiscard]] ResponseRest
 make_response_rest(const WrinkleMaps& maps, const MeshInstance& instance, const Assets& assets);
 
-/// The weights that skin with these positions leads to, without smoothing; `animated` may be null.
+/// The weights for skin with these positions, without smoothing; `animated` may be null.
 [[nodiscard]] WrinkleWeights response_weights(
     const WrinkleResponse& response, const ResponseRest& rest, std::span<const Vec3> deformed,
     const WrinkleWeights* animated);

@@ -17,6 +17,9 @@
 #include <span>
 #include <utility>
 
+// Techniques: wrinkle.compression.direction, wrinkle.compression.integration,
+//     wrinkle.compression.overlap, wrinkle.compression.prior-models, wrinkle.resting
+
 namespace limn {
 
 namespace {
@@ -38,25 +41,25 @@ const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
     return image < assets.images.size() ? &assets.images[image] : nullptr;
 }
 
-/// Whether it says where a vertex wrinkles and, if that is measured, across which direction, or
-/// any.
+/// Whether the region has a weight per vertex and, if the driver is a chord, directions or none at
+/// all.
 bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::size_t vertices) {
     return is_named(region, surface.regions) && region.weights.size() == vertices
            && (region.across.size() == vertices || region.across.empty()
                || used_driver(surface) != WrinkleDriver::Chord);
 }
 
-/// Means of lengths have no part along the folds.
+/// Means of lengths ignore stretch along the folds.
 float narrowing_of(const WrinkleSurface& surface) {
     return surface.mean_length ? 0.0f : surface.narrowing;
 }
 
-/// Those of a second layer.
+/// The regions of the second layer.
 const std::vector<std::string>& second_regions(const WrinkleSurface& surface) {
     return surface.second_regions.empty() ? surface.regions : surface.second_regions;
 }
 
-/// A mesh without regions wrinkles anywhere by drivers that need no direction.
+/// A mesh without regions wrinkles anywhere with drivers that need no direction.
 bool wrinkles_everywhere(const WrinkleSurface& surface, const MeshData& mesh) {
     return surface.method == WrinkleMethod::StrainView
            || (mesh.regions.empty() && surface.regions.empty()
@@ -83,7 +86,7 @@ make_strain_rests(const MeshData& mesh, const WrinkleSurface& surface, std::vect
     return {std::make_move_iterator(rests.begin()), std::make_move_iterator(rests.end())};
 }
 
-/// Where the second layer may wrinkle, and the chords that are measured for it.
+/// Appends the rest of the second layer, and returns its mask.
 std::vector<float> add_second_layer(
     const WrinkleSurface& surface, const MeshData& mesh, std::vector<WrinkleRest>& rests) {
     FoldField field = merge_regions(mesh, second_regions(surface), true);
@@ -102,7 +105,6 @@ std::vector<float> add_second_layer(
     return std::move(field.mask);
 }
 
-/// What is measured.
 std::vector<WrinkleRest> make_rests(
     const WrinkleSurface& surface, const MeshData& mesh, const FoldField& field,
     std::vector<Vec2>& frames) {
@@ -130,7 +132,7 @@ std::vector<WrinkleRest> make_rests(
     return rests;
 }
 
-/// Where regions overlap the largest counts. Empty if none of them is of the mesh.
+/// The maximum where regions overlap. Empty if the mesh has none of them.
 std::vector<float> resting_folds(const WrinkleSurface& surface, const MeshData& mesh) {
     std::vector<float> resting;
     for (const RestingFolds& folds : surface.resting) {
@@ -162,7 +164,7 @@ std::uint64_t hash_resting(const WrinkleSurface& surface) {
     return hash;
 }
 
-/// The strength of folds is below 1, or that of the table for skin without length.
+/// Bound on the displacement: a fold's strength is below 1, or at most the largest of the table.
 float largest_fold(const WrinkleState& state) {
     float highest = 0;
     for (const Vec2& height : state.heights) {
@@ -173,9 +175,9 @@ float largest_fold(const WrinkleState& state) {
 
 }  // namespace
 
-float radial_share(const Vec3& position, const Vec3& center, float radius) {
-    const float share = glm::distance(position, center) / radius;
-    return share < 1 ? 0.5f + 0.5f * std::cos(kPi * share) : 0.0f;
+float radial_falloff(const Vec3& position, const Vec3& center, float radius) {
+    const float relative = glm::distance(position, center) / radius;
+    return relative < 1 ? 0.5f + 0.5f * std::cos(kPi * relative) : 0.0f;
 }
 
 std::uint64_t
@@ -242,7 +244,7 @@ WrinkleState make_wrinkle_state(
     }
     if (used_driver(surface) == WrinkleDriver::Radial) {
         for (std::size_t v = 0; v < vertices; ++v) {
-            state.mask[v] *= radial_share(mesh.positions[v], surface.center, surface.radius);
+            state.mask[v] *= radial_falloff(mesh.positions[v], surface.center, surface.radius);
         }
     }
     if (const ImageData* const map = map_of(instance, assets)) {
@@ -260,7 +262,7 @@ WrinkleState make_wrinkle_state(
 void prepare_wrinkles(
     Query<const WrinkleSurface, const MeshInstance> surfaces, Query<const WrinkleState> states,
     Res<const Assets> assets, Commands commands) {
-    std::map<std::uint64_t, WrinkleState> made_now;  // a crowd has few different ones
+    std::map<std::uint64_t, WrinkleState> made_now;  // a crowd has few distinct ones
     surfaces.each([&](Entity entity, const WrinkleSurface& surface, const MeshInstance& instance) {
         const WrinkleState* const made = states.find<const WrinkleState>(entity);
         const std::uint64_t source = wrinkle_source(surface, instance, *assets);

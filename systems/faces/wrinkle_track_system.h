@@ -7,8 +7,7 @@
 
 namespace limn {
 
-/// Weights at `time` [s]: those of the first key before it, of the last after it, zero without
-/// keys.
+/// Weights at `time` [s], clamped to the first and last key; zero without keys.
 [[nodiscard]] WrinkleWeights wrinkle_weights_at(const WrinkleTrack& track, double time);
 
 void update_wrinkle_tracks(

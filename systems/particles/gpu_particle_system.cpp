@@ -15,6 +15,9 @@
 #include <utility>
 #include <variant>
 
+// Techniques: particle.circular-list, particle.gpu-init, particle.gpu-state, particle.gpu-update,
+//     particle.gpu-update-mrt, particle.linear-window, particle.million
+
 namespace limn {
 namespace {
 

@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: particle.system
+
 namespace limn {
 namespace {
 

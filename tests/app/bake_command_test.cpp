@@ -5,6 +5,7 @@
 #include "ecs/components/surface.h"
 #include "tests/app/run_program.h"
 #include "tests/one_mesh_glb.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -49,7 +50,9 @@ void check_fails(const TemporaryFolder& folder, const Words& more, int code, con
 
 }  // namespace
 
-TEST_CASE("bake: photometric writes the normals and the reflectance of what was photographed") {
+TEST_CASE(
+    "bake: photometric writes the normals and the reflectance of what was photographed"
+    * technique("face.photometric-normals")) {
     const TemporaryFolder folder;
     const Vec3 normals[2] = {{0.2f, 0.3f, 0.932738f}, {-0.4f, 0.1f, 0.911043f}};
     const float albedo[2] = {0.7f, 0.35f};
@@ -249,7 +252,9 @@ void write_normals(const std::string& path, std::uint8_t x, std::uint8_t y) {
 
 }  // namespace
 
-TEST_CASE("bake: a strain model has the slopes of the captured map, less those at rest") {
+TEST_CASE(
+    "bake: a strain model has the slopes of the captured map, less those at rest"
+    * technique("face.wrinkle-model")) {
     const TemporaryFolder folder;
     write_skin(folder.file("skin.glb"));
     write_normals(folder.file("narrow.png"), 128 + 56, 128 - 28);

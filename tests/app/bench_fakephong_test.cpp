@@ -1,6 +1,7 @@
 #include "content/app/bench/bench_fakephong.h"
 #include "tests/app/run_program.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -15,7 +16,9 @@ using test::ProgramRun;
 using test::run_limn;
 using test::TemporaryFolder;
 
-TEST_CASE("bench_fakephong: costs are ratios to per-pixel shading of the same model and lights") {
+TEST_CASE(
+    "bench_fakephong: costs are ratios to per-pixel shading of the same model and lights"
+    * technique("fakephong.metric-efficiency")) {
     FakePhongBench bench{.machine = {.scene = "phonglab", .size = {64, 36}, .frames = 3}};
     for (const int lights : kFakePhongLights) {
         FakePhongPoint& point = bench.points.emplace_back(FakePhongPoint{"teapot", lights, {}});
@@ -57,7 +60,9 @@ TEST_CASE("bench_fakephong: counted lightings are the thesis's, and Phong shadin
     CHECK(of("triangle", "quadratic, stepped").work < of("triangle", "quadratic").work);
 }
 
-TEST_CASE("bench_fakephong: every method is timed on every model under 1, 4 and 16 lights") {
+TEST_CASE(
+    "bench_fakephong: every method is timed on every model under 1, 4 and 16 lights"
+    * technique("fakephong.metric-efficiency")) {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(
         folder, {"bench", "fakephong", "--frames", "1", "--size", "32x18", "--csv", "b.csv"});

@@ -10,6 +10,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/snapshot.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -101,7 +102,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("explosion: each releases its children at its place, and none remains at the end") {
+TEST_CASE(
+    "explosion: each releases its children at its place, and none remains at the end"
+    * technique("engine.explosion")) {
     const test::TemporaryFolder folder;
     MadeAssets made;
     const std::unique_ptr<Stage> stage = open_text(

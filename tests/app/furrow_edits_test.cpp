@@ -13,6 +13,7 @@
 #include "ecs/world.h"
 #include "render/render_view.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -78,7 +79,9 @@ Vec3 random_unit(Random& random) {
 
 }  // namespace
 
-TEST_CASE("furrow edits: a pixel's ray goes through the point visible there") {
+TEST_CASE(
+    "furrow edits: a pixel's ray goes through the point visible there"
+    * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     for (std::size_t v = 0; v < tube.mesh.positions.size(); v += 7) {
         const Vec3& p = tube.mesh.positions[v];
@@ -88,7 +91,9 @@ TEST_CASE("furrow edits: a pixel's ray goes through the point visible there") {
     CHECK_FALSE(pixel_of(tube.viewed, {0, 0, 5}).has_value());  // behind the camera
 }
 
-TEST_CASE("furrow edits: picking returns the nearest front vertex within 6 px, none beyond") {
+TEST_CASE(
+    "furrow edits: picking returns the nearest front vertex within 6 px, none beyond"
+    * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     Random random(1, 2, 3, 4);
     int picked = 0;
@@ -114,7 +119,9 @@ TEST_CASE("furrow edits: picking returns the nearest front vertex within 6 px, n
     CHECK(missed > 20);
 }
 
-TEST_CASE("furrow edits: neither the back of a mesh nor what another part hides is picked") {
+TEST_CASE(
+    "furrow edits: neither the back of a mesh nor what another part hides is picked"
+    * technique("wrinkle.furrow.editor")) {
     Seen tube;
     const std::uint32_t front = *pick_furrow_vertex(tube.viewed, {640, 360}, 40);
     CHECK(tube.mesh.positions[front].z > 0);
@@ -139,7 +146,9 @@ TEST_CASE("furrow edits: neither the back of a mesh nor what another part hides 
     CHECK((!found || turned.positions[*found].z < 0));
 }
 
-TEST_CASE("furrow edits: of two tips the nearer one is taken, none beyond 6 px") {
+TEST_CASE(
+    "furrow edits: of two tips the nearer one is taken, none beyond 6 px"
+    * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     const std::uint32_t v = *pick_furrow_vertex(tube.viewed, {640, 360}, 40);
     const Vec3& p = tube.mesh.positions[v];
@@ -154,7 +163,9 @@ TEST_CASE("furrow edits: of two tips the nearer one is taken, none beyond 6 px")
     }
 }
 
-TEST_CASE("furrow edits: a dragged vector is tangent, at most 2 long, with its tip under the ray") {
+TEST_CASE(
+    "furrow edits: a dragged vector is tangent, at most 2 long, with its tip under the ray"
+    * technique("wrinkle.furrow.editor")) {
     Random random(5, 6, 7, 8);
     int clamped = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -179,7 +190,9 @@ TEST_CASE("furrow edits: a dragged vector is tangent, at most 2 long, with its t
     CHECK(glm::distance(d, Vec3(1, 0, 0)) < 1e-5f);
 }
 
-TEST_CASE("furrow edits: an edited vertex keeps one arrow, which begins with what is shown there") {
+TEST_CASE(
+    "furrow edits: an edited vertex keeps one arrow, which begins with what is shown there"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     const std::uint32_t v = 40;
     const FurrowVectors shown = tube.skin().field[v];
@@ -198,7 +211,9 @@ TEST_CASE("furrow edits: an edited vertex keeps one arrow, which begins with wha
     REQUIRE(glm::distance(tube.mesh().positions[twin[0]], tube.mesh().positions[twin[1]]) < 1e-6f);
 }
 
-TEST_CASE("furrow edits: initialize brings back the fields of an unedited mesh") {
+TEST_CASE(
+    "furrow edits: initialize brings back the fields of an unedited mesh"
+    * technique("wrinkle.furrow.editor")) {
     for (const bool waits : {false, true}) {
         Edited tube;
         let_furrows_wait(tube.furrows(), waits);
@@ -210,7 +225,9 @@ TEST_CASE("furrow edits: initialize brings back the fields of an unedited mesh")
     }
 }
 
-TEST_CASE("furrow edits: each step takes on what the one before has made, and no more") {
+TEST_CASE(
+    "furrow edits: each step takes on what the one before has made, and no more"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     let_furrows_wait(tube.furrows(), true);
     tube.update();
@@ -240,7 +257,9 @@ TEST_CASE("furrow edits: each step takes on what the one before has made, and no
     CHECK(tube.noiseless_hash() != scaled);
 }
 
-TEST_CASE("furrow edits: undo and redo of a dragged tip restore furrows to the bit") {
+TEST_CASE(
+    "furrow edits: undo and redo of a dragged tip restore furrows to the bit"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     UndoStack undo;
     const std::uint64_t before = tube.noiseless_hash();
@@ -264,7 +283,9 @@ TEST_CASE("furrow edits: undo and redo of a dragged tip restore furrows to the b
     CHECK(tube.noiseless_hash() == after);
 }
 
-TEST_CASE("furrow edits: the ranges and defaults of sliders are those of the editor of 2001") {
+TEST_CASE(
+    "furrow edits: the ranges and defaults of sliders are those of the editor of 2001"
+    * technique("wrinkle.furrow.editor")) {
     struct Range {
         const ComponentInfo& info;
         const char* field;
@@ -295,7 +316,9 @@ TEST_CASE("furrow edits: the ranges and defaults of sliders are those of the edi
     CHECK(FurrowArrow{}.weight == 1);
 }
 
-TEST_CASE("furrow edits: a look of skin comes back from the material that it was given to") {
+TEST_CASE(
+    "furrow edits: a look of skin comes back from the material that it was given to"
+    * technique("wrinkle.furrow.editor")) {
     for (const FurrowReflection reflection :
          {FurrowReflection::Own, FurrowReflection::Measured1, FurrowReflection::Measured2}) {
         const FurrowLook look = {reflection, 0.3f, 0.6f, 0.25f, 70};
@@ -308,7 +331,9 @@ TEST_CASE("furrow edits: a look of skin comes back from the material that it was
     }
 }
 
-TEST_CASE("furrow edits: the rough figure needs no new furrows after the smooth one") {
+TEST_CASE(
+    "furrow edits: the rough figure needs no new furrows after the smooth one"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     FurrowLook look;
     for (const FurrowPreset& preset : furrow_presets()) {
@@ -326,7 +351,9 @@ TEST_CASE("furrow edits: the rough figure needs no new furrows after the smooth 
     }
 }
 
-TEST_CASE("furrow edits: what is saved loads back to the bit, and grows the same furrows") {
+TEST_CASE(
+    "furrow edits: what is saved loads back to the bit, and grows the same furrows"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     const TemporaryFolder folder;
     FurrowFile file;
@@ -349,7 +376,9 @@ TEST_CASE("furrow edits: what is saved loads back to the bit, and grows the same
     CHECK(grow(loaded->furrows) == grow(file.furrows));
 }
 
-TEST_CASE("furrow edits: a file that is none is refused with its place") {
+TEST_CASE(
+    "furrow edits: a file that is none is refused with its place"
+    * technique("wrinkle.furrow.editor")) {
     const TemporaryFolder folder;
     const std::string path = folder.file("bad.json");
     struct Case {

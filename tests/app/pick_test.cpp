@@ -8,6 +8,7 @@
 #include "ecs/world.h"
 #include "render/render_view.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -126,7 +127,9 @@ TEST_CASE("pick: the ray through the middle of the image is where the camera loo
     CHECK(clip.y / clip.w == test::near(1.0f).epsilon(1e-4));
 }
 
-TEST_CASE("skin drag: only a drag that begins on skin pulls, until the button is up") {
+TEST_CASE(
+    "skin drag: only a drag that begins on skin pulls, until the button is up"
+    * technique("face.pull")) {
     World world;
     world.insert_resource(Assets{}).meshes.push_back(half_square());
     const Entity face = place(world, {0, 0, -1});

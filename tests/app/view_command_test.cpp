@@ -2,6 +2,7 @@
 #include "content/load/files/exr_file.h"
 #include "content/load/files/png_file.h"
 #include "tests/app/virtual_display.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -102,7 +103,7 @@ TEST_CASE("view: an image of 8 bits is shown code for code") {
     CHECK(test::read_png(folder.file("a.png")).bytes == codes);
 }
 
-TEST_CASE("view: every pixel of the PNG is the formula's to one code") {
+TEST_CASE("view: every pixel of the PNG is the formula's to one code" * technique("hdr.viewer")) {
     const TemporaryFolder folder;
     const std::vector<glm::vec3> pixels = make_ramp();
     write_picture_exr(folder.file("a.exr"), pixels);
@@ -136,7 +137,9 @@ TEST_CASE("view: every pixel of the PNG is the formula's to one code") {
     }
 }
 
-TEST_CASE("view: more exposure clips more, and defog with contrast clips less again") {
+TEST_CASE(
+    "view: more exposure clips more, and defog with contrast clips less again"
+    * technique("hdr.viewer")) {
     const TemporaryFolder folder;
     write_picture_exr(folder.file("a.exr"), make_ramp());
     const double low = clipped(shown(folder, {"--ev", "0"}));
@@ -150,7 +153,7 @@ TEST_CASE("view: more exposure clips more, and defog with contrast clips less ag
     CHECK(shown(folder, {"--curve", "local"}) != shown(folder, {"--curve", "reinhard"}));
 }
 
-TEST_CASE("view: says what the image holds, and where NaN is") {
+TEST_CASE("view: says what the image holds, and where NaN is" * technique("hdr.viewer")) {
     const TemporaryFolder folder;
     std::vector<glm::vec3> pixels(kWidth * kHeight, glm::vec3(0.5f));
     pixels[0] = glm::vec3(0.01f);
@@ -192,7 +195,9 @@ TEST_CASE("view: what is no image of light ends with 1 and one line") {
     }
 }
 
-TEST_CASE("view: in the window a key and its opposite lead back to the same image") {
+TEST_CASE(
+    "view: in the window a key and its opposite lead back to the same image"
+    * technique("hdr.viewer")) {
     if (!test::can_play()) {
         return;
     }

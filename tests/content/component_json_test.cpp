@@ -10,6 +10,7 @@
 #include "ecs/field_access.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -289,7 +290,9 @@ TEST_CASE("component json: angles turn about y, then x, then z") {
         != std::string::npos);
 }
 
-TEST_CASE("json: angles in between depend on the names of the poses, and lock a quarter turn up") {
+TEST_CASE(
+    "json: angles in between depend on the names of the poses, and lock a quarter turn up"
+    * technique("anim.euler")) {
     const auto apart = [](const Quat& a, const Quat& b) {
         return std::min(glm::length(a - b), glm::length(a + b));
     };

@@ -13,6 +13,7 @@
 #include "systems/update_world.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -168,7 +169,9 @@ TEST_CASE("creature: skeleton, skin and clips are sound, and clips end as they b
     }
 }
 
-TEST_CASE("creature: a foot that stands goes with the ground, and does not sink or rise") {
+TEST_CASE(
+    "creature: a foot that stands goes with the ground, and does not sink or rise"
+    * technique("char.foot-flight")) {
     for (const char* name : {"walk", "run", "idle"}) {
         INFO(std::string(name));
         const Gait& gait = gait_named(name);
@@ -250,7 +253,9 @@ TEST_CASE("creature: a run sets down both hind feet, then both fore feet, then f
     CHECK(gait_speed(run) > 4 * gait_speed(gait_named("walk")));
 }
 
-TEST_CASE("creature: a foot in the air rises in a third of its way and comes down in the rest") {
+TEST_CASE(
+    "creature: a foot in the air rises in a third of its way and comes down in the rest"
+    * technique("char.foot-flight")) {
     constexpr float kPiF = kPi;
     const auto at = [](float x) { return swing_height(x / (3 * kPi)); };
     CHECK(at(0) == 0);

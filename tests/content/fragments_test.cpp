@@ -6,6 +6,7 @@
 #include "ecs/components/all.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -45,7 +46,9 @@ double area_of(const MeshData& mesh, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-TEST_CASE("fragments: as sheets, the pieces are the triangles of the whole, each once") {
+TEST_CASE(
+    "fragments: as sheets, the pieces are the triangles of the whole, each once"
+    * technique("particle.mesh-particles")) {
     const Assets assets = with_ball();
     const MeshData& ball = assets.meshes[0];
     const MeshData pieces = make_fragments({.mesh = {0}, .count = 20, .thickness = 0}, assets);
@@ -135,7 +138,9 @@ TEST_CASE("fragments: faces and normals point outward, of the inside inward") {
     }
 }
 
-TEST_CASE("fragments: each piece is a mesh about its center, which lies in the whole as it did") {
+TEST_CASE(
+    "fragments: each piece is a mesh about its center, which lies in the whole as it did"
+    * technique("particle.mesh-particles")) {
     Assets assets = with_ball();
     assets.meshes.push_back(make_fragments({.mesh = {0}, .count = 9}, assets));
     assets.meshes[1].name = "shards";

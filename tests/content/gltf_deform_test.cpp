@@ -3,6 +3,7 @@
 #include "systems/animation/clip_sampling.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -136,7 +137,9 @@ TEST_CASE("gltf deform: further sets of weights, of other types, count as the fi
     CHECK(all[0].weight + all[1].weight == test::near(1.0).epsilon(1e-6));
 }
 
-TEST_CASE("gltf deform: weights that do not sum to 1 are scaled, with a warning") {
+TEST_CASE(
+    "gltf deform: weights that do not sum to 1 are scaled, with a warning"
+    * technique("char.skin-limits")) {
     const GltfScene scene = loaded([](Flag& f) {
         f.weights[0] = 0.5f;
         f.weights[4] = 0.05f;
@@ -181,7 +184,9 @@ TEST_CASE("gltf deform: bad joints and weights are refused with their place") {
         == place + ".WEIGHTS_0: found 3 elements, expected as many as POSITION has, 4");
 }
 
-TEST_CASE("gltf deform: morph targets hold the vertices that move, dense or sparse, by name") {
+TEST_CASE(
+    "gltf deform: morph targets hold the vertices that move, dense or sparse, by name"
+    * technique("char.morph-target")) {
     const GltfScene scene = loaded();
     const std::vector<MorphTarget>& morphs = scene.meshes[0].morphs;
     REQUIRE(morphs.size() == 2);
@@ -243,7 +248,9 @@ TEST_CASE("gltf deform: a morph target has the drivers that the file names") {
     }
 }
 
-TEST_CASE("gltf deform: normals that were made turn with their morph targets, tangents follow") {
+TEST_CASE(
+    "gltf deform: normals that were made turn with their morph targets, tangents follow"
+    * technique("char.morph-target")) {
     const GltfScene scene = loaded([](Flag& f) { f.normals.clear(); });
     const MeshData& mesh = scene.meshes[0];
     for (const MorphTarget& morph : mesh.morphs) {
@@ -291,7 +298,8 @@ TEST_CASE("gltf deform: a vertex that is split keeps its joints and its morph ta
     }
 }
 
-TEST_CASE("gltf deform: clips move morph weights, straight and cubic") {
+TEST_CASE(
+    "gltf deform: clips move morph weights, straight and cubic" * technique("char.morph-anim")) {
     const GltfScene scene = loaded();
     CHECK(scene.skeleton.joints.size() == 3);  // the file, the pole and its top; not the cloth
     REQUIRE(scene.clips.size() == 1);

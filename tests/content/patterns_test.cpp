@@ -10,6 +10,7 @@
 #include "ecs/base/math.h"
 #include "ecs/base/srgb.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -153,7 +154,9 @@ TEST_CASE("patterns: flames end below the upper edge and repeat without a jump")
     CHECK(steps[15] < 1.3 * most);
 }
 
-TEST_CASE("patterns: a frame of fire moved by its motion map is closer to the next than it was") {
+TEST_CASE(
+    "patterns: a frame of fire moved by its motion map is closer to the next than it was"
+    * technique("particle.motion-vectors")) {
     constexpr int kSide = 64;
     for (const char* const name : {"fire", "fireball"}) {
         CAPTURE(name);
@@ -388,7 +391,9 @@ TEST_CASE("fluid: pressure takes out the divergence, heat rises, cools and sprea
     CHECK(moments(burst, burst.soot).radius2 > 1.5 * moments(run(0, 6), run(0, 6).soot).radius2);
 }
 
-TEST_CASE("patterns: masks are 1 inside, 0 outside, and nowhere more than 1 together") {
+TEST_CASE(
+    "patterns: masks are 1 inside, 0 outside, and nowhere more than 1 together"
+    * technique("wrinkle.maps.masks")) {
     MasksPattern pattern;
     pattern.image.size = 64;
     pattern.regions = {{0, {0.3f, 0.5f}, {0.25f, 0.25f}}, {3, {0.6f, 0.5f}, {0.25f, 0.25f}}};

@@ -1,6 +1,7 @@
 #include "content/make/models/plants.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -38,7 +39,8 @@ differing(const std::vector<PlantParticle>& plants, const std::vector<PlantParti
 
 }  // namespace
 
-TEST_CASE("plants: a description under 1 KB grows 16^5 leaves") {
+TEST_CASE(
+    "plants: a description under 1 KB grows 16^5 leaves" * technique("particle.volume-fill")) {
     const PlantShape shape{.stems = 1, .levels = 5, .branches = 16};
     static_assert(sizeof(PlantShape) < 1024);
     const std::vector<PlantParticle> plants = grow_plants(shape);
@@ -51,7 +53,9 @@ TEST_CASE("plants: a description under 1 KB grows 16^5 leaves") {
     CHECK(leaves == 1048576);
 }
 
-TEST_CASE("plants: the same seed grows the same, another one nothing of it") {
+TEST_CASE(
+    "plants: the same seed grows the same, another one nothing of it"
+    * technique("particle.volume-fill")) {
     const std::vector<PlantParticle> plants = grow_plants(small_tree());
     CHECK(differing(plants, grow_plants(small_tree())) == 0);
     PlantShape other = small_tree();
@@ -59,7 +63,9 @@ TEST_CASE("plants: the same seed grows the same, another one nothing of it") {
     CHECK(differing(plants, grow_plants(other)) == plants.size());
 }
 
-TEST_CASE("plants: fewer levels are the beginning of more, as roots, tips and widths go") {
+TEST_CASE(
+    "plants: fewer levels are the beginning of more, as roots, tips and widths go"
+    * technique("particle.volume-fill")) {
     PlantShape shape = small_tree();
     const std::vector<PlantParticle> all = grow_plants(shape);
     CHECK(all.size() == 5 * (1 + 4 + 16 + 64));
@@ -107,7 +113,8 @@ TEST_CASE("plants: stems stand evenly on their area, within their spread of upri
 }
 
 TEST_CASE(
-    "plants: wind moves no root, the last tip by a fraction of the length, and bends between") {
+    "plants: wind moves no root, the last tip by a fraction of the length, and bends between"
+    * technique("particle.volume-fill")) {
     PlantShape shape = small_tree();
     const std::vector<PlantParticle> still = grow_plants(shape);
     const float length_sum = shape.length * (1 + 0.7f + 0.49f + 0.343f);

@@ -3,6 +3,7 @@
 #include "content/make/models/shapes.h"
 #include "ecs/components/weld.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -85,7 +86,9 @@ MeshData refined(const MeshData& mesh, float edge, int times) {
 
 }  // namespace
 
-TEST_CASE("refined: edges of what folds are short, the rest is as it was, and no gap opens") {
+TEST_CASE(
+    "refined: edges of what folds are short, the rest is as it was, and no gap opens"
+    * technique("wrinkle.displacement")) {
     const MeshData ball = make_ball();
     REQUIRE(open_edges(ball) == 0);
     const MeshData fine = refined(ball, 0.008f, 5);

@@ -12,6 +12,7 @@
 #include "ecs/world.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -347,7 +348,9 @@ TEST_CASE("scene warnings: state that systems keep, written by hand") {
            "what is written here");
 }
 
-TEST_CASE("scene warnings: wrinkle maps and masks of another aspect ratio than the skin") {
+TEST_CASE(
+    "scene warnings: wrinkle maps and masks of another aspect ratio than the skin"
+    * technique("wrinkle.maps.texture-set")) {
     World world;
     Assets assets;
     const auto add = [&](const char* name, int width, int height) {

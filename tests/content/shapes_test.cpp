@@ -3,6 +3,7 @@
 #include "content/make/models/shapes.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -137,7 +138,9 @@ TEST_CASE("shapes: lobes keep a lathe closed, and its area is that of the curve"
     CHECK(signed_volume(mesh) == test::near(kPiD * 0.25 * 1.02).epsilon(1e-3));
 }
 
-TEST_CASE("shapes: a triangle in n divisions has n^2 facets of equal area that fill it") {
+TEST_CASE(
+    "shapes: a triangle in n divisions has n^2 facets of equal area that fill it"
+    * technique("fakephong.scenes")) {
     for (const int n : {1, 2, 5}) {
         const MeshData mesh = make_triangle({.radius = 1, .divisions = n});
         CHECK(mesh.indices.size() == static_cast<std::size_t>(3 * n * n));

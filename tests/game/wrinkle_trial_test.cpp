@@ -1,5 +1,6 @@
 #include "content/game/wrinkle_trial_system.h"
 #include "ecs/world.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -64,7 +65,9 @@ bool all_are(const std::vector<bool>& values, bool value) {
 
 }  // namespace
 
-TEST_CASE("wrinkle trial: both clips show the same frames, one with and one without wrinkles") {
+TEST_CASE(
+    "wrinkle trial: both clips show the same frames, one with and one without wrinkles"
+    * technique("wrinkle.compression.ab-evaluation")) {
     for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
         Viewing viewing(seed);
         const std::vector<Viewing::Clip> clips = viewing.watch();
@@ -117,7 +120,9 @@ TEST_CASE("wrinkle trial: who saw nothing is told and shown both again, then all
     CHECK(viewing.state().stage == TrialStage::FirstClip);
 }
 
-TEST_CASE("wrinkle trial: ten answers as the source's are counted as 2/3, 1/4 and 8/2") {
+TEST_CASE(
+    "wrinkle trial: ten answers as the source's are counted as 2/3, 1/4 and 8/2"
+    * technique("wrinkle.compression.ab-evaluation")) {
     std::vector<TrialRecord> records;
     for (int i = 0; i < 10; ++i) {
         records.push_back(

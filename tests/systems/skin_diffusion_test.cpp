@@ -3,6 +3,7 @@
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -58,7 +59,7 @@ std::vector<double> diffused(const SkinDiffusion& diffusion, const std::vector<d
     for (std::size_t v = 0; v < values.size(); ++v) {
         double sum = 0;
         for (std::uint32_t i = diffusion.first[v]; i < diffusion.first[v + 1]; ++i) {
-            sum += double{diffusion.shares[i].second} * values[diffusion.shares[i].first];
+            sum += double{diffusion.weights[i].second} * values[diffusion.weights[i].first];
         }
         after.push_back(sum);
     }
@@ -80,7 +81,9 @@ std::vector<WrinkleRest> strain_rests(const Sheet& sheet, float smoothing) {
     return {rests.begin(), rests.end()};
 }
 
-TEST_CASE("skin diffusion: constant strain stays as it is, by any driver, on any triangles") {
+TEST_CASE(
+    "skin diffusion: constant strain stays as it is, by any driver, on any triangles"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(8, 0.5f);
     std::vector<Vec3> now = sheet.positions;
     for (Vec3& p : now) {
@@ -99,7 +102,9 @@ TEST_CASE("skin diffusion: constant strain stays as it is, by any driver, on any
     }
 }
 
-TEST_CASE("skin diffusion: the sum over the area is kept, and no value leaves the range") {
+TEST_CASE(
+    "skin diffusion: the sum over the area is kept, and no value leaves the range"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(9, 0.6f);
     Random random(7, 0, 0, 0);
     std::vector<double> values;
@@ -112,7 +117,7 @@ TEST_CASE("skin diffusion: the sum over the area is kept, and no value leaves th
         return std::inner_product(x.begin(), x.end(), diffusion.area.begin(), 0.0);
     };
     CHECK(total(after) == near(total(values)).epsilon(1e-6));
-    for (const auto& [vertex, share] : diffusion.shares) {
+    for (const auto& [vertex, share] : diffusion.weights) {
         CHECK(share >= 0);
     }
     const auto variance = [&](const std::vector<double>& x) {
@@ -125,7 +130,9 @@ TEST_CASE("skin diffusion: the sum over the area is kept, and no value leaves th
     CHECK(variance(after) < 0.1 * variance(values));
 }
 
-TEST_CASE("skin diffusion: total strain of triangles is kept if they count by area") {
+TEST_CASE(
+    "skin diffusion: total strain of triangles is kept if they count by area"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(7, 0.5f);
     Random random(11, 0, 0, 0);
     std::vector<Vec3> now = sheet.positions;
@@ -147,7 +154,9 @@ TEST_CASE("skin diffusion: total strain of triangles is kept if they count by ar
     CHECK(total == near(expected).epsilon(1e-5));
 }
 
-TEST_CASE("skin diffusion: a peak spreads as far as asked, whatever the size of the triangles") {
+TEST_CASE(
+    "skin diffusion: a peak spreads as far as asked, whatever the size of the triangles"
+    * technique("wrinkle.smoothing")) {
     for (const std::uint32_t side : {16u, 32u}) {
         for (const float edges : {0.5f, 1.0f, 2.0f}) {
             const Sheet sheet = make_sheet(side);
@@ -155,7 +164,7 @@ TEST_CASE("skin diffusion: a peak spreads as far as asked, whatever the size of 
             const std::uint32_t middle = side / 2 * (side + 1) + side / 2;
             double square = 0;
             for (std::uint32_t i = diffusion.first[middle]; i < diffusion.first[middle + 1]; ++i) {
-                const auto& [vertex, share] = diffusion.shares[i];
+                const auto& [vertex, share] = diffusion.weights[i];
                 const double distance =
                     double{glm::distance(sheet.positions[vertex], sheet.positions[middle])};
                 square += double{share} * distance * distance;
@@ -165,7 +174,7 @@ TEST_CASE("skin diffusion: a peak spreads as far as asked, whatever the size of 
     }
 }
 
-TEST_CASE("skin diffusion: fine meshes are left as they are") {
+TEST_CASE("skin diffusion: fine meshes are left as they are" * technique("wrinkle.smoothing")) {
     double previous = 0;
     for (const std::uint32_t side : {8u, 16u, 32u}) {
         const Sheet sheet = make_sheet(side);
@@ -190,7 +199,9 @@ TEST_CASE("skin diffusion: fine meshes are left as they are") {
     CHECK(previous < 0.03);
 }
 
-TEST_CASE("skin diffusion: a seam does not stop it, skin that takes no part does") {
+TEST_CASE(
+    "skin diffusion: a seam does not stop it, skin that takes no part does"
+    * technique("wrinkle.smoothing")) {
     Sheet sheet = make_sheet(6);
     const SkinDiffusion whole = diffusion_of(sheet, 1.5f);
     // The same with every triangle's own vertices.
@@ -221,12 +232,13 @@ TEST_CASE("skin diffusion: a seam does not stop it, skin that takes no part does
     const SkinDiffusion halves = make_skin_diffusion(sheet.positions, sheet.indices, used, 2);
     for (std::uint32_t v = 0; v < sheet.positions.size(); ++v) {
         for (std::uint32_t i = halves.first[v]; i < halves.first[v + 1]; ++i) {
-            CHECK((v % 7 < 3) == (halves.shares[i].first % 7 < 3));
+            CHECK((v % 7 < 3) == (halves.weights[i].first % 7 < 3));
         }
     }
 }
 
-TEST_CASE("skin diffusion: around a tube strain keeps its direction") {
+TEST_CASE(
+    "skin diffusion: around a tube strain keeps its direction" * technique("wrinkle.smoothing")) {
     Sheet tube = make_sheet(24);
     for (Vec3& p : tube.positions) {
         p = {std::sin(3 * p.x), p.y, std::cos(3 * p.x)};
@@ -243,7 +255,9 @@ TEST_CASE("skin diffusion: around a tube strain keeps its direction") {
     }
 }
 
-TEST_CASE("skin diffusion: strain that jumps between triangles becomes smooth") {
+TEST_CASE(
+    "skin diffusion: strain that jumps between triangles becomes smooth"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(12);
     std::vector<Vec3> now = sheet.positions;
     Random random(5, 0, 0, 0);

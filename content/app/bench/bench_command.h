@@ -11,6 +11,11 @@
 
 namespace limn {
 
+// Shown by `limn bench fakephong`: fakephong.forward-difference, fakephong.metric-efficiency
+// Shown by `limn bench gallery`: shade.batching
+// Shown by `limn bench lights`: engine.visibility-sets
+// Shown by `limn bench stress-instances`: shade.stream-kernel
+
 struct BenchReport;
 struct HeadlessRenderer;
 struct Stage;

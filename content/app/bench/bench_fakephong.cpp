@@ -25,6 +25,9 @@
 #include <span>
 #include <utility>
 
+// Techniques: fakephong.blinn-path, fakephong.forward-difference, fakephong.metric-analytic,
+//     fakephong.metric-efficiency, fakephong.results
+
 namespace limn {
 namespace {
 

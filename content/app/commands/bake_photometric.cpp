@@ -27,6 +27,8 @@
 #include <string>
 #include <vector>
 
+// Techniques: face.photometric-normals
+
 namespace limn {
 
 /// A photograph and the direction to its only light.

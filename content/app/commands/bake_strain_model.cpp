@@ -27,6 +27,8 @@
 #include <string_view>
 #include <vector>
 
+// Techniques: face.wrinkle-model
+
 namespace limn {
 
 struct CapturedShape {

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: hdr.viewer
+
 namespace limn {
 namespace {
 

@@ -6,6 +6,8 @@
 
 namespace limn {
 
+// Shown by `limn import markers take.trc -o take.glb`: face.head-stabilise, face.mocap-drive
+
 struct ImportOptions {
     std::string kind;   ///< ict-facekit, makehuman or markers
     std::string in;     ///< folder, or the file of markers

@@ -32,6 +32,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: anim.bezier-join, wrinkle.compression.ab-evaluation
+
 namespace limn {
 namespace {
 

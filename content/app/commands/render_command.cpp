@@ -25,6 +25,8 @@
 #include <filesystem>
 #include <utility>
 
+// Techniques: post.distributed-sampling
+
 namespace limn {
 namespace {
 

@@ -13,6 +13,12 @@
 
 namespace limn {
 
+// Shown by `limn render --show shadow.volume-count --aov volume_layers -o layers.exr`:
+//     shadow.density-view
+// Shown by `limn render museum --profile gpu -o museum.png`: shade.profile
+// Shown by `limn render museum -o museum.exr`: hdr.float-formats, hdr.openexr
+// Shown by `limn render stilllife --spp 64 -o stilllife.png`: post.distributed-sampling
+
 /// `limn render`: renders images without a window.
 struct RenderOptions {
     std::string scene;  ///< level name, level file or glTF; empty: the first level with the show

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: face.categories, face.talking-head
+
 namespace limn {
 
 namespace {

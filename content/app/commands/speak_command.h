@@ -9,6 +9,13 @@
 
 namespace limn {
 
+// Shown by `limn speak "Hello!" --face face.glb -o hello.glb`: face.dominance
+// Shown by `limn speak "Hello!" --face face.glb -o hello.glb --express AU12=0.5`: face.categories
+// Shown by `limn speak "exactly one" --face face.glb -o one.glb --fragments clock.json`:
+//     face.align-resample, face.fragment-blend, face.speech-fragments, face.unit-select
+// Shown by `limn speak "exactly one" --face face.glb -o one.glb --record clock.json`:
+//     face.unit-generate
+
 struct SpeakOptions {
     std::string text;
     std::string face;          ///< .gltf or .glb with shapes that have action units

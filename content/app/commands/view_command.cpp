@@ -19,6 +19,8 @@
 #include <fstream>
 #include <ios>
 
+// Techniques: hdr.viewer
+
 namespace limn {
 namespace {
 

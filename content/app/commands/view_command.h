@@ -11,6 +11,9 @@
 
 namespace limn {
 
+// Shown by `limn view museum.exr`: hdr.viewer
+// Shown by `limn view museum.exr -o museum.png`: hdr.dynamic-range
+
 /// `limn view`: tone maps an HDR image, in a window with sliders or to a PNG.
 struct ViewOptions {
     std::string file;          ///< any format that load_image reads

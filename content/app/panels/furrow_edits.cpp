@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.furrow.editor
+
 namespace limn {
 namespace {
 

@@ -21,6 +21,8 @@
 #include <iterator>
 #include <limits>
 
+// Techniques: wrinkle.furrow.editor
+
 namespace limn {
 namespace {
 

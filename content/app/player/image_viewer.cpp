@@ -16,6 +16,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+// Techniques: hdr.viewer
+
 namespace limn {
 namespace {
 

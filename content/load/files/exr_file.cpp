@@ -19,6 +19,8 @@
 #include <exception>
 #include <stdexcept>
 
+// Techniques: hdr.float-formats, hdr.openexr
+
 namespace limn {
 
 namespace {

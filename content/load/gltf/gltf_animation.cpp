@@ -10,6 +10,8 @@
 #include <map>
 #include <utility>
 
+// Techniques: anim.mocap-keys
+
 namespace limn {
 
 namespace {

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <utility>
 
+// Techniques: face.talking-head
+
 namespace limn {
 
 namespace {

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+// Techniques: char.morph-target, char.skin-limits
+
 namespace limn {
 
 namespace {

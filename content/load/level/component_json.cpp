@@ -17,6 +17,8 @@
 #include <cstring>
 #include <limits>
 
+// Techniques: anim.euler
+
 namespace limn {
 
 namespace {

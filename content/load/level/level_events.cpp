@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+// Techniques: engine.explosion
+
 namespace limn {
 
 namespace {

@@ -39,6 +39,8 @@
 #include <type_traits>
 #include <utility>
 
+// Techniques: wrinkle.maps.texture-set
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: char.skin-defects
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,9 @@
 #include <map>
 #include <set>
 
+// Techniques: anim.bezier-eval, anim.bezier-patch, anim.bezier-patch-frame, anim.bezier-patch-lod,
+//     anim.bezier-patch-tessellate, bump.tangent-bezier
+
 namespace limn {
 
 namespace {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: char.foot-flight
+
 namespace limn {
 
 namespace {

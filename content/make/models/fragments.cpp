@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: engine.explode, particle.mesh-particles
+
 namespace limn {
 namespace {
 

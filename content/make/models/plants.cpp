@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: particle.volume-fill
+
 namespace limn {
 namespace {
 

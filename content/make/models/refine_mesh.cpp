@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.displacement
+
 namespace limn {
 
 namespace {

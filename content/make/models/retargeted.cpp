@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cstddef>
 
+// Techniques: face.retarget-fit, face.retarget-warp
+
 namespace limn {
 namespace {
 

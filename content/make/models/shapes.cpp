@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: fakephong.scenes
+
 namespace limn {
 
 namespace {

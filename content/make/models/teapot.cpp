@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: anim.bezier-patch-lod, bump.tangent-bezier, bump.teapot, fakephong.scenes
+
 namespace limn {
 
 namespace {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.furrow.polygon-models
+
 namespace limn {
 namespace {
 

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <vector>
 
+// Techniques: particle.motion-vectors
+
 namespace limn {
 namespace {
 

@@ -4,6 +4,7 @@
 // as evenly lit, by means that are exact; folds are taken as V-shaped, as steep everywhere as where they are seen.
 // Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994; infinite bounces as in Jimenez et al.,
 // "Practical Real-Time Strategies for Accurate Indirect Occlusion", 2016.
+// Techniques: wrinkle.fold-light
 
 // Mean cosines of a light at a wall and at the one opposite. What passes the mouth of the groove falls on both together:
 // a wall that is lit by less than it faces the light stands in the shadow of the other one. `n_l`: of the wall, `m_l`: of

@@ -1,4 +1,5 @@
 // Polynomials of the strain of skin, as content/bake/wrinkle_model.h fits them (face.wrinkle-model).
+// Techniques: face.wrinkle-model
 
 // The strain (tt, bb, tb) in units of its largest magnitude in the poses of the fit, and not beyond them. `range`: least
 // and most of tt, then of bb; `range_tb`: of tb.
