@@ -35,7 +35,8 @@ TEST_CASE(
     CHECK(fakephong_bench_table(bench).find("vertex") != std::string::npos);
 }
 
-TEST_CASE("bench_fakephong: counted lightings are the thesis's, and Phong shading's work is 1") {
+TEST_CASE("bench_fakephong: counted lighting evaluations match the thesis, and Phong shading's "
+          "work is 1") {
     const std::vector<FakePhongCount> counts = count_fakephong();
     const auto of = [&](const char* model, const char* method) {
         return std::find_if(

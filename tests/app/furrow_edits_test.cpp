@@ -92,7 +92,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: picking returns the nearest front vertex within 6 px, none beyond"
+    "furrow edits: picking returns the nearest front-facing vertex within 6 px, none beyond"
     * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     Random random(1, 2, 3, 4);
@@ -120,7 +120,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: neither the back of a mesh nor what another part hides is picked"
+    "furrow edits: back-facing and occluded vertices are not picked"
     * technique("wrinkle.furrow.editor")) {
     Seen tube;
     const std::uint32_t front = *pick_furrow_vertex(tube.viewed, {640, 360}, 40);
@@ -226,7 +226,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: each step takes on what the one before has made, and no more"
+    "furrow edits: each step builds on the result of the previous one alone"
     * technique("wrinkle.furrow.editor")) {
     Edited tube;
     let_furrows_wait(tube.furrows(), true);
@@ -317,7 +317,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: a look of skin comes back from the material that it was given to"
+    "furrow edits: the look of skin survives a round trip through its material"
     * technique("wrinkle.furrow.editor")) {
     for (const FurrowReflection reflection :
          {FurrowReflection::Own, FurrowReflection::Measured1, FurrowReflection::Measured2}) {
@@ -352,7 +352,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: what is saved loads back to the bit, and grows the same furrows"
+    "furrow edits: a saved file loads back to the bit, and grows the same furrows"
     * technique("wrinkle.furrow.editor")) {
     Edited tube;
     const TemporaryFolder folder;
@@ -377,7 +377,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: a file that is none is refused with its place"
+    "furrow edits: an invalid file is refused with its position"
     * technique("wrinkle.furrow.editor")) {
     const TemporaryFolder folder;
     const std::string path = folder.file("bad.json");

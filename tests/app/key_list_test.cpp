@@ -38,7 +38,7 @@ TEST_CASE("key list: keys are picked within the pick radius, the nearest one fir
     CHECK(hit_key(kPlot, std::vector<ColorKey>{}, {110, 20}) == -1);
 }
 
-TEST_CASE("key list: a drag moves the selected key, past others too, and not out of the plot") {
+TEST_CASE("key list: a drag moves the selected key, even past others, but not out of the plot") {
     std::vector<CurveKey> keys = curve();
     int selected = -1;
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {12, 69}, .pressed = true}, keys, selected));
@@ -67,7 +67,7 @@ TEST_CASE("key list: a drag moves the selected key, past others too, and not out
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {60, 45}, .held = true}, keys, selected));
 }
 
-TEST_CASE("key list: a double click adds a key where there is none, in order, eight at most") {
+TEST_CASE("key list: a double click adds a key in order, unless there is one, eight at most") {
     std::vector<CurveKey> keys = curve();
     int selected = -1;
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {111, 21}, .double_clicked = true}, keys, selected));
@@ -117,7 +117,7 @@ TEST_CASE("key list: a right click removes the key under it, Delete the selected
     CHECK(selected == -1);
 }
 
-TEST_CASE("key list: the plot is as high as the values, in powers of two") {
+TEST_CASE("key list: the top of the plot is the next power of two above the values") {
     CHECK(plot_top({}) == 1);
     CHECK(plot_top({{0, 0.3f}}) == 1);
     CHECK(plot_top({{0, 1.01f}, {1, 0}}) == 2);
@@ -125,7 +125,8 @@ TEST_CASE("key list: the plot is as high as the values, in powers of two") {
     CHECK(plot_top({{0, 1000}}) == 1024);
 }
 
-TEST_CASE("emitter controls: counts, drops told, a restart without particles, and another seed") {
+TEST_CASE(
+    "emitter controls: counts, dropped particles, a restart without particles, and another seed") {
     register_all_components();
     World world;
     ParticleEmitter settings;

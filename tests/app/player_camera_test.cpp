@@ -52,8 +52,7 @@ TEST_CASE("player_camera: W flies forward at its pace of the distance ahead, wit
     }
 }
 
-TEST_CASE(
-    "player_camera: the speed of flying follows the distance ahead, up to the scene's radius") {
+TEST_CASE("player_camera: the flying speed follows the distance ahead, up to the scene's radius") {
     PlayerCamera camera;
     start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
     const auto speed_before = [&](float ahead) {
@@ -71,7 +70,7 @@ TEST_CASE(
     CHECK(camera.pace == test::near(0.6 * 1.2 * 1.2).epsilon(1e-5));
 }
 
-TEST_CASE("player_camera: what sinks stays above the floor, what is told to sink does not") {
+TEST_CASE("player_camera: it stays above the floor unless steered down") {
     PlayerCamera camera;
     start_fly(camera, look_at({0, 1, 0}, {0, 0, -1}));
     for (int i = 0; i < 300; ++i) {
@@ -144,7 +143,7 @@ TEST_CASE("player_camera: two keys at once are no faster than one") {
         == test::near(camera.fly.speed).epsilon(1e-3));
 }
 
-TEST_CASE("player_camera: looking up never goes over the head") {
+TEST_CASE("player_camera: looking up stops short of vertical") {
     PlayerCamera camera;
     start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
     for (int i = 0; i < 100; ++i) {
@@ -180,7 +179,7 @@ TEST_CASE("player_camera: the lag is the same at 30 and at 60 frames a second") 
     CHECK(slow.focus.x == test::near(quick.focus.x).epsilon(1e-4));
 }
 
-TEST_CASE("player_camera: what is at the focus follows the pointer when the orbit is panned") {
+TEST_CASE("player_camera: the point in focus follows the pointer when the orbit is panned") {
     PlayerCamera camera;
     const Vec3 target = {1, 2, 3};
     start_orbit(camera, look_at({4, 6, 9}, target), target);

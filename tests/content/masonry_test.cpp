@@ -37,7 +37,7 @@ double area_below(double span, double rise, double radius) {
 
 }  // namespace
 
-TEST_CASE("masonry: the curve goes from the springing to the point, upright at its begin") {
+TEST_CASE("masonry: the curve runs from the springing to the point, and starts upright") {
     for (const float radius : {0.0f, 0.5f, 0.8f, 1.0f, 3.0f}) {
         const std::vector<CurvePoint> curve = pointed_curve(3.0f, 2.5f, radius, 9);
         REQUIRE(curve.size() == 10);
@@ -54,7 +54,7 @@ TEST_CASE("masonry: the curve goes from the springing to the point, upright at i
     }
 }
 
-TEST_CASE("masonry: an equilateral arch has its arcs about the opposite springing") {
+TEST_CASE("masonry: the arcs of an equilateral arch are centered at the opposite springing") {
     const float rise = std::sqrt(3.0f);
     for (const float radius : {0.0f, 1.0f}) {  // by its rise, or by its name
         for (const CurvePoint& point : pointed_curve(2.0f, rise, radius, 16)) {
@@ -103,7 +103,7 @@ TEST_CASE("masonry: frames agree with position and texture") {
     CHECK(worst_tangent(make_wall({.sill = 1, .segments = 32})) > 0.95f);
 }
 
-TEST_CASE("masonry: a wall weighs what its opening leaves of it") {
+TEST_CASE("masonry: the volume of a wall is that of its box without the opening") {
     const MeshData door = make_wall(
         {.size = {4, 6, 0.5f}, .span = 2, .spring = 3, .rise = 2, .radius = 1, .segments = 64});
     CHECK(
@@ -122,7 +122,7 @@ TEST_CASE("masonry: vaults are closed over squares and oblongs") {
     check_solid(make_vault({.size = {3, 5}, .radius = 0.5f, .segments = 1}));
 }
 
-TEST_CASE("masonry: a vault is as thick everywhere, and lies on the arch over its diagonal") {
+TEST_CASE("masonry: a vault has constant thickness, and fits the arch over its diagonal") {
     const VaultShape shape{.size = {6, 4}, .rise = 3, .radius = 0.8f, .thickness = 0.2f};
     const MeshData vault = make_vault(shape);
     CHECK(signed_volume(vault) == test::near(6 * 4 * 0.2).epsilon(1e-4));

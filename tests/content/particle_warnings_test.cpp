@@ -75,7 +75,7 @@ TEST_CASE("bad emitter: rates, lifetimes and capacities that are refused, with w
         has(error_of(R"("rate_curve": [{"at": 1.5}])"), "rate_curve[0].at: found the number 1.5"));
 }
 
-TEST_CASE("bad emitter: one without room, or whose particles do not live, is told") {
+TEST_CASE("bad emitter: a capacity or lifetime of zero is reported") {
     CHECK(warnings_beside("").empty());
     CHECK(
         warnings_beside("", R"("capacity": 0)")
@@ -146,7 +146,7 @@ TEST_CASE("bad emitter: a mesh without triangles") {
         "particle_surface is on a mesh without triangles: it emits nothing"));
 }
 
-TEST_CASE("bad emitter: births for which there was no room, with the limit to raise") {
+TEST_CASE("bad emitter: dropped particles are reported with the limit to raise") {
     World world;
     ParticlePool pool;
     ParticleEmitter emitter;

@@ -54,7 +54,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "plants: the same seed grows the same, another one nothing of it"
+    "plants: the same seed grows the same plants, another one entirely different ones"
     * technique("particle.volume-fill")) {
     const std::vector<PlantParticle> plants = grow_plants(small_tree());
     CHECK(differing(plants, grow_plants(small_tree())) == 0);
@@ -64,7 +64,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "plants: fewer levels are the beginning of more, as roots, tips and widths go"
+    "plants: fewer levels are a prefix of more, in roots, tips and widths"
     * technique("particle.volume-fill")) {
     PlantShape shape = small_tree();
     const std::vector<PlantParticle> all = grow_plants(shape);
@@ -137,7 +137,7 @@ TEST_CASE(
         < 1e-5f);
 }
 
-TEST_CASE("plants: the mesh has two triangles a segment, one at a tip, and no hole in its arrays") {
+TEST_CASE("plants: the mesh has two triangles per segment, one at a tip, and complete arrays") {
     PlantShape shape = small_tree();
     const MeshData mesh = make_plants(shape);
     check_arrays(mesh);
@@ -149,7 +149,7 @@ TEST_CASE("plants: the mesh has two triangles a segment, one at a tip, and no ho
     CHECK(make_plants(shape).bounds.max.y == near(0.3f * (1 + 0.7f + 0.49f + 0.343f)));
 }
 
-TEST_CASE("plants: as many as any level may ask for stay within two million") {
+TEST_CASE("plants: the largest request stays within two million particles") {
     const PlantShape shape{.stems = 100, .levels = 10, .branches = 16, .segments = 1};
     const std::vector<PlantParticle> plants = grow_plants(shape);
     CHECK(plants.size() == 100 * (1 + 16 + 256 + 4096));

@@ -63,7 +63,7 @@ TEST_CASE("scene warnings: keyframes whose times do not increase") {
             "(1 s)"});
 }
 
-TEST_CASE("scene warnings: components that do nothing without another") {
+TEST_CASE("scene warnings: components that have no effect without another") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "eye", "camera": {}, "autofocus": {}}]})")
         == Warnings{"entity \"eye\": autofocus has no effect without lens"});
@@ -75,7 +75,7 @@ TEST_CASE("scene warnings: components that do nothing without another") {
         == Warnings{"entity \"eye\": camera_path has no effect without camera"});
 }
 
-TEST_CASE("scene warnings: surfaces that are not there, or on which nothing is born") {
+TEST_CASE("scene warnings: surfaces that are missing, or that emit nothing") {
     CHECK(
         warnings_of(R"({"entities": [
         {"name": "a", "particle_surface": {}},
@@ -98,7 +98,7 @@ TEST_CASE("scene warnings: surfaces that are not there, or on which nothing is b
             "particle_emitter.executor to cpu"});
 }
 
-TEST_CASE("scene warnings: colliders that are not there") {
+TEST_CASE("scene warnings: missing colliders") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "sparks", "particle_emitter": {},
         "particle_look": {}, "particle_collision": {}}]})")
@@ -131,7 +131,7 @@ TEST_CASE("scene warnings: what GPU particles cannot do") {
             "whose light is evaluated at their corners; set particle_emitter.executor to cpu"});
 }
 
-TEST_CASE("scene warnings: bodies with a mass that cannot move, and what acts on none") {
+TEST_CASE("scene warnings: bodies with a mass that cannot move, and forces without a body") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "cart", "transform": {}, "children": [
             {"name": "shot", "transform": {}, "point_mass": {}}]}]})")
@@ -173,7 +173,7 @@ TEST_CASE("scene warnings: events on a component that the entity lacks") {
         == Warnings{"events[0]: entity \"box\" has no spin; the event does nothing"});
 }
 
-TEST_CASE("scene warnings: a camera inside of what is solid") {
+TEST_CASE("scene warnings: a camera inside a solid mesh") {
     const auto with = [](const char* place, const char* mesh, const char* material) {
         return fmt::format(
             R"({{"meshes": {{"m": {{{}}}}}, "materials": {{"a": {{{}}}}},
@@ -243,7 +243,7 @@ TEST_CASE("scene warnings: caustics without a sun above the horizon") {
     }
 }
 
-TEST_CASE("scene warnings: a sun far brighter than the exposure is made for") {
+TEST_CASE("scene warnings: a sun far too bright for the exposure") {
     const auto level = [](std::string_view exposure, std::string_view sun) {
         return fmt::format(
             R"({{"resources": {{{}}}, "entities": [{{"name": "sun",
@@ -294,7 +294,7 @@ TEST_CASE("scene warnings: events on an entity that is destroyed before") {
             "events[2]: entity \"box\" no longer exists: events[1] destroys it at 1 s"});
 }
 
-TEST_CASE("scene warnings: a line of a level names the place in its file") {
+TEST_CASE("scene warnings: a warning names the position in the level's file") {
     const test::TemporaryFolder folder;
     const std::string path = folder.file("t.level.json");
     std::ofstream(path) << R"({"prefabs": {"lamp": {"children": [
@@ -316,7 +316,7 @@ TEST_CASE("scene warnings: a line of a level names the place in its file") {
             path + ":6:5: events[0]: entity \"a\" has no spin; the event does nothing"});
 }
 
-TEST_CASE("scene warnings: of several active cameras, with the place of the last") {
+TEST_CASE("scene warnings: several active cameras, with the position of the last") {
     register_all_components();
     const test::TemporaryFolder folder;
     const std::string path = folder.file("t.level.json");
@@ -335,7 +335,7 @@ TEST_CASE("scene warnings: of several active cameras, with the place of the last
               "\"active\": false on the others"});
 }
 
-TEST_CASE("scene warnings: state that systems keep, written by hand") {
+TEST_CASE("scene warnings: internal state of systems in a level") {
     register_all_components();
     const std::vector<std::string> logged = test::messages_of([] {
         CHECK(parse_level(R"({"entities": [{"name": "a", "world_transform": {}}]})", "t.level.json")
