@@ -51,7 +51,7 @@ void check_fails(const TemporaryFolder& folder, const Words& more, int code, con
 }  // namespace
 
 TEST_CASE(
-    "bake: photometric writes the normals and the reflectance of what was photographed"
+    "bake: photometric writes the normals and the reflectance of the photographed surface"
     * technique("face.photometric-normals")) {
     const TemporaryFolder folder;
     const Vec3 normals[2] = {{0.2f, 0.3f, 0.932738f}, {-0.4f, 0.1f, 0.911043f}};
@@ -91,7 +91,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("bake: photometric refuses lights in a plane, other sizes and missing files by name") {
+TEST_CASE("bake: photometric refuses coplanar lights, different sizes and missing files by name") {
     const TemporaryFolder folder;
     const auto says = [&](const char* shots, const char* expected) {
         write_text(folder.file("shots.json"), shots);
@@ -124,7 +124,7 @@ TEST_CASE("bake: photometric refuses lights in a plane, other sizes and missing 
         "b.exr: found 2 x 1 pixels, expected the 1 x 1 of the first image");
 }
 
-TEST_CASE("bake: furrows writes a height map and unit normals of the size asked for") {
+TEST_CASE("bake: furrows writes a height map and unit normals of the requested size") {
     const TemporaryFolder folder;
     const ProgramRun run =
         bake(folder, {"-o", "skin.exr", "--set", "size=96", "--recipe", "recipe.json"});
@@ -166,7 +166,7 @@ TEST_CASE("bake: furrows writes a height map and unit normals of the size asked 
     }
 }
 
-TEST_CASE("bake: the same command writes the same files, another seed others") {
+TEST_CASE("bake: the same command writes the same files, a different seed different ones") {
     const TemporaryFolder folder;
     for (const char* name : {"a.png", "b.png"}) {
         REQUIRE(
@@ -199,7 +199,7 @@ TEST_CASE("bake: the GPU makes the same height map") {
         == test::read_text(folder.file("gpu_height.png")));
 }
 
-TEST_CASE("bake: what is wrong is one line that says what was found and what was expected") {
+TEST_CASE("bake: an error is one line that says what was found and what was expected") {
     const TemporaryFolder folder;
     const ProgramRun unknown = run_limn(folder, {"bake", "furows", kModel, "-o", "a.png"});
     CHECK(unknown.exit_code == 2);
@@ -284,7 +284,7 @@ TEST_CASE(
     CHECK(loaded->format == PixelFormat::Rgba16F);
 }
 
-TEST_CASE("bake: a strain model of wrong shapes, maps or faces is refused by name") {
+TEST_CASE("bake: a strain model with wrong shapes, maps or faces is refused by name") {
     const TemporaryFolder folder;
     write_skin(folder.file("skin.glb"));
     write_normals(folder.file("a.png"), 128, 128);
@@ -308,7 +308,7 @@ TEST_CASE("bake: a strain model of wrong shapes, maps or faces is refused by nam
     says(R"({"face": "no.glb", "poses": [{"image": "a.png"}]})", "no.glb");
     says(
         R"({"face": "skin.glb", "uv_set": 1, "poses": [{"image": "a.png"}]})",
-        "skin.glb: found no texture coordinates 1, expected the maps' ones");
+        "skin.glb: found no texture coordinates 1, expected those of the maps");
     says(R"({"face": "skin.glb", "size": 0, "poses": [{"image": "a.png"}]})", "size");
 }
 

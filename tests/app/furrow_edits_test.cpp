@@ -31,12 +31,12 @@ constexpr float kLength = 0.02f;  // of a vector of magnitude 1 [m]
 /// The tube from the front, at 1280 x 720.
 struct Seen {
     MeshData mesh = make_furrow_surface(FurrowSurface::Limb);
-    SeenMesh seen;
+    ViewedMesh viewed;
 
     Seen() {
         const RenderView view = make_render_view(
             Camera{}, look_at({0.1f, 0.1f, 1.2f}, {0, 0, 0}), look_at({0, 0, 1}, {0, 0, 0}));
-        seen = {&mesh, view.unjittered_from_world, {0.1f, 0.1f, 1.2f}, {view.width, view.height}};
+        viewed = {&mesh, view.unjittered_from_world, {0.1f, 0.1f, 1.2f}, {view.width, view.height}};
     }
 };
 
@@ -80,19 +80,19 @@ Vec3 random_unit(Random& random) {
 }  // namespace
 
 TEST_CASE(
-    "furrow edits: a pixel's ray goes through the point that is seen there"
+    "furrow edits: a pixel's ray goes through the point visible there"
     * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     for (std::size_t v = 0; v < tube.mesh.positions.size(); v += 7) {
         const Vec3& p = tube.mesh.positions[v];
-        const Ray ray = ray_of(tube.seen, *pixel_of(tube.seen, p));
+        const Ray ray = ray_of(tube.viewed, *pixel_of(tube.viewed, p));
         CHECK(glm::length(glm::cross(p - ray.origin, ray.direction)) < 1e-5f);
     }
-    CHECK_FALSE(pixel_of(tube.seen, {0, 0, 5}).has_value());  // behind the camera
+    CHECK_FALSE(pixel_of(tube.viewed, {0, 0, 5}).has_value());  // behind the camera
 }
 
 TEST_CASE(
-    "furrow edits: picking returns the nearest front vertex within 6 px, none beyond"
+    "furrow edits: picking returns the nearest front-facing vertex within 6 px, none beyond"
     * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     Random random(1, 2, 3, 4);
@@ -103,12 +103,12 @@ TEST_CASE(
         std::vector<float> front;  // distances of front vertices [px]
         for (std::size_t v = 0; v < tube.mesh.positions.size(); ++v) {
             const Vec3& p = tube.mesh.positions[v];
-            const bool faces = glm::dot(tube.mesh.normals[v], tube.seen.eye - p) > 0;
-            front.push_back(faces ? glm::distance(*pixel_of(tube.seen, p), pointer) : INFINITY);
+            const bool faces = glm::dot(tube.mesh.normals[v], tube.viewed.eye - p) > 0;
+            front.push_back(faces ? glm::distance(*pixel_of(tube.viewed, p), pointer) : INFINITY);
         }
         const float least = *std::ranges::min_element(front);
-        const auto found = pick_furrow_vertex(tube.seen, pointer);
-        CHECK(found.has_value() == (least <= kFurrowReach));
+        const auto found = pick_furrow_vertex(tube.viewed, pointer);
+        CHECK(found.has_value() == (least <= kFurrowPickRadius));
         if (found) {
             CHECK(front[*found] == least);
         }
@@ -120,10 +120,10 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: neither the back of a mesh nor what another part hides is picked"
+    "furrow edits: back-facing and occluded vertices are not picked"
     * technique("wrinkle.furrow.editor")) {
     Seen tube;
-    const std::uint32_t front = *pick_furrow_vertex(tube.seen, {640, 360}, 40);
+    const std::uint32_t front = *pick_furrow_vertex(tube.viewed, {640, 360}, 40);
     CHECK(tube.mesh.positions[front].z > 0);
     // The same vertex behind a triangle that stands before it, and turned away.
     const Vec3 at = tube.mesh.positions[front];
@@ -134,15 +134,15 @@ TEST_CASE(
         hidden.normals.emplace_back(0, 0, 1);
     }
     hidden.indices.insert(hidden.indices.end(), {first, first + 1, first + 2});
-    tube.seen.mesh = &hidden;
-    const Vec2 pointer = *pixel_of(tube.seen, at);
-    CHECK_FALSE(pick_furrow_vertex(tube.seen, pointer).has_value());
+    tube.viewed.mesh = &hidden;
+    const Vec2 pointer = *pixel_of(tube.viewed, at);
+    CHECK_FALSE(pick_furrow_vertex(tube.viewed, pointer).has_value());
     MeshData turned = tube.mesh;
     for (Vec3& n : turned.normals) {
         n = -n;
     }
-    tube.seen.mesh = &turned;
-    const auto found = pick_furrow_vertex(tube.seen, pointer);
+    tube.viewed.mesh = &turned;
+    const auto found = pick_furrow_vertex(tube.viewed, pointer);
     CHECK((!found || turned.positions[*found].z < 0));
 }
 
@@ -150,15 +150,16 @@ TEST_CASE(
     "furrow edits: of two tips the nearer one is taken, none beyond 6 px"
     * technique("wrinkle.furrow.editor")) {
     const Seen tube;
-    const std::uint32_t v = *pick_furrow_vertex(tube.seen, {640, 360}, 40);
+    const std::uint32_t v = *pick_furrow_vertex(tube.viewed, {640, 360}, 40);
     const Vec3& p = tube.mesh.positions[v];
     const FurrowVectors vectors = {Vec3(0, 1.5f, 0), Vec3(1.5f, 0, 0)};
     for (int f = 0; f < 2; ++f) {
-        const Vec2 tip = *pixel_of(tube.seen, p + kLength * vectors[static_cast<std::size_t>(f)]);
-        CHECK(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(3, 3)) == f);
-        CHECK_FALSE(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(5, 5)).has_value());
+        const Vec2 tip = *pixel_of(tube.viewed, p + kLength * vectors[static_cast<std::size_t>(f)]);
+        CHECK(pick_furrow_tip(tube.viewed, p, vectors, kLength, tip + Vec2(3, 3)) == f);
+        CHECK_FALSE(
+            pick_furrow_tip(tube.viewed, p, vectors, kLength, tip + Vec2(5, 5)).has_value());
         // A tip that is drawn larger, of an image with few rows.
-        CHECK(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(5, 5), 8) == f);
+        CHECK(pick_furrow_tip(tube.viewed, p, vectors, kLength, tip + Vec2(5, 5), 8) == f);
     }
 }
 
@@ -225,7 +226,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: each step takes on what the one before has made, and no more"
+    "furrow edits: each step builds on the result of the previous one alone"
     * technique("wrinkle.furrow.editor")) {
     Edited tube;
     let_furrows_wait(tube.furrows(), true);
@@ -316,7 +317,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: a look of skin comes back from the material that it was given to"
+    "furrow edits: the look of skin survives a round trip through its material"
     * technique("wrinkle.furrow.editor")) {
     for (const FurrowReflection reflection :
          {FurrowReflection::Own, FurrowReflection::Measured1, FurrowReflection::Measured2}) {
@@ -351,7 +352,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: what is saved loads back to the bit, and grows the same furrows"
+    "furrow edits: a saved file loads back to the bit, and grows the same furrows"
     * technique("wrinkle.furrow.editor")) {
     Edited tube;
     const TemporaryFolder folder;
@@ -376,7 +377,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow edits: a file that is none is refused with its place"
+    "furrow edits: an invalid file is refused with its position"
     * technique("wrinkle.furrow.editor")) {
     const TemporaryFolder folder;
     const std::string path = folder.file("bad.json");

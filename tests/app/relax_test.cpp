@@ -108,7 +108,7 @@ bool differ(const gpu::ByteImage& a, const gpu::ByteImage& b, int x, int y) {
 }  // namespace
 
 TEST_CASE(
-    "relax: both clips move the same skin, and look different on the forehead alone"
+    "relax: both clips move the same skin, and differ only on the forehead"
     * technique("wrinkle.compression.ab-evaluation")) {
     Viewer viewer;
     struct Seen {

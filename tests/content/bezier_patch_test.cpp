@@ -148,7 +148,7 @@ TEST_CASE("bezier_patch: curve and surface stay inside the box of their control 
 }
 
 TEST_CASE(
-    "bezier_patch: the corners are control points and u goes with the first index"
+    "bezier_patch: the corners are control points and u belongs to the first index"
     * technique("anim.bezier-patch")) {
     const BezierPatch patch = crumpled(1);
     CHECK(patch_point(patch, 0, 0) == patch.p[0][0]);
@@ -174,7 +174,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bezier_patch: one inner point lifts the middle by 9/64 and no boundary"
+    "bezier_patch: one inner point lifts the center by 9/64 and no boundary"
     * technique("anim.bezier-patch")) {
     BezierPatch patch = unit_square();
     patch.p[1][1].z = 1;
@@ -310,7 +310,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bezier_patch: the error of flat quads falls four times with each depth"
+    "bezier_patch: the error of flat quads falls by a factor of four with each depth"
     * technique("anim.bezier-patch-tessellate")) {
     const BezierPatch patch = crumpled(8);
     const auto worst_error = [&](int divisions) {

@@ -24,7 +24,7 @@ std::string error_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE(
-    "brdf file: each channel has its own lobes, and those it lacks are zero"
+    "brdf file: each channel has its own lobes, padded with zero lobes"
     * technique("skin.brdf-lafortune")) {
     const Result<BrdfFit> fit = parse_brdf(kSet, "x.brdf");
     REQUIRE(fit.ok());

@@ -228,7 +228,7 @@ TEST_CASE("shapes: a hard-edged box has 24 vertices and swelling it opens gaps o
     CHECK(pairs == 8 * 3);
 }
 
-TEST_CASE("shapes: a rounded box has one normal at a point, so that swelling it opens no gap") {
+TEST_CASE("shapes: a rounded box has one normal per point, so that swelling it opens no gap") {
     const MeshData box = make_box({.bevel = 0.1f, .bevel_segments = 2});
     std::map<std::array<float, 3>, Vec3> normals;
     for (std::size_t i = 0; i < box.positions.size(); ++i) {
@@ -291,7 +291,7 @@ TEST_CASE("shapes: an image stands upright and unmirrored on the front of a sphe
     }
 }
 
-TEST_CASE("shapes: kinds are found by name, and a slip is answered with the nearest") {
+TEST_CASE("shapes: kinds are found by name, and the error for a typo suggests the nearest") {
     REQUIRE(find_kind(mesh_kinds(), "teapot") != nullptr);
     CHECK(find_kind(mesh_kinds(), "tea pot") == nullptr);
     CHECK(kind_suggestion(mesh_kinds(), "teapod") == " (did you mean teapot?)");

@@ -68,7 +68,7 @@ TEST_CASE("teapot: n divisions make 64 n^2 triangles" * technique("bump.teapot")
 }
 
 TEST_CASE(
-    "teapot: all frames are finite and unit, also at the collapsed middles of lid and bottom"
+    "teapot: all frames are finite and unit, also at the collapsed centers of lid and bottom"
     * technique("bump.teapot")) {
     for (const int n : {1, 2, 3, 10, 16}) {
         check_arrays(make_teapot({.divisions = n}));
@@ -101,7 +101,7 @@ TEST_CASE("teapot: triangles and normals face outwards") {
     }
 }
 
-TEST_CASE("teapot: it stands on y = 0, is as high as asked, and its spout points along +x") {
+TEST_CASE("teapot: it stands on y = 0, has the requested height, and its spout points along +x") {
     const MeshData pot = make_teapot({.height = 2.0f});
     CHECK(pot.bounds.min.y == 0);
     CHECK(pot.bounds.max.y == test::near(2.0f));
@@ -179,7 +179,7 @@ TEST_CASE("teapot: adaptive needs fewer triangles for the same error") {
     CHECK(adaptive.indices.size() > 3 * 500);
 }
 
-TEST_CASE("teapot: the image stands upright and goes on from patch to patch around the body") {
+TEST_CASE("teapot: the image is upright and continues from patch to patch around the body") {
     CHECK(worst_tangent(make_teapot({.divisions = 24})) > 0.4f);  // the spout's v is askew to its u
     const std::vector<TeapotPatch> patches = teapot_patches(true);
     for (const TeapotPatch& patch : patches) {
