@@ -39,7 +39,7 @@
 #include "render/tone_mapper.h"
 #include "render/water/water_surfaces.h"
 
-// Techniques: post.effect-pipeline
+// Techniques: engine.draw-frame, post.effect-pipeline
 
 namespace limn {
 namespace {
