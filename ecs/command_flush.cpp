@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+// Techniques: engine.main-loop
+
 namespace limn {
 
 CommandFlush::CommandFlush(World& world)

@@ -2,6 +2,8 @@
 
 #include "ecs/base/check.h"
 
+// Techniques: engine.render-object
+
 namespace limn {
 
 EntityTable::EntityTable() : range_(std::size_t{kMaxEntities} * kSlotBytes, skew_of(99)) {

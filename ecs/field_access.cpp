@@ -11,6 +11,8 @@
 #include <mutex>
 #include <set>
 
+// Techniques: engine.param-access, engine.param-desc
+
 namespace limn {
 
 namespace {

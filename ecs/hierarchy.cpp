@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+// Techniques: engine.render-object
+
 namespace limn {
 
 namespace {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+// Techniques: engine.stock-active
+
 namespace limn {
 
 namespace {

@@ -5,6 +5,8 @@
 #include <map>
 #include <mutex>
 
+// Techniques: engine.type-registry
+
 namespace limn {
 
 namespace {

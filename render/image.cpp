@@ -39,7 +39,7 @@
 #include "render/water/water_surfaces.h"
 #include "render/water/water_veil_pass.h"
 
-// Techniques: post.effect-pipeline
+// Techniques: engine.draw-frame, post.effect-pipeline
 
 namespace limn {
 namespace {

@@ -24,7 +24,7 @@
 #include <cmath>
 #include <utility>
 
-// Techniques: post.distributed-sampling
+// Techniques: engine.draw-frame, post.distributed-sampling
 
 namespace limn {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-// Techniques: anim.bezier-patch-lod
+// Techniques: anim.bezier-patch-lod, engine.lod-mesh
 
 namespace limn {
 namespace {

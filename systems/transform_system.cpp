@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+// Techniques: engine.object-step, engine.render-object
+
 namespace limn {
 
 namespace {

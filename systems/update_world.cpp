@@ -50,6 +50,8 @@
 #include <algorithm>
 #include <iterator>
 
+// Techniques: engine.animate, engine.main-loop, engine.object-step
+
 namespace limn {
 
 using enum Phase;

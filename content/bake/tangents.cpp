@@ -12,7 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
-// Techniques: bump.tangent-triangle, bump.tangent-vertex
+// Techniques: bump.tangent-space, bump.tangent-triangle, bump.tangent-vertex
 
 namespace limn {
 

@@ -70,6 +70,8 @@
 #include "ecs/components/wrinkle_response.h"
 #include "ecs/hierarchy.h"
 
+// Techniques: engine.type-registry
+
 namespace limn {
 
 void register_all_components() {

@@ -8,6 +8,8 @@
 #include "render/skinning/deformed_list.h"
 #include "render/view_block.h"
 
+// Techniques: engine.batching, engine.material-bind
+
 namespace limn {
 namespace {
 

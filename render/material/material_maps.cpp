@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-// Techniques: skin.detail
+// Techniques: bump.normal-map, skin.detail
 
 namespace limn {
 namespace {

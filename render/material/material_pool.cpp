@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-// Techniques: shade.batching
+// Techniques: engine.material-bind, shade.batching
 
 namespace limn {
 namespace {

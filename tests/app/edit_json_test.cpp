@@ -10,6 +10,7 @@
 #include "ecs/hierarchy.h"
 #include "tests/app/run_program.h"
 #include "tests/content/gltf_samples.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -75,7 +76,9 @@ struct OpenLevel {
 
 }  // namespace
 
-TEST_CASE("edit_json: a copied entity, pasted into a level, is the same entity") {
+TEST_CASE(
+    "edit_json: a copied entity, pasted into a level, is the same entity"
+    * technique("engine.object-text")) {
     OpenLevel level;
     const std::string text = entity_as_json(level.world(), level.find("lamp"));
     const std::string pasted = std::string(R"({"title": "B", "entities": [)") + text

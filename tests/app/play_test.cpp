@@ -1,6 +1,7 @@
 #include "tests/app/close_window.h"
 #include "tests/app/virtual_display.h"
 #include "tests/content/gltf_samples.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -233,7 +234,9 @@ TEST_CASE("play: Esc closes panel after panel, then asks; leaving with edits ask
     CHECK(session.program->wait().exit_code == 0);
 }
 
-TEST_CASE("play: edits while paused show at once, without the previous color") {
+TEST_CASE(
+    "play: edits while paused show at once, without the previous color"
+    * technique("engine.main-loop")) {
     if (!can_play()) {
         return;
     }

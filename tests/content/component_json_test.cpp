@@ -417,7 +417,9 @@ TEST_CASE("component json: a scale of 0 and a spot light turned inside out are r
         != std::string::npos);
 }
 
-TEST_CASE("component json: what is written reads back the same, to the bit") {
+TEST_CASE(
+    "component json: what is written reads back the same, to the bit"
+    * technique("engine.param-desc")) {
     Everything all;
     all.on = true;
     all.small = -100;
@@ -474,7 +476,9 @@ TEST_CASE("component json: rotations are written in degrees and turn as before, 
     CHECK(write_json(write_field(turn, &q, {})) == "[30, -20, 45]");
 }
 
-TEST_CASE("component json: the defaults of every registered component survive a round trip") {
+TEST_CASE(
+    "component json: the defaults of every registered component survive a round trip"
+    * technique("engine.param-desc")) {
     register_all_components();
     for (const ComponentInfo* info : all_components()) {
         CAPTURE(info->name);

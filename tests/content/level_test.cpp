@@ -12,13 +12,16 @@
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/post.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
+#include "ecs/snapshot.h"
 #include "ecs/world.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -31,6 +34,18 @@
 #include <string>
 
 namespace limn::level_test {
+
+/// A kind of component that only this file knows.
+struct Lantern {
+    float oil = 1;
+    Entity owner;
+};
+
+LIMN_FIELDS(Lantern) {
+    LIMN_FIELD(oil, "what is left to burn", "kg", 0, 10);
+    LIMN_FIELD(owner, "who carries it");
+}
+
 namespace {
 
 Level parse(std::string_view text) {
@@ -75,7 +90,9 @@ TEST_CASE("level: an empty one is a level") {
     CHECK(spawn_level(world, level).empty());
 }
 
-TEST_CASE("level: resources, materials, meshes and entities arrive in the world as written") {
+TEST_CASE(
+    "level: resources, materials, meshes and entities arrive in the world as written"
+    * technique("engine.object-text")) {
     World world;
     spawn_into(world, R"({
         "title": "A test",
@@ -201,7 +218,9 @@ TEST_CASE("level: a second one stands behind the assets of the first") {
     }
 }
 
-TEST_CASE("level: prefabs are copied with their children, changed and extended by their users") {
+TEST_CASE(
+    "level: prefabs are copied with their children, changed and extended by their users"
+    * technique("engine.stock-active")) {
     World world;
     spawn_into(world, R"({
         "prefabs": {
@@ -230,6 +249,61 @@ TEST_CASE("level: prefabs are copied with their children, changed and extended b
     };
     CHECK(names_below("a") == std::vector<std::string>{"bulb"});
     CHECK(names_below("b") == std::vector<std::string>{"bulb", "shade"});
+}
+
+TEST_CASE(
+    "level: the book's scene of nine objects, of which three are used twice, has twelve"
+    * technique("engine.stock-active")) {
+    World world;
+    spawn_into(world, R"({
+        "prefabs": {"engine": {"children": [
+            {"name": "fire", "particle_emitter": {"rate": 25}, "children": [{"name": "spark"}]}]}},
+        "entities": [{"name": "scene", "children": [
+            {"name": "panorama"}, {"name": "dust"},
+            {"name": "catfish", "children": [
+                {"name": "right", "children": [{"prefab": "engine"}]},
+                {"name": "left", "children": [{"prefab": "engine"}]}]}]}]
+    })");
+    CHECK(world.entity_count() == 12);
+    std::vector<Entity> fires;
+    world.query<const Name>().each([&](Entity entity, const Name& name) {
+        if (name.text == "fire") {
+            fires.push_back(entity);
+        }
+    });
+    REQUIRE(fires.size() == 2);
+    world.get<ParticleEmitter>(fires[0]).rate = 50;
+    CHECK(world.get<const ParticleEmitter>(fires[1]).rate == 25.0f);
+}
+
+TEST_CASE(
+    "level: a kind of component that was registered is loaded, listed, copied, attached and saved"
+    * technique("engine.type-registry")) {
+    register_component<Lantern>();
+    World world;
+    spawn_into(world, R"({
+        "prefabs": {"guard": {"children": [{"lantern": {"oil": 3, "owner": "post"}}]}},
+        "entities": [{"name": "post"}, {"prefab": "guard"}, {"prefab": "guard"}]
+    })");
+    const auto lanterns_of = [](const World& from) {
+        std::vector<Lantern> lanterns;
+        from.query<const Lantern, const Parent>().each(
+            [&](const Lantern& lantern, const Parent&) { lanterns.push_back(lantern); });
+        return lanterns;
+    };
+    const std::vector<Lantern> lanterns = lanterns_of(world);
+    REQUIRE(lanterns.size() == 2);
+    for (const Lantern& lantern : lanterns) {
+        CHECK(lantern.oil == 3.0f);
+        CHECK(lantern.owner == find_named(world, "post"));
+    }
+    CHECK(write_json(level_schema()).find("\"lantern\"") != std::string::npos);
+
+    const Result<std::vector<std::byte>> saved = save_snapshot(world);
+    REQUIRE(saved.ok());
+    World restored;
+    REQUIRE(restore_snapshot(restored, *saved).ok());
+    CHECK(lanterns_of(restored).size() == 2);
 }
 
 TEST_CASE(
@@ -541,7 +615,9 @@ TEST_CASE("scene: bounds follow the hierarchy") {
     CHECK(scene->bounds.max.x == test::near(13.0f));
 }
 
-TEST_CASE("set: one field of an entity, a resource or a material changes") {
+TEST_CASE(
+    "set: one field of an entity, a resource or a material changes"
+    * technique("engine.param-access")) {
     World world;
     spawn_into(world, R"({
         "materials": {"gold": {}, "v1.2 brass": {}},
@@ -596,7 +672,8 @@ TEST_CASE("set: a component that the entity lacks is added, with its defaults an
            "defaults");
 }
 
-TEST_CASE("set: names may contain dots; the longest match is used") {
+TEST_CASE(
+    "set: names may contain dots; the longest match is used" * technique("engine.param-access")) {
     World world;
     spawn_into(world, R"({"materials": {"gold": {}, "gold.001": {}}})");
     const Entity bone = world.create(Name{"Bone"}, PointLight{});
@@ -611,7 +688,8 @@ TEST_CASE("set: names may contain dots; the longest match is used") {
     CHECK(world.resource<Assets>().materials[0].roughness == Material{}.roughness);
 }
 
-TEST_CASE("set: what cannot be set is named, and nothing changes") {
+TEST_CASE(
+    "set: what cannot be set is named, and nothing changes" * technique("engine.param-access")) {
     World world;
     spawn_into(
         world, R"({"materials": {"gold": {}}, "entities": [{"name": "lamp", "point_light": {}}]})");

@@ -7,6 +7,7 @@
 #include "ecs/components/surface.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -280,7 +281,9 @@ TEST_CASE("obj material: roughness and metalness become one image, of one or of 
     CHECK(plain.metalness == 0.75f);
 }
 
-TEST_CASE("obj material: relief is of normals or of heights, whose slopes face away from them") {
+TEST_CASE(
+    "obj material: relief is of normals or of heights, whose slopes face away from them"
+    * technique("bump.nm-from-height")) {
     const Model model;
     model.write_image("normals.png", {128, 128, 255, 128, 128, 255, 128, 128, 255, 128, 128, 255});
     const Material normals = model.material("map_Bump -bm 2 normals.png\n");

@@ -431,7 +431,9 @@ TEST_CASE("patterns: images tile without a seam") {
     }
 }
 
-TEST_CASE("patterns: a bump at one edge of the image bends the normals at the other") {
+TEST_CASE(
+    "patterns: a bump at one edge of the image bends the normals at the other"
+    * technique("bump.nm-from-height")) {
     const PatternMaps maps = make_pattern_maps(32, [](const Vec2& uv) {
         return PatternTexel{.height = uv.x < 1.0f / 32 || uv.y < 1.0f / 32 ? 0.02f : 0.0f};
     });
@@ -456,7 +458,9 @@ TEST_CASE("patterns: a brick that is cut by the edge of the image continues at t
     CHECK(seam < 0.5 * joint);
 }
 
-TEST_CASE("patterns: normals are unit, point outwards and have no bias") {
+TEST_CASE(
+    "patterns: normals are unit, point outwards and have no bias"
+    * technique("bump.nm-from-height")) {
     for (const PatternKind& kind : plain_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 128);
@@ -478,7 +482,9 @@ TEST_CASE("patterns: normals are unit, point outwards and have no bias") {
     }
 }
 
-TEST_CASE("patterns: red points right and green up where the surface falls that way") {
+TEST_CASE(
+    "patterns: red points right and green up where the surface falls that way"
+    * technique("bump.nm-from-height")) {
     const PatternMaps right = make_pattern_maps(
         64, [](const Vec2& uv) { return PatternTexel{.height = -0.5f * std::abs(uv.x - 0.5f)}; });
     CHECK(channel(right.normal, 48, 32, 0) > 160);  // right half: falls to the right
@@ -492,6 +498,30 @@ TEST_CASE("patterns: red points right and green up where the surface falls that 
     CHECK(
         channel(up.normal, 32, 16, 1)
         == test::near(127.5 * (1 + 1 / std::sqrt(5.0))).epsilon(0.01));
+}
+
+TEST_CASE(
+    "patterns: a slope has the normal of its formula, whatever the height it is at"
+    * technique("bump.nm-from-height, bump.normal-encoding")) {
+    // Bytes of (-right, -up, 1), made unit, and halfway from the edges, where heights jump.
+    const auto normal_of = [](float right, float up, float raised) {
+        const PatternMaps maps = make_pattern_maps(32, [&](const Vec2& uv) {
+            return PatternTexel{.height = right * uv.x - up * uv.y + raised};
+        });
+        std::array<int, 3> bytes = {};
+        for (int c = 0; c < 3; ++c) {
+            bytes[static_cast<std::size_t>(c)] = channel(maps.normal, 16, 16, c);
+        }
+        return bytes;
+    };
+    using Bytes = std::array<int, 3>;
+    CHECK(normal_of(0, 0, 0) == Bytes{128, 128, 255});
+    CHECK(normal_of(1, 0, 0) == Bytes{37, 128, 218});
+    CHECK(normal_of(0.5f, 0, 0) == Bytes{70, 128, 242});
+    CHECK(normal_of(0, -1, 0) == Bytes{128, 218, 218});
+    CHECK(normal_of(1, 1, 0) == Bytes{54, 54, 201});
+    CHECK(normal_of(1, 1, 2) == normal_of(1, 1, 0));
+    CHECK(normal_of(-1, -1, 0) == Bytes{201, 201, 201});
 }
 
 TEST_CASE("patterns: the values of a texel are in the right channels") {

@@ -46,7 +46,8 @@ MeshData map_head(const Affine& map) {
 }  // namespace
 
 TEST_CASE(
-    "simplified: it has about as many triangles as asked for, and the shapes of its vertices") {
+    "simplified: it has about as many triangles as asked for, and the shapes of its vertices"
+    * technique("engine.lod-mesh")) {
     const std::size_t triangles = coarse().indices.size() / 3;
     CHECK(triangles > 300);
     CHECK(triangles <= 500);

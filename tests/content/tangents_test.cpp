@@ -221,7 +221,7 @@ TEST_CASE(
 
 TEST_CASE(
     "tangents: every frame is orthonormal, even without usable uvs"
-    * technique("bump.tangent-vertex")) {
+    * technique("bump.tangent-space, bump.tangent-vertex")) {
     for (const bool degenerate : {false, true}) {
         MeshData mesh = make_sphere(16, 9);
         if (degenerate) {
@@ -254,7 +254,9 @@ TEST_CASE("tangents: on a globe they point east" * technique("bump.tangent-verte
     }
 }
 
-TEST_CASE("tangents: the bitangent points against v, and mirroring u turns w") {
+TEST_CASE(
+    "tangents: the bitangent points against v, and mirroring u turns w"
+    * technique("bump.tangent-space")) {
     MeshData square = make_square();
     generate_tangents(square);
     for (const Vec4& tangent : square.tangents) {

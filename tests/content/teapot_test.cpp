@@ -1,9 +1,14 @@
 #include "content/make/models/teapot.h"
+#include "systems/mesh_level_system.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace limn::teapot_test {
 
@@ -33,6 +38,45 @@ MeshData part_mesh(TeapotPart part, float tolerance) {
 TEST_CASE("teapot: 32 patches, 28 without the bottom" * technique("bump.teapot")) {
     CHECK(teapot_patches(true).size() == 32);
     CHECK(teapot_patches(false).size() == 28);
+}
+
+TEST_CASE(
+    "teapot: a level chosen for quads of some pixels is no more pixels off the surface"
+    * technique("engine.lod-mesh")) {
+    constexpr int kLevels = 5;
+    constexpr float kPotHeight = 3.15f;
+    // Of each level: how far its flat quads are from the surface, in heights of the pot.
+    std::vector<float> errors;
+    std::size_t last_indices = 0;
+    for (int level = 0; level < kLevels; ++level) {
+        const MeshData mesh = make_teapot({.level = level});
+        CHECK(mesh.indices.size() > last_indices);
+        last_indices = mesh.indices.size();
+        const int quads = 1 << level;
+        const float h = 1.0f / static_cast<float>(quads);
+        float worst = 0;
+        for (const TeapotPatch& patch : teapot_patches(true)) {
+            for (int i = 0; i < quads * quads; ++i) {
+                const float u = static_cast<float>(i % quads) * h;
+                const float v = static_cast<float>(i / quads) * h;
+                const Vec3 diagonal =
+                    patch_point(patch.surface, u, v) + patch_point(patch.surface, u + h, v + h);
+                const PatchFrame frame = patch_frame(patch.surface, u + 0.5f * h, v + 0.5f * h);
+                const float distance = glm::dot(0.5f * diagonal - frame.point, frame.normal);
+                worst = std::max(worst, std::abs(distance));
+            }
+        }
+        errors.push_back(worst / kPotHeight);
+    }
+    for (const float quad : {1.0f, 2.0f, 4.0f}) {
+        int level = 0;
+        for (float height = 1; level + 1 < kLevels; height *= 1.03f) {  // of the pot [px]
+            INFO(height << " px, level " << level);
+            const float span = 0.5f * height;  // of a quad of the coarsest level, as in the museum
+            level = choose_mesh_level(span, kLevels, level, quad);
+            CHECK(errors[static_cast<std::size_t>(level)] * height <= quad);
+        }
+    }
 }
 
 TEST_CASE("teapot: the control points are those of the public data") {

@@ -3,6 +3,7 @@
 #include "ecs/world.h"
 #include "tests/ecs/stop_message.h"
 #include "tests/ecs/test_components.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -29,7 +30,9 @@ void apply(World& world, CommandBuffer& buffer) {
 
 }  // namespace
 
-TEST_CASE("commands: nothing happens before the sync point, everything at it") {
+TEST_CASE(
+    "commands: nothing happens before the sync point, everything at it"
+    * technique("engine.main-loop")) {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);

@@ -4,6 +4,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/schedule.h"
 #include "ecs/snapshot.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -58,7 +59,9 @@ void check_order(World& world) {
 using namespace limn;
 using namespace hierarchy_test;
 
-TEST_CASE("hierarchy: a child has its parent and the parent its children, in the order they came") {
+TEST_CASE(
+    "hierarchy: a child has its parent and the parent its children, in the order they came"
+    * technique("engine.render-object")) {
     World world;
     const Entity root = world.create(Transform{});
     const Entity c = world.create(Transform{});

@@ -3,6 +3,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/prefab.h"
 #include "ecs/schedule.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -66,7 +67,9 @@ struct Robot {
 using namespace limn;
 using namespace prefab_test;
 
-TEST_CASE("prefab: a copy has the shape and the values of the original, and links of its own") {
+TEST_CASE(
+    "prefab: a copy has the shape and the values of the original, and links of its own"
+    * technique("engine.stock-active")) {
     Robot robot;
     World& world = robot.world;
     const Prefab prefab = make_prefab(world, robot.root);
@@ -111,7 +114,9 @@ TEST_CASE("prefab: sparse tags, which have no value to read, are copied like oth
     CHECK_FALSE(robot.world.has<Chosen>(children_of(robot.world, roots.front())[0]));
 }
 
-TEST_CASE("prefab: many copies come in one batch and do not share links") {
+TEST_CASE(
+    "prefab: many copies come in one batch and do not share links"
+    * technique("engine.stock-active")) {
     Robot robot;
     World& world = robot.world;
     const Prefab prefab = make_prefab(world, robot.root);

@@ -4,6 +4,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
 #include "ecs/reflect.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -137,7 +138,9 @@ TEST_CASE("reflect: ids are dense, different for different types and the same on
     }
 }
 
-TEST_CASE("reflect: only what is registered has a name, and a near miss is suggested") {
+TEST_CASE(
+    "reflect: only what is registered has a name, and a near miss is suggested"
+    * technique("engine.type-registry")) {
     register_all_components();
     register_all_components();
     CHECK(find_component("point_light") == &component_info<PointLight>());
@@ -156,8 +159,10 @@ TEST_CASE("reflect: only what is registered has a name, and a near miss is sugge
     }
 }
 
-TEST_CASE("reflect: every field of every registered component has a description and a default in "
-          "its range") {
+TEST_CASE(
+    "reflect: every field of every registered component has a description and a default in "
+    "its range"
+    * technique("engine.param-desc")) {
     register_all_components();
     std::vector<const ComponentInfo*> all = all_components();
     const std::vector<const ComponentInfo*> resources = all_resources();
@@ -208,7 +213,7 @@ TEST_CASE(
     CHECK(described > 15);
 }
 
-TEST_CASE("reflect: fields know type, place and shape") {
+TEST_CASE("reflect: fields know type, place and shape" * technique("engine.param-desc")) {
     const AllKinds instance;
     const auto offset_of = [&](const auto& member) {
         return static_cast<std::uint32_t>(
@@ -332,7 +337,8 @@ TEST_CASE("reflect: enumerators are written by name") {
         == "found \"grym\", expected one of calm merry grim (did you mean grim?)");
 }
 
-TEST_CASE("reflect: a path leads through structs, arrays and lists") {
+TEST_CASE(
+    "reflect: a path leads through structs, arrays and lists" * technique("engine.param-access")) {
     AllKinds all;
     const ComponentInfo& info = component_info<AllKinds>();
     CHECK(field_at(info, &all, "flag").value().element == &all.flag);

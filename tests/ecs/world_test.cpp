@@ -2,6 +2,7 @@
 #include "ecs/world_stats.h"
 #include "tests/ecs/stop_message.h"
 #include "tests/ecs/test_components.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -14,7 +15,9 @@
 using namespace limn;
 using namespace limn::test;
 
-TEST_CASE("world: an entity has what it was created with and nothing else") {
+TEST_CASE(
+    "world: an entity has what it was created with and nothing else"
+    * technique("engine.render-object")) {
     World world;
     const Entity entity = world.create(Position{1, 2, 3}, Label{"one", {1}}, Marked{}, Heat{5});
     CHECK(world.alive(entity));
@@ -41,7 +44,8 @@ TEST_CASE("world: an entity may have no components") {
 }
 
 TEST_CASE(
-    "world: a destroyed entity's handle is stale for good, also when its slot is used again") {
+    "world: a destroyed entity's handle is stale for good, also when its slot is used again"
+    * technique("engine.render-object")) {
     World world;
     const Entity first = world.create(Position{});
     world.destroy(first);

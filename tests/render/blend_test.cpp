@@ -1,5 +1,6 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 namespace limn::test::blend_test {
 namespace {
@@ -20,7 +21,8 @@ struct PaneScene : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    PaneScene, "blend: panes cover each other from back to front, in any order of creation") {
+    PaneScene, "blend: panes cover each other from back to front, in any order of creation"
+                   * technique("engine.batching")) {
     const MeshId square = add(make_square());
     const MaterialId wall =
         add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}});

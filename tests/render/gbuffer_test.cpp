@@ -380,7 +380,8 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: a missing or broken image is magenta") {
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "gbuffer: a normal map leans along u with red and up the image with green") {
+    Scene, "gbuffer: a normal map leans along u with red and up the image with green"
+               * technique("bump.normal-map, bump.tangent-space")) {
     const MeshId square = add(make_square());
     const auto normal_of = [&](std::array<std::uint8_t, 4> texel, const Affine& place_at,
                                float strength) {
@@ -409,6 +410,61 @@ TEST_CASE_FIXTURE(
     // Seen from behind, what was raised is hollow: the whole normal turns round.
     const Affine behind = affine_from({0, 0, 0}, turn({0, 1, 0}, 180), {1, 1, 1});
     CHECK(glm::distance(normal_of({218, 128, 218, 255}, behind, 1), Vec3(s, 0, s)) < 0.01f);
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "gbuffer: texels are decoded to -1 .. 1 and made unit; 128 is a third of a degree off 0"
+               * technique("bump.normal-encoding")) {
+    const MeshId square = add(make_square());
+    for (const std::array<std::uint8_t, 4>& texel : std::vector<std::array<std::uint8_t, 4>>{
+             {128, 128, 255, 255}, {255, 128, 140, 255}, {0, 60, 200, 255}, {90, 0, 255, 255}}) {
+        world.clear();
+        Material material;
+        material.normal_texture.image = add(plain_image(texel));
+        place(square, add(material), at({0, 0, 0}));
+        const Vec3 n = rgb_at(aov(look({0, 0, 1}, {0, 0, 0}, 9, 9), "normal"), 4, 4);
+        const Vec3 decoded = Vec3(texel[0], texel[1], texel[2]) / 255.0f * 2.0f - 1.0f;
+        CHECK(glm::length(n) == test::near(1.0f).epsilon(1e-4));
+        CHECK(glm::distance(n, glm::normalize(decoded)) < 4e-4f);
+        if (texel[0] == 128) {
+            CHECK(glm::degrees(std::acos(n.z)) == test::near(0.318f).epsilon(0.05));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "gbuffer: a flat normal map changes no light, a tilted one no outline"
+               * technique("bump.normal-map")) {
+    const MeshId ball = add(make_ball());
+    const auto draw_with = [&](const std::array<std::uint8_t, 4>* texel, float light_x,
+                               const char* layer) {
+        world.clear();
+        Material material = {.roughness = 1};
+        if (texel != nullptr) {
+            material.normal_texture.image = add(plain_image(*texel));
+        }
+        place(ball, add(material), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.5f)));
+        shine(DirectionalLight{}, affine_from({0, 0, 0}, turn({0, 1, 0}, light_x), {1, 1, 1}));
+        const RenderView view = look({0, 0, 1.5f}, {0, 0, 0}, 33, 33);
+        return layer == nullptr ? radiance(view) : aov(view, layer);
+    };
+    const std::array<std::uint8_t, 4> flat = {128, 128, 255, 255};
+    const std::array<std::uint8_t, 4> right = {200, 128, 232, 255};
+    const std::array<std::uint8_t, 4> left = {56, 128, 232, 255};
+    const gpu::FloatImage plain = draw_with(nullptr, 30, nullptr);
+    const float brightest = rgb_at(plain, 20, 16).x;
+    // Bytes make it lean by 0.0055.
+    CHECK(largest_difference(draw_with(&flat, 30, nullptr), plain) < 0.0056f * brightest);
+    CHECK(largest_difference(draw_with(&right, 30, nullptr), plain) > 0.1f * brightest);
+    CHECK(largest_difference(draw_with(&right, 30, "depth"), draw_with(nullptr, 30, "depth")) == 0);
+
+    // Turned by half a turn, it leans to the other side: lit from there, it is as bright.
+    const auto center = [&](const std::array<std::uint8_t, 4>& texel, float light_x) {
+        return rgb_at(draw_with(&texel, light_x, nullptr), 16, 16).x;
+    };
+    CHECK(center(right, 30) == test::near(center(left, -30)).epsilon(0.02));
+    CHECK(center(right, -30) == test::near(center(left, 30)).epsilon(0.02));
+    CHECK(center(right, 30) > 1.5f * center(left, 30));
 }
 
 TEST_CASE_FIXTURE(

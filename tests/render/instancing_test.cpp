@@ -3,6 +3,8 @@
 #include "tests/render/scene_fixture.h"
 #include "tests/technique.h"
 
+#include <algorithm>
+#include <functional>
 #include <random>
 
 namespace limn::test::instancing_test {
@@ -29,8 +31,8 @@ struct CrowdScene : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    CrowdScene,
-    "instancing: ten thousand equal meshes are one draw" * technique("shade.batching")) {
+    CrowdScene, "instancing: ten thousand equal meshes are one draw"
+                    * technique("engine.batching, shade.batching")) {
     crowd(10000, add(make_ball(4)), add(Material{}));
     const FrameOutput out = draw(view());
     CHECK(out.statistics.instances == 10000);
@@ -41,7 +43,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     CrowdScene, "instancing: meshes and materials without textures share a draw"
-                    * technique("shade.batching")) {
+                    * technique("engine.batching, engine.material-bind, shade.batching")) {
     const MeshId ball = add(make_ball(4));
     const MeshId square = add(make_square());
     for (int i = 0; i < 20; ++i) {
@@ -59,8 +61,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    CrowdScene,
-    "instancing: together or each by itself, the image is the same" * technique("shade.batching")) {
+    CrowdScene, "instancing: together or each by itself, the image is the same"
+                    * technique("engine.batching, shade.batching")) {
     // shade.batching: one state, then meshes and images of their own, then a state per object,
     // since images of different sizes are in different texture arrays.
     constexpr int kBalls = 36;
@@ -106,7 +108,9 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: what is not seen is not drawn") {
     CHECK(out.statistics.visible_instances == 100);
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: every instance has its own place and material") {
+TEST_CASE_FIXTURE(
+    CrowdScene, "instancing: every instance has its own place and material"
+                    * technique("engine.material-bind, engine.multi-material")) {
     // A board of squares, each with the color of its place.
     const MeshId square = add(make_square());
     constexpr int kCells = 40;
@@ -129,8 +133,43 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: every instance has its own place and 
 }
 
 TEST_CASE_FIXTURE(
+    CrowdScene, "instancing: materials of one draw look as each in a draw of its own"
+                    * technique("engine.multi-material")) {
+    constexpr int kMaterials = 9;
+    const MeshId ball = add(make_ball(4));
+    shine(PointLight{}, at({0.5, 0.5, 1}));
+    crowd(36, ball, {});
+    std::vector<MaterialId> materials;
+    for (int i = 0; i < kMaterials; ++i) {
+        const float x = static_cast<float>(i) / kMaterials;
+        materials.push_back(
+            add(Material{.base_color = {x, 1 - x, 0.5f, 1}, .roughness = 0.3f + 0.5f * x}));
+    }
+    const auto draw_materials = [&](int first, int last) {
+        for (std::size_t i = 0; i < entities.size(); ++i) {
+            const int material = static_cast<int>(i) % kMaterials;
+            const bool drawn = material >= first && material <= last;
+            world.get<MeshInstance>(entities[i]) = {
+                drawn ? ball : MeshId{}, materials[static_cast<std::size_t>(material)]};
+        }
+        const FrameOutput out = draw(view());
+        CHECK(out.statistics.draws == 1);
+        return gpu::read_floats(*out.radiance);
+    };
+    const gpu::FloatImage together = draw_materials(0, kMaterials - 1);
+    gpu::FloatImage sum = draw_materials(0, 0);
+    for (int i = 1; i < kMaterials; ++i) {
+        const gpu::FloatImage one = draw_materials(i, i);
+        std::transform(
+            one.pixels.begin(), one.pixels.end(), sum.pixels.begin(), sum.pixels.begin(),
+            std::plus<>());
+    }
+    CHECK(largest_difference(together, sum) == 0);
+}
+
+TEST_CASE_FIXTURE(
     CrowdScene, "instancing: the image has the same bits for any number of threads"
-                    * technique("shade.batching")) {
+                    * technique("engine.batching, shade.batching")) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> unit(-1, 1);
     const MeshId meshes[] = {add(make_ball(4)), add(make_square())};
@@ -171,7 +210,9 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: broken instances are not drawn and br
     CHECK(draw(view()).statistics.visible_instances == 0);
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: an unknown material is magenta, none is gray") {
+TEST_CASE_FIXTURE(
+    CrowdScene, "instancing: an unknown material is magenta, none is gray"
+                    * technique("engine.material-bind")) {
     const MeshId square = add(make_square());
     place(square, {77}, at({0, 0, 0}));
     CHECK(rgb_at(radiance(look({0, 0, 1}, {0, 0, 0})), 32, 32) == Vec3(1, 0, 1));

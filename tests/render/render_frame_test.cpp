@@ -77,7 +77,9 @@ TEST_CASE("render frame: another world's assets are noticed, even where the old 
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "render frame: assets that did not change are not uploaded again") {
+TEST_CASE_FIXTURE(
+    Scene, "render frame: assets that did not change are not uploaded again"
+               * technique("engine.material-bind")) {
     ImageData image = {.name = "white", .width = 1, .height = 1, .pixels = {255, 255, 255, 255}};
     Material material;
     material.base_color_texture.image = add(image);
@@ -125,7 +127,9 @@ TEST_CASE_FIXTURE(
     CHECK(gpu::read_bytes(*out.display).width == 32);
 }
 
-TEST_CASE_FIXTURE(Scene, "render frame: the same world twice is the same image, bit for bit") {
+TEST_CASE_FIXTURE(
+    Scene, "render frame: the same world twice is the same image, bit for bit"
+               * technique("engine.draw-frame, engine.main-loop")) {
     world.insert_resource(Environment{.sky = SkyKind::Studio});
     place(add(make_ball()), add(Material{.metalness = 1, .roughness = 0.2f}), at({0, 0, 0}));
     shine(PointLight{}, at({1, 1, 2}));

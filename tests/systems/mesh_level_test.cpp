@@ -9,7 +9,7 @@ namespace limn::mesh_level_test {
 
 TEST_CASE(
     "mesh_levels: they grow with size on screen, and do not flicker"
-    * technique("anim.bezier-patch-lod")) {
+    * technique("anim.bezier-patch-lod, engine.lod-mesh")) {
     int last = 0;
     for (float pixels = 1; pixels < 4096; pixels *= 1.05f) {
         const int level = choose_mesh_level(pixels, 6, last);
@@ -26,7 +26,7 @@ TEST_CASE(
 
 TEST_CASE(
     "mesh_levels: an entity has a finer mesh near the camera, at any size of it"
-    * technique("anim.bezier-patch-lod")) {
+    * technique("anim.bezier-patch-lod, engine.lod-mesh")) {
     World world;
     const std::vector<MeshId> meshes = {{4}, {5}, {6}, {7}};
     const MeshLevels levels{.meshes = meshes, .span = 0.5f, .pixels_per_quad = 54};

@@ -163,6 +163,25 @@ TEST_CASE("orbit_camera: the target is in the middle of the image, where the len
 }
 
 TEST_CASE(
+    "orbit_camera: a target that is moved before a step is in the middle, after it not"
+    * technique("engine.main-loop")) {
+    Scene scene({.target = {}, .azimuth = 0, .elevation = 0, .distance = 5, .follow = 1});
+    scene.step();
+    const auto target_in_view = [&] {
+        const Vec3 point =
+            transform_point(scene.world.get<WorldTransform>(scene.target).world, {0, 0, 0});
+        const Affine pose = scene.world.get<WorldTransform>(scene.camera).world;
+        return Vec3(glm::inverse(to_mat4(pose)) * Vec4(point, 1));
+    };
+    scene.world.get<Transform>(scene.target).position = {2, 1, 0};
+    scene.step();
+    CHECK(near(target_in_view(), {0, 0, -5}));
+    // Between the step and the image, when nothing may change: the camera has turned already.
+    scene.world.get<WorldTransform>(scene.target).world.row[0].w += 0.5f;
+    CHECK(near(target_in_view(), {0.5f, 0, -5}));
+}
+
+TEST_CASE(
     "orbit_camera: it follows with its lag, is rigid in the first frame and after a teleport") {
     Scene scene({.target = {}, .azimuth = 0, .elevation = 0, .distance = 5, .follow = 0.9f});
     scene.step();

@@ -5,6 +5,7 @@
 #include "systems/motion_kernels.h"
 #include "systems/transform_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -135,7 +136,9 @@ TEST_CASE("transform: one that moves costs its chunk, and no more") {
     CHECK(written_past(world, since) == 1024);
 }
 
-TEST_CASE("transform: a chain of children is the product of its links") {
+TEST_CASE(
+    "transform: a chain of children is the product of its links"
+    * technique("engine.object-step")) {
     World world;
     Schedule schedule = make_schedule();
     std::vector<Entity> chain = {world.create(turned(0.3f, {1, 0, 0}))};

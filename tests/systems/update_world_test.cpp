@@ -8,9 +8,12 @@
 #include "ecs/snapshot.h"
 #include "systems/update_world.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace limn::update_world_test {
@@ -51,7 +54,9 @@ std::vector<std::uint64_t> hashes(int threads, int steps) {
 
 }  // namespace
 
-TEST_CASE("update_world: time is the number of steps times their length, without drift") {
+TEST_CASE(
+    "update_world: time is the number of steps times their length, without drift"
+    * technique("engine.animate")) {
     World world;
     Schedule schedule = make_world_schedule();
     for (int i = 0; i < 600; ++i) {
@@ -61,7 +66,58 @@ TEST_CASE("update_world: time is the number of steps times their length, without
     CHECK(world.resource<FrameTime>().time == test::near(10.0).epsilon(1e-7));
 }
 
-TEST_CASE("update_world: what was spawned is where it belongs after one step") {
+TEST_CASE("update_world: in steps of no time nothing moves" * technique("engine.object-step")) {
+    const auto largest_motion = [](float step) {
+        World world;
+        world.insert_resource(FrameTime{.step = step});
+        fill(world);
+        Schedule schedule = make_world_schedule();
+        start_world(world);
+        const auto positions = [&] {
+            std::vector<Vec3> all;
+            world.query<const WorldTransform>().each([&](const WorldTransform& transform) {
+                all.push_back(transform_point(transform.world, {1, 2, 3}));
+            });
+            return all;
+        };
+        const std::vector<Vec3> before = positions();
+        for (int i = 0; i < 3; ++i) {
+            step_world(world, schedule);
+        }
+        const std::vector<Vec3> after = positions();
+        REQUIRE(after.size() == before.size());
+        float largest = 0;
+        for (std::size_t i = 0; i < after.size(); ++i) {
+            largest = std::max(largest, glm::distance(after[i], before[i]));
+        }
+        return largest;
+    };
+    CHECK(largest_motion(0) < 1e-3f);  // at up to 3000 m, one unit in the last place
+    CHECK(largest_motion(1.0f / 60.0f) > 0.1f);
+}
+
+TEST_CASE(
+    "update_world: what turns evenly is as far after one step as after two of half its length"
+    * technique("engine.animate")) {
+    const auto turned = [](float step, int steps) {
+        World world;
+        world.insert_resource(FrameTime{.step = step});
+        const Entity wheel = world.create(Transform{}, Spin{.axis = {1, 2, 3}, .speed = 4});
+        Schedule schedule = make_world_schedule();
+        for (int i = 0; i < steps; ++i) {
+            step_world(world, schedule);
+        }
+        return world.get<Transform>(wheel).rotation;
+    };
+    const Quat once = turned(1.0f / 30.0f, 15);
+    const Quat twice = turned(1.0f / 60.0f, 30);
+    CHECK(std::abs(glm::dot(once, twice)) == test::near(1.0f).epsilon(1e-6));
+    CHECK(once.w == test::near(std::cos(1.0f)).epsilon(1e-5));  // half of 2 rad in half a second
+}
+
+TEST_CASE(
+    "update_world: what was spawned is where it belongs after one step"
+    * technique("engine.object-step")) {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity parent = world.create(Transform{.position = {1, 0, 0}});

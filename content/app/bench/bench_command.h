@@ -12,9 +12,9 @@
 namespace limn {
 
 // Shown by `limn bench fakephong`: fakephong.forward-difference, fakephong.metric-efficiency
-// Shown by `limn bench gallery`: shade.batching
+// Shown by `limn bench gallery`: engine.multi-material, shade.batching
 // Shown by `limn bench lights`: engine.visibility-sets
-// Shown by `limn bench stress-instances`: shade.stream-kernel
+// Shown by `limn bench stress-instances`: engine.batching, shade.stream-kernel
 
 struct BenchReport;
 struct HeadlessRenderer;

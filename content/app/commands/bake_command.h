@@ -9,7 +9,8 @@
 
 namespace limn {
 
-// Shown by `limn bake photometric shots.json -o face.png`: face.photometric-normals
+// Shown by `limn bake photometric shots.json -o face.png`: bump.normal-encoding,
+//     face.photometric-normals
 
 /// `limn bake`: makes maps from a mesh or from photographs.
 struct BakeOptions {

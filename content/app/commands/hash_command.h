@@ -8,6 +8,8 @@
 
 namespace limn {
 
+// Shown by `limn hash museum --frames 20`: engine.animate
+
 /// `limn hash`: a hash of the world's state after every step.
 struct HashOptions {
     std::string scene;

@@ -6,6 +6,9 @@
 
 namespace limn {
 
+// Shown by `limn components`: engine.type-registry
+// Shown by `limn components point_light`: engine.param-desc
+
 /// `limn levels`: name and title of every level, one per line.
 [[nodiscard]] Status run_levels();
 

@@ -16,8 +16,9 @@ namespace limn {
 // Shown by `limn render --show shadow.volume-count --aov volume_layers -o layers.exr`:
 //     shadow.density-view
 // Shown by `limn render museum --profile gpu -o museum.png`: shade.profile
-// Shown by `limn render museum -o museum.exr`: hdr.float-formats, hdr.openexr
+// Shown by `limn render museum -o museum.exr`: engine.draw-frame, hdr.float-formats, hdr.openexr
 // Shown by `limn render stilllife --spp 64 -o stilllife.png`: post.distributed-sampling
+// Shown by `limn render museum --set exposure.ev=-1 -o dark.png`: engine.param-access
 
 /// `limn render`: renders images without a window.
 struct RenderOptions {

@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: engine.object-text
+
 namespace limn {
 namespace {
 

@@ -11,6 +11,8 @@
 
 namespace limn {
 
+// Shown by `limn play museum --headless-frames 3`: engine.main-loop
+
 class World;
 
 /// `limn play`: plays a level in a window or, without a display, renders frames along its camera

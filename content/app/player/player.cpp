@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+// Techniques: engine.animate, engine.main-loop
+
 namespace limn {
 namespace {
 

@@ -17,7 +17,7 @@
 #include <cstring>
 #include <limits>
 
-// Techniques: anim.euler
+// Techniques: anim.euler, engine.param-desc
 
 namespace limn {
 

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 
+// Techniques: engine.object-text, engine.stock-active
+
 namespace limn {
 
 namespace {

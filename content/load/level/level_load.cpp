@@ -20,6 +20,8 @@
 #include <filesystem>
 #include <unordered_map>
 
+// Techniques: engine.object-text
+
 namespace limn {
 
 namespace {

@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: engine.type-registry
+
 namespace limn {
 
 namespace {

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 
+// Techniques: engine.param-access
+
 namespace limn {
 
 namespace {

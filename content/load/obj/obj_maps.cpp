@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstring>
 
+// Techniques: bump.nm-from-height
+
 namespace limn {
 
 namespace {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: engine.lod-mesh
+
 namespace limn {
 
 namespace {

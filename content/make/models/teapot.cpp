@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 
-// Techniques: anim.bezier-patch-lod, bump.tangent-bezier, bump.teapot, fakephong.scenes
+// Techniques: anim.bezier-patch-lod, bump.tangent-bezier, bump.teapot, engine.lod-mesh,
+//     fakephong.scenes
 
 namespace limn {
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: bump.nm-from-height, bump.normal-encoding
+
 namespace limn {
 
 namespace {

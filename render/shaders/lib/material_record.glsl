@@ -1,4 +1,5 @@
 // The records of materials, by index.
+// Techniques: engine.multi-material
 
 #include "material_blocks_gpu.h"
 #include "material_gpu.h"
