@@ -15,14 +15,14 @@ namespace limn {
 /// A muscle between bone and skin that pulls what lies in its cone toward the bone
 /// (face.waters-muscle): K. Waters, "A Muscle Model for Animating Three-Dimensional Facial
 /// Expression", 1987. His cosines are squared where the pull ends, at the border of the cone and at
-/// its reach: their slopes there would crease the skin.
+/// its range: their slopes there would crease the skin.
 struct LinearMuscle {
     Vec3 attachment{0, 0, 0};
     Vec3 insertion{0, 0.05f, 0};
     float angle = 0.6f;        ///< between axis and border of the cone [rad]
     float full = 0.04f;        ///< distance of the strongest pull from the attachment [m]
     float reach = 0.06f;       ///< distance at which the pull ends [m], > full
-    float contraction = 0.0f;  ///< share of the muscle's length by which it pulls
+    float contraction = 0.0f;  ///< fraction of the muscle's length by which it pulls
 };
 
 LIMN_FIELDS(LinearMuscle) {
@@ -31,7 +31,8 @@ LIMN_FIELDS(LinearMuscle) {
     LIMN_FIELD(angle, "between axis and border of the cone that it moves", "rad", 0.01f, 1.57f);
     LIMN_FIELD(full, "distance of the strongest pull from the attachment", "m", 1e-4f, 1e4f);
     LIMN_FIELD(reach, "distance at which the pull ends; more than full", "m", 1e-4f, 1e4f);
-    LIMN_FIELD(contraction, "share of its length by which it pulls; negative: pushes", "", -1, 1);
+    LIMN_FIELD(
+        contraction, "fraction of its length by which it pulls; negative: pushes", "", -1, 1);
 }
 
 /// A ring of muscle that draws together what lies in its ellipse, as around the mouth
@@ -40,16 +41,16 @@ struct SphincterMuscle {
     Vec3 center{0, 0, 0};
     Vec3 right{0.03f, 0, 0};   ///< semi-axis [m]
     Vec3 up{0, 0.02f, 0};      ///< semi-axis; what it has of `right` is ignored [m]
-    float depth = 0.03f;       ///< reach perpendicular to the ellipse [m]
-    float contraction = 0.0f;  ///< share of the way to the center
+    float depth = 0.03f;       ///< extent perpendicular to the ellipse [m]
+    float contraction = 0.0f;  ///< fraction of the distance to the center
 };
 
 LIMN_FIELDS(SphincterMuscle) {
     LIMN_FIELD(center, "of the ellipse", "m");
     LIMN_FIELD(right, "semi-axis of the ellipse", "m");
     LIMN_FIELD(up, "other semi-axis", "m");
-    LIMN_FIELD(depth, "reach perpendicular to the ellipse", "m", 1e-4f, 1e4f);
-    LIMN_FIELD(contraction, "share of the way to the center; negative: apart", "", -1, 1);
+    LIMN_FIELD(depth, "extent perpendicular to the ellipse", "m", 1e-4f, 1e4f);
+    LIMN_FIELD(contraction, "fraction of the distance to the center; negative: apart", "", -1, 1);
 }
 
 /// A box of 4 x 4 x 4 control points (face.ffd): T. Sederberg and S. Parry, "Free-Form Deformation
@@ -74,7 +75,7 @@ LIMN_FIELDS(Lattice) {
 
 inline constexpr std::size_t kLatticePoints = 64;
 
-/// A pull at one place of the skin, as by two fingers: what is nearer to `at` than `radius` moves
+/// A pull at one point of the skin, as by two fingers: what is nearer to `at` than `radius` moves
 /// along `offset`, by (1 - (distance / radius)^2)^3 of it. The surface stays smooth at the border,
 /// to its curvature; it folds over itself where |offset| is more than 0.58 radius.
 struct Tug {
@@ -84,7 +85,7 @@ struct Tug {
 };
 
 LIMN_FIELDS(Tug) {
-    LIMN_FIELD(at, "the place that moves by all of the offset", "m");
+    LIMN_FIELD(at, "the point that moves by the whole offset", "m");
     LIMN_FIELD(offset, "by which it moves; 0: nothing does", "m");
     LIMN_FIELD(radius, "distance at which nothing moves", "m", 1e-4f, 1e4f);
 }
@@ -102,7 +103,7 @@ LIMN_FIELDS(Deformers) {
     LIMN_FIELD(muscles, "muscles that pull toward bone");
     LIMN_FIELD(sphincters, "rings of muscle");
     LIMN_FIELD(lattices, "free-form deformation, one after the other");
-    LIMN_FIELD(tugs, "pulls at single places of the skin, one after the other");
+    LIMN_FIELD(tugs, "pulls at single points of the skin, one after the other");
 }
 
 /// The Deformers packed for whoever moves vertices; written by update_deformers.
@@ -147,7 +148,7 @@ inline constexpr std::size_t kTugTexels = 2;
 [[nodiscard]] std::vector<Vec4>
 pack_deformers(const Deformers& deformers, std::span<const Tug> more = {});
 
-/// No vertex moves farther [m], whatever its place.
+/// No vertex moves farther [m], whatever its position.
 [[nodiscard]] float max_displacement(std::span<const Vec4> packed);
 
 }  // namespace limn
