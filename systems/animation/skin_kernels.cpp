@@ -79,32 +79,34 @@ constexpr std::size_t kLanes = hn::MaxLanes(d);
 
 #if HWY_TARGET <= HWY_AVX3  // one instruction selects any 16 of the 32 lanes of two vectors
 
-struct Places {
+struct LaneIndices {
     alignas(64) std::int32_t of[kLanes];
 };
 
-HWY_INLINE V pick(V a, V b, const Places& places) {
-    return V{_mm512_permutex2var_ps(a.raw, _mm512_load_si512(places.of), b.raw)};
+HWY_INLINE V pick(V a, V b, const LaneIndices& indices) {
+    return V{_mm512_permutex2var_ps(a.raw, _mm512_load_si512(indices.of), b.raw)};
 }
 
-/// place(lane) for each lane.
-template <typename Place>
-constexpr Places make_places(Place place) {
-    Places places = {};
+/// index_of(lane) for each lane.
+template <typename IndexOf>
+constexpr LaneIndices make_lane_indices(IndexOf index_of) {
+    LaneIndices indices = {};
     for (int lane = 0; lane < 16; ++lane) {
-        places.of[lane] = place(lane);
+        indices.of[lane] = index_of(lane);
     }
-    return places;
+    return indices;
 }
 
 /// Component `axis` of entry `lane` within the first two of three vectors; arbitrary if it is in
 /// the third.
 template <int kAxis>
-inline constexpr Places kFromTwo = make_places([](int lane) { return (3 * lane + kAxis) % 32; });
+inline constexpr LaneIndices kFromTwo = make_lane_indices([](int lane) {
+    return (3 * lane + kAxis) % 32;
+});
 /// Completes that: keeps lanes already found, takes the others from the third vector as second
 /// table.
 template <int kAxis>
-inline constexpr Places kFromThird = make_places([](int lane) {
+inline constexpr LaneIndices kFromThird = make_lane_indices([](int lane) {
     return 3 * lane + kAxis < 32 ? lane : 3 * lane + kAxis - 16;
 });
 
@@ -119,12 +121,12 @@ HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z) {
 
 /// x and y of output vector `kVector` of three; arbitrary for z.
 template <int kVector>
-inline constexpr Places kXy = make_places([](int lane) {
+inline constexpr LaneIndices kXy = make_lane_indices([](int lane) {
     const int number = 16 * kVector + lane;
     return number % 3 == 2 ? 0 : number / 3 + 16 * (number % 3);
 });
 template <int kVector>
-inline constexpr Places kXyAndZ = make_places([](int lane) {
+inline constexpr LaneIndices kXyAndZ = make_lane_indices([](int lane) {
     const int number = 16 * kVector + lane;
     return number % 3 == 2 ? 16 + number / 3 : lane;
 });
@@ -137,12 +139,12 @@ HWY_INLINE void store_entries(V x, V y, V z, float* to) {
 
 /// From two vectors of four entries each: eight x, then eight y; or z and w.
 template <int kPair>
-inline constexpr Places kEights = make_places([](int lane) {
+inline constexpr LaneIndices kEights = make_lane_indices([](int lane) {
     return 4 * (lane % 8) + 2 * kPair + lane / 8;
 });
 /// Lower or upper halves of two vectors.
 template <int kHalf>
-inline constexpr Places kHalves = make_places([](int lane) {
+inline constexpr LaneIndices kHalves = make_lane_indices([](int lane) {
     return lane % 8 + 8 * kHalf + 16 * (lane / 8);
 });
 
@@ -163,12 +165,12 @@ HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z, V& w) {
 
 /// Interleaves a and b: a0 b0 a1 b1 ..., the lower or upper eight.
 template <int kHalf>
-inline constexpr Places kZipped = make_places([](int lane) {
+inline constexpr LaneIndices kZipped = make_lane_indices([](int lane) {
     return 8 * kHalf + lane / 2 + 16 * (lane % 2);
 });
 /// The same with pairs.
 template <int kHalf>
-inline constexpr Places kZippedPairs = make_places([](int lane) {
+inline constexpr LaneIndices kZippedPairs = make_lane_indices([](int lane) {
     return 8 * kHalf + lane / 4 * 2 + lane % 2 + 16 * (lane / 2 % 2);
 });
 
@@ -268,12 +270,12 @@ struct Common {
         }
     }
     template <std::size_t kLast = kCount - 1>
-    HWY_INLINE V operator()(std::size_t place) const {
-        const V part = hn::Mul(weight[kLast], hn::Set(d, joint[kLast][place]));
+    HWY_INLINE V operator()(std::size_t component) const {
+        const V part = hn::Mul(weight[kLast], hn::Set(d, joint[kLast][component]));
         if constexpr (kLast == 0) {
             return part;
         } else {
-            return hn::Add(operator()<kLast - 1>(place), part);
+            return hn::Add(operator()<kLast - 1>(component), part);
         }
     }
 };
@@ -527,8 +529,8 @@ HWY_INLINE void find_means(
     const skin::Work<DualQuaternion>& work, const Influences& by, std::size_t at, Matrices& m) {
     Motions q;
     find_motions(work, by, q);
-    const V least = hn::Set(d, skin::kNoMotion);
-    if (!hn::AllTrue(d, hn::Gt(squared_length(q), least))) {
+    const V min_length2 = hn::Set(d, skin::kNoMotion);
+    if (!hn::AllTrue(d, hn::Gt(squared_length(q), min_length2))) {
         find_motions_again(work, at, q);
     }
     // 2 / |real|^2 normalizes all products.

@@ -79,7 +79,7 @@ TEST_CASE("face folding: and that of MakeHuman") {
 
 TEST_CASE(
     "face folding: a frown that pushes brows down folds the glabella, a smile beside the nose") {
-    // Of MakeHuman, whose frown moves skin beside the middle of the face and nothing in it.
+    // MakeHuman's frown moves skin beside the midline of the face and nothing on it.
     if (const auto scene = import_shared("makehuman")) {
         const MeshData& face = scene->meshes[0];
         const oracle::FaceFolding folding(face);

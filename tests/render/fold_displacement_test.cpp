@@ -22,7 +22,7 @@ constexpr int kFolds = 10;
 constexpr int kRings = 160;
 constexpr float kRadius = 0.5f;
 constexpr float kHeight = 2;
-constexpr float kLeft = 0.8f;  ///< of the height, when compressed in full
+constexpr float kLeft = 0.8f;  ///< fraction of the height at full compression
 
 /// Folds of a sine around the tube, `kFolds` of them.
 ImageData sine_map() {
@@ -92,7 +92,7 @@ struct FoldScene : WrinkleScene {
         REQUIRE(readback);
         return readback->run(world, std::vector<Entity>{entity})[0];
     }
-    /// The same skin as a mesh at rest, its folds made of triangles.
+    /// The same skin as a mesh at rest, with folds modeled by triangles.
     Entity carved(Entity entity) {
         const oracle::SkinReadbackVertices found = read(entity);
         MeshData mesh = mesh_of(entity);
@@ -107,7 +107,7 @@ struct FoldScene : WrinkleScene {
     }
 };
 
-/// Where the tube ends on the right, in each row but those of its rims [px].
+/// The right edge of the tube in each row except those of its rims [px].
 std::vector<int> outline(const gpu::FloatImage& depth) {
     std::vector<int> ends;
     for (int y = 130; y < depth.height - 130; ++y) {
@@ -241,7 +241,7 @@ TEST_CASE_FIXTURE(
         world.get<WrinkleSurface>(entity).displacement_until = until;
         return std::ranges::max(read(entity).folds);
     };
-    // The camera is at the origin, the tube 3 m before it.
+    // The camera is at the origin, the tube 3 m in front of it.
     world.get<WorldTransform>(entity).world = at({0, 0, -3});
     const float whole = highest(0);
     CHECK(whole > 0.02f);

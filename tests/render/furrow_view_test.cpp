@@ -104,7 +104,7 @@ TEST_CASE_FIXTURE(FurrowScene, "furrow view: what grows anew is seen in the next
     CHECK(spread(furrowed) > 20);
     CHECK(spread(shot(48)) > 10);  // smaller than the image: by its mip levels
     show({.mode = FurrowMode::Overview});
-    CHECK(spread(shot()) <= 12);  // light is not quite even
+    CHECK(spread(shot()) <= 12);  // lighting is slightly uneven
 }
 
 TEST_CASE("furrow view: two lines for each vertex, or for each edited one alone") {
@@ -155,8 +155,9 @@ TEST_CASE_FIXTURE(FurrowScene, "furrow view: the height field is as bright as it
     for (int y = 4; y < kSize - 4; ++y) {
         for (int x = 4; x < kSize - 4; ++x) {
             const float height = skin().height[static_cast<std::size_t>(y * kSize + x)];
-            const int wanted = static_cast<int>(std::lround(255 * std::clamp(height, 0.0f, 1.0f)));
-            off += std::abs(image.at(x, y, 0) - wanted) > 4 ? 1 : 0;
+            const int expected =
+                static_cast<int>(std::lround(255 * std::clamp(height, 0.0f, 1.0f)));
+            off += std::abs(image.at(x, y, 0) - expected) > 4 ? 1 : 0;
             dark += image.at(x, y, 0) < 200 ? 1 : 0;
         }
     }

@@ -15,8 +15,8 @@
 namespace limn::test::skin_draw_test {
 namespace {
 
-/// A bent tube before a wall, under a light with a shadow; or, in its place, the mesh that the
-/// oracle says it is.
+/// A bent tube in front of a wall, under a light with a shadow; or instead the mesh that the oracle
+/// makes of it.
 struct SkinPicture : SkinScene {
     SkinPicture() {
         world.insert_resource(Environment{.sky = SkyKind::Gradient, .visible = false});
@@ -46,7 +46,7 @@ struct SkinPicture : SkinScene {
         world.add(entity, MorphWeights{.weights = {0.7f, -0.4f}, .previous = {0.7f, -0.4f}});
         return entity;
     }
-    /// The same as a mesh of its own.
+    /// The same as a separate mesh.
     Entity baked(Entity entity) {
         MeshData copy = mesh_of(entity);
         const std::vector<oracle::SkinnedVertex> vertices = want(entity);
@@ -173,7 +173,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: what a pose takes out of the image is
     const FrameOutput gone = draw(view);
     CHECK(gone.statistics.visible_instances == 1);
     CHECK(gone.statistics.deformed == 0);
-    // Its own place does not matter, where its vertices are does.
+    // Its own transform does not matter, the positions of its vertices do.
     world.get<WorldTransform>(entity).world = at({-50, 0, 0});
     const FrameOutput back = draw(view);
     CHECK(back.statistics.visible_instances == 2);

@@ -57,7 +57,7 @@ Material pigmented(Pigments pigments, float melanin, float blood) {
         .blood = blood};
 }
 
-/// The middle of a square that faces the camera, lit from `to_light` by the two intensities of
+/// The center of a square that faces the camera, lit from `to_light` by the two intensities of
 /// skin.blinn, Ia = 0.3 around and Il = 0.7.
 Vec3 shaded(const Material& material, const Vec3& to_light) {
     Scene scene;

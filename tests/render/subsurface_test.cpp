@@ -25,7 +25,7 @@ namespace {
 
 using oracle::DVec3;
 
-/// Of skin, forty times as large.
+/// Mean free paths of skin, forty times as large.
 constexpr Vec3 kFreePath = {0.147f, 0.0548f, 0.0272f};
 constexpr int kSide = 256;  ///< of images [px]
 constexpr gpu::Profile kProfiles[] = {gpu::Profile::Software, gpu::Profile::Gpu};
@@ -76,7 +76,7 @@ class LitPlane : public Scene {
     MeshId square;
 };
 
-/// Where the corner of a pixel, or a fraction of one, lies in z = 0.
+/// Position of the corner of a pixel, or of a fraction of one, in z = 0.
 DVec3 point_at(const RenderView& view, double x, double y) {
     const DVec3 ray = DVec3(transform_vector(
         view.world_from_camera, {(2 * x / view.width - 1) * view.tangent.x,
@@ -87,9 +87,9 @@ DVec3 point_at(const RenderView& view, double x, double y) {
     return eye - ray * (eye.z / ray.z);
 }
 
-/// Largest difference of each channel from the profile's convolution of the image without
-/// diffusion, a pixel a patch, along a row and a column through the middle; of the lit plane, by
-/// either renderer.
+/// Largest difference of each channel from the convolution of the image without diffusion with the
+/// profile, one patch per pixel, along a row and a column through the center; relative to the lit
+/// plane, by either renderer.
 DVec3 largest_errors(LitPlane& scene, const RenderView& view) {
     auto& assets = scene.world.resource<Assets>();
     const Material material = assets.materials[0];
@@ -257,13 +257,13 @@ TEST_CASE("subsurface: no light comes from what does not scatter, nor leaves for
 }
 
 TEST_CASE("subsurface: light spreads wherever a surface is seen, also at the image's edges") {
-    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
+    for (const Vec3& position : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
         std::array<gpu::FloatImage, 2> images[2];
         for (const bool another_behind : {false, true}) {
             Scene scene;
             const MeshId ball = scene.add(make_ball());
             const MaterialId skin = scene.add(wax());
-            scene.place(ball, skin, at(place));
+            scene.place(ball, skin, at(position));
             if (another_behind) {
                 scene.place(ball, skin, at({0, 0, 2}));  // around the camera: its box is all pixels
             }
@@ -292,7 +292,7 @@ class WaxBalls : public Scene {
         shine(DirectionalLight{.illuminance = 3}, look_at({0, 0, 0}, {-1, -0.5f, -1}));
     }
     /// 250 x 131 px, no multiple of a work group.
-    [[nodiscard]] RenderView seen() const { return look({0, 0, 3}, {0, 0, 0}, 250, 131); }
+    [[nodiscard]] RenderView full_view() const { return look({0, 0, 3}, {0, 0, 0}, 250, 131); }
 };
 
 int dispatches(ProfileRenderer& renderer, const Scene& scene, const RenderView& view) {
@@ -304,7 +304,7 @@ int dispatches(ProfileRenderer& renderer, const Scene& scene, const RenderView& 
 
 TEST_CASE("subsurface: what a GPU computes is what a software OpenGL draws") {
     const WaxBalls scene;
-    const RenderView view = scene.seen();
+    const RenderView view = scene.full_view();
     const gpu::FloatImage drawn = renderer_of(gpu::Profile::Software).radiance(scene.world, view);
     const gpu::FloatImage computed = renderer_of(gpu::Profile::Gpu).radiance(scene.world, view);
     // Hardware has its own filter for mip levels of odd sizes; NVIDIA's differs by 0.0064.
@@ -323,7 +323,7 @@ TEST_CASE("subsurface: what a GPU computes is what a software OpenGL draws") {
 TEST_CASE("subsurface: pixels of other surfaces keep every bit") {
     WaxBalls scene;
     const WaxBalls dull(Vec3(0));
-    const RenderView view = scene.seen();
+    const RenderView view = scene.full_view();
     const gpu::FloatImage albedo = scene.aov(view, "albedo");
     for (const gpu::Profile profile : kProfiles) {
         const gpu::FloatImage with = renderer_of(profile).radiance(scene.world, view);
@@ -349,11 +349,11 @@ TEST_CASE("subsurface: a GPU computes it, and dispatches nothing where no skin i
     const RenderView aside = scene.look({-9, 0, 3}, {-9, 0, 0});
     for (const gpu::Profile profile : kProfiles) {
         ProfileRenderer& renderer = renderer_of(profile);
-        const int seen = dispatches(renderer, scene, scene.seen());
+        const int count = dispatches(renderer, scene, scene.full_view());
         CHECK(renderer.graph().was_run("subsurface"));
         // Distances, five mip levels of two textures, diffusion.
         const int expected = profile == gpu::Profile::Gpu ? 1 + 2 * 5 + 1 : 0;
-        CHECK(seen - dispatches(renderer, dull, scene.seen()) == expected);
+        CHECK(count - dispatches(renderer, dull, scene.full_view()) == expected);
         for (const RenderView& away : {behind, aside}) {
             const int found = dispatches(renderer, scene, away);
             CHECK_FALSE(renderer.graph().was_run("subsurface"));

@@ -313,9 +313,9 @@ TEST_CASE("skin: vectors of the machine and plain C++ give the same bits, cut an
         skin_dual_scalar(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, count);
         CHECK(same_bits(plain.positions, puppet.moved.positions));
         CHECK(same_bits(plain.normals, puppet.moved.normals));
-        const std::size_t middle = count / 3;
-        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, middle);
-        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, middle, count);
+        const std::size_t split = count / 3;
+        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, split);
+        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, split, count);
         CHECK(same_bits(plain.positions, puppet.moved.positions));
         CHECK(same_bits(plain.tangents, puppet.moved.tangents));
     }
@@ -408,7 +408,7 @@ TEST_CASE(
     "skin: motions and normals that cancel, in the midst of others, are those of each alone") {
     for (const std::size_t run : {1, 1000}) {
         Puppet puppet = make_regular_puppet(2, run, 64);
-        for (std::size_t i = 0; i < 24; i += 2) {  // half a turn apart, and as far the other way
+        for (std::size_t i = 0; i < 24; i += 2) {  // half a turn apart, and opposite
             puppet.palette[i] = Affine{};
             puppet.palette[i].row[0] = {-1, 0, 0, 0};
             puppet.palette[i].row[2] = {0, 0, -1, 0};
@@ -496,7 +496,7 @@ TEST_CASE("skin: morph targets are linear, add up in any order and leave the oth
     CHECK(half.tangents[4] == mesh.tangents[4] + Vec4(0, -2, 0, 0));
     std::swap(mesh.morphs[0], mesh.morphs[1]);
     CHECK(glm::distance(shaped({-2, 0.5f}).positions[3], half.positions[3]) < 1e-6f);
-    CHECK(same_bits(shaped({0, 0, 9, 9}).positions, mesh.positions));  // nobody has those
+    CHECK(same_bits(shaped({0, 0, 9, 9}).positions, mesh.positions));  // no such targets
 }
 
 TEST_CASE("skin: a shape that was morphed before it is skinned turns with its joint") {

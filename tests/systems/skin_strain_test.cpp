@@ -121,8 +121,8 @@ bool is_in(const std::string& region, const Vec3& c, float nz) {
 
 struct RegionStrain {
     double mean = 0;       ///< of min(lower, 0) [%]
-    double below[3] = {};  ///< share of area below -5, -10, -20 % [%]
-    double theta = 0;      ///< direction of most shortening, right side mirrored [deg], 0 .. 180
+    double below[3] = {};  ///< fraction of area below -5, -10, -20 % [%]
+    double theta = 0;      ///< direction of maximum shortening, right side mirrored [deg], 0 .. 180
 };
 
 /// The ICT neutral with every shape of the assets, right halves mirrored where absent.
@@ -173,8 +173,8 @@ class IctFace {
         }
         REQUIRE(area > 0);
         found.mean /= area;
-        for (double& share : found.below) {
-            share /= area;
+        for (double& fraction : found.below) {
+            fraction /= area;
         }
         found.theta = std::fmod(0.5 * std::atan2(sine, cosine) * 180 / kPi + 180, 180);
         return found;

@@ -45,7 +45,7 @@ Positions mapped(const Positions& positions, const std::function<Vec3(Vec3)>& ma
     return result;
 }
 
-/// By the shortest direction, with the axes of SkinTriangles.
+/// Compression in the direction of least stretch, with the axes of SkinTriangles.
 std::vector<WrinkleRest>
 strain_rests(const Sheet& sheet, WrinkleWeight weight = WrinkleWeight::Angle) {
     const SkinTriangles skin = make_skin_triangles(sheet.positions, sheet.indices, 0);
@@ -74,11 +74,11 @@ TEST_CASE("wrinkle driver: edges react to a shear that leaves the chord as it is
     for (const float ratio : vertex_compression(edges, sheet.positions)) {
         CHECK(ratio == near(1));
     }
-    const std::size_t middle = 12;
-    CHECK(vertex_compression(chord_rests(sheet, {1, 0, 0}), sheared)[middle] == near(1));
-    CHECK(std::abs(vertex_compression(edges, sheared)[middle] - 1) > 0.05f);
+    const std::size_t center = 12;
+    CHECK(vertex_compression(chord_rests(sheet, {1, 0, 0}), sheared)[center] == near(1));
+    CHECK(std::abs(vertex_compression(edges, sheared)[center] - 1) > 0.05f);
 
-    // A vertex between two right triangles: edges along x and y, each with half of the share.
+    // A vertex between two right triangles: edges along x and y, each with half of the weight.
     const Sheet corner = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}};
     const std::vector<WrinkleRest> one = {make_edge_rest(corner.positions, corner.indices)};
     const Positions shorter = mapped(corner.positions, [](Vec3 p) {
@@ -156,7 +156,7 @@ TEST_CASE("wrinkle driver: the strain of a tensor is its root less 1, in any axe
             CHECK(principal.higher == near(0.05));
             // The direction of compression is still the axis u.
             CHECK(std::abs(std::cos(side * principal.angle + angle)) == near(1));
-            // Turned back, its own tensor gives what there was.
+            // Rotated back, it is the original tensor.
             const SkinStrain squared = {
                 .uu = square(1 + turned.uu) + square(turned.uv),
                 .vv = square(1 + turned.vv) + square(turned.uv),

@@ -24,7 +24,7 @@ std::vector<Vec2> sine_slopes(int count = 4096) {
     return slopes;
 }
 
-/// Length of a profile whose slopes are multiplied, over its place.
+/// Length of a profile whose slopes are multiplied, relative to its flat length.
 double length_of(const std::vector<Vec2>& slopes, double factor) {
     double sum = 0;
     for (const Vec2& slope : slopes) {
@@ -37,7 +37,7 @@ double length_of(const std::vector<Vec2>& slopes, double factor) {
 }  // namespace
 
 TEST_CASE("wrinkle fold: a sine is as high as its elliptic integral says") {
-    // Amplitude over wavelength by the share of the length that is left (face-facts F).
+    // Amplitude over wavelength by the fraction of the length that remains (face-facts F).
     struct Row {
         float left, amplitude;
     };

@@ -203,7 +203,7 @@ TEST_CASE("wrinkle measure: triangles without area or direction, and NaN positio
 
 TEST_CASE(
     "wrinkle measure: an edge of three triangles and one triangle twice are measured as others") {
-    // A page in a book: all are shortened alike, so every mean is that.
+    // A page in a book: all are shortened equally, so every mean is the same.
     const Positions book = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
     const std::vector<std::uint32_t> pages = {0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 2};
     const WrinkleRest rest =
@@ -212,7 +212,7 @@ TEST_CASE(
     for (const float ratio : vertex_compression({&rest, 1}, shorter)) {
         CHECK(ratio == near(0.81).epsilon(1e-5));
     }
-    // An index beyond the positions is no triangle.
+    // A triangle with an index out of range is ignored.
     const std::vector<std::uint32_t> beyond = {0, 1, 2, 0, 1, 77};
     const WrinkleRest cut =
         make_wrinkle_rest(book, beyond, std::vector<Vec3>(book.size(), Vec3(0, 1, 0)));
@@ -351,11 +351,11 @@ TEST_CASE("wrinkle measure: where regions overlap the direction turns from one t
         VertexRegion second = {.name = "second", .weights = {}, .across = {}};
         const float angle = radians(60.0f);
         for (std::size_t i = 0; i < kSteps; ++i) {
-            const float share = static_cast<float>(i) / (kSteps - 1);
-            mesh.positions.emplace_back(share, 0, 0);
+            const float x = static_cast<float>(i) / (kSteps - 1);
+            mesh.positions.emplace_back(x, 0, 0);
             mesh.normals.emplace_back(0, 0, 1);
-            first.weights.push_back(1 - share);
-            second.weights.push_back(share);
+            first.weights.push_back(1 - x);
+            second.weights.push_back(x);
             first.across.emplace_back(1, 0, 0);
             if (second_has_direction) {
                 second.across.emplace_back(-std::cos(angle), -std::sin(angle), 0);
