@@ -9,7 +9,7 @@ namespace limn {
 
 namespace {
 
-/// Step of the differences that turn normals, as a share of the smallest control.
+/// Step of the finite differences for normals, relative to the smallest control.
 constexpr float kStep = 1.0f / 256.0f;
 constexpr float kMinSize = 1e-6f;  ///< of a control [m]
 
@@ -73,14 +73,14 @@ class Packer {
     }
 
     void add(const Tug& tug) {
-        const float share = 1.0f / square(tug.radius);
-        if (tug.offset == Vec3(0) || !(tug.radius > kMinSize) || !std::isfinite(share)
+        const float inverse_square = 1.0f / square(tug.radius);
+        if (tug.offset == Vec3(0) || !(tug.radius > kMinSize) || !std::isfinite(inverse_square)
             || !is_finite(tug.offset) || !is_finite(tug.at)) {
             return;
         }
         begin(tug.radius);
         packed_.emplace_back(kTug, tug.offset.x, tug.offset.y, tug.offset.z);
-        packed_.emplace_back(tug.at, share);
+        packed_.emplace_back(tug.at, inverse_square);
     }
 
     std::vector<Vec4> finish() {
