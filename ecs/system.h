@@ -121,6 +121,18 @@ SystemAccess access_of_parameters(TypeList<Ps...>) {
     return access;
 }
 
+/// The query of a parameter, or those of its members.
+template <typename Param>
+void append_queries(const Param& param, std::vector<const QueryState*>& queries) {
+    if constexpr (requires { param.state.matches(); }) {
+        queries.push_back(&param.state);
+    } else if constexpr (requires { param.members; }) {
+        std::apply(
+            [&](const auto&... members) { (append_queries(members, queries), ...); },
+            param.members);
+    }
+}
+
 template <typename F, typename List>
 class SystemBody;
 
@@ -147,12 +159,7 @@ class SystemBody<F, TypeList<Ps...>> final : public System::Body {
         return found;
     }
     void list_queries(std::vector<const QueryState*>& queries) const override {
-        const auto look = [&](const auto& state) {
-            if constexpr (requires { state.state.matches(); }) {
-                queries.push_back(&state.state);
-            }
-        };
-        std::apply([&](const auto&... states) { (look(states), ...); }, states_);
+        std::apply([&](const auto&... states) { (append_queries(states, queries), ...); }, states_);
     }
 
   private:

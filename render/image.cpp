@@ -39,6 +39,8 @@
 #include "render/water/water_surfaces.h"
 #include "render/water/water_veil_pass.h"
 
+// Techniques: post.effect-pipeline
+
 namespace limn {
 namespace {
 

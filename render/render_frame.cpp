@@ -24,6 +24,8 @@
 #include <cmath>
 #include <utility>
 
+// Techniques: post.distributed-sampling
+
 namespace limn {
 namespace {
 

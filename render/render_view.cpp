@@ -11,6 +11,8 @@
 
 #include <atomic>
 
+// Techniques: post.distributed-sampling
+
 namespace limn {
 namespace {
 

@@ -2,6 +2,8 @@
 
 #include <glm/geometric.hpp>
 
+// Techniques: env.update-policy
+
 namespace limn {
 
 namespace {

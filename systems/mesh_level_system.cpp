@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: anim.bezier-patch-lod
+
 namespace limn {
 namespace {
 

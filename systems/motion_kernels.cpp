@@ -17,6 +17,8 @@ static_assert(sizeof(limn::WorldTransform) == 12 * sizeof(float));
 static_assert(sizeof(limn::PreviousWorldTransform) == 12 * sizeof(float));
 static_assert(sizeof(limn::Spin) == 4 * sizeof(float));
 
+// Techniques: shade.stream-kernel
+
 #ifndef LIMN_MOTION_CONSTANTS
 #define LIMN_MOTION_CONSTANTS
 namespace limn::motion {
@@ -228,11 +230,11 @@ turn_rotations_vector(std::span<const Spin> spin, float dt, std::span<Transform>
         const V sin = pick_sine(parts);
         const V length2 = hn::Add(hn::Add(hn::Mul(ax, ax), hn::Mul(ay, ay)), hn::Mul(az, az));
         const auto turns = hn::Gt(length2, zero);
-        const V share = hn::IfThenElse(turns, hn::Div(sin, hn::Sqrt(length2)), zero);
+        const V scale = hn::IfThenElse(turns, hn::Div(sin, hn::Sqrt(length2)), zero);
         const V bw = hn::IfThenElse(turns, pick_cosine(parts), one);
-        const V bx = hn::Mul(ax, share);
-        const V by = hn::Mul(ay, share);
-        const V bz = hn::Mul(az, share);
+        const V bx = hn::Mul(ax, scale);
+        const V by = hn::Mul(ay, scale);
+        const V bz = hn::Mul(az, scale);
 
         const float* in = reinterpret_cast<const float*>(&transform[first]);
         V qx;
@@ -352,11 +354,11 @@ void turn_rotations_scalar(std::span<const Spin> spin, float dt, std::span<Trans
         const Vec3& a = spin[i].axis;
         const ScalarSinCos parts = sin_cos_parts(static_cast<double>(spin[i].speed * half_dt));
         const float length2 = a.x * a.x + a.y * a.y + a.z * a.z;
-        const float share = length2 > 0 ? pick_sine(parts) / std::sqrt(length2) : 0.0f;
+        const float scale = length2 > 0 ? pick_sine(parts) / std::sqrt(length2) : 0.0f;
         const float bw = length2 > 0 ? pick_cosine(parts) : 1.0f;
-        const float bx = a.x * share;
-        const float by = a.y * share;
-        const float bz = a.z * share;
+        const float bx = a.x * scale;
+        const float by = a.y * scale;
+        const float bz = a.z * scale;
         Quat& q = transform[i].rotation;
         const float rx = q.w * bx + q.x * bw + q.y * bz - q.z * by;
         const float ry = q.w * by + q.y * bw + q.z * bx - q.x * bz;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: engine.camera-lag, engine.camera-orbit, engine.look-at
+
 namespace limn {
 
 namespace {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: anim.arclength, anim.bezier-track
+
 namespace limn {
 namespace {
 
-void place(const PathFollower& follower, const PathData& path, Transform& transform) {
+void place_on_path(const PathFollower& follower, const PathData& path, Transform& transform) {
     transform = transform_on_path(
         path_frame_at(path, follower.distance), follower.offset, follower.level, transform.scale);
 }
@@ -34,7 +36,7 @@ void update_path_followers(
             distance = std::clamp(distance, 0.0, length);
         }
         follower.distance = distance;
-        place(follower, *path, transform);
+        place_on_path(follower, *path, transform);
     });
 }
 
@@ -42,7 +44,7 @@ void place_path_followers(
     Query<const PathFollower, Transform> followers, Res<const Assets> assets) {
     followers.each([&assets = *assets](const PathFollower& follower, Transform& transform) {
         if (const PathData* path = find_path(assets, follower.path)) {
-            place(follower, *path, transform);
+            place_on_path(follower, *path, transform);
         }
     });
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+// Techniques: post.scene-ripple
+
 namespace limn {
 
 void update_ripples(

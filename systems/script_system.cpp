@@ -90,12 +90,12 @@ const std::vector<PlacingFields>& placing_fields() {
 /// After an edit: what was moved by it, rather than by time, has no velocity.
 void mark_jump(World& world, const ScriptAction& action) {
     for (const PlacingFields& fields : placing_fields()) {
-        const auto places = [&fields](const FieldEdit& edit) {
+        const auto moves = [&fields](const FieldEdit& edit) {
             return fields.names.empty()
                    || std::ranges::find(fields.names, edit.field->name) != fields.names.end();
         };
         if (fields.component == action.value.info().id
-            && std::ranges::any_of(action.edits, places)) {
+            && std::ranges::any_of(action.edits, moves)) {
             fields.of_pose ? (void)world.add(action.entity, PoseCut{})
                            : (void)world.add(action.entity, Teleport{});
         }

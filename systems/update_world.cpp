@@ -65,7 +65,8 @@ void add_object_systems(SystemList& systems) {
     systems.add<update_ripples>(Move);
     systems.add<place_path_followers>(Move, AtStart);
     systems.add<update_path_followers>(Move);
-    systems.add<add_world_transforms>(Place, AtStart);  // so late: until then nothing has a place
+    systems.add<add_world_transforms>(
+        Place, AtStart);  // so late: until then nothing has a world transform
     systems.add<update_transforms>(Place, Both);
     systems.add<update_env_probes>(Follow, Both);  // captures from the current position
 }

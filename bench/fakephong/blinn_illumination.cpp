@@ -2,6 +2,8 @@
 
 #include <glm/geometric.hpp>
 
+// Techniques: fakephong.blinn-axis, fakephong.illum-blinn, fakephong.vectors
+
 namespace limn::fakephong {
 namespace {
 

@@ -11,6 +11,7 @@ namespace limn::fakephong {
 // what it costs is what it does: there is no second list of operations to keep in step with it.
 //
 // Additions include subtractions. Comparisons, negations and copies are free.
+// Techniques: fakephong.metric-efficiency
 
 /// What a thread has done since it was last reset.
 struct Work {

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <utility>
 
+// Techniques: fakephong.blinn-path, fakephong.metric-efficiency
+
 namespace limn::fakephong {
 namespace {
 

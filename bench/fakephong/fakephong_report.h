@@ -14,6 +14,7 @@
 namespace limn::fakephong {
 
 // The measures of the thesis (fakephong.metric-*, .blinn-path, .results).
+// Techniques: fakephong.forward-difference, fakephong.metric-analytic, fakephong.results
 
 /// One method on one scene: its highlights, or its diffuse light if it has no others.
 struct MethodResult {

@@ -11,6 +11,7 @@ namespace limn::fakephong {
 //
 // What additions round adds up: a row should start from the table of the edge, not from the end of
 // the row above.
+// Techniques: fakephong.forward-difference
 
 inline constexpr std::size_t kMaxDegree = 3;
 

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+// Techniques: fakephong.blinn-texture, fakephong.envmap-bake
+
 namespace limn::fakephong {
 
 LookupTexture bake_texture(int size, DiscFunction function) {

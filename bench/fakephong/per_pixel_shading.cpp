@@ -3,6 +3,8 @@
 
 #include "bench/fakephong/shading_method.h"
 
+// Techniques: fakephong.normal-interp-variants, fakephong.phong
+
 namespace limn::fakephong {
 namespace {
 

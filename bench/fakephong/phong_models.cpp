@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <utility>
 
+// Techniques: fakephong.scenes
+
 namespace limn::fakephong {
 namespace {
 

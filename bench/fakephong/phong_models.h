@@ -13,6 +13,7 @@ namespace limn::fakephong {
 // The scenes of the thesis, rebuilt (fakephong.scenes). It gives the models and the kinds of light;
 // positions, exponents and cameras are fitted. Scanlines cross the highest highlight, and on
 // teapots that of the body below those of handle and spout.
+// Techniques: fakephong.results
 
 /// A mesh of content/make or of a file, its triangles as they are.
 [[nodiscard]] PhongMesh phong_mesh(const MeshData& mesh);

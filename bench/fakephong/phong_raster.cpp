@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+// Techniques: fakephong.barycentric, fakephong.forward-difference, fakephong.texmap
+
 namespace limn::fakephong {
 namespace {
 

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: fakephong.cubic, fakephong.gouraud, fakephong.gouraud-subdivided,
+//     fakephong.hw-quadratic, fakephong.quadratic
+
 namespace limn::fakephong {
 namespace {
 

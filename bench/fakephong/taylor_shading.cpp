@@ -1,6 +1,8 @@
 #include "bench/fakephong/shading_method.h"
 #include "bench/fakephong/taylor_series.h"
 
+// Techniques: fakephong.taylor
+
 namespace limn::fakephong {
 namespace {
 

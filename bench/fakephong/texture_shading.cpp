@@ -8,6 +8,9 @@
 #include <array>
 #include <cstddef>
 
+// Techniques: fakephong.blinn-map, fakephong.envmap, fakephong.hw-blinn, fakephong.phong-map,
+//     fakephong.quadratic-blinn
+
 namespace limn::fakephong {
 namespace {
 

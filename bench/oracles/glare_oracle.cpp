@@ -8,6 +8,8 @@
 #include <complex>
 #include <cstddef>
 
+// Techniques: post.glare-heat-haze
+
 namespace limn::oracle {
 namespace {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: post.glow
+
 namespace limn::oracle {
 namespace {
 

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+// Techniques: char.skin-shade, engine.light-falloff, light.attenuation, light.halfway-vector,
+//     light.phong-model, light.spot-falloff
+
 namespace limn::oracle {
 namespace {
 

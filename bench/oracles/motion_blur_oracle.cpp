@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: post.motion-blur-accumulation
+
 namespace limn::oracle {
 
 double exposure_sample_time(int index, int count, double shutter) {

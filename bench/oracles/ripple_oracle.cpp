@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: post.scene-ripple
+
 namespace limn::oracle {
 namespace {
 

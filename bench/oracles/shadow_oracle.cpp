@@ -13,6 +13,8 @@
 #include <cmath>
 #include <numbers>
 
+// Techniques: shadow.penumbra
+
 namespace limn::oracle {
 namespace {
 

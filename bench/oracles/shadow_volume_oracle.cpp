@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+// Techniques: shadow.volume-count
+
 namespace limn::oracle {
 namespace {
 

@@ -118,7 +118,7 @@ int run(int argc, char** argv) {
                 }
                 options.profile = *profile;
             },
-            "render as on a GPU or as on a software OpenGL; default: by the device")
+            "render as on a GPU or as on software OpenGL; default: chosen by the device")
         ->type_name("gpu|software");
     program.add_option("--json", options.json, "write the results")->type_name("FILE");
     program.add_option("--html", options.html, "write a page with images")->type_name("FILE");

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <span>
 
+// Techniques: skin.detail
+
 namespace limn {
 
 namespace {

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <limits>
 
+// Techniques: wrinkle.furrow.field-init, wrinkle.furrow.field-interpolate
+
 namespace limn {
 namespace {
 

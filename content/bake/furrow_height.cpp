@@ -8,6 +8,9 @@
 #include <cstddef>
 #include <utility>
 
+// Techniques: wrinkle.furrow.heightfield, wrinkle.furrow.noise, wrinkle.furrow.normal-base,
+//     wrinkle.furrow.normal-perturb
+
 namespace limn {
 namespace {
 

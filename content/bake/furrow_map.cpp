@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.furrow.map-cylinder, wrinkle.furrow.map-planar
+
 namespace limn {
 namespace {
 

@@ -1,5 +1,7 @@
 #include "content/bake/furrow_presets.h"
 
+// Techniques: wrinkle.furrow.presets
+
 namespace limn {
 namespace {
 

@@ -17,6 +17,8 @@
 #include <string>
 #include <utility>
 
+// Techniques: wrinkle.furrow.editor
+
 namespace limn {
 namespace {
 

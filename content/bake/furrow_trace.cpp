@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 
+// Techniques: wrinkle.furrow.functions, wrinkle.furrow.heightfield, wrinkle.furrow.topography,
+//     wrinkle.furrow.trace
+
 namespace limn {
 namespace {
 

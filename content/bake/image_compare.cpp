@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+// Techniques: fakephong.metric-color, fakephong.metric-diffimage, fakephong.metric-scanline
+
 namespace limn {
 
 namespace {

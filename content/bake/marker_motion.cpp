@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 
+// Techniques: face.head-stabilise, face.mocap-drive
+
 namespace limn {
 namespace {
 

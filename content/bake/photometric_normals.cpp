@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: face.photometric-normals
+
 namespace limn {
 
 namespace {

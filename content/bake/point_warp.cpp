@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <utility>
 
+// Techniques: face.retarget-fit
+
 namespace limn {
 
 namespace {

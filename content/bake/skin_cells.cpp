@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 
+// Techniques: wrinkle.furrow.polygon-models
+
 namespace limn {
 namespace {
 

@@ -12,6 +12,8 @@
 #include <map>
 #include <tuple>
 
+// Techniques: face.wrinkle-model
+
 namespace limn {
 
 namespace {

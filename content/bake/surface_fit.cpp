@@ -11,6 +11,8 @@
 #include <set>
 #include <utility>
 
+// Techniques: face.retarget-fit, face.retarget-warp
+
 namespace limn {
 namespace {
 

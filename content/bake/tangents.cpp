@@ -12,6 +12,8 @@
 #include <unordered_map>
 #include <vector>
 
+// Techniques: bump.tangent-triangle, bump.tangent-vertex
+
 namespace limn {
 
 namespace {

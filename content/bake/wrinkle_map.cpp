@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.compression.map
+
 namespace limn {
 
 int limit_wrinkle_map(ImageData& map, float max_square) {

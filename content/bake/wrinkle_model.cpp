@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <cstring>
 
+// Techniques: face.wrinkle-model
+
 namespace limn {
 
 namespace {

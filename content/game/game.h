@@ -4,9 +4,10 @@
 
 namespace limn {
 
-// The rules of single levels: racers, sailboats, walkers, stones. The engine knows none of them.
+// Game rules of single levels: racers, sailboats, walkers, stones. The engine does not depend on
+// them.
 
-/// Registers components and actions of the game, and those of the engine.
+/// Registers the components and actions of the game and of the engine.
 void register_game_components();
 
 /// For make_world_schedule and start_world.

@@ -34,10 +34,10 @@ LIMN_FIELDS(Racer) {
     LIMN_FIELD(acceleration, "acceleration from rest", "m/s^2", 0.01, 1000);
     LIMN_FIELD(grip, "largest lateral acceleration of the autopilot", "m/s^2", 0.01, 1000);
     LIMN_FIELD(lane, "lateral offset preferred by the autopilot, to the right", "m");
-    LIMN_FIELD(player, "controlled by Input, once there is any");
+    LIMN_FIELD(player, "controlled by Input, once a player uses it");
 }
 
-/// What the game keeps for each Racer, from its initial distance and speed on.
+/// State of a Racer, starting from its initial distance and speed.
 struct RacerState {
     double distance = 0.0;
     float lateral = 0.0f;

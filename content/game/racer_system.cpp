@@ -26,8 +26,8 @@ constexpr float kLookAhead = 0.9f;       // preview time of the autopilot [s]
 constexpr float kOvertakeGap = 35.0f;    // distance behind another racer to start overtaking [m]
 constexpr float kRacerWidth = 3.2f;      // lateral distance between two side by side [m]
 
-/// Fraction of an exponential approach at `rate` [1/s] completed in `dt` [s].
-float share_of(float rate, float dt) {
+/// Fraction of an exponential approach at `rate` [1/s] that is completed in `dt` [s].
+float approach_fraction(float rate, float dt) {
     return 1.0f - std::exp(-rate * dt);
 }
 
@@ -36,14 +36,14 @@ const PathData* find_track(const Assets& assets, PathId id) {
 }
 
 /// A racer at the start of the step, so that results do not depend on the order of updates.
-struct Place {
+struct RacerSnapshot {
     PathId track;
     double distance;
     float lateral;
     float speed;
 };
 
-/// Signed distance from `from` to `to` along the track, the shorter way on a closed one.
+/// Signed distance from `from` to `to` along the track, in the shorter direction on a closed one.
 double gap(const PathData& track, double from, double to) {
     const double length = track.length();
     return track.closed ? std::remainder(to - from, length) : to - from;
@@ -51,7 +51,7 @@ double gap(const PathData& track, double from, double to) {
 
 Driving run_autopilot(
     const Racer& settings, const RacerState& racer, const PathData& track,
-    const std::vector<Place>& places, std::size_t self) {
+    const std::vector<RacerSnapshot>& snapshots, std::size_t self) {
     // The sharpest bend within a second limits the speed.
     float bend = 0.0f;
     for (const float seconds : {0.25f, 0.6f, 1.0f}) {
@@ -62,8 +62,8 @@ Driving run_autopilot(
     const float wanted = std::min(
         settings.top_speed, bend > 0.0f ? std::sqrt(settings.grip / bend) : settings.top_speed);
     float lane = settings.lane;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const Place& other = places[i];
+    for (std::size_t i = 0; i < snapshots.size(); ++i) {
+        const RacerSnapshot& other = snapshots[i];
         const double ahead = gap(track, racer.distance, other.distance);
         if (i == self || !(other.track == settings.track) || ahead <= 0.0
             || ahead > static_cast<double>(kOvertakeGap) || other.speed > racer.speed + 1.0f
@@ -84,7 +84,7 @@ Driving run_autopilot(
         std::clamp((aim - racer.heading) * 4.0f + hold, -1.0f, 1.0f), false};
 }
 
-void place(
+void write_transform(
     const Racer& settings, const RacerState& racer, const PathData& track, Transform& transform) {
     const PathFrame frame = path_frame_at(track, racer.distance);
     transform =
@@ -119,7 +119,8 @@ void step_racer(
     const float along = racer.speed * std::cos(racer.heading) / stretch;
     const float turn = driving.steer * kSteerRate;
     racer.heading += dt * (turn + kDrift * curvature * along);
-    racer.heading -= racer.heading * share_of(kStraighten * (1.0f - std::abs(driving.steer)), dt);
+    racer.heading -=
+        racer.heading * approach_fraction(kStraighten * (1.0f - std::abs(driving.steer)), dt);
     racer.heading = std::clamp(racer.heading, -kMaxHeading, kMaxHeading);
 
     racer.distance += static_cast<double>(along * dt);
@@ -127,7 +128,7 @@ void step_racer(
     if (std::abs(racer.lateral) > settings.half_width) {
         racer.lateral = std::clamp(racer.lateral, -settings.half_width, settings.half_width);
         racer.heading = 0.0f;
-        racer.speed -= racer.speed * share_of(kWallLoss, dt);
+        racer.speed -= racer.speed * approach_fraction(kWallLoss, dt);
     }
     if (track.closed) {
         const double length = track.length();
@@ -137,7 +138,7 @@ void step_racer(
     }
     const float sideways = racer.speed * (turn - curvature * along);
     const float lean = std::clamp(kLean * sideways, -kMaxLean, kMaxLean);
-    racer.lean += (lean - racer.lean) * share_of(kLeanRate, dt);
+    racer.lean += (lean - racer.lean) * approach_fraction(kLeanRate, dt);
 }
 
 void add_racer_states(Query<const Racer, Without<RacerState>> racers, Commands commands) {
@@ -153,18 +154,19 @@ void update_racers(
         action_axis(*input, "accelerate", "brake"),
         action_axis(*input, "steer_right", "steer_left"), action_value(*input, "boost") > 0};
     const bool any = keys.throttle != 0 || keys.steer != 0 || keys.boost;
-    std::vector<Place> places;
+    std::vector<RacerSnapshot> snapshots;
     racers.each([&](const Racer& settings, const RacerState& racer, const Transform&) {
-        places.push_back({settings.track, racer.distance, racer.lateral, racer.speed});
+        snapshots.push_back({settings.track, racer.distance, racer.lateral, racer.speed});
     });
     std::size_t self = 0;
     racers.each([&](const Racer& settings, RacerState& racer, Transform& transform) {
         if (const PathData* track = find_track(*assets, settings.track)) {
             racer.player_active = racer.player_active || (settings.player && any);
-            const Driving driving =
-                racer.player_active ? keys : run_autopilot(settings, racer, *track, places, self);
+            const Driving driving = racer.player_active
+                                        ? keys
+                                        : run_autopilot(settings, racer, *track, snapshots, self);
             step_racer(settings, *track, driving, time->step, racer);
-            place(settings, racer, *track, transform);
+            write_transform(settings, racer, *track, transform);
         }
         ++self;
     });
@@ -174,7 +176,7 @@ void place_racers(
     Query<const Racer, const RacerState, Transform> racers, Res<const Assets> assets) {
     racers.each([&](const Racer& settings, const RacerState& racer, Transform& transform) {
         if (const PathData* track = find_track(*assets, settings.track)) {
-            place(settings, racer, *track, transform);
+            write_transform(settings, racer, *track, transform);
         }
     });
 }
@@ -188,11 +190,11 @@ void update_speed_views(
         if (settings == nullptr || racer == nullptr) {
             return;
         }
-        const float share =
+        const float speed_fraction =
             std::clamp(racer->speed / std::max(settings->boost_speed, 1e-3f), 0.0f, 1.0f);
-        camera.fov_y = glm::mix(view.slow_fov, view.fast_fov, share);
+        camera.fov_y = glm::mix(view.slow_fov, view.fast_fov, speed_fraction);
         if (camera.active && blur) {
-            blur->shutter = glm::mix(view.slow_shutter, view.fast_shutter, share);
+            blur->shutter = glm::mix(view.slow_shutter, view.fast_shutter, speed_fraction);
         }
     });
 }

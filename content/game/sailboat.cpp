@@ -59,9 +59,10 @@ struct Rigid {
         velocity += impulse / mass.mass;
         spin += turned(glm::cross(arm, impulse));
     }
-    /// Change of speed along `way` at the point `arm` per unit impulse along `way`.
-    [[nodiscard]] float mobility(const Vec3& arm, const Vec3& way) const {
-        return 1 / mass.mass + glm::dot(way, glm::cross(turned(glm::cross(arm, way)), arm));
+    /// Change of speed along `direction` at the point `arm` per unit impulse along `direction`.
+    [[nodiscard]] float mobility(const Vec3& arm, const Vec3& direction) const {
+        return 1 / mass.mass
+               + glm::dot(direction, glm::cross(turned(glm::cross(arm, direction)), arm));
     }
 };
 
@@ -94,22 +95,22 @@ void push_foil(const Foil& foil, const Vec3& flow, float step, Rigid& body) {
     }
     float impulse = 0.5f * foil.density * speed * speed * foil.area * size * step;
     for (const Vec2& axis : {normal, chord}) {
-        const float share = std::abs(glm::dot(total, axis)) / size;
+        const float fraction = std::abs(glm::dot(total, axis)) / size;
         const float flows = std::abs(glm::dot(across, axis));
         const float gives = body.mobility(foil.arm, body.rotation * Vec3(axis.x, 0, axis.y));
-        impulse = share > 1e-3f ? std::min(impulse, flows / (share * gives)) : impulse;
+        impulse = fraction > 1e-3f ? std::min(impulse, flows / (fraction * gives)) : impulse;
     }
     body.push(foil.arm, body.rotation * (impulse / size * Vec3(total.x, 0, total.y)));
 }
 
-/// Submerged fraction of a foil at `place`, 0 .. 1, and the water velocity there.
+/// Submerged fraction of a foil at a position, 0 .. 1, and the water velocity there.
 struct Wet {
-    float share = 0;
+    float fraction = 0;
     Vec3 flow{};
 };
 
-Wet wet_at(std::span<const WaterSurface> surfaces, const Vec3& place) {
-    const auto around = find_water(surfaces, place);
+Wet wet_at(std::span<const WaterSurface> surfaces, const Vec3& position) {
+    const auto around = find_water(surfaces, position);
     if (!around) {
         return {};
     }
@@ -117,7 +118,7 @@ Wet wet_at(std::span<const WaterSurface> surfaces, const Vec3& place) {
 }
 
 /// Wave-making resistance, along the keel.
-void resist_waves(float hull_speed, float share, float step, const Vec3& flow, Rigid& body) {
+void resist_waves(float hull_speed, float submerged, float step, const Vec3& flow, Rigid& body) {
     const Vec3 ahead = body.rotation * Vec3(0, 0, 1);
     const float speed = glm::dot(body.velocity - flow, ahead);
     const float pace = std::abs(speed);
@@ -125,7 +126,7 @@ void resist_waves(float hull_speed, float share, float step, const Vec3& flow, R
         return;
     }
     const float froude2 = std::min(square(pace / hull_speed), 1e6f);
-    const float loss = step * share * static_cast<float>(kGravity) * square(froude2) / pace;
+    const float loss = step * submerged * static_cast<float>(kGravity) * square(froude2) / pace;
     body.velocity -= ahead * (speed * loss / (1 + loss));
 }
 
@@ -195,13 +196,13 @@ void step_sailboat(
     const Wet wet_sail = wet_at(surfaces, center + sail);
     const Wet wet_keel = wet_at(surfaces, center + keel);
     const Wet wet_rudder = wet_at(surfaces, center + rudder);
-    const float sail_area = positive(boat.sail_area) * (1 - wet_sail.share);
+    const float sail_area = positive(boat.sail_area) * (1 - wet_sail.fraction);
     push_foil({sail, sail_area, state.boom, kAirDensity}, air, step, body);
     push_foil(
-        {keel, positive(boat.keel_area) * wet_keel.share, 0, kWaterDensity}, wet_keel.flow, step,
+        {keel, positive(boat.keel_area) * wet_keel.fraction, 0, kWaterDensity}, wet_keel.flow, step,
         body);
     push_foil(
-        {rudder, positive(boat.rudder_area) * wet_rudder.share, -state.rudder * kMaxRudder,
+        {rudder, positive(boat.rudder_area) * wet_rudder.fraction, -state.rudder * kMaxRudder,
          kWaterDensity},
         wet_rudder.flow, step, body);
     const float length = 2 * std::abs(touch.half.z * transform.scale.z);
@@ -229,20 +230,20 @@ void follow_course(
     const PathData& course, const WaterTouch& touch, const FloatingState& motion,
     const Transform& transform, const Vec3& wind, SailboatState& state) {
     const Vec2 here = {transform.position.x, transform.position.z};
-    const float reach = kSailLookAhead * 2 * std::abs(touch.half.z * transform.scale.z);
+    const float look_ahead = kSailLookAhead * 2 * std::abs(touch.half.z * transform.scale.z);
     const auto goal = [&] {
         const Vec3 at = path_frame_at(course, state.distance).position;
         return Vec2(at.x, at.z);
     };
-    for (int i = 0; i < kMaxCourseSteps && glm::distance(goal(), here) < reach; ++i) {
+    for (int i = 0; i < kMaxCourseSteps && glm::distance(goal(), here) < look_ahead; ++i) {
         state.distance += static_cast<double>(kCourseStep);
     }
     const auto length = static_cast<double>(course.length());
     state.distance =
         course.closed ? std::fmod(state.distance, length) : std::min(state.distance, length);
 
-    const Vec2 way = goal() - here;
-    float wanted = std::atan2(way.y, way.x);
+    const Vec2 to_goal = goal() - here;
+    float wanted = std::atan2(to_goal.y, to_goal.x);
     if (glm::length(Vec2(wind.x, wind.z)) > 0.1f) {
         // Angles from the windward direction; to starboard of it, the wind is from port.
         const float upwind = std::atan2(-wind.z, -wind.x);

@@ -41,7 +41,7 @@ LIMN_FIELDS(Sailboat) {
     LIMN_FIELD(
         auto_trim, .doc = "the sheet is trimmed automatically, until a player trims it",
         .renamed = "trims_itself");
-    LIMN_FIELD(player, "controlled by Input, once there is any");
+    LIMN_FIELD(player, "controlled by Input, once a player uses it");
     LIMN_FIELD(camera, "Input applies only while this camera is active, by name");
     LIMN_FIELD(
         camera_target, .doc = "upright entity moved along with the boat, as a camera target",
@@ -50,7 +50,7 @@ LIMN_FIELDS(Sailboat) {
     LIMN_FIELD(distance, "initial distance of its target point along the course", "m", 0, 1e7);
 }
 
-/// What the game keeps for each Sailboat.
+/// State of a Sailboat.
 struct SailboatState {
     float rudder = 0.0f;
     float sheet = 0.3f;

@@ -38,9 +38,9 @@ void splash_at(const Target& target, const StoneThrower& thrower, RippleState& r
 void create_stone(
     const Target& target, const Vec3& eye, const StoneThrower& thrower, std::uint32_t number,
     Commands commands) {
-    const Vec3 way = target.point.position - eye;
+    const Vec3 to_target = target.point.position - eye;
     const float start = std::min(kFromHand, 0.5f * target.distance);
-    const Vec3 from = eye + normalize_or(way, Vec3(0, -1, 0)) * start;
+    const Vec3 from = eye + normalize_or(to_target, Vec3(0, -1, 0)) * start;
     commands.create(
         Transform{.position = from, .scale = Vec3(2 * thrower.radius)},
         MeshInstance{thrower.mesh, thrower.material},

@@ -23,7 +23,7 @@ struct StoneThrower {
 };
 
 LIMN_FIELDS(StoneThrower) {
-    LIMN_FIELD(mesh, "mesh of a ball with a diameter of 1 m; none: only the splash");
+    LIMN_FIELD(mesh, "mesh of a sphere with a diameter of 1 m; none: only the splash");
     LIMN_FIELD(material, "material of the stones");
     LIMN_FIELD(radius, "radius of a stone", "m", 0.005, 10);
     LIMN_FIELD(density, "density of a stone", "kg/m^3", 1, 30000);
@@ -35,7 +35,7 @@ LIMN_FIELDS(StoneThrower) {
         .max = 10000, .renamed = "most");
 }
 
-/// What the game keeps for each StoneThrower.
+/// State of a StoneThrower.
 struct StoneThrowerState {
     std::uint32_t thrown = 0;
 };

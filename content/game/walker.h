@@ -26,7 +26,7 @@ LIMN_FIELDS(Walker) {
     LIMN_FIELD(yaw, "initial yaw, positive to the left", "rad");
 }
 
-/// What the game keeps for each Walker.
+/// State of a Walker.
 struct WalkerState {
     float yaw = 0.0f;
     float pitch = 0.0f;

@@ -32,13 +32,13 @@ constexpr float kSnap = 0.12f;          // extra drop to the next step without a
 constexpr float kClimb = 8.0f;          // rate of stepping up [1/s]
 
 /// The highest top below a cylinder about `feet` that it can step on; -infinity: none.
-float ground_under(std::span<const Ground> grounds, const Vec3& feet, float reach, float step) {
+float ground_under(std::span<const Ground> grounds, const Vec3& feet, float radius, float step) {
     float highest = -std::numeric_limits<float>::infinity();
     for (const Ground& ground : grounds) {
         const Vec3 local = transform_point(ground.local_from_world, feet);
         const float top = feet.y + (ground.half.y - local.y);
-        if (std::abs(local.x) <= ground.half.x + reach && std::abs(local.z) <= ground.half.z + reach
-            && top <= feet.y + step) {
+        if (std::abs(local.x) <= ground.half.x + radius
+            && std::abs(local.z) <= ground.half.z + radius && top <= feet.y + step) {
             highest = std::max(highest, top);
         }
     }
@@ -57,15 +57,15 @@ void leave_walls(
         if (past.x <= 0 || past.z <= 0 || !beside) {
             continue;
         }
-        Vec3 way(0);
+        Vec3 push(0);
         if (past.x < past.z) {
-            way.x = std::copysign(past.x, local.x);
+            push.x = std::copysign(past.x, local.x);
         } else {
-            way.z = std::copysign(past.z, local.z);
+            push.z = std::copysign(past.z, local.z);
         }
         // The transpose is the inverse rotation: footings are upright with unit scale.
         const Vec4* row = ground.local_from_world.row;
-        const Vec3 out = way.x * Vec3(row[0]) + way.z * Vec3(row[2]);
+        const Vec3 out = push.x * Vec3(row[0]) + push.z * Vec3(row[2]);
         feet += out;
         const Vec3 normal = normalize_or(out, Vec3(0));
         velocity -= std::min(glm::dot(velocity, normal), 0.0f) * normal;
@@ -87,12 +87,12 @@ Ground make_ground(const Footing& footing, const Affine& world) {
     const Vec3 z = {world.row[0].z, world.row[1].z, world.row[2].z};
     const Vec3 along = normalize_or(Vec3(x.x, 0, x.z), Vec3(1, 0, 0));
     const Vec3 across = glm::cross(along, Vec3(0, 1, 0));
-    const Vec3 middle = transform_point(world, footing.offset);
+    const Vec3 center = transform_point(world, footing.offset);
     Ground ground;
     ground.half = glm::abs(footing.half) * Vec3(glm::length(x), glm::length(y), glm::length(z));
-    ground.local_from_world.row[0] = Vec4(along, -glm::dot(along, middle));
-    ground.local_from_world.row[1] = Vec4(0, 1, 0, -middle.y);
-    ground.local_from_world.row[2] = Vec4(across, -glm::dot(across, middle));
+    ground.local_from_world.row[0] = Vec4(along, -glm::dot(along, center));
+    ground.local_from_world.row[1] = Vec4(0, 1, 0, -center.y);
+    ground.local_from_world.row[2] = Vec4(across, -glm::dot(across, center));
     return ground;
 }
 
@@ -115,10 +115,10 @@ void step_walker(
     Vec3 wanted = move.z * ahead + move.x * right;
     wanted /= std::max(glm::length(wanted), 1.0f);
     wanted *= settings.speed * (input.fast ? kFastFactor : 1.0f) * glm::mix(1.0f, kWading, wet);
-    const float share = 1 - std::exp(-step / kEase);
+    const float blend = 1 - std::exp(-step / kEase);
     Vec3& velocity = walker.velocity;
-    velocity.x += (wanted.x - velocity.x) * share;
-    velocity.z += (wanted.z - velocity.z) * share;
+    velocity.x += (wanted.x - velocity.x) * blend;
+    velocity.z += (wanted.z - velocity.z) * blend;
 
     // Hysteresis: a swimmer stands again only in shallower water.
     const bool swims = walker.depth > settings.eye + (walker.grounded ? kAfloat : -2 * kEyesAbove);
@@ -126,13 +126,13 @@ void step_walker(
     walker.duck += ((ducks ? 1.0f : 0.0f) - walker.duck) * (1 - std::exp(-kDuck * step));
     const bool dives = walker.depth > 0.5f * settings.eye && move.y != 0;
     if (dives) {
-        velocity.y += (kDiveSpeed * move.y - velocity.y) * share;
+        velocity.y += (kDiveSpeed * move.y - velocity.y) * blend;
         // Swimming does not lift it out of the water.
         const float rises = (walker.depth - settings.eye + kEyesAbove) / step;
         velocity.y = std::min(velocity.y, std::max(rises, 0.0f));
     } else if (swims) {
         const float rises = walker.depth - settings.eye + kEyesAbove;
-        velocity.y += (std::clamp(2 * rises, -kDiveSpeed, kDiveSpeed) - velocity.y) * share;
+        velocity.y += (std::clamp(2 * rises, -kDiveSpeed, kDiveSpeed) - velocity.y) * blend;
     } else {
         velocity.y -= static_cast<float>(kGravity) * step;
         velocity.y = std::max(velocity.y, -glm::mix(kMaxFallSpeed, kSink, wet));
@@ -171,8 +171,8 @@ void update_walkers(
         return;
     }
     std::vector<Ground> grounds;
-    footings.each([&](const Footing& footing, const WorldTransform& place) {
-        grounds.push_back(make_ground(footing, place.world));
+    footings.each([&](const Footing& footing, const WorldTransform& transform) {
+        grounds.push_back(make_ground(footing, transform.world));
     });
     const std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
     const MoveInput control = {
@@ -183,7 +183,7 @@ void update_walkers(
         action_value(*input, "run") > 0};
     struct Eyes {
         Entity camera;
-        Vec3 place;
+        Vec3 position;
         float pitch;
     };
     std::vector<Eyes> eyes;
@@ -199,7 +199,7 @@ void update_walkers(
     });
     for (const Eyes& look : eyes) {
         if (auto* transform = transforms.find<Transform>(look.camera)) {
-            transform->position = look.place;
+            transform->position = look.position;
             transform->rotation = rotation_about({1, 0, 0}, look.pitch);
         }
     }

@@ -18,7 +18,7 @@ namespace limn {
 // A walking character that can wade and swim.
 //
 // Collision with upright boxes (Footing): the highest top not more than a step above the feet is
-// the ground; higher boxes push back along the shorter way. In water it walks more slowly with
+// the ground; higher boxes push back in the shorter direction. In water it walks more slowly with
 // depth and falls more slowly; where it cannot stand it swims with its eyes above the surface, and
 // dives while `move.y` is negative; where it stands deep enough it ducks. Tilted boxes count
 // as upright.

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+// Techniques: wrinkle.compression.ab-evaluation
+
 namespace limn {
 
 namespace {
@@ -57,7 +59,7 @@ const bool* read_word(std::string_view word, std::string_view yes, std::string_v
     return word == yes ? &kTruth[1] : word == no ? &kTruth[0] : nullptr;
 }
 
-Result<TrialRecord> parse_record(std::string_view line, const std::string& place) {
+Result<TrialRecord> parse_record(std::string_view line, const std::string& location) {
     std::vector<std::string_view> words;
     for (std::size_t at = 0; at <= line.size();) {
         const std::size_t comma = std::min(line.find(',', at), line.size());
@@ -73,7 +75,7 @@ Result<TrialRecord> parse_record(std::string_view line, const std::string& place
         }
     }
     return fail(
-        "{}: found \"{}\", expected as \"{},{},{}\"", place, line.substr(0, 60), kFirst, kYes,
+        "{}: found \"{}\", expected as \"{},{},{}\"", location, line.substr(0, 60), kFirst, kYes,
         kWrinkles);
 }
 
@@ -96,7 +98,7 @@ void update_wrinkle_trials(
             const bool wrinkles = (state.stage == TrialStage::FirstClip) == first;
             state.share = state.share < 0 ? surface.share : state.share;
             surface.share = wrinkles ? state.share : 0;
-            // The clip's own time, so that both show the same frames.
+            // Set from the stage's time, so that both playbacks show the same frames.
             player.time = std::max(state.time - trial.pause, 0.0f);
             player.speed = 0;
             state.time += time->step;
@@ -139,7 +141,8 @@ std::string describe_tally(const TrialTally& tally) {
     const auto line = [](const char* what, const TrialTally::Count& found,
                          const TrialTally::Count& theirs) {
         return fmt::format(
-            "{:<52} {}/{}, the source {}/{}\n", what, found.yes, found.no, theirs.yes, theirs.no);
+            "{:<52} {}/{}, original study {}/{}\n", what, found.yes, found.no, theirs.yes,
+            theirs.no);
     };
     return line(
                "saw a difference, wrinkles first (yes/no)", tally.noticed_wrinkles_first,

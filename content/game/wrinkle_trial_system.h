@@ -28,11 +28,11 @@ void update_wrinkle_trials(
     Query<WrinkleTrial, WrinkleTrialState, ClipPlayer, WrinkleSurface> trials,
     Res<const FrameTime> time);
 
-/// Whether wrinkles come first for this viewer, 0 .. Of each two viewers in a row one sees them
-/// first and one last.
+/// Whether wrinkles come first for this viewer, 0 .. Of every two consecutive viewers, one sees
+/// them first and one last.
 [[nodiscard]] bool wrinkles_come_first(std::uint64_t seed, std::size_t viewer);
 
-/// Counts of answers: "2/3" are 2 of yes and 3 of no.
+/// Counts of answers: "2/3" is 2 yes and 3 no.
 struct TrialTally {
     struct Count {
         std::size_t yes = 0;
@@ -45,10 +45,10 @@ struct TrialTally {
 
 [[nodiscard]] TrialTally tally_trials(std::span<const TrialRecord> records);
 
-/// What ten viewers of the source answered: 2/3, 1/4 and 8/2.
+/// The answers of the ten viewers in the original study: 2/3, 1/4 and 8/2.
 [[nodiscard]] TrialTally source_tally();
 
-/// Three lines: the answers beside those of the source.
+/// Three lines: the answers beside those of the original study.
 [[nodiscard]] std::string describe_tally(const TrialTally& tally);
 
 /// order,noticed,preferred: a line per viewer.

@@ -140,10 +140,7 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
     const bool is_obj = ends_with_any(path, {".obj"});
     const LoadOptions& load = options.model.load;
-    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path));
-    if (load.strict) {
-        LIMN_TRY(report_load_warnings(path, model.warnings, load));
-    }
+    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path, {}, load));
     LoadedScene scene;
     scene.name = model.name;
     scene.path = path;
@@ -189,7 +186,7 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
             : entity != entities.end()
                 ? entity_positions[static_cast<std::size_t>(entity - entities.begin())]
                 : SourcePosition{};
-        log_warn("{}: {}", place_text(path, at), warning.text);
+        log_warn("{}: {}", location_text(path, at), warning.text);
     }
     scene.camera = find_camera(world);
     if (scene.camera.is_null()) {

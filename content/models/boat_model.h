@@ -5,7 +5,7 @@
 namespace limn::boat {
 
 // The sailing boat as data: lines, boards, spars and colors, for a length of 6 m [m]. Places along
-// the hull are t from astern (0) to the bow (1); places across the deck are in half-breadths.
+// the hull are t from astern (0) to the bow (1); positions across the deck are in half-breadths.
 
 inline constexpr float kLength = 6.0f;
 inline constexpr float kHalfBeam = 1.0f;
@@ -45,7 +45,7 @@ inline constexpr Spar kBoomAndGaff[] = {
     {{0, kBoomHeight, -0.06f}, {0, kBoomHeight + 0.1f, -kBoomLength}, 0.035f, 0.03f, kTrim},
     {{0, kThroat, -0.06f}, {0, kPeak.y + 0.06f, kPeak.x - 0.1f}, 0.03f, 0.022f, kTrim}};
 
-/// A board in the plane of symmetry, thickest in its middle.
+/// A board in the plane of symmetry, thickest at its center.
 struct Blade {
     Vec2 fore;  ///< z of its front edge at the top and at the bottom
     Vec2 aft;

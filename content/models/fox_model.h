@@ -16,7 +16,7 @@ inline constexpr float kHeight = 0.45f;
 struct JointInfo {
     const char* name;
     std::int32_t parent;
-    Vec3 place;  ///< [m]
+    Vec3 position;  ///< [m]
 };
 
 inline constexpr JointInfo kJoints[kCreatureJoints] = {

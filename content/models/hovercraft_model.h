@@ -42,8 +42,8 @@ constexpr ModelPart
 cone(float blend, const Vec3& a, const Vec3& b, float radius_a, float radius_b) {
     return {.blend = blend, .a = a, .b = b, .radius_a = radius_a, .radius_b = radius_b};
 }
-constexpr ModelPart box(float blend, const Vec3& middle, const Vec3& half, float radius) {
-    return {.shape = PartShape::Box, .blend = blend, .a = middle, .b = half, .radius_a = radius};
+constexpr ModelPart box(float blend, const Vec3& center, const Vec3& half, float radius) {
+    return {.shape = PartShape::Box, .blend = blend, .a = center, .b = half, .radius_a = radius};
 }
 constexpr ModelPart used(ModelPart part, PartUse use) {
     part.use = use;
@@ -76,7 +76,7 @@ inline constexpr ModelPart kFin[] = {{.shape = PartShape::Custom, .distance = fi
 inline constexpr ModelGroup kGroups[] = {
     {0, kHull}, {0.18f, kStrut}, {0.06f, kEngine}, {0.06f, kFin}};
 
-inline constexpr Vec3 kCanopyMiddle = {0, 0.25f, 0.05f};
+inline constexpr Vec3 kCanopyCenter = {0, 0.25f, 0.05f};
 inline constexpr Vec3 kCanopyRadii = {0.26f, 0.24f, 0.85f};
 
 inline constexpr Vec4 kPaint = {1, 1, 1, 1};  ///< the material's color shows

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+// Techniques: face.dominance
+
 namespace limn {
 
 float blend_targets(std::span<const DominanceTarget> targets, float time, float rest) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+// Techniques: face.categories
+
 namespace limn {
 
 namespace {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+// Techniques: face.dominance, face.viseme
+
 namespace limn {
 
 namespace {

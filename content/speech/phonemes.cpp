@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: face.viseme
+
 namespace limn {
 
 namespace {

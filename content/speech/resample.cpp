@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+// Techniques: face.align-resample, face.fragment-blend
+
 namespace limn {
 
 CurveSpline::CurveSpline(const SampledCurves& curves)

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+// Techniques: face.speech-fragments
+
 namespace limn {
 
 namespace {
@@ -18,7 +20,8 @@ constexpr float kMaxRate = 1000.0f;
 constexpr double kMaxPose = 10.0;
 
 Error found(const JsonValue& value, const std::string& file, std::string_view expected) {
-    return fail("{}: found {}, expected {}", place_text(file, value.at), describe(value), expected);
+    return fail(
+        "{}: found {}, expected {}", location_text(file, value.at), describe(value), expected);
 }
 
 Result<SpeechTrack> read_sounds(const JsonValue& sounds, const std::string& file) {
@@ -70,8 +73,8 @@ Result<SpeechRecording> read_recording(const JsonValue& json, float rate, const 
     if (recording.track.duration() > covered) {
         return fail(
             "{}: found {} samples, which last {} s, expected them to cover the sounds, {} s",
-            place_text(file, samples.at.line > 0 ? samples.at : json.at), recording.motion.size(),
-            covered, recording.track.duration());
+            location_text(file, samples.at.line > 0 ? samples.at : json.at),
+            recording.motion.size(), covered, recording.track.duration());
     }
     return recording;
 }

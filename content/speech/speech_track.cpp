@@ -2,6 +2,8 @@
 
 #include "ecs/base/check.h"
 
+// Techniques: face.viseme
+
 namespace limn {
 
 namespace {

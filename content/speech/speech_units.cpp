@@ -8,6 +8,8 @@
 #include <limits>
 #include <string_view>
 
+// Techniques: face.fragment-blend, face.speech-fragments, face.unit-generate, face.unit-select
+
 namespace limn {
 
 namespace {

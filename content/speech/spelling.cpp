@@ -8,6 +8,8 @@
 #include <array>
 #include <string>
 
+// Techniques: face.talking-head
+
 namespace limn {
 
 namespace {

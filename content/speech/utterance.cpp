@@ -14,6 +14,8 @@
 
 extern char** environ;
 
+// Techniques: face.talking-head
+
 namespace limn {
 
 namespace {

@@ -17,6 +17,8 @@ namespace limn {
 // After A. Watt, F. Policarpo, "Advanced Game Development with Programmable Graphics Hardware"
 // (2005), chapter 7 and its appendix 1 (whose end tangent, expansion and partition of unity are
 // misprinted, and corrected here).
+// Techniques: anim.arclength, anim.bezier-edit, anim.bezier-join, anim.boehm-quadrangle,
+//     anim.parabolic-blend
 
 template <typename T>
 using Bezier = std::array<T, 4>;

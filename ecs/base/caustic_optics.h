@@ -15,6 +15,7 @@ namespace limn {
 // form): every vertex of the surface casts one ray, is moved to the hit point, and is drawn there
 // with the light it carries. render/shaders/lib/caustic_landing.glsl has the functions that water
 // needs.
+// Techniques: caustic.projected-vertices, caustic.reflection-plane, caustic.refraction-pool
 
 /// The points x with dot(normal, x) = offset.
 struct Plane {

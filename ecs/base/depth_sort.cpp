@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+// Techniques: particle.bitonic-sort, particle.distance-sort
+
 namespace limn {
 
 namespace {

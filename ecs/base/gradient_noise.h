@@ -14,6 +14,7 @@ namespace limn {
 // with 6t^5 - 15t^4 + 10t^3, so that the noise is twice differentiable. It is 0 at lattice points
 // and has mean 0; divided by its maximum, half the root of the number of dimensions, it stays
 // within -1 .. 1. After K. Perlin, "Improving Noise" (2002).
+// Techniques: shade.noise, water.noise-surface
 
 /// 32 well-mixed bits for a point of the integer lattice.
 [[nodiscard]] inline std::uint32_t lattice_hash(int x, int y, std::uint32_t seed) {

@@ -19,6 +19,7 @@ namespace limn {
 // Vectors and matrices are GLM's. SI units, radians, right-handed, +y up; matrices multiply column
 // vectors and are named right to left: clip_from_world * world_from_mesh. Depth is reversed: 1 at
 // the near plane, 0 at infinity.
+// Techniques: anim.quat-to-matrix, shade.vector-ops
 
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;

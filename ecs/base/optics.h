@@ -13,6 +13,7 @@ namespace limn {
 // render/shaders/lib/optics.glsl. `to_light` points from the surface toward the light; `eta` is the
 // refractive index on that side over the index on the far side (air to water: 1 / 1.33); `index`
 // is the inverse ratio (1.33).
+// Techniques: water.fresnel, water.fresnel-approx, water.snell-vectors
 
 /// Direction of the reflected ray, R = 2 (N.L) N - L.
 [[nodiscard]] inline Vec3 reflect_ray(const Vec3& normal, const Vec3& to_light) {

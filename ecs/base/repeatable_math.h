@@ -12,6 +12,7 @@ namespace limn {
 // GPUs; an algorithm whose every step depends on the previous one, such as a furrow that ends where
 // it meets another, then takes another way on each. The same functions in GLSL:
 // render/shaders/lib/repeatable.glsl.
+// Techniques: wrinkle.furrow.trace
 
 /// 1 / x to a relative 3e-7, for |x| from 1e-30 to 1e30 (Newton's iteration).
 [[nodiscard]] inline float repeatable_reciprocal(float x) {

@@ -18,6 +18,8 @@ namespace limn {
 // After K. Shoemake, "Animating Rotation with Quaternion Curves" (1985) and "Quaternion Calculus
 // and Fast Animation" (1987), as presented in chapter 7 of A. Watt, F. Policarpo, "Advanced Game
 // Development with Programmable Graphics Hardware" (2005).
+// Techniques: anim.quat-algebra, anim.quat-axis-angle, anim.quat-from-matrix, anim.quat-lerp,
+//     anim.quat-rotate, anim.shortest-arc, anim.slerp, anim.squad
 
 /// q / |q|, or the identity if q is zero, tiny or not finite.
 [[nodiscard]] inline Quat normalize_or_identity(const Quat& q) {

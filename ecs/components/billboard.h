@@ -16,6 +16,7 @@ namespace limn {
 // Of the look it uses the image, frames per second, size (its height), colors, color_function,
 // emission, lit, cover, softness and fades. Colors are those at color_function, not over a life:
 // (1 - f) first + f last.
+// Techniques: engine.billboard, engine.billboard-composite
 
 /// How the quad is turned; it lies in its local xy plane, with +y up in the image.
 enum class BillboardAlignment : std::uint8_t {

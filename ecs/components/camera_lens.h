@@ -6,6 +6,8 @@
 
 namespace limn {
 
+// Techniques: post.circle-of-confusion
+
 /// How the depth-of-field blur is computed.
 enum class FocusMethod : std::uint8_t {
     Gather,  ///< gathers near and far fields separately, with aperture-shaped kernels

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: anim.camera-upright
+
 namespace limn {
 
 namespace {

@@ -5,6 +5,8 @@
 
 namespace limn {
 
+// Techniques: engine.obfuscating-point
+
 /// Dazzles whoever looks toward the entity: the whole image goes to a color, as far as the entity
 /// is in sight and near the middle of the view (engine.obfuscating-point). With a
 /// DirectionalLight, toward where that comes from.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: face.ffd, face.pull, face.waters-muscle
+
 namespace limn {
 
 namespace {

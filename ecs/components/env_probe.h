@@ -5,6 +5,8 @@
 
 namespace limn {
 
+// Techniques: env.update-policy
+
 /// When a probe is captured again (env.update-policy).
 enum class ProbeUpdate : std::uint8_t {
     Once,      ///< only at the start

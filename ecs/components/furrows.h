@@ -18,6 +18,7 @@ namespace limn {
 // Skin Simulation by Generating Wrinkles along Vector Fields", 2001). This header has the author's
 // settings and the flattened surface that furrows are drawn on. Field 0 is the first field (F1),
 // field 1 the second (F2); a vector's magnitude, 0 .. 2, is how pronounced furrows are.
+// Techniques: wrinkle.furrow.functions
 
 /// Furrow parameters as linear functions of the local field magnitude x; k is FurrowStyle::scale.
 /// Pairs are {value at x = 0, increase with x}.

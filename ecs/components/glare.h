@@ -5,6 +5,8 @@
 
 namespace limn {
 
+// Techniques: post.glare-heat-haze
+
 /// Resource: star-shaped streaks around highlights, as from diffraction at the straight edges of
 /// aperture blades. None if absent or of strength 0.
 struct Glare {

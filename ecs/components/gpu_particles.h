@@ -18,7 +18,9 @@ namespace limn {
 // when how many are born and what moves them, and write it down, step by step; the renderer lets
 // the GPU do it (render/particles/gpu_particle_pools.h), whenever it draws, for all steps that it
 // has not done yet. Everyone alive was born in one of the steps that are kept: so the GPU may begin
-// anew at any time.
+// anew at any time. Techniques: particle.circular-list, particle.gpu-init, particle.gpu-state,
+// particle.gpu-update,
+//     particle.gpu-update-mrt, particle.million
 
 /// What moves all particles of an emitter alike in a step.
 struct ParticleStep {

@@ -8,6 +8,8 @@
 
 namespace limn {
 
+// Techniques: water.noise-surface
+
 /// Heights above the entity's local plane y = 0 at the points of a square grid about its origin, at
 /// the current time. Point (i, j) has index j * points + i. With a MeshInstance: its vertices take
 /// the height and normal of the nearest point.

@@ -5,6 +5,9 @@
 
 namespace limn {
 
+// Techniques: light.height-fog
+// Source of light.height-fog: Quílez, "Better fog", 2010; Henyey and Greenstein 1941
+
 /// Resource: fog that thins with height, extinction = density exp(-(y - base) / scale_height), and
 /// scatters what it takes. It lies in front of surfaces, water, glass, particles and the sky.
 struct HeightFog {

@@ -8,6 +8,8 @@
 
 namespace limn {
 
+// Techniques: engine.lens-flare
+
 /// How the light that a lens reflects within itself is drawn.
 enum class LensFlareMode : std::uint8_t {
     Ghosts,      ///< images of the aperture, where the surfaces of a real lens reflect them

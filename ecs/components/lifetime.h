@@ -4,6 +4,8 @@
 
 namespace limn {
 
+// Techniques: engine.explosion
+
 /// The entity is destroyed with its descendants when its time is up: effects that are spawned and
 /// not thought of again.
 struct Lifetime {

@@ -9,6 +9,7 @@ namespace limn {
 // Lights are placed by the WorldTransform of their entity; spot and directional lights point along
 // its local -z (as in KHR_lights_punctual). Color is linear Rec. 709; intensity multiplies it:
 // candela [lm/sr] for point and spot lights, lux [lm/m^2] for directional ones.
+// Techniques: engine.light-object, light.directional, light.point
 
 /// Fall-off with the distance d from the light; every option reaches 0 at `radius`, unless that is
 /// 0.

@@ -5,6 +5,8 @@
 
 namespace limn {
 
+// Techniques: caustic.reflection-plane
+
 /// With a MeshInstance: reflective caustics on a plane, like those of a ring on a table, lit by the
 /// sun or, if there is none, the first lamp. The mesh is drawn again with its vertices moved to
 /// where they reflect the light; a finer mesh gives a finer pattern.

@@ -10,6 +10,7 @@ namespace limn {
 
 // Wind-driven open water: spectral waves on periodic patches. The artist's settings, the fields
 // that the systems compute from them each step, and the persistent foam.
+// Techniques: water.ocean-spectrum
 
 /// Energy spectrum over wavelength.
 enum class OceanSpectrum : std::uint8_t {

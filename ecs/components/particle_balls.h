@@ -4,6 +4,8 @@
 
 namespace limn {
 
+// Techniques: particle.interparticle
+
 /// Particles of the emitter are balls of equal mass that bump into each other
 /// (particle.interparticle), not into those of other emitters. On the CPU only. In a crowd each
 /// meets 64 others at most.

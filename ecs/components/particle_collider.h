@@ -7,6 +7,9 @@
 
 namespace limn {
 
+// Techniques: particle.depth-collision
+// Source of particle.depth-collision: depth-buffer collision of GPU particles, as in most engines
+
 /// What particles meet, in the entity's local space; they see nothing else of a level.
 enum class ColliderShape : std::uint8_t {
     Plane,        ///< solid below the local xz plane, without end

@@ -10,6 +10,8 @@
 
 namespace limn {
 
+// Techniques: engine.projectile-instances, particle.mesh-particles
+
 enum class ParticleMeshFacing : std::uint8_t {
     Tumble,    ///< turned at random, about an axis of its own
     Velocity,  ///< its -z axis along the flight, about which it spins

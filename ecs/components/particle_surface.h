@@ -9,6 +9,8 @@
 
 namespace limn {
 
+// Techniques: engine.explode, particle.mesh-volume
+
 enum class BirthSurface : std::uint8_t {
     Mesh,    ///< a mesh as it is deformed and moved in this step, even by area
     Path,    ///< a path of the level in the emitter's space, even by arc length

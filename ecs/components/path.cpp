@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: anim.arclength, anim.bezier-edit, anim.bezier-join, anim.bezier-track,
+//     anim.boehm-quadrangle, anim.parabolic-blend
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+// Techniques: engine.periodic
+
 namespace limn {
 namespace {
 

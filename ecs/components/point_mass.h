@@ -10,6 +10,7 @@ namespace limn {
 // Bodies idealized as points that have a mass: cannonballs, rockets (particle.projectile,
 // particle.variable-mass). Each is an entity that gravity, force fields and what stands beside it
 // here move, and that carries trails, emitters and lights with it.
+// Techniques: particle.projectile, particle.variable-mass
 
 /// Moves its entity, which must not have a parent. With a ParticleCollision it meets what particles
 /// meet, but water; "kill" destroys it with its children, and "stick" ends its flight.

@@ -13,6 +13,7 @@ namespace limn {
 //     encoding, dither  for 8 bits
 //
 // Statistics and adaptation stay on the GPU and cost nothing while unused.
+// Techniques: hdr.pipeline
 
 /// How the exposure is determined.
 enum class Metering : std::uint8_t {

@@ -7,6 +7,8 @@
 
 namespace limn {
 
+// Techniques: engine.light-loops, fakephong.blinn-axis, light.gouraud, light.infinite-approx
+
 /// Lighting algorithm. All give the same image at different cost (`limn bench lights`). Blended
 /// surfaces always use clustered lighting.
 enum class LightMethod : std::uint8_t {

@@ -9,6 +9,7 @@ namespace limn {
 
 // Effects that refract light on its way to the camera, so that the image behind them is distorted.
 // Objects in front of them are unaffected.
+// Techniques: post.scene-ripple
 
 /// A shock wave: a shell that expands about the entity's position. `update_ripples` advances its
 /// age and removes it when it has ended.

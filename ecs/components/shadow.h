@@ -5,6 +5,8 @@
 
 namespace limn {
 
+// Techniques: shadow.selection
+
 /// Shadowing technique of a light (shadow.selection).
 enum class ShadowMethod : std::uint8_t {
     Auto,         ///< volumes if the light has a ShadowVolume, else maps

@@ -5,6 +5,8 @@
 
 namespace limn {
 
+// Techniques: shadow.extrusion-distance
+
 /// Geometry of a light's shadow volumes.
 enum class VolumeKind : std::uint8_t {
     PerEdge,  ///< one silhouette volume per caster; if any mesh is not closed, the light uses a map

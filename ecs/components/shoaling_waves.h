@@ -8,6 +8,8 @@
 
 namespace limn {
 
+// Techniques: water.shallow-refraction
+
 /// Waves of one period that run over a round shoal, as in a ripple tank: over it they are shorter
 /// and slower, and their crests turn toward it (water.shallow-refraction). Fills a HeightField.
 struct ShoalingWaves {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: char.clip-layout
+
 namespace limn {
 
 namespace {

@@ -14,6 +14,7 @@ namespace limn {
 // Skeletal animation: a joint hierarchy, clips that animate it, and skinned meshes. A character is
 // one entity; its joints are array elements, not entities. A mesh, light or camera is attached to a
 // joint by JointAttachment. Skeletons, clips and skins are stored in the Assets resource.
+// Techniques: char.clip-layout
 
 struct SkeletonId {
     std::uint32_t index = 0xffffffffu;

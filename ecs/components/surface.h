@@ -15,6 +15,7 @@ namespace limn {
 
 // Meshes, images and materials. They are stored in the Assets resource and referenced by index.
 // Loaders and generators append to it; the renderer uploads new entries. Indices never change.
+// Techniques: char.skin-shade, env.control-map, shade.inflate, skin.melanin-blood
 
 /// Index into Assets; kNoAsset = none.
 inline constexpr std::uint32_t kNoAsset = 0xffffffffu;

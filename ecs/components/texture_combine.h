@@ -4,6 +4,8 @@
 
 namespace limn {
 
+// Techniques: tex.combine
+
 /// Two scrolling copies of a water texture under a grating, rendered into an image before each
 /// frame (tex.combine); materials that use that image show it. Textures repeat; the grating covers
 /// the water where its alpha is 0.

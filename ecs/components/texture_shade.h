@@ -4,6 +4,8 @@
 
 namespace limn {
 
+// Techniques: wrinkle.furrow.texture-space-shading
+
 /// Lights an image texel by texel before each frame (wrinkle.furrow.texture-space-shading), so that
 /// lighting does not depend on the resolution of the screen: unlit materials that use `target` show
 /// it. Light and view are directional and fixed to the camera, as over an orthographic view.

@@ -7,6 +7,8 @@
 
 namespace limn {
 
+// Techniques: water.geometric-texture-split, water.scrolling-normal-map
+
 inline constexpr int kMaxDetailLayers = 4;
 inline constexpr int kMaxGeometricWaves = 4;
 inline constexpr int kMaxTextureWaves = 16;

@@ -7,6 +7,8 @@
 
 namespace limn {
 
+// Techniques: water.fresnel-approx, water.reflection-refraction-maps, water.refraction-map
+
 /// Fresnel reflectance of the surface seen from above (ecs/base/optics.h). From below, with total
 /// internal reflection, it is always exact.
 enum class WaterFresnel : std::uint8_t {

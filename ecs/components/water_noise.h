@@ -8,6 +8,8 @@
 
 namespace limn {
 
+// Techniques: water.noise-surface
+
 /// Animated gradient noise as a standalone surface: the one that lights the book's caustics pool
 /// (water.noise-surface). Fills a HeightField.
 struct NoiseSurface {

@@ -10,6 +10,7 @@ namespace limn {
 
 // Spray emission. Each step the systems write the start positions and velocities of new drops;
 // whoever moves and draws drops reads them here.
+// Techniques: water.crest-spray, water.impact-spray
 
 /// With a Water that has WaterWaves or an Ocean: emits drops from breaking crests.
 struct SpraySource {

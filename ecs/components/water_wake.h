@@ -7,6 +7,8 @@
 
 namespace limn {
 
+// Techniques: water.wake
+
 /// Leaves a wake where its entity moves through water that has WaterWaves: a ring of waves every
 /// `spacing` of distance traveled.
 struct WakeEmitter {

@@ -31,10 +31,10 @@ LIMN_FIELDS(WaterWall) {
 /// A wall in the local space of a body of water.
 struct PlacedWall {
     WallShape shape = WallShape::Box;
-    Affine shape_from_water;  ///< the shape fills -1 .. 1
-    Vec2 center = {0, 0};     ///< in the water's local space, x and z [m]
-    Vec2 reach = {0, 0};      ///< half extents along the water's x and z [m]
-    float volume = 0;         ///< between the rest surface and the bottom [m^3]
+    Affine shape_from_water;    ///< the shape fills -1 .. 1
+    Vec2 center = {0, 0};       ///< in the water's local space, x and z [m]
+    Vec2 half_extent = {0, 0};  ///< half extents along the water's x and z [m]
+    float volume = 0;           ///< between the rest surface and the bottom [m^3]
 };
 
 template <typename Visitor>
@@ -47,7 +47,9 @@ void visit_fields(PlacedWall& wall, Visitor&& visit) {
     visit("z", wall.shape_from_water.row[2], {.doc = "row z of that matrix"});
     visit(
         "center", wall.center, {.doc = "center, x and z in the water's local space", .unit = "m"});
-    visit("reach", wall.reach, {.doc = "half extents along the water's x and z", .unit = "m"});
+    visit(
+        "half_extent", wall.half_extent,
+        {.doc = "half extents along the water's x and z", .unit = "m"});
     visit("volume", wall.volume, {.doc = "submerged volume", .unit = "m^3"});
 }
 

@@ -11,6 +11,8 @@ namespace limn {
 // Closed-form waves on a body of water: a few, set by hand or at random. Crests are straight lines
 // or circles; apart from orbital motion the water itself does not move. Directions are angles from
 // the water's +x toward its +z.
+// Techniques: water.gerstner, water.radial-packet, water.radial-wave, water.travelling-wave,
+//     water.trochoid, water.wave-sum, water.wind-crest
 
 /// An unbounded traveling wave with straight crests (water.travelling-wave); with `sharpness` a
 /// trochoid (water.gerstner), with `lean` tilted forward by the wind (water.wind-crest).

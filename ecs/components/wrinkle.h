@@ -16,6 +16,12 @@ namespace limn {
 // it may wrinkle, and across which direction (MeshData::regions); the wrinkle map of its material
 // has the shape of the wrinkles; a WrinkleSurface sets how compression raises them and how they
 // are drawn.
+// Techniques: face.wrinkle-options, wrinkle.fold-light, wrinkle.natural-width, wrinkle.resting,
+//     wrinkle.smoothing
+// Source of wrinkle.smoothing: Taubin 1995
+// Source of wrinkle.resting: Takema et al. 1997; Akazaki et al. 2002
+// Source of wrinkle.natural-width: Wagner 1929; Steigmann 1990
+// Source of wrinkle.fold-light: Oren and Nayar 1994; Jimenez et al. 2016
 
 /// How wrinkles are drawn.
 enum class WrinkleMethod : std::uint8_t {

@@ -9,6 +9,9 @@
 
 namespace limn {
 
+// Techniques: wrinkle.comparison
+// Source of wrinkle.comparison: a split screen, as of renderers that are compared
+
 inline constexpr std::size_t kMaxWrinkleColumns = 8;
 
 /// Resource: the image is split into columns of equal width between `left` and `right`, each with

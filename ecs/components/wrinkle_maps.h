@@ -13,6 +13,8 @@ namespace limn {
 // extremes, stretched skin (surprise) and compressed skin (a sour lemon); masks divide it into
 // regions, and the weight of each region blends in one map or the other.
 // After Oat, "Animated Wrinkle Maps", 2007.
+// Techniques: wrinkle.maps.animation, wrinkle.maps.masks, wrinkle.maps.texture-set,
+//     wrinkle.maps.weights
 
 /// How far each region shows a wrinkle map: -1 the stretched one, 0 none, 1 the compressed one.
 struct WrinkleWeights {

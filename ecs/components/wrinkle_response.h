@@ -12,6 +12,7 @@ namespace limn {
 
 // Wrinkle maps whose weights are driven by the skin (skin.pipeline): compression across the
 // wrinkles of a region shows the compressed map there, compression along them the stretched one.
+// Techniques: skin.pipeline
 
 /// On an entity with WrinkleMaps and a deformed mesh whose regions have directions.
 struct WrinkleResponse {

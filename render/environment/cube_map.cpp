@@ -5,6 +5,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+// Techniques: env.cube-addressing
+
 namespace limn {
 namespace {
 

@@ -12,6 +12,8 @@
 #include <bit>
 #include <vector>
 
+// Techniques: env.capture
+
 namespace limn {
 namespace {
 

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+// Techniques: env.angular-map
+
 namespace limn {
 namespace {
 

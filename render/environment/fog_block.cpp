@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: light.height-fog
+
 namespace limn {
 namespace {
 

@@ -5,6 +5,8 @@
 #include "render/view_block.h"
 #include "render/water/water_surfaces.h"
 
+// Techniques: light.height-fog
+
 namespace limn {
 namespace {
 

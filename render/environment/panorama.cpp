@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+// Techniques: env.angular-map, env.panorama
+
 namespace limn {
 namespace {
 

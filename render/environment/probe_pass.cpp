@@ -8,6 +8,8 @@
 #include "render/light/lighting.h"
 #include "render/render_frame.h"
 
+// Techniques: env.capture
+
 namespace limn {
 namespace {
 

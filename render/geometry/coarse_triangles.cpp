@@ -25,7 +25,7 @@ constexpr float kRatio = 0.4f;     // triangles wanted of a level, of those of t
 constexpr float kFineRatios[] = {0.65f, 0.62f};
 constexpr float kWorthwhile = 0.75f;
 // Of more triangles than this in pieces of fewer, such as points and lines, nothing is simplified:
-// there is little to collapse, and measuring distances takes some 20 s per million triangles.
+// there is little to collapse, and measuring distances takes seconds per million triangles.
 constexpr std::size_t kMaxLooseTriangles = 200'000;
 constexpr std::size_t kMinPiece = 12;
 
@@ -58,11 +58,18 @@ float distance_from(const MeshData& mesh, const Indices& vertices, const Indices
         return INFINITY;
     }
     const TriangleGrid grid(mesh.positions, coarser);
-    float largest = 0;
-    for (const std::uint32_t index : vertices) {
-        largest = std::max(largest, grid.distance(mesh.positions[index], largest));
-    }
-    return largest;
+    constexpr std::size_t kJobVertices = 4096;
+    std::vector<float> largest(vertices.size() / kJobVertices + 1);
+    parallel_for(largest.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t job = begin; job < end; ++job) {
+            const std::size_t last = std::min(vertices.size(), (job + 1) * kJobVertices);
+            for (std::size_t i = job * kJobVertices; i < last; ++i) {
+                const Vec3& p = mesh.positions[vertices[i]];
+                largest[job] = std::max(largest[job], grid.distance(p, largest[job]));
+            }
+        }
+    });
+    return *std::max_element(largest.begin(), largest.end());
 }
 
 /// `finer` with edges collapsed, as far as that keeps the surface closed.

@@ -16,6 +16,7 @@ namespace limn {
 //
 // The kernel works on structure-of-arrays blocks with Highway; tests compare it with the scalar
 // version.
+// Techniques: fakephong.pipeline
 
 inline constexpr int kFrustumPlanes = 5;
 

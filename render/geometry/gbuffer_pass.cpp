@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: deferred.gbuffer
+
 namespace limn {
 namespace {
 

@@ -15,6 +15,8 @@
 #include <cstring>
 #include <tuple>
 
+// Techniques: engine.visibility-sets, shade.batching, shade.pipeline-model
+
 namespace limn {
 namespace {
 

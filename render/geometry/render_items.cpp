@@ -13,6 +13,8 @@
 #include <atomic>
 #include <cmath>
 
+// Techniques: engine.projectile-instances, particle.mesh-particles, shade.inflate
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <utility>
 
 namespace limn {
@@ -24,6 +25,24 @@ void for_cells(const IVec3& low, const IVec3& high, Visit visit) {
         for (int y = low.y; y <= high.y; ++y) {
             for (int x = low.x; x <= high.x; ++x) {
                 visit(IVec3(x, y, z));
+            }
+        }
+    }
+}
+
+/// The cells of 0 .. cells - 1 whose largest distance from `center` along an axis is `ring`.
+template <typename Visit>
+void for_ring(const IVec3& center, int ring, const IVec3& cells, Visit visit) {
+    const IVec3 low = glm::max(center - ring, IVec3(0));
+    const IVec3 high = glm::min(center + ring, cells - 1);
+    for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) {
+            const bool whole_row = std::abs(z - center.z) == ring || std::abs(y - center.y) == ring;
+            const int step = whole_row || ring == 0 ? 1 : 2 * ring;
+            for (int x = whole_row ? low.x : center.x - ring; x <= high.x; x += step) {
+                if (x >= 0) {
+                    visit(IVec3(x, y, z));
+                }
             }
         }
     }
@@ -72,10 +91,7 @@ TriangleGrid::TriangleGrid(std::span<const Vec3> positions, std::span<const std:
         const Vec3& a = positions[indices[3 * t]];
         const Vec3& b = positions[indices[3 * t + 1]];
         const Vec3& c = positions[indices[3 * t + 2]];
-        const Vec3 center = (a + b + c) / 3.0f;
-        const float radius = std::max(
-            {glm::distance(center, a), glm::distance(center, b), glm::distance(center, c)});
-        balls_.push_back({center, 1.0001f * radius});  // against rounding
+        boxes_.push_back({glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)});
     }
     first_.resize(number_of(cells_ - 1) + 2);
     const auto for_cells_of = [&](std::size_t t, auto visit) {
@@ -106,23 +122,31 @@ std::size_t TriangleGrid::number_of(const IVec3& cell) const {
 }
 
 float TriangleGrid::distance(const Vec3& p, float enough) const {
-    const IVec3 middle = cell_of(p);
+    const IVec3 center = cell_of(p);
     const int rings = std::max({cells_.x, cells_.y, cells_.z});
-    // A point outside of the grid is farther from the cells beyond a ring than one inside.
+    // How far at least the cells beyond a ring are from p, where there are any on that side.
+    const auto beyond = [&](int ring) {
+        float least = INFINITY;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float at = (p[axis] - low_[axis]) / side_;
+            const int low = center[axis] - ring;
+            const int high = center[axis] + ring + 1;
+            least = low > 0 ? std::min(least, at - static_cast<float>(low)) : least;
+            least = high < cells_[axis] ? std::min(least, static_cast<float>(high) - at) : least;
+        }
+        return (least - 0.001f) * side_;  // against rounding
+    };
     float nearest = INFINITY;
     for (int ring = 0; ring <= rings; ++ring) {
-        const IVec3 low = glm::max(middle - ring, IVec3(0));
-        const IVec3 high = glm::min(middle + ring, cells_ - 1);
-        for_cells(low, high, [&](const IVec3& cell) {
-            const IVec3 away = glm::abs(cell - middle);
-            if (std::max({away.x, away.y, away.z}) != ring || nearest <= enough) {
+        for_ring(center, ring, cells_, [&](const IVec3& cell) {
+            if (nearest <= enough) {
                 return;
             }
             const std::size_t number = number_of(cell);
             for (std::uint32_t i = first_[number]; i < first_[number + 1]; ++i) {
-                const Ball& ball = balls_[triangles_[i]];
-                const Vec3 offset = p - ball.center;
-                if (glm::dot(offset, offset) >= square(nearest + ball.radius)) {
+                const Box& box = boxes_[triangles_[i]];
+                const Vec3 offset = p - glm::clamp(p, box.low, box.high);
+                if (glm::dot(offset, offset) >= nearest * nearest) {
                     continue;
                 }
                 const std::uint32_t* corner = &indices_[std::size_t{3} * triangles_[i]];
@@ -132,7 +156,7 @@ float TriangleGrid::distance(const Vec3& p, float enough) const {
                         p, positions_[corner[0]], positions_[corner[1]], positions_[corner[2]]));
             }
         });
-        if (nearest <= std::max(enough, static_cast<float>(ring) * side_)) {
+        if (nearest <= std::max(enough, beyond(ring))) {
             break;
         }
     }

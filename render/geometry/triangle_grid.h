@@ -28,9 +28,9 @@ class TriangleGrid {
     [[nodiscard]] IVec3 cell_of(const Vec3& p) const;
     [[nodiscard]] std::size_t number_of(const IVec3& cell) const;
 
-    struct Ball {
-        Vec3 center;
-        float radius;
+    struct Box {
+        Vec3 low;
+        Vec3 high;
     };
 
     std::span<const Vec3> positions_;
@@ -40,7 +40,7 @@ class TriangleGrid {
     IVec3 cells_ = {1, 1, 1};               ///< along each axis
     std::vector<std::uint32_t> first_;      ///< by cell, and the end
     std::vector<std::uint32_t> triangles_;  ///< of one cell after the other
-    std::vector<Ball> balls_;               ///< around each triangle
+    std::vector<Box> boxes_;                ///< around each triangle
 };
 
 }  // namespace limn

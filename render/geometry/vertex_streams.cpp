@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+// Techniques: shade.parameters, shade.passthrough-cube
+
 namespace limn {
 namespace {
 

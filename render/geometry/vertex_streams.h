@@ -13,6 +13,7 @@ namespace limn {
 // The vertex attributes of meshes as named streams, a buffer each: a pass fetches what its shader
 // declares, and what no mesh has takes no memory. A further stream is one row of the table in
 // vertex_streams.cpp, its packing in mesh_pool.cpp and its input in lib/mesh_vertex.glsl.
+// Techniques: shade.pipeline-model
 
 enum class VertexStream : std::uint8_t {
     Position,          ///< Vec3 [m]

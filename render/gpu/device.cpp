@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+// Techniques: shadow.depth-bounds
+
 namespace limn::gpu {
 
 Result<std::unique_ptr<Device>> Device::from_current_context(std::optional<Profile> profile) {

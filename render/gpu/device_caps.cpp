@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+// Techniques: shade.profile
+
 namespace limn::gpu {
 namespace {
 

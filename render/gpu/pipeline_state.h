@@ -8,6 +8,7 @@ namespace limn::gpu {
 
 // The fixed-function state of a draw, as one plain value. Device::apply() sets only what differs
 // from the current state. The default draws opaque triangles with reversed depth.
+// Techniques: shade.pipeline-model
 
 struct DepthState {
     bool test = true;

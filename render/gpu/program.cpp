@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: shade.parameters, shade.program-lifecycle
+
 namespace limn::gpu {
 namespace {
 

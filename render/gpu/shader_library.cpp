@@ -14,6 +14,8 @@
 #include <fstream>
 #include <map>
 
+// Techniques: shade.parameters, shade.profile, shade.program-lifecycle
+
 namespace limn::gpu {
 
 struct ShaderLibrary::Entry {

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: engine.obfuscating-point
+
 namespace limn {
 namespace {
 

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+// Techniques: particle.depth-of-field, post.circle-of-confusion, post.dof-mip
+
 namespace limn {
 namespace {
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: post.glare-heat-haze
+
 namespace limn {
 namespace {
 

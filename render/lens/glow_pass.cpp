@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: post.glow
+
 namespace limn {
 namespace {
 

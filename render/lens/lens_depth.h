@@ -4,6 +4,8 @@
 
 namespace limn {
 
+// Techniques: particle.depth-of-field
+
 /// Depth of what the lens focuses on in each pixel: that of the view, but where particles cover
 /// enough of the pixel, theirs. Published by ParticleFrontEffect, where there are such.
 struct LensDepth {

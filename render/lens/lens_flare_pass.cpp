@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: engine.lens-flare
+
 namespace limn {
 namespace {
 

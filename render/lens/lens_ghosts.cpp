@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+// Techniques: engine.lens-flare
+
 namespace limn {
 namespace {
 

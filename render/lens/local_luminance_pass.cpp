@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string>
 
+// Techniques: hdr.dodge-burn
+
 namespace limn {
 namespace {
 

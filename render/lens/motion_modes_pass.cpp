@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: post.motion-blur-accumulation, post.motion-blur-camera-psf,
+//     post.motion-blur-optic-flow, post.motion-blur-stretch
+
 namespace limn {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+// Techniques: post.separable-blur
+
 namespace limn {
 namespace {
 

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cstdint>
 
+// Techniques: post.speed-lines
+
 namespace limn {
 namespace {
 

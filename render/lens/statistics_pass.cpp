@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+// Techniques: hdr.defog, hdr.log-average
+
 namespace limn {
 namespace {
 

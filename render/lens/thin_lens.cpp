@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: post.circle-of-confusion
+
 namespace limn {
 namespace {
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+// Techniques: hdr.pipeline
+
 namespace limn {
 namespace {
 

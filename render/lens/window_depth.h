@@ -5,6 +5,7 @@ namespace limn {
 // Converts between distance along the view axis and depth buffer values
 // (post.linear-to-window-depth). Ours are reversed with an infinite far plane: near / e; the finite
 // ones take `far`. Points at or behind the eye map to the nearest depth.
+// Techniques: post.linear-to-window-depth
 
 /// Conventional depth: 0 at the near plane, 1 at the far one.
 [[nodiscard]] inline double window_depth(double eye_distance, double near, double far) {

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 
+// Techniques: caustic.projected-vertices
+
 namespace limn {
 namespace {
 

@@ -19,6 +19,8 @@
 #include <cstdint>
 #include <vector>
 
+// Techniques: fakephong.blinn-axis
+
 namespace limn {
 namespace {
 

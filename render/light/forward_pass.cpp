@@ -13,6 +13,9 @@
 #include <bit>
 #include <utility>
 
+// Techniques: engine.depth-first, engine.light-loops, fakephong.pipeline, fakephong.texmap,
+//     light.structure-light-major, light.structure-object-major, shade.z-prepass
+
 namespace limn {
 namespace {
 

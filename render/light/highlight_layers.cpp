@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+// Techniques: fakephong.blinn-texture
+
 namespace limn {
 
 float highlight_exponent(const Material& material) {

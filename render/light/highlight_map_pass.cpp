@@ -17,6 +17,8 @@
 #include <iterator>
 #include <utility>
 
+// Techniques: fakephong.blinn-texture, fakephong.envmap-bake
+
 namespace limn {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include <array>
 
+// Techniques: deferred.light-volume, light.volume-stencil
+
 namespace limn {
 namespace {
 

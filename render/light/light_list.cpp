@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: engine.light-object, engine.periodic, light.directional, light.point, shade.noise
+
 namespace limn {
 namespace {
 

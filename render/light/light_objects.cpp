@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+// Techniques: engine.visibility-sets
+
 namespace limn {
 namespace {
 

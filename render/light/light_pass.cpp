@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <bit>
 
+// Techniques: deferred.light-pass, light.multi, light.unified
+
 namespace limn {
 namespace {
 

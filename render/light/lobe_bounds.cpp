@@ -6,6 +6,8 @@
 
 #include <glm/common.hpp>
 
+// Techniques: deferred.light-pass
+
 namespace limn {
 namespace {
 

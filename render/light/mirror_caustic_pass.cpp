@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: caustic.reflection-plane
+
 namespace limn {
 namespace {
 

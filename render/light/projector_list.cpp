@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cstring>
 
+// Techniques: shadow.projective-matrix, shadow.projector
+
 namespace limn {
 namespace {
 

@@ -5,6 +5,8 @@
 #include "render/light/lighting.h"
 #include "render/settings.h"
 
+// Techniques: fakephong.metric-diffimage
+
 namespace limn {
 
 bool ShadingComparisonEffect::is_used(const FrameData& frame) {

@@ -17,6 +17,8 @@
 #include <string_view>
 #include <vector>
 
+// Techniques: fakephong.metric-scanline, wrinkle.comparison
+
 namespace limn {
 namespace {
 

@@ -10,6 +10,7 @@ namespace limn {
 // The methods of shading, as shaders. A method is a value of ShadingRate, a row here, and what it
 // does once per vertex or triangle and what a pixel makes of that: a few lines each, over
 // lib/facet.glsl, lib/facet_pixel.glsl, lib/map_vertex.glsl and lib/map_pixel.glsl.
+// Techniques: fakephong.pipeline
 
 /// Textures that take the place of a part of the lighting (highlight_map_pass.h).
 enum class HighlightMap : std::uint8_t {

@@ -13,6 +13,9 @@
 
 #include <span>
 
+// Techniques: skin.diffusion
+// Source of skin.diffusion: Christensen and Burley 2015
+
 namespace limn {
 namespace {
 

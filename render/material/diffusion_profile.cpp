@@ -7,6 +7,8 @@
 #include <functional>
 #include <iterator>
 
+// Techniques: skin.diffusion
+
 namespace limn {
 namespace {
 

@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <vector>
 
+// Techniques: wrinkle.furrow.trace
+
 namespace limn {
 namespace {
 

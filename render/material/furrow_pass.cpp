@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.furrow.view-modes
+
 namespace limn {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+// Techniques: hair.shading
+
 namespace limn {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+// Techniques: skin.detail
+
 namespace limn {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+// Techniques: shade.batching
+
 namespace limn {
 namespace {
 

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+// Techniques: char.skin-shade
+
 namespace limn {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
+// Techniques: skin.blinn, skin.melanin-blood
+
 namespace limn {
 
 Vec3 skin_tone(const Material& material) {

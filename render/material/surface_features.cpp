@@ -2,6 +2,8 @@
 
 #include "render/variant.h"
 
+// Techniques: wrinkle.compression.integration
+
 namespace limn {
 namespace {
 

@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+// Techniques: tex.combine
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,8 @@
 #include "render/material/drawn_image.h"
 #include "render/material/material_pool.h"
 
+// Techniques: wrinkle.furrow.texture-space-shading
+
 namespace limn {
 namespace {
 

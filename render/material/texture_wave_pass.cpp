@@ -3,6 +3,8 @@
 #include "render/fullscreen.h"
 #include "render/water/water_surfaces.h"
 
+// Techniques: water.geometric-texture-split
+
 namespace limn {
 
 void draw_texture_waves(

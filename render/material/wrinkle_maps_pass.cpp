@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: skin.pipeline, wrinkle.maps.composite, wrinkle.maps.texture-set, wrinkle.maps.weights
+
 namespace limn {
 namespace {
 

@@ -17,6 +17,9 @@
 #include <span>
 #include <vector>
 
+// Techniques: wrinkle.compression.fallback, wrinkle.compression.integration,
+//     wrinkle.compression.interp-bump, wrinkle.dimples, wrinkle.smoothing
+
 namespace limn {
 namespace {
 

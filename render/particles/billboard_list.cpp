@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: engine.billboard, engine.billboard-composite, engine.periodic
+
 namespace limn {
 
 void append_billboard(

@@ -14,6 +14,10 @@
 #include <span>
 #include <utility>
 
+// Techniques: particle.circular-list, particle.depth-collision, particle.gpu-init,
+//     particle.gpu-shadow, particle.gpu-state, particle.gpu-update, particle.gpu-update-mrt,
+//     particle.million
+
 namespace limn {
 namespace {
 

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: particle.bitonic-sort, particle.distance-sort, particle.sort-amortised
+
 namespace limn {
 namespace {
 

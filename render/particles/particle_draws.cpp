@@ -20,6 +20,8 @@
 #include <span>
 #include <tuple>
 
+// Techniques: engine.billboard, engine.space-dust, engine.trail, particle.distance-sort
+
 namespace limn {
 namespace {
 

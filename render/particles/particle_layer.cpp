@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+// Techniques: particle.half-resolution
+
 namespace limn {
 namespace {
 

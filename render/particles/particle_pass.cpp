@@ -19,6 +19,10 @@
 #include <cstdint>
 #include <initializer_list>
 
+// Techniques: engine.billboard, engine.trail, particle.depth-of-field, particle.gpu-draw,
+//     particle.half-resolution, particle.light-source-render, particle.lit-in-middle,
+//     particle.motion-vectors, particle.velocity, particle.weighted-blended
+
 namespace limn {
 namespace {
 

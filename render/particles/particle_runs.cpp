@@ -12,6 +12,8 @@
 #include <cmath>
 #include <span>
 
+// Techniques: particle.visibility
+
 namespace limn {
 namespace {
 

@@ -13,6 +13,9 @@
 #include <bit>
 #include <cmath>
 
+// Techniques: particle.gpu-shadow, particle.shadow
+// Source of particle.gpu-shadow: Jansen and Bavoil 2010
+
 namespace limn {
 namespace {
 

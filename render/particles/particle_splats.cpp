@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+// Techniques: particle.gpu-draw, particle.million
+
 namespace limn {
 namespace {
 

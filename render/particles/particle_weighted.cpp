@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: particle.weighted-blended
+// Source of particle.weighted-blended: McGuire and Bavoil 2013
+
 namespace limn {
 namespace {
 

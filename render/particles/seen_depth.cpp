@@ -5,6 +5,8 @@
 #include "render/light/light_list.h"
 #include "render/view_block.h"
 
+// Techniques: particle.depth-collision
+
 namespace limn {
 
 SeenDepth recall_depth(const DepthMemory& memory, const FrameData& frame) {

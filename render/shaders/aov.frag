@@ -1,5 +1,6 @@
 // One attribute of the G-buffer as plain numbers, for files and the buffer viewer.
 //   AOV  0 depth, 1 normal, 2 albedo, 3 velocity, 4 emission, 5 texels of shadow maps: the order of aov_names()
+// Techniques: shadow.map-aliasing
 #version 450
 #include "lib/gbuffer.glsl"
 #include "lib/view.glsl"

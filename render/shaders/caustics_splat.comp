@@ -1,6 +1,7 @@
 // Accumulates the light of a map: one invocation per cell of the ray grid, which is subdivided until its rays land at
 // most half a texel apart, or a whole one above the water; each splats its light to the nearest four texels. Energy is
 // conserved even where light folds over itself, and integer sums do not depend on the order.
+// Techniques: caustic.projected-vertices
 #version 450
 #include "lib/caustic_record.glsl"
 

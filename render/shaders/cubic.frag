@@ -1,5 +1,6 @@
 // The cubic through the light of ten points of a triangle (fakephong.cubic), as the sum of its Lagrange basis in
 // barycentric coordinates.
+// Techniques: fakephong.cubic
 #version 450
 #define FACET_SAMPLES 10
 #include "lib/sampled_light.glsl"

@@ -1,4 +1,5 @@
 // Mixes the image with the color of each point that dazzles, as far as it is in sight (dazzle_pass.h).
+// Techniques: engine.obfuscating-point
 #version 450
 
 layout(binding = 0) uniform sampler2D scene_radiance;

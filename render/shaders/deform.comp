@@ -1,6 +1,7 @@
 // Morphing and skinning of all instances in one dispatch, one invocation per vertex: adds morph targets and applies
 // joints (lib/skinning.glsl), for the current and the previous frame. Definition:
 //   DEFORM_FLAGS  kDeform*
+// Techniques: char.skin-gpu, face.bids-rebuild, wrinkle.compression.face-model
 #version 450
 #include "deform_gpu.h"
 #include "lib/skinning.glsl"

@@ -1,5 +1,6 @@
 // Depth prepass for forward shading. Definitions of lib/material.glsl, and
 //   ALPHA_MASK  holes where the opacity is below the cutoff
+// Techniques: engine.depth-first, shade.z-prepass
 #version 450
 #ifdef ALPHA_MASK
 #define LIT_AT_VERTICES  // colors alone

@@ -1,4 +1,5 @@
 // Depth of field from mip levels: each pixel the mean of a square as wide as its own circle (post.dof-mip).
+// Techniques: post.dof-mip
 #version 450
 #include "lib/depth_of_field.glsl"
 

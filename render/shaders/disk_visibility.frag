@@ -1,4 +1,5 @@
 // The part of each disk in the image that nothing hides, one texel per disk (disk_visibility.h).
+// Techniques: engine.lens-flare
 #version 450
 
 layout(binding = 0) uniform sampler2D scene_depth;

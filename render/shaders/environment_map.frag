@@ -1,4 +1,5 @@
 // Highlights of all lights by one fetch from a sphere map (fakephong.envmap). Definition SINGLE_LIGHTS, which is 1.
+// Techniques: fakephong.envmap
 #version 450
 #include "lib/map_pixel.glsl"
 

@@ -1,5 +1,6 @@
 // Lit at vertices, but highlights by the coordinates of the mirrored view direction in a sphere map that holds all
 // lights (fakephong.envmap). Definition SINGLE_LIGHTS, which is 1.
+// Techniques: fakephong.envmap
 #version 450
 #include "lib/map_vertex.glsl"
 

@@ -1,4 +1,5 @@
 // The normals of corners and midpoints of each triangle (fakephong.normal-interp-variants), lit per pixel.
+// Techniques: fakephong.normal-interp-variants
 #version 450
 #include "lib/facet_point.glsl"
 

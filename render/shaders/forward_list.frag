@@ -1,4 +1,5 @@
 // Forward-shaded surfaces with all lights that reach their object (light.structure-object-major).
+// Techniques: fakephong.phong, light.structure-object-major
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/forward.glsl"

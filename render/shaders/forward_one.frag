@@ -1,4 +1,5 @@
 // Forward-shaded light of a single light, drawn again and added (light.structure-light-major).
+// Techniques: light.structure-light-major
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/forward.glsl"

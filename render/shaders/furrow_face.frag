@@ -1,4 +1,5 @@
 // White faces lit from the eye, or the height of furrows (furrow_pass.h).
+// Techniques: wrinkle.furrow.view-modes
 #version 450
 #include "lib/scene_hides.glsl"
 

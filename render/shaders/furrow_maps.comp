@@ -1,5 +1,6 @@
 // Height with noise and perturbed normals of grown furrows, one invocation per pixel, as in
 // content/bake/furrow_height.cpp.
+// Techniques: wrinkle.furrow.normal-perturb
 #version 450
 #include "lib/furrow.glsl"
 #include "lib/philox.glsl"

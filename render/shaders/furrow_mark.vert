@@ -1,5 +1,6 @@
 // A line with round caps, or a dot, as a quad that faces the camera, from FurrowMark records of three texels
 // (furrow_pass.h).
+// Techniques: wrinkle.furrow.view-modes
 #version 450
 
 layout(binding = 0) uniform samplerBuffer marks;

@@ -1,6 +1,7 @@
 // Grows the furrows of one field per work group, one after another, bit-identical to content/bake/furrow_trace.cpp:
 // the 64 invocations divide the pixels along and around a segment, and search for the next start together. Stops after
 // `budget` segments, and the next dispatch continues: software OpenGL aborts a shader after 65,535 loop iterations.
+// Techniques: wrinkle.furrow.trace
 #version 450
 #include "lib/furrow.glsl"
 #include "lib/philox.glsl"

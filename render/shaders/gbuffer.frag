@@ -2,6 +2,7 @@
 //   ALPHA_MASK  holes where the opacity is below the cutoff
 //   VELOCITY    motion since the previous frame, as a difference of texture coordinates (current - previous)
 //   MATERIAL_RECORDS  also the index of the material
+// Techniques: deferred.gbuffer
 #version 450
 #include "lib/view.glsl"
 #include "lib/material.glsl"

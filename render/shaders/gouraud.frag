@@ -1,5 +1,6 @@
 // Interpolates the light of vertices (light.gouraud). Alpha-masked holes need no test: the depth prepass has left them
 // out.
+// Techniques: light.gouraud
 #version 450
 #define LIT_AT_VERTICES
 #include "lib/material.glsl"

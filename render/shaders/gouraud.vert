@@ -1,4 +1,5 @@
 // Per-vertex lighting by all lights that reach the object (light.gouraud).
+// Techniques: fakephong.gouraud, light.gouraud
 #version 450
 #define UNMASKED  // shadow masks are in screen space
 #include "lib/mesh_vertex.glsl"

@@ -1,6 +1,7 @@
 // Highlights of all lights in sphere maps of the camera's axes (fakephong.envmap-bake): the sum of E (W.L)^(n / 4), W the
 // direction that a texel stands for and n the exponent of Blinn's highlight. All lights count as directional, as they
 // are seen from the middle of a layer's objects. Texels at the edge are 0, as those beyond the disc.
+// Techniques: fakephong.envmap-bake
 #version 450
 #define LINEAR_FADE
 #define SPOT_ANGLES

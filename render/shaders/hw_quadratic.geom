@@ -3,6 +3,7 @@
 //   HW_FIRST_LIGHT  no lights but the first
 //   HW_MIDPOINTS    normals of midpoints are normalized before the mesh is turned and scaled, not after
 // SINGLE_LIGHTS: lib/single_lights.glsl, plays no part.
+// Techniques: fakephong.hw-quadratic
 #version 450
 #include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"

@@ -1,6 +1,7 @@
 // Stage 2 of image statistics: one group reduces the parts, then updates eye adaptation (hdr.pipeline) and the
 // exposure (hdr.key-scale).
 //   HISTOGRAM  also finds the clipped range, and clears the histogram for the next frame
+// Techniques: hdr.dynamic-range, hdr.key-scale
 #version 450
 #include "tone_gpu.h"
 

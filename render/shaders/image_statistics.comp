@@ -2,6 +2,7 @@
 // neighboring pixels. Needs no barrier, which is expensive on a software OpenGL.
 //   SURFACES   pixels without a surface hardly count; yet where there are no others, they do
 //   HISTOGRAM  also counts luminances, in integers, which do not depend on the order
+// Techniques: hdr.dynamic-range, hdr.log-average
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"

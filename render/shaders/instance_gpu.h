@@ -1,5 +1,6 @@
 // One drawn copy of a mesh, read as instance-rate vertex attributes: the draw's base instance picks the first.
 // The previous frame's transform is a second stream of three rows, filled only when velocity is rendered.
+// Techniques: shade.vector-ops
 
 #ifdef __cplusplus
 #pragma once

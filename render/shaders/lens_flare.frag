@@ -1,4 +1,5 @@
 // Light that reaches a pixel through all rims of a lens (lens_flare_pass.h).
+// Techniques: engine.lens-flare
 #version 450
 
 layout(location = 0) in vec2 place;

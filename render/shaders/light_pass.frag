@@ -1,5 +1,6 @@
 // Deferred shading: one pass over the G-buffer, each pixel with the lights of its cluster cell. Definition SCATTERED:
 // diffuse light of Subsurface goes to a target of its own.
+// Techniques: deferred.light-pass, light.multi
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/stored_surface.glsl"

@@ -1,6 +1,7 @@
 // Bounding mesh of a light's volume, of few triangles: a ball around a point light, or with the definition
 //   CONE  a pyramid around a spot's cone
 // Without vertex data: gl_VertexID enumerates the corners of triangles, counterclockwise from outside.
+// Techniques: deferred.light-volume, light.volume-stencil
 #version 450
 #include "lib/view.glsl"
 

@@ -1,6 +1,7 @@
 // One direction of up to four Gaussian blurs of an image's luminance, one per component.
 //   SOURCE  0: radiance; 1: the x component, for all four; 2: each component separately
 //   RADIUS  of the widest [texels]; a constant, as a software OpenGL is slow at indexing weights by a variable
+// Techniques: hdr.dodge-burn
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"

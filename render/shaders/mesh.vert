@@ -6,6 +6,8 @@
 //   WRINKLE_MAP, WRINKLE_VIEW  also the strengths of its wrinkles, or its strain; WRINKLE_FLAT: without interpolation
 //   TRANSMISSION  also the scale of the instance
 //   CLIPPED  only on one side of view.clip_plane
+// Techniques: shade.passthrough-cube, wrinkle.compression.interpolation,
+//     wrinkle.compression.tangent-frame
 #version 450
 #include "lib/material_record.glsl"
 #include "lib/mesh_vertex.glsl"

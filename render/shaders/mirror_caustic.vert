@@ -1,4 +1,5 @@
 // A mirror's vertices, moved to where they reflect the light (lib/caustic_landing.glsl).
+// Techniques: caustic.reflection-plane
 #version 450
 #include "lib/caustic_landing.glsl"
 #include "lib/view.glsl"

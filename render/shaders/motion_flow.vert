@@ -1,5 +1,6 @@
 // The field along which optic-flow motion blur warps, at the vertices. Definitions of lib/mesh_vertex.glsl and
 // lib/previous_vertex.glsl.
+// Techniques: post.motion-blur-optic-flow
 #version 450
 #include "lib/mesh_vertex.glsl"
 #include "lib/motion.glsl"

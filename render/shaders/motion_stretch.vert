@@ -1,6 +1,7 @@
 // Stretches a moving object from its previous to its current position: vertices of leading faces are at the current
 // one, the others at the previous one (post.motion-blur-stretch). Definitions of lib/mesh_vertex.glsl and
 // lib/previous_vertex.glsl.
+// Techniques: post.motion-blur-stretch
 #version 450
 #include "lib/mesh_vertex.glsl"
 #include "lib/previous_vertex.glsl"

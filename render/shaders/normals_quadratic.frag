@@ -1,5 +1,6 @@
 // Normals whose components are quadratic over a triangle, not renormalized (fakephong.normal-interp-variants, after
 // van Overveld and Wyvill, "Phong Normal Interpolation Revisited", 1997).
+// Techniques: fakephong.normal-interp-variants
 #version 450
 #include "lib/facet_normal.glsl"
 

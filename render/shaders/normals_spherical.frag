@@ -1,5 +1,6 @@
 // Normals along great circles (fakephong.normal-interp-variants, after Kuijk and Blake, "Faster Phong Shading via Angular
 // Interpolation", 1989): along the edge from corner 1 to corner 2, then from corner 0 to there.
+// Techniques: fakephong.normal-interp-variants
 #version 450
 #include "lib/facet_normal.glsl"
 

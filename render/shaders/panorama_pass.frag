@@ -1,4 +1,5 @@
 // Converts a panorama to one face of a cube map, with four samples per texel.
+// Techniques: env.panorama
 #version 450
 #include "lib/cube_map.glsl"
 #include "lib/panorama.glsl"

@@ -4,6 +4,7 @@
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
 //   IN_WATER  seen from above, before the water is drawn over it
 //   VEILED  only what is behind the blended surfaces of the view, or only what is not
+// Techniques: particle.light-source-render, particle.weighted-blended
 #version 450
 #if defined(SIX_WAY) && !defined(IMAGES)
 #define IMAGES

@@ -9,6 +9,7 @@
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
 //   IN_WATER  seen from above, before the water is drawn over it
 //   FOCUS  without light, for its depth where it covers enough
+// Techniques: engine.particle-cpu, engine.particle-params, particle.gpu-draw
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
 #define VARYING out

@@ -1,5 +1,6 @@
 // Depth of pixels that particles cover, for the lens: where their opacity is above what the look states. Definitions:
 // those of lib/sprite.glsl.
+// Techniques: particle.depth-of-field
 #version 450
 #define VARYING in
 #include "lib/particle_varyings.glsl"

@@ -1,5 +1,6 @@
 // A layer of half the resolution over the scene: between the four nearest texels, without those that are of another
 // surface than the pixel (render/particles/particle_layer.h).
+// Techniques: particle.half-resolution
 #version 450
 #include "lib/view.glsl"
 

@@ -1,5 +1,6 @@
 // Light that particles scatter whose look is lit in the middle, evaluated once for each. Definitions: those of
 // lib/lighting.glsl.
+// Techniques: particle.lit-in-middle
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
 #define MEAN_OF_CORNERS

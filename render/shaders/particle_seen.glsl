@@ -1,6 +1,7 @@
 // What the camera saw in the previous frame, as an obstacle for particles: at each pixel a plane, through the pixel and
 // those beside it. Only the places below a few points of the way are looked at, so that what is narrower than their
 // distance in the image may be missed. Included by particle_collide.glsl.
+// Techniques: particle.depth-collision
 
 #include "lib/view.glsl"  // of the previous frame
 

@@ -1,5 +1,6 @@
 // Fits the maps of particle shadows to what the GPU has moved (render/particles/particle_shadow_pass.h). Definition:
 //   RECORD  the rows of the maps, by one invocation; else the ranges of places of an emitter's particles
+// Techniques: particle.gpu-shadow
 #version 450
 #include "lib/particle.glsl"
 

@@ -3,6 +3,7 @@
 //   PASS    one pass of the bitonic sort, an invocation for each pair
 //   LOCAL   all passes of the runs `run` .. `last_run` whose partners are less than 1,024 apart, in shared memory
 //   none    writes the particles in their order
+// Techniques: particle.bitonic-sort, particle.distance-sort, particle.sort-amortised
 #version 450
 #include "lib/numbers.glsl"
 #include "particle_gpu.h"

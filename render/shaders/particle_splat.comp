@@ -1,5 +1,6 @@
 // Discs that only add light, one invocation each: adds theirs to the sums of the pixels that they cover. The sums are
 // integers, so that they do not depend on the order (render/particles/particle_splats.h).
+// Techniques: particle.gpu-draw
 #version 450
 #include "lib/particle.glsl"
 #include "lib/view.glsl"

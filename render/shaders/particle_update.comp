@@ -3,6 +3,9 @@
 // particle_collide.glsl, and, for what most of them need, as a software OpenGL runs both sides of every condition,
 //   OLD    all were born before these steps
 //   PLAIN  with OLD: one step, under gravity and drag alone
+// Techniques: engine.particle-params, particle.circular-list, particle.forces, particle.gpu-init,
+//     particle.gpu-state, particle.gpu-update, particle.gpu-update-mrt, particle.million,
+//     particle.stateless-script
 #version 450
 #include "lib/numbers.glsl"
 #include "lib/philox.glsl"

@@ -1,5 +1,6 @@
 // Motion of pixels that particles cover, as gbuffer.frag writes it of surfaces: where opacity times cover is above what
 // the look states. Definitions: those of lib/sprite.glsl, and SOFT as in particle.frag.
+// Techniques: particle.velocity
 #version 450
 #define VARYING in
 #include "lib/particle_varyings.glsl"

@@ -1,4 +1,5 @@
 // The weighted mean of all layers of particles, over what is behind them (render/particles/particle_weighted.h).
+// Techniques: particle.weighted-blended
 #version 450
 #include "lib/radiance.glsl"
 

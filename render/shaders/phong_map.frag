@@ -1,4 +1,5 @@
 // Diffuse light by one fetch per light (fakephong.phong-map). Definition SINGLE_LIGHTS: lib/single_lights.glsl.
+// Techniques: fakephong.phong-map
 #version 450
 #include "lib/map_pixel.glsl"
 

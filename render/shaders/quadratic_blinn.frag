@@ -1,5 +1,6 @@
 // Highlights by one fetch per light from a Blinn map, where quadratic coordinates lead (fakephong.quadratic-blinn).
 // Definitions SINGLE_LIGHTS and BLINN_DIFFUSE: lib/single_lights.glsl, lib/map_lights.glsl.
+// Techniques: fakephong.quadratic-blinn
 #version 450
 #include "lib/facet_pixel.glsl"
 

@@ -1,6 +1,7 @@
 // Coordinates in a Blinn map at corners and midpoints of each triangle, for each light (fakephong.quadratic-blinn). All
 // other light is that of the corners. Definitions SINGLE_LIGHTS, WORST_AXIS and BLINN_DIFFUSE: lib/single_lights.glsl,
 // lib/highlight_map.glsl, lib/map_lights.glsl.
+// Techniques: fakephong.quadratic-blinn
 #version 450
 #include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"

@@ -1,4 +1,5 @@
 // Heat haze in a box or ball: the path of a ray through it, and the eddies at the middle of that path.
+// Techniques: post.glare-heat-haze
 #version 450
 #include "lib/noise.glsl"
 #include "lib/view.glsl"

@@ -1,4 +1,5 @@
 // Shading model Hair: strands along v, scattering light in three lobes (lib/hair.glsl). The first is the specular part.
+// Techniques: hair.shading
 
 #include "lib/brdf.glsl"
 #include "lib/hair.glsl"

@@ -5,6 +5,7 @@
 // with u toward the light, v toward the viewer and z along the normal. Reflects no surroundings but diffusely.
 // Reflector::own: x = index of the material, y = number of lobes. Lafortune et al., "Non-Linear Approximation of
 // Reflectance Functions", 1997.
+// Techniques: skin.brdf-lafortune
 
 #include "lib/lafortune.glsl"
 #include "lib/material_record.glsl"

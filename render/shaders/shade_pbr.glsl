@@ -1,5 +1,6 @@
 // Shading model Pbr: metallic-roughness as in glTF. GGX with height-correlated Smith visibility, compensated for
 // multiple scattering, over Lambert. The base of all models: those that follow override what differs.
+// Techniques: env.control-map
 
 #include "lib/brdf.glsl"
 #include "lib/material_record.glsl"

@@ -1,5 +1,6 @@
 // Shading model Skin: Blinn plus a rim that each light adds, whatever its direction; it imitates light scattered in
 // soft skin (char.skin-shade).
+// Techniques: char.skin-shade, skin.blinn
 
 #include "lib/classic_lobe.glsl"
 

@@ -1,5 +1,6 @@
 // Surfaces lit by two methods: one left and one right of the divider, or their difference to a power
 // (shading_comparison_pass.h).
+// Techniques: fakephong.metric-diffimage
 #version 450
 #include "lib/tone.glsl"
 

@@ -1,5 +1,6 @@
 // The lobe that lights each pixel, as a depth: its number / 16, 0 where no surface is. Triangles over the screen at this
 // depth then draw no pixels but those of a lobe.
+// Techniques: deferred.light-pass
 #version 450
 #include "lib/stored_surface.glsl"
 

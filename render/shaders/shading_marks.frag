@@ -1,4 +1,5 @@
 // The divider of a comparison, columns with their names, a scanline and the plot of its brightness, over the image (shading_marks_pass.h).
+// Techniques: fakephong.metric-scanline
 #version 450
 #include "lib/small_text.glsl"
 #include "lib/tone.glsl"

@@ -2,6 +2,7 @@
 // volumes must decide (shadow.hybrid-edge). The filter spans more texels than the map's bias can move an edge. Volumes
 // also decide at grazing incidence: there the bias hides that a facet of a round object faces away, though its smooth
 // normal does not.
+// Techniques: shadow.hybrid-edge
 #version 450
 #include "lib/gbuffer.glsl"
 #include "lib/view.glsl"

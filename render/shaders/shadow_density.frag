@@ -1,4 +1,5 @@
 // Counts layers of shadow volumes (shadow.density-view).
+// Techniques: shadow.density-view
 #version 450
 
 layout(location = 0) out vec4 layers;

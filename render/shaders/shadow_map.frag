@@ -1,5 +1,6 @@
 // Depth of shadow casters. Definitions of lib/material.glsl, and
 //   ALPHA_MASK  holes where the opacity is below the cutoff let light through
+// Techniques: shadow.map-alpha
 #version 450
 #ifdef ALPHA_MASK
 #include "lib/view.glsl"

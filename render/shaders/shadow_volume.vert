@@ -2,6 +2,7 @@
 // (shadow.vol-extrude).
 //   PRISMS  one volume per triangle: the corner holds its cap; else it depends on whether its triangle faces the light
 //           (shadow.vol-per-edge)
+// Techniques: shadow.vol-extrude, shadow.vol-per-edge, shadow.vol-per-triangle
 #version 450
 #include "lib/view.glsl"
 #include "shadow_volume_gpu.h"

@@ -1,5 +1,6 @@
 // Extrusion of shadow volumes (shadow.vol-extrude, shadow.extrusion-distance), shared by the vertex shader and its
 // tests, and its input. A light is homogeneous: its position and 1, or the direction toward it and 0.
+// Techniques: shadow.extrusion-distance, shadow.vol-extrude
 
 #ifdef __cplusplus
 #pragma once

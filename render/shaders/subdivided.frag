@@ -1,4 +1,5 @@
 // Light of the corners and midpoints of a triangle, linear in each of its quarters (fakephong.gouraud-subdivided).
+// Techniques: fakephong.barycentric, fakephong.gouraud-subdivided
 #version 450
 #define FACET_SAMPLES 6
 #include "lib/sampled_light.glsl"

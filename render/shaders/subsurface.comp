@@ -1,4 +1,5 @@
 // subsurface.frag for the pixels low .. high - 1. Definition: that of lib/radiance_image.glsl.
+// Techniques: skin.diffusion
 #version 450
 #include "lib/diffused_light.glsl"
 #include "lib/radiance_image.glsl"

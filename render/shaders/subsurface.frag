@@ -1,4 +1,5 @@
 // Adds the light that leaves surfaces around where it entered to the image, by blending.
+// Techniques: skin.diffusion
 #version 450
 #include "lib/diffused_light.glsl"
 #include "lib/radiance.glsl"

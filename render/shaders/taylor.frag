@@ -1,5 +1,6 @@
 // The Taylor series that taylor.geom has prepared, and the power of highlights. Definition SINGLE_LIGHTS:
 // lib/single_lights.glsl.
+// Techniques: fakephong.taylor
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/facet_pixel.glsl"

@@ -2,6 +2,7 @@
 // Weimer, "Fast Phong Shading", 1986). The series of L.N / |N| is linear in L: it is L times that of N / |N|, which all
 // lights share, also that of highlights with H in place of L. Lights and viewer count as infinitely far: L and H are
 // those of the middle. Definition SINGLE_LIGHTS: lib/single_lights.glsl.
+// Techniques: fakephong.taylor
 #version 450
 #include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"

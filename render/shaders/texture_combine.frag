@@ -1,4 +1,5 @@
 // Two scrolling copies of water under a grating: kd = (kd1 + kd2) a + kd3 (1 - a), with a the grating's alpha.
+// Techniques: tex.combine
 #version 450
 #include "lib/tone.glsl"
 

@@ -1,5 +1,6 @@
 // Skin lit in the space of its texture: Blinn's highlight, a directional light and a directional view that are fixed to
 // the camera (Bando 2001, 4.2).
+// Techniques: wrinkle.furrow.texture-space-shading
 #version 450
 #include "lib/tone.glsl"
 

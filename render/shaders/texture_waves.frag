@@ -1,5 +1,6 @@
 // Slopes of the waves that fit into a tile: by x, by z, and the sum of their squares, from whose mean follows the
 // variance that mip levels lose.
+// Techniques: water.geometric-texture-split
 #version 450
 #include "water_detail_gpu.h"
 

@@ -1,5 +1,6 @@
 // Scene radiance to display codes: haze, exposure, curve, encoding, dither.
 //   TONE_CURVE  as numbered by ToneCurve
+// Techniques: hdr.compress, hdr.defog, hdr.dodge-burn, hdr.tonemap-shader
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"

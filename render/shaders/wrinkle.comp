@@ -1,5 +1,9 @@
 // Strength of wrinkles at each vertex of deformed skin: measures the shortening of its triangles across them, in the
 // buffers written by deform.comp, and the displacement by folds. One invocation per vertex gathers its triangles in a fixed order.
+// Techniques: face.strain, face.wrinkle-options, wrinkle.comparison, wrinkle.compression.factor,
+//     wrinkle.compression.fallback, wrinkle.compression.overlap, wrinkle.compression.skin-model,
+//     wrinkle.compression.square-length, wrinkle.displacement, wrinkle.natural-width,
+//     wrinkle.resting, wrinkle.smoothing
 #version 450
 #include "lib/wrinkle.glsl"
 

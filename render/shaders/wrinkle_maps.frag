@@ -1,4 +1,5 @@
 // A normal map of skin with the wrinkles of its face: see lib/wrinkle_maps.glsl.
+// Techniques: skin.pipeline
 #version 450
 #include "lib/wrinkle_maps.glsl"
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+// Techniques: shadow.caster-cull, shadow.depth-bounds, shadow.light-scissor
+
 namespace limn {
 namespace {
 

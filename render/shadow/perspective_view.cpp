@@ -10,6 +10,8 @@
 #include <limits>
 #include <vector>
 
+// Techniques: shadow.map-aliasing, shadow.perspective-map
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <vector>
 
+// Techniques: shadow.map-alpha
+
 namespace limn {
 
 CasterVolume make_caster_volume(const ShadowView& view) {

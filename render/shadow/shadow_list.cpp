@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <bit>
 
+// Techniques: shadow.map, shadow.perspective-map
+
 namespace limn {
 namespace {
 

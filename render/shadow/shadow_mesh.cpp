@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+// Techniques: shadow.closed-mesh, shadow.silhouette, shadow.vol-per-edge, shadow.vol-per-triangle
+
 namespace limn {
 namespace {
 

@@ -12,6 +12,8 @@
 
 #include <utility>
 
+// Techniques: shadow.map
+
 namespace limn {
 namespace {
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: shadow.map-aliasing, shadow.map-omni, shadow.projective-matrix
+
 namespace limn {
 namespace {
 

@@ -7,6 +7,9 @@
 #include "render/shadow/volume_list.h"
 #include "render/view_block.h"
 
+// Techniques: shadow.density-view, shadow.hybrid-edge, shadow.stencil-frame, shadow.stencil-pass,
+//     shadow.volume-count
+
 namespace limn {
 namespace {
 

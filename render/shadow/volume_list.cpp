@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <tuple>
 
+// Techniques: shadow.caster-cull, shadow.closed-mesh, shadow.selection, shadow.stencil-pass
+
 namespace limn {
 namespace {
 

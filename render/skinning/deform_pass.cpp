@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <string>
 
+// Techniques: char.skin-gpu
+
 namespace limn {
 namespace {
 

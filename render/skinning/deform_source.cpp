@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+// Techniques: face.soffd
+
 namespace limn {
 
 DeformSource find_deform_source(

@@ -19,6 +19,8 @@
 #include <algorithm>
 #include <bit>
 
+// Techniques: char.skin-gpu
+
 namespace limn {
 namespace {
 

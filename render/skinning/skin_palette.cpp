@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+// Techniques: char.skin-bone-offset
+
 namespace limn {
 namespace {
 

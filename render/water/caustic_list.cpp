@@ -15,6 +15,8 @@
 #include <cstring>
 #include <numeric>
 
+// Techniques: caustic.projected-vertices
+
 namespace limn {
 namespace {
 

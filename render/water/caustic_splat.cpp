@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstring>
 
+// Techniques: caustic.projected-vertices
+
 namespace limn {
 namespace {
 

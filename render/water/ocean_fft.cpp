@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+// Techniques: water.fft-synthesis
+
 namespace limn {
 namespace {
 

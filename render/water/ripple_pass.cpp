@@ -15,6 +15,8 @@
 #include <cmath>
 #include <optional>
 
+// Techniques: post.glare-heat-haze, post.scene-ripple
+
 namespace limn {
 namespace {
 

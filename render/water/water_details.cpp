@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.geometric-texture-split, water.scrolling-normal-map
+
 namespace limn {
 
 namespace {

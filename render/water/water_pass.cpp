@@ -20,6 +20,8 @@
 #include <array>
 #include <utility>
 
+// Techniques: water.reflection-refraction-maps
+
 namespace limn {
 
 namespace {

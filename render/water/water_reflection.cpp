@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.reflection-refraction-maps
+
 namespace limn {
 
 namespace {

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: anim.key-lookup, anim.lerp, anim.mocap-keys, char.local-global, char.morph-anim,
+//     char.pose-eval
+
 namespace limn {
 
 namespace {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstddef>
 
+// Techniques: wrinkle.compression.face-model
+
 namespace limn {
 namespace {
 

@@ -15,6 +15,8 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+// Techniques: face.ffd, face.pull, face.waters-muscle
+
 #ifndef LIMN_DEFORMER_CONSTANTS
 #define LIMN_DEFORMER_CONSTANTS
 namespace limn::deformer {
@@ -103,9 +105,9 @@ HWY_INLINE void add_muscle(const Vec4* record, Points& p) {
     const V y = hn::Sub(set(record[1].y), p.y);
     const V z = hn::Sub(set(record[1].z), p.z);
     const V distance = hn::Sqrt(dot3(x, y, z, x, y, z));
-    const V full = set(record[1].w);
-    const V reach = set(record[2].w);
-    Mask pulls = hn::And(hn::Gt(distance, hn::Zero(d)), hn::Lt(distance, reach));
+    const V inner_radius = set(record[1].w);
+    const V outer_radius = set(record[2].w);
+    Mask pulls = hn::And(hn::Gt(distance, hn::Zero(d)), hn::Lt(distance, outer_radius));
     if (hn::AllFalse(d, pulls)) {
         return;
     }
@@ -116,8 +118,9 @@ HWY_INLINE void add_muscle(const Vec4* record, Points& p) {
     if (hn::AllFalse(d, pulls)) {
         return;
     }
-    const V beyond = hn::Max(hn::Div(hn::Sub(distance, full), hn::Sub(reach, full)), hn::Zero(d));
-    const V rise = sine_of_quarters(hn::Min(hn::Div(distance, full), one));
+    const V beyond = hn::Max(
+        hn::Div(hn::Sub(distance, inner_radius), hn::Sub(outer_radius, inner_radius)), hn::Zero(d));
+    const V rise = sine_of_quarters(hn::Min(hn::Div(distance, inner_radius), one));
     const V strength = hn::Mul(
         hn::Mul(rise, squared_cosine_of_quarters(beyond)), squared_cosine_of_quarters(off_axis));
     add_pull(p, pulls, hn::Div(hn::Mul(set(record[0].y), strength), distance), x, y, z, distance);
@@ -149,10 +152,10 @@ HWY_INLINE void add_sphincter(const Vec4* record, Points& p) {
 HWY_INLINE void follow_pulls(Points& p) {
     const V length = hn::Sqrt(dot3(p.pull_x, p.pull_y, p.pull_z, p.pull_x, p.pull_y, p.pull_z));
     const Mask too_far = hn::Gt(length, p.farthest);
-    const V share = hn::IfThenElse(too_far, hn::Div(p.farthest, length), set(1.0f));
-    p.x = hn::Add(p.x, hn::Mul(share, p.pull_x));
-    p.y = hn::Add(p.y, hn::Mul(share, p.pull_y));
-    p.z = hn::Add(p.z, hn::Mul(share, p.pull_z));
+    const V scale = hn::IfThenElse(too_far, hn::Div(p.farthest, length), set(1.0f));
+    p.x = hn::Add(p.x, hn::Mul(scale, p.pull_x));
+    p.y = hn::Add(p.y, hn::Mul(scale, p.pull_y));
+    p.z = hn::Add(p.z, hn::Mul(scale, p.pull_z));
 }
 
 HWY_INLINE void find_bernstein(V t, V (&b)[4]) {
@@ -211,10 +214,10 @@ HWY_INLINE void pass_tug(const Vec4* record, Points& p) {
     if (hn::AllFalse(d, inside)) {
         return;
     }
-    const V share = hn::IfThenElseZero(inside, hn::Mul(hn::Mul(left, left), left));
-    p.x = hn::IfThenElse(inside, hn::Add(p.x, hn::Mul(share, set(record[0].y))), p.x);
-    p.y = hn::IfThenElse(inside, hn::Add(p.y, hn::Mul(share, set(record[0].z))), p.y);
-    p.z = hn::IfThenElse(inside, hn::Add(p.z, hn::Mul(share, set(record[0].w))), p.z);
+    const V falloff = hn::IfThenElseZero(inside, hn::Mul(hn::Mul(left, left), left));
+    p.x = hn::IfThenElse(inside, hn::Add(p.x, hn::Mul(falloff, set(record[0].y))), p.x);
+    p.y = hn::IfThenElse(inside, hn::Add(p.y, hn::Mul(falloff, set(record[0].z))), p.y);
+    p.z = hn::IfThenElse(inside, hn::Add(p.z, hn::Mul(falloff, set(record[0].w))), p.z);
 }
 
 }  // namespace
@@ -296,9 +299,9 @@ float squared_cosine_of_quarters(float quarters) {
 void add_muscle(const Vec4* record, const Vec3& p, Pull& pull) {
     const Vec3 to_attachment = Vec3(record[1]) - p;
     const float distance = glm::length(to_attachment);
-    const float full = record[1].w;
-    const float reach = record[2].w;
-    if (!(distance > 0.0f) || distance >= reach) {
+    const float inner_radius = record[1].w;
+    const float outer_radius = record[2].w;
+    if (!(distance > 0.0f) || distance >= outer_radius) {
         return;
     }
     const float cosine = -glm::dot(to_attachment, Vec3(record[2])) / distance;
@@ -306,8 +309,8 @@ void add_muscle(const Vec4* record, const Vec3& p, Pull& pull) {
     if (off_axis >= 1.0f) {
         return;
     }
-    const float beyond = std::max((distance - full) / (reach - full), 0.0f);
-    const float rise = sine_of_quarters(std::min(distance / full, 1.0f));
+    const float beyond = std::max((distance - inner_radius) / (outer_radius - inner_radius), 0.0f);
+    const float rise = sine_of_quarters(std::min(distance / inner_radius, 1.0f));
     const float strength =
         rise * squared_cosine_of_quarters(beyond) * squared_cosine_of_quarters(off_axis);
     pull.sum += (record[0].y * strength / distance) * to_attachment;

@@ -13,6 +13,8 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
+// Techniques: face.bids-rebuild
+
 namespace limn::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR  // no vectors here

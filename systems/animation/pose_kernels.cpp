@@ -14,6 +14,8 @@
 // Quaternions are read and written as x y z w.
 static_assert(sizeof(limn::Quat) == 4 * sizeof(float));
 
+// Techniques: char.pose-eval
+
 #ifndef LIMN_POSE_CONSTANTS
 #define LIMN_POSE_CONSTANTS
 namespace limn::pose {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <map>
 
+// Techniques: char.morph-anim
+
 namespace limn {
 
 namespace {

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <limits>
 
+// Techniques: anim.constant-angular-velocity, anim.euler, anim.quat-lerp, anim.shortest-arc,
+//     anim.slerp, anim.squad
+
 namespace limn {
 namespace {
 

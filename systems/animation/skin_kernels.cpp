@@ -19,6 +19,9 @@ static_assert(sizeof(limn::Quat) == 4 * sizeof(float));
 static_assert(sizeof(limn::DualQuaternion) == 8 * sizeof(float));
 static_assert(sizeof(limn::Affine) == 12 * sizeof(float));
 
+// Techniques: char.morph-target, char.skin-cpu, char.skin-defects, char.skin-limits,
+//     char.skin-rigid
+
 #ifndef LIMN_SKIN_CONSTANTS
 #define LIMN_SKIN_CONSTANTS
 namespace limn::skin {
@@ -87,12 +90,12 @@ HWY_INLINE V pick(V a, V b, const LaneIndices& indices) {
     return V{_mm512_permutex2var_ps(a.raw, _mm512_load_si512(indices.of), b.raw)};
 }
 
-/// index_of(lane) for each lane.
-template <typename IndexOf>
-constexpr LaneIndices make_lane_indices(IndexOf index_of) {
+/// index(lane) for each lane.
+template <typename Index>
+constexpr LaneIndices make_lane_indices(Index index) {
     LaneIndices indices = {};
     for (int lane = 0; lane < 16; ++lane) {
-        indices.of[lane] = index_of(lane);
+        indices.of[lane] = index(lane);
     }
     return indices;
 }
@@ -270,12 +273,12 @@ struct Common {
         }
     }
     template <std::size_t kLast = kCount - 1>
-    HWY_INLINE V operator()(std::size_t component) const {
-        const V part = hn::Mul(weight[kLast], hn::Set(d, joint[kLast][component]));
+    HWY_INLINE V operator()(std::size_t index) const {
+        const V part = hn::Mul(weight[kLast], hn::Set(d, joint[kLast][index]));
         if constexpr (kLast == 0) {
             return part;
         } else {
-            return hn::Add(operator()<kLast - 1>(component), part);
+            return hn::Add(operator()<kLast - 1>(index), part);
         }
     }
 };

@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: face.bids-project, face.mocap-drive, face.soffd, face.soffd-skin
+
 namespace limn {
 namespace {
 

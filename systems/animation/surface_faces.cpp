@@ -10,6 +10,8 @@
 #include <cmath>
 #include <utility>
 
+// Techniques: face.soffd
+
 namespace limn {
 namespace {
 

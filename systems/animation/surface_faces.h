@@ -37,7 +37,7 @@ namespace limn {
 faces_with_area(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 
 /// Influences of the faces on each of `points`, at most `count` >= 1 each; distances are in mean
-/// edges of the faces, of which a face that faces the opposite way is kAway farther away.
+/// edges of the faces, of which a face that faces the opposite direction is kAway farther away.
 /// `normals`: unit, one per point, or empty. At least one face, at most 65536. Time grows as points
 /// * faces.
 inline constexpr float kAway = 4.0f;

@@ -15,6 +15,8 @@
 #include <tuple>
 #include <utility>
 
+// Techniques: face.bids-project, face.bids-rebuild, face.bids-surface
+
 namespace limn {
 namespace {
 

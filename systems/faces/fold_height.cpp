@@ -13,6 +13,9 @@
 #include <cstdint>
 #include <span>
 
+// Techniques: wrinkle.displacement
+// Source of wrinkle.displacement: Cerda and Mahadevan 2003
+
 namespace limn {
 
 namespace {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: wrinkle.smoothing
+
 namespace limn {
 
 namespace {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: face.pull
+
 namespace limn {
 
 namespace {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 
+// Techniques: face.strain
+
 namespace limn {
 
 namespace {

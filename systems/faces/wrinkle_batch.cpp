@@ -21,6 +21,8 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+// Techniques: wrinkle.compression.integration, wrinkle.natural-width
+
 #ifndef LIMN_WRINKLE_BATCH
 #define LIMN_WRINKLE_BATCH
 namespace limn::wrinkle {

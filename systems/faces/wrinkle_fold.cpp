@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: wrinkle.compression.skin-model, wrinkle.resting
+
 namespace limn {
 
 namespace {

@@ -12,6 +12,12 @@
 #include <numeric>
 #include <vector>
 
+// Techniques: face.strain, wrinkle.compression.direction, wrinkle.compression.factor,
+//     wrinkle.compression.intensity, wrinkle.compression.prior-models,
+//     wrinkle.compression.rest-measure, wrinkle.compression.square-length,
+//     wrinkle.compression.vertex-weight, wrinkle.dimples, wrinkle.natural-width, wrinkle.smoothing
+// Source of wrinkle.dimples: mean of the squared stretch over all directions, half the trace of C
+
 namespace limn {
 
 namespace {

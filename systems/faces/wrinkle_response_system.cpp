@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <utility>
 
+// Techniques: skin.pipeline
+
 namespace limn {
 
 namespace {

@@ -17,6 +17,9 @@
 #include <span>
 #include <utility>
 
+// Techniques: wrinkle.compression.direction, wrinkle.compression.integration,
+//     wrinkle.compression.overlap, wrinkle.compression.prior-models, wrinkle.resting
+
 namespace limn {
 
 namespace {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: wrinkle.maps.animation
+
 namespace limn {
 
 WrinkleWeights wrinkle_weights_at(const WrinkleTrack& track, double time) {

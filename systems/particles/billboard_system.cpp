@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: engine.billboard
+
 namespace limn {
 
 void update_billboards(World& world) {

@@ -9,6 +9,8 @@
 #include <bit>
 #include <cmath>
 
+// Techniques: engine.particle-params, particle.generation-shape
+
 namespace limn {
 namespace {
 

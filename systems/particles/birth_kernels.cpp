@@ -13,6 +13,8 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
+// Techniques: particle.generation-shape
+
 namespace limn::HWY_NAMESPACE {
 namespace {
 

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+// Techniques: particle.collision-loop, particle.constraints, particle.heightfield-collision
+
 namespace limn {
 
 namespace {

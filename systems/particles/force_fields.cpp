@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: particle.forces
+
 namespace limn {
 
 std::vector<Force>

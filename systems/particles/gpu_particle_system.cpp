@@ -1,9 +1,7 @@
 #include "systems/particles/gpu_particle_system.h"
 
 #include "systems/particles/emitter_place.h"
-#include "systems/particles/force_fields.h"
 #include "systems/particles/particle_births.h"
-#include "systems/particles/particle_motion.h"
 
 #include <glm/geometric.hpp>
 
@@ -14,6 +12,9 @@
 #include <span>
 #include <utility>
 #include <variant>
+
+// Techniques: particle.circular-list, particle.gpu-init, particle.gpu-state, particle.gpu-update,
+//     particle.gpu-update-mrt, particle.linear-window, particle.million
 
 namespace limn {
 namespace {
@@ -127,40 +128,31 @@ void record_gpu_particles(
         const PreviousWorldTransform, Optional<const ParticleCollision>,
         Optional<const ParticleWrap>, GpuParticles>
         emitters,
-    Res<const ParticleObstacles> obstacles, Query<const ForceField, const WorldTransform> fields,
-    Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
-    OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
-    const float dt = std::min(time->step, kMaxParticleStep);
-    const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
-    const EmitterEye eye = find_eye(cameras);
-    const std::vector<Force> forces = find_forces(fields, time->time);
-    const std::vector<GpuCollider> met = find_gpu_colliders(obstacles->solid.colliders);
+    Res<const ParticleObstacles> obstacles, ParticleEnvironment environment) {
+    const StepContext context = find_step_context(environment);
+    const std::vector<GpuCollider> colliders = find_gpu_colliders(obstacles->solid.colliders);
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const ParticleCollision* collision, const ParticleWrap* wrap,
                       GpuParticles& particles) {
-        static const ParticleMotion kStill;
         const std::uint64_t subject = subject_of(emitter, entity);
         GpuParticleStep step;
         step.place = place_of(now, previous);
-        step.inherited = inherited_velocity(emitter, step.place, dt);
-        step.motion =
-            find_motion(motion != nullptr ? *motion : kStill, now.world, wind, forces, dt, *time);
-        if (wrap != nullptr && !step.motion.step.closed_form) {
-            step.motion.wrap_size = wrap->size;
-            step.motion.wrap_center = eye.place;
-        }
+        step.inherited = inherited_velocity(emitter, step.place, context.dt);
+        step.motion = find_emitter_motion(motion, wrap, now.world, context);
         if (collision != nullptr && wrap == nullptr && !step.motion.step.closed_form) {
-            step.colliders = met;
+            step.colliders = colliders;
         }
-        const float scale = seen_share(emitter, now.world, eye);
+        const float scale = seen_share(emitter, now.world, context.eye);
         if (is_unused(particles.clock)) {
-            for (int i = 0; i < prewarm_steps(emitter, dt); ++i) {
-                add_step(emitter, scale, step, prewarm_random(seed->seed, subject, i), particles);
+            for (int i = 0; i < prewarm_steps(emitter, context.dt); ++i) {
+                const Random random = prewarm_random(context.seed, subject, i);
+                add_step(emitter, scale, step, random, particles);
             }
         }
-        add_step(emitter, scale, step, births_random(seed->seed, subject, time->frame), particles);
-        const Random oldest = attributes_random(seed->seed, subject, particles.oldest());
+        const Random random = births_random(context.seed, subject, context.time.frame);
+        add_step(emitter, scale, step, random, particles);
+        const Random oldest = attributes_random(context.seed, subject, particles.oldest());
         particles.counter = oldest.counter();
         particles.key = oldest.key();
     });

@@ -1,17 +1,14 @@
 #pragma once
 
 #include "ecs/commands.h"
-#include "ecs/components/camera.h"
-#include "ecs/components/force_field.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
-#include "ecs/components/time.h"
 #include "ecs/components/transform.h"
-#include "ecs/components/weather.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "systems/particles/particle_obstacles.h"
+#include "systems/particles/step_context.h"
 
 namespace limn {
 
@@ -28,8 +25,6 @@ void record_gpu_particles(
         const PreviousWorldTransform, Optional<const ParticleCollision>,
         Optional<const ParticleWrap>, GpuParticles>
         emitters,
-    Res<const ParticleObstacles> obstacles, Query<const ForceField, const WorldTransform> fields,
-    Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
-    OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
+    Res<const ParticleObstacles> obstacles, ParticleEnvironment environment);
 
 }  // namespace limn

@@ -20,6 +20,8 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+// Techniques: particle.collision-loop
+
 #ifndef LIMN_MESH_BVH_RAY
 #define LIMN_MESH_BVH_RAY
 namespace limn::mesh_bvh {

@@ -8,6 +8,10 @@
 #include <cstddef>
 #include <limits>
 
+// Techniques: particle.mesh-volume
+// Source of particle.mesh-volume: births in the volume of a mesh, as in most effect tools; point in
+//     polyhedron by crossings along a column
+
 namespace limn {
 namespace {
 

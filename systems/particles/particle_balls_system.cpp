@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <limits>
 
+// Techniques: particle.interparticle
+
 namespace limn {
 namespace {
 

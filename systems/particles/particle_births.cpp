@@ -11,6 +11,9 @@
 #include <iterator>
 #include <optional>
 
+// Techniques: engine.particle-cpu, particle.emission-rate, particle.linear-window, particle.system,
+//     water.crest-spray, water.impact-spray
+
 namespace limn {
 namespace {
 

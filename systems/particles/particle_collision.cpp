@@ -9,6 +9,8 @@
 #include <cmath>
 #include <optional>
 
+// Techniques: particle.collision-loop, particle.penetration-guard, particle.plane-response
+
 namespace limn {
 
 namespace {

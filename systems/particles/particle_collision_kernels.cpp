@@ -19,6 +19,8 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+// Techniques: particle.constraints
+
 #ifndef LIMN_PARTICLE_SURFACES
 #define LIMN_PARTICLE_SURFACES
 namespace limn::particle_surface {

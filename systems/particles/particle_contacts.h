@@ -4,8 +4,11 @@
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/water_ripples.h"
+#include "ecs/param_group.h"
 #include "ecs/query.h"
+#include "ecs/resource.h"
 #include "systems/particles/particle_collision.h"
+#include "systems/particles/particle_obstacles.h"
 #include "systems/particles/water_surface_hits.h"
 #include "systems/water/water_query.h"
 
@@ -19,6 +22,18 @@ namespace limn {
 
 /// Most particles that move as one piece of work.
 inline constexpr std::uint32_t kParticleBlock = 1024;
+
+/// What particles hit, as one parameter of a system.
+struct ContactSurfaces {
+    Res<const ParticleObstacles> obstacles;
+    WaterQuery waters;
+    Query<const ParticleCollider> colliders;
+    Query<RippleState> ripples;
+};
+template <>
+struct SystemParam<ContactSurfaces> : ParamGroup<
+                                          ContactSurfaces, Res<const ParticleObstacles>, WaterQuery,
+                                          Query<const ParticleCollider>, Query<RippleState>> {};
 
 /// Everything that colliding particles may meet. Hits name a collider, or after those a water.
 struct ParticleSurroundings {

@@ -14,6 +14,8 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
+// Techniques: particle.system
+
 namespace limn::HWY_NAMESPACE {
 
 // The first two return how many particles their whole vectors have.

@@ -11,6 +11,8 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+// Techniques: engine.space-dust, particle.gpu-update, particle.integrator, particle.system
+
 #ifndef LIMN_PARTICLE_CONSTANTS
 #define LIMN_PARTICLE_CONSTANTS
 namespace limn::particles {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: engine.explode, engine.projectile-instances, particle.mesh-particles
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: particle.forces, particle.gpu-update-mrt, particle.integrator,
+//     particle.stateless-script
+
 namespace limn {
 namespace {
 

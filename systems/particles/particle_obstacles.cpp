@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: particle.collision-loop, particle.heightfield-collision
+
 namespace limn {
 namespace {
 

@@ -1,30 +1,27 @@
 #pragma once
 
 #include "ecs/commands.h"
-#include "ecs/components/camera.h"
-#include "ecs/components/force_field.h"
-#include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
-#include "ecs/components/time.h"
-#include "ecs/components/trail.h"
-#include "ecs/components/transform.h"
-#include "ecs/components/water_ripples.h"
-#include "ecs/components/water_spray.h"
-#include "ecs/components/weather.h"
 #include "ecs/query.h"
-#include "ecs/resource.h"
-#include "systems/particles/particle_obstacles.h"
-#include "systems/particles/surface_births.h"
-#include "systems/water/water_query.h"
-
-#include <cstdint>
+#include "systems/particles/emitter_step.h"
+#include "systems/particles/particle_contacts.h"
+#include "systems/particles/step_context.h"
 
 namespace limn {
 
-// Births, motion and deaths of particles (particle.system), in Reeves' order: new ones are born and
-// get their attributes, all move, those whose time is up go. Bits do not depend on the number of
-// threads: blocks of 1,024 particles move, pools lose their dead. An emitter of few particles that
-// meet nothing and give birth to none does all of that at once.
+// Births, motion and deaths of particles (particle.system), after Reeves (1983): new particles are
+// born and get their attributes, all move, the dead are removed. A step runs in phases, each of
+// them parallel over emitters or over blocks of 1,024 particles:
+//
+//     emit       births by rate, bursts and spray
+//     move       motion and collisions; hits are recorded
+//     ripple     hits on water
+//     spawn      what particles of a parent give birth to: recorded, while its dead are still there
+//     retire     the dead are removed
+//     add        the recorded births
+//
+// An emitter of few particles that hit nothing and that no other emitter depends on does all of its
+// step at once. Results do not depend on the number of threads.
 //
 // Particles are neither entities nor rows of archetypes but arrays of a component of their emitter:
 // nothing refers to one particle, so handles and change versions would only cost memory and time;
@@ -36,22 +33,10 @@ void add_particle_pools(
     Query<const ParticleEmitter, Without<ParticlePool>> emitters,
     Query<const ParticleEmitter, const ParticlePool> pools, Commands commands);
 
-/// A step of all particles, and the ripples that they leave in water, from the next step on. After
-/// update_transforms.
+/// A step of all particles; the ripples that they leave in water count from the next step on. After
+/// update_transforms and find_particle_obstacles.
 void update_particles(
-    Query<
-        const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
-        Optional<const ParticleSurface>, Optional<const ParticleMesh>,
-        Optional<const ParticleCollision>, Optional<const ParticleWrap>,
-        Optional<const ParticleLook>, Optional<const ParticleLight>, ParticlePool>
-        emitters,
-    Query<const ParticleSource> sources, Query<const Trail> trails, MeshQuery meshes,
-    Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
-    Res<const ParticleObstacles> obstacles, WaterQuery waters,
-    Query<const ParticleCollider> colliders, Query<RippleState> ripples,
-    Query<const ForceField, const WorldTransform> fields,
-    Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
-    OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
+    EmitterQuery emitters, ParticleFollowers followers, BirthSurfaces birth_surfaces,
+    ContactSurfaces contact_surfaces, ParticleEnvironment environment);
 
 }  // namespace limn

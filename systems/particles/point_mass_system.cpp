@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+// Techniques: particle.projectile, particle.variable-mass
+
 namespace limn {
 namespace {
 

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstddef>
 
+// Techniques: engine.explode, particle.generation-shape, particle.mesh-volume
+
 namespace limn {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: engine.trail
+
 namespace limn {
 namespace {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: particle.collision-loop
+
 namespace limn {
 namespace {
 

@@ -34,7 +34,7 @@ constexpr float kSplashSpeed = 0.3f;  ///< smallest impact speed that splashes [
 struct Hull {
     TouchShape shape = TouchShape::Ball;
     Vec3 half = {0, 0, 0};  ///< half extents; three times the radius of a ball [m]
-    Vec3 middle = {
+    Vec3 center = {
         0, 0, 0};  ///< center of the shape relative to the center of mass, local axes [m]
     Vec3 origin = {0, 0, 0};   ///< the entity's origin, likewise
     Vec3 face = {0, 0, 0};     ///< cross section perpendicular to each axis [m^2]
@@ -75,14 +75,14 @@ Hull make_hull(const WaterTouch& touch, const Floating& floating, const Vec3& sc
         hull.mass
         * (touch.shape == TouchShape::Ball ? 0.4f * h2
                                            : Vec3(h2.y + h2.z, h2.z + h2.x, h2.x + h2.y) / 3.0f);
-    hull.middle = -floating.center_of_mass * scale;
-    hull.origin = hull.middle - touch.offset * scale;
+    hull.center = -floating.center_of_mass * scale;
+    hull.origin = hull.center - touch.offset * scale;
     hull.radius = std::cbrt(hull.volume * 0.75f / kPi);
     return hull;
 }
 
 /// Position and orientation of a hull.
-struct BodyPlace {
+struct BodyPose {
     Vec3 center = {0, 0, 0};  ///< center of mass [m]
     Quat rotation = {1, 0, 0, 0};
 
@@ -97,8 +97,8 @@ struct LocalWater {
     Vec2 slope = {0, 0};
     Vec3 velocity = {0, 0, 0};
 
-    [[nodiscard]] float height_at(const Vec3& place) const {
-        return height + slope.x * (place.x - at.x) + slope.y * (place.z - at.y);
+    [[nodiscard]] float height_at(const Vec3& point) const {
+        return height + slope.x * (point.x - at.x) + slope.y * (point.z - at.y);
     }
 };
 
@@ -123,7 +123,7 @@ constexpr std::array<float, 3> kGaussShare = {5.0f / 18, 8.0f / 18, 5.0f / 18};
 struct BodyColumns {
     std::size_t count = 0;
     int axis = 1;
-    std::array<Vec3, kColumns> middle{};  ///< in local axes, relative to the center of mass [m]
+    std::array<Vec3, kColumns> center{};  ///< in local axes, relative to the center of mass [m]
     std::array<float, kColumns> area{};   ///< [m^2]
     std::array<LocalWater, kColumns> water{};
     float gap = 0;  ///< distance between columns [m]
@@ -133,7 +133,7 @@ BodyColumns cut_columns(const Hull& hull, const Quat& rotation) {
     BodyColumns columns;
     if (hull.shape == TouchShape::Ball) {
         columns.count = 1;
-        columns.middle[0] = hull.middle;
+        columns.center[0] = hull.center;
         columns.gap = hull.half.x;
         return columns;
     }
@@ -146,15 +146,15 @@ BodyColumns cut_columns(const Hull& hull, const Quat& rotation) {
     }
     const float slender = std::round(hull.half[along] / hull.half[across]);
     const float sections = std::clamp(slender, 1.0f, static_cast<float>(kSections));
-    const float reach = hull.half[along] / sections;  // half length of a section
+    const float half_section = hull.half[along] / sections;  // half length of a section
     columns.count = 9 * static_cast<std::size_t>(sections);
-    columns.gap = std::max(2 * reach, 2 * hull.half[across]) / 3;
+    columns.gap = std::max(2 * half_section, 2 * hull.half[across]) / 3;
     for (std::size_t i = 0; i < columns.count; ++i) {
-        Vec3 middle = hull.middle;
+        Vec3 center = hull.center;
         const auto section = static_cast<float>(i / 9);
-        middle[along] += (2 * section + 1 - sections + kGauss[i % 3]) * reach;
-        middle[across] += kGauss[i / 3 % 3] * hull.half[across];
-        columns.middle[i] = middle;
+        center[along] += (2 * section + 1 - sections + kGauss[i % 3]) * half_section;
+        center[across] += kGauss[i / 3 % 3] * hull.half[across];
+        columns.center[i] = center;
         columns.area[i] =
             hull.face[columns.axis] / sections * kGaussShare[i % 3] * kGaussShare[i / 3 % 3];
     }
@@ -164,11 +164,11 @@ BodyColumns cut_columns(const Hull& hull, const Quat& rotation) {
 /// Plane fitted to four points around a ball, placed so that it has the mean height of a quadratic
 /// surface.
 LocalWater sample_about_ball(const WaterSurface& surface, const Vec3& center, float radius) {
-    const float reach = radius * 0.70710678f;
+    const float offset = radius * 0.70710678f;
     const Vec2 at = {center.x, center.z};
     const std::array<WaterPoint, 4> around = {
-        sample_water(surface, at + Vec2(reach, 0)), sample_water(surface, at - Vec2(reach, 0)),
-        sample_water(surface, at + Vec2(0, reach)), sample_water(surface, at - Vec2(0, reach))};
+        sample_water(surface, at + Vec2(offset, 0)), sample_water(surface, at - Vec2(offset, 0)),
+        sample_water(surface, at + Vec2(0, offset)), sample_water(surface, at - Vec2(0, offset))};
     WaterPoint mean = sample_water(surface, at);
     if (!std::all_of(
             around.begin(), around.end(), [](const WaterPoint& point) { return point.is_water; })) {
@@ -185,18 +185,18 @@ LocalWater sample_about_ball(const WaterSurface& surface, const Vec3& center, fl
     const Vec2 slope = Vec2(
                            around[0].position.y - around[1].position.y,
                            around[2].position.y - around[3].position.y)
-                       / (2 * reach);
+                       / (2 * offset);
     const float steepness = glm::length(slope);
     local.slope = steepness > kMaxSlope ? slope * (kMaxSlope / steepness) : slope;
     return local;
 }
 
 void sample_columns(
-    const Hull& hull, const BodyPlace& place, const WaterSurface& water, BodyColumns& columns) {
+    const Hull& hull, const BodyPose& pose, const WaterSurface& water, BodyColumns& columns) {
     WaterSurface surface = water;
     surface.min_wavelength = 2 * columns.gap;  // shorter waves average out
     for (std::size_t i = 0; i < columns.count; ++i) {
-        const Vec3 at = place.world(columns.middle[i]);
+        const Vec3 at = pose.world(columns.center[i]);
         columns.water[i] = hull.shape == TouchShape::Ball
                                ? sample_about_ball(surface, at, hull.half.x)
                                : make_local(sample_water(surface, {at.x, at.z}));
@@ -225,12 +225,12 @@ void add_part(const LocalWater& water, float volume, const Vec3& arm, float over
     lift.water_velocity += volume * calm * water.velocity;
 }
 
-void lift_ball(const Hull& hull, const BodyPlace& place, const LocalWater& water, Lift& lift) {
+void lift_ball(const Hull& hull, const BodyPose& pose, const LocalWater& water, Lift& lift) {
     const float r = hull.half.x;
-    const Vec3 arm = place.rotation * hull.middle;
-    const Vec3 middle = place.center + arm;
+    const Vec3 arm = pose.rotation * hull.center;
+    const Vec3 center = pose.center + arm;
     const Vec3 normal = glm::normalize(Vec3(-water.slope.x, 1, -water.slope.y));
-    const float depth = (water.height_at(middle) - middle.y) * normal.y;
+    const float depth = (water.height_at(center) - center.y) * normal.y;
     const float height = std::clamp(r + depth, 0.0f, 2 * r);  // of the submerged cap
     const float volume = kPi / 3 * height * height * (3 * r - height);
     const float below = 0.75f * square(2 * r - height) / (3 * r - height);
@@ -239,16 +239,16 @@ void lift_ball(const Hull& hull, const BodyPlace& place, const LocalWater& water
     }
 }
 
-Lift lift_hull(const Hull& hull, const BodyPlace& place, const BodyColumns& columns) {
+Lift lift_hull(const Hull& hull, const BodyPose& pose, const BodyColumns& columns) {
     Lift lift;
     if (hull.shape == TouchShape::Ball) {
         if (columns.water[0].is_water) {
-            lift_ball(hull, place, columns.water[0], lift);
+            lift_ball(hull, pose, columns.water[0], lift);
         }
     } else {
         Vec3 axis(0);
         axis[columns.axis] = 1;
-        axis = place.rotation * axis;
+        axis = pose.rotation * axis;
         axis = axis.y < 0 ? -axis : axis;
         const float half = hull.half[columns.axis];
         for (std::size_t i = 0; i < columns.count; ++i) {
@@ -256,10 +256,10 @@ Lift lift_hull(const Hull& hull, const BodyPlace& place, const BodyColumns& colu
             if (!water.is_water) {
                 continue;
             }
-            const Vec3 arm = place.rotation * columns.middle[i];
-            const Vec3 middle = place.center + arm;
+            const Vec3 arm = pose.rotation * columns.center[i];
+            const Vec3 center = pose.center + arm;
             // The point at s along the column is at depth - s * rise below the surface.
-            const float depth = water.height_at(middle) - middle.y;
+            const float depth = water.height_at(center) - center.y;
             const float rise =
                 std::max(axis.y - water.slope.x * axis.x - water.slope.y * axis.z, 0.1f);
             const float top = std::clamp(depth / rise, -half, half);
@@ -294,10 +294,11 @@ struct Motion {
         velocity += impulse / mass;
         spin += turned(rotation, glm::cross(arm, impulse));
     }
-    /// Change of speed along `way` at the point `arm` per unit impulse along `way`.
-    [[nodiscard]] float mobility(const Quat& rotation, const Vec3& arm, const Vec3& way) const {
-        const Vec3 spun = turned(rotation, glm::cross(arm, way));
-        return 1 / mass + glm::dot(way, glm::cross(spun, arm));
+    /// Change of speed along `direction` at the point `arm` per unit impulse along it.
+    [[nodiscard]] float
+    mobility(const Quat& rotation, const Vec3& arm, const Vec3& direction) const {
+        const Vec3 spun = turned(rotation, glm::cross(arm, direction));
+        return 1 / mass + glm::dot(direction, glm::cross(spun, arm));
     }
 };
 
@@ -307,7 +308,7 @@ struct Motion {
 void resist(
     const Hull& hull, const Floating& floating, const Quat& rotation, const Lift& lift,
     const Vec3& gained, float step, Motion& motion) {
-    const float share = lift.volume / hull.volume;
+    const float submerged = lift.volume / hull.volume;
     const float damping = positive(floating.damping) * kWaterDensity * lift.volume / hull.mass;
     const Vec3 drag = {
         positive(floating.drag.x), positive(floating.drag.y), positive(floating.drag.z)};
@@ -317,7 +318,7 @@ void resist(
     const float speed = glm::length(before);
     for (int i = 0; i < 3; ++i) {
         const float quadratic =
-            0.5f * kWaterDensity * share * drag[i] * hull.face[i] * speed / motion.mass;
+            0.5f * kWaterDensity * submerged * drag[i] * hull.face[i] * speed / motion.mass;
         against[i] /= 1 + step * (damping + quadratic);
     }
     motion.velocity = lift.water_velocity + rotation * against;
@@ -368,12 +369,12 @@ Walls walls_of(const WaterSurface& surface, bool stays) {
 std::size_t
 corners_of(const Hull& hull, const Quat& rotation, const Vec3& normal, std::array<Vec3, 8>& arms) {
     if (hull.shape == TouchShape::Ball) {
-        arms[0] = rotation * hull.middle - hull.half.x * normal;
+        arms[0] = rotation * hull.center - hull.half.x * normal;
         return 1;
     }
     for (int i = 0; i < 8; ++i) {
         const Vec3 sign = {(i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1};
-        arms[static_cast<std::size_t>(i)] = rotation * (hull.middle + sign * hull.half);
+        arms[static_cast<std::size_t>(i)] = rotation * (hull.center + sign * hull.half);
     }
     return 8;
 }
@@ -388,10 +389,10 @@ struct Contact {
 /// Resolves contacts with a wall, with friction, and removes penetration. Sequential impulses over
 /// several passes; accumulated impulses are clamped, so that excess can be taken back.
 void resolve_contacts(
-    const Hull& hull, const BodyWall& wall, float step, BodyPlace& place, Motion& motion) {
+    const Hull& hull, const BodyWall& wall, float step, BodyPose& pose, Motion& motion) {
     std::array<Vec3, 8> arms;
-    const std::size_t corners = corners_of(hull, place.rotation, wall.normal, arms);
-    const float height = glm::dot(wall.normal, place.center) - wall.offset;
+    const std::size_t corners = corners_of(hull, pose.rotation, wall.normal, arms);
+    const float height = glm::dot(wall.normal, pose.center) - wall.offset;
     std::array<Contact, 8> contacts;
     std::size_t count = 0;
     float deepest = 0;
@@ -410,24 +411,24 @@ void resolve_contacts(
             Contact& contact = contacts[i];
             Vec3 velocity = motion.velocity + glm::cross(motion.spin, contact.arm);
             const float wanted = -glm::dot(velocity, wall.normal)
-                                 / motion.mobility(place.rotation, contact.arm, wall.normal);
+                                 / motion.mobility(pose.rotation, contact.arm, wall.normal);
             const float stop = std::max(contact.stop + wanted, 0.0f);
-            motion.push(place.rotation, contact.arm, (stop - contact.stop) * wall.normal);
+            motion.push(pose.rotation, contact.arm, (stop - contact.stop) * wall.normal);
             contact.stop = stop;
 
             velocity = motion.velocity + glm::cross(motion.spin, contact.arm);
             const Vec3 along = velocity - glm::dot(velocity, wall.normal) * wall.normal;
-            const Vec3 way = normalize_or(along, wall.normal);
+            const Vec3 direction = normalize_or(along, wall.normal);
             const float hold =
-                glm::length(along) / motion.mobility(place.rotation, contact.arm, way);
+                glm::length(along) / motion.mobility(pose.rotation, contact.arm, direction);
             const Vec3 friction =
-                limit_length(contact.friction - hold * way, kFriction * contact.stop);
-            motion.push(place.rotation, contact.arm, friction - contact.friction);
+                limit_length(contact.friction - hold * direction, kFriction * contact.stop);
+            motion.push(pose.rotation, contact.arm, friction - contact.friction);
             contact.friction = friction;
         }
     }
     motion.spin /= 1 + step * kRolling;
-    place.center += std::max(deepest - 0.5f * kTouching, 0.0f) * wall.normal;
+    pose.center += std::max(deepest - 0.5f * kTouching, 0.0f) * wall.normal;
 }
 
 /// The body of water above or below the hull with the nearest surface.
@@ -437,15 +438,15 @@ struct Nearest {
     WaterPoint point{};
 };
 
-Nearest nearest_water(std::span<const WaterSurface> surfaces, const Vec3& middle, float radius) {
+Nearest nearest_water(std::span<const WaterSurface> surfaces, const Vec3& center, float radius) {
     Nearest nearest;
     float distance = 0;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        if (middle.y + radius < water_bottom(surfaces[i])) {
+        if (center.y + radius < water_bottom(surfaces[i])) {
             continue;
         }
-        const WaterPoint point = sample_water(surfaces[i], {middle.x, middle.z});
-        const float away = std::abs(point.position.y - middle.y);
+        const WaterPoint point = sample_water(surfaces[i], {center.x, center.z});
+        const float away = std::abs(point.position.y - center.y);
         if (point.is_water && (!nearest.found || away < distance)) {
             nearest = {i, true, point};
             distance = away;
@@ -477,13 +478,13 @@ Substeps substeps_of(const Hull& hull, float step) {
 Displaced
 displaced_water(const WaterTouch& touch, const Transform& transform, const WaterSurface& surface) {
     const Hull hull = make_hull(touch, {}, transform.scale);
-    const BodyPlace place = {
+    const BodyPose pose = {
         transform.position - transform.rotation * hull.origin, transform.rotation};
-    BodyColumns columns = cut_columns(hull, place.rotation);
-    sample_columns(hull, place, surface, columns);
-    const Lift lift = lift_hull(hull, place, columns);
+    BodyColumns columns = cut_columns(hull, pose.rotation);
+    sample_columns(hull, pose, surface, columns);
+    const Lift lift = lift_hull(hull, pose, columns);
     return {
-        lift.volume, lift.volume > 0 ? place.center + lift.moment / lift.volume : place.center,
+        lift.volume, lift.volume > 0 ? pose.center + lift.moment / lift.volume : pose.center,
         hull.volume};
 }
 
@@ -506,8 +507,8 @@ std::optional<Splash> step_floating_body(
     float step, FloatingState& state, Transform& transform) {
     const Hull hull = make_hull(touch, floating, transform.scale);
     const Quat rotation = normalize_or_identity(transform.rotation);
-    BodyPlace place = {transform.position - rotation * hull.origin, rotation};
-    if (!(hull.volume > 1e-12f && hull.volume < 1e12f) || !is_finite(place.center) || !(step > 0)
+    BodyPose pose = {transform.position - rotation * hull.origin, rotation};
+    if (!(hull.volume > 1e-12f && hull.volume < 1e12f) || !is_finite(pose.center) || !(step > 0)
         || !std::isfinite(hull.mass) || transform.position.y < kMinHeight) {
         return std::nullopt;
     }
@@ -515,13 +516,13 @@ std::optional<Splash> step_floating_body(
     motion.velocity = is_finite(state.velocity) ? state.velocity : Vec3(0);
     motion.spin = is_finite(state.spin) ? state.spin : Vec3(0);
 
-    const Vec3 middle = place.world(hull.middle);
-    const float reach = glm::length(hull.half);
-    const Nearest nearest = nearest_water(surfaces, middle, reach);
-    BodyColumns columns = cut_columns(hull, place.rotation);
+    const Vec3 center = pose.world(hull.center);
+    const float radius = glm::length(hull.half);
+    const Nearest nearest = nearest_water(surfaces, center, radius);
+    BodyColumns columns = cut_columns(hull, pose.rotation);
     const float fall = step * glm::length(motion.velocity);
-    if (nearest.found && middle.y - nearest.point.position.y < 2 * reach + fall) {
-        sample_columns(hull, place, surfaces[nearest.index], columns);
+    if (nearest.found && center.y - nearest.point.position.y < 2 * radius + fall) {
+        sample_columns(hull, pose, surfaces[nearest.index], columns);
     }
     const bool was_in = state.submerged > 0;
     const float closing = glm::dot(nearest.point.velocity - motion.velocity, nearest.point.normal);
@@ -531,33 +532,33 @@ std::optional<Splash> step_floating_body(
     motion.inertia = hull.inertia * substeps.heavier;
     bool dipped = false;
     for (int i = 0; i < substeps.count; ++i) {
-        const Lift lift = lift_hull(hull, place, columns);
+        const Lift lift = lift_hull(hull, pose, columns);
         dipped = dipped || lift.volume > 0;
         state.submerged = std::min(lift.volume / hull.volume, 1.0f);
         const bool falls = state.submerged == 0;  // light bodies must not fall more slowly
         const float weight = hull.mass * kWeight * (falls ? substeps.heavier : 1.0f);
         const Vec3 gained = dt / motion.mass * (lift.force - Vec3(0, weight, 0));
-        motion.spin = motion.turned(
-            place.rotation, motion.angular_momentum(place.rotation) + dt * lift.torque);
-        resist(hull, floating, place.rotation, lift, gained, dt, motion);
+        motion.spin =
+            motion.turned(pose.rotation, motion.angular_momentum(pose.rotation) + dt * lift.torque);
+        resist(hull, floating, pose.rotation, lift, gained, dt, motion);
         motion.velocity = limit_length(motion.velocity, kMaxSpeed);
         motion.spin = limit_length(motion.spin, kMaxSpin);
 
-        place.center += dt * motion.velocity;
-        const Vec3 angular_momentum = motion.angular_momentum(place.rotation);
-        place.rotation = glm::normalize(exp_rotation(0.5f * dt * motion.spin) * place.rotation);
-        motion.spin = motion.turned(place.rotation, angular_momentum);
+        pose.center += dt * motion.velocity;
+        const Vec3 angular_momentum = motion.angular_momentum(pose.rotation);
+        pose.rotation = glm::normalize(exp_rotation(0.5f * dt * motion.spin) * pose.rotation);
+        motion.spin = motion.turned(pose.rotation, angular_momentum);
         if (state.submerged > 0) {
             const Walls walls = walls_of(surfaces[nearest.index], floating.confined);
             for (std::size_t wall = 0; wall < walls.count; ++wall) {
-                resolve_contacts(hull, walls.list[wall], dt, place, motion);
+                resolve_contacts(hull, walls.list[wall], dt, pose, motion);
             }
         }
     }
     state.velocity = motion.velocity;
     state.spin = motion.spin;
-    transform.rotation = place.rotation;
-    transform.position = place.world(hull.origin);
+    transform.rotation = pose.rotation;
+    transform.position = pose.world(hull.origin);
 
     if (!dipped || was_in || closing < kSplashSpeed || !(floating.splash > 0)) {
         return std::nullopt;

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <complex>
 
+// Techniques: water.fft-synthesis
+
 namespace limn {
 
 namespace {
@@ -24,8 +26,8 @@ float limit(float value, float low, float high) {
 
 /// Number of waves across the patch at an index of the spectrum: 0 .. size / 2 - 1, then -size / 2
 /// .. -1.
-int waves_across(int place, int size) {
-    return place < size / 2 ? place : place - size;
+int waves_across(int index, int size) {
+    return index < size / 2 ? index : index - size;
 }
 
 int wave_index(int waves, int size) {

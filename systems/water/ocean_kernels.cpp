@@ -11,6 +11,8 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
+// Techniques: water.fft-synthesis
+
 namespace limn::HWY_NAMESPACE {
 namespace {
 

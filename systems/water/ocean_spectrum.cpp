@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.ocean-spectrum
+
 namespace limn {
 
 namespace {

@@ -12,6 +12,8 @@
 #include <map>
 #include <mutex>
 
+// Techniques: water.fft-synthesis
+
 namespace limn {
 
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.noise-surface, water.shallow-refraction
+
 namespace limn {
 namespace {
 
@@ -15,8 +17,8 @@ DepthGrid make_bottom(const ShoalingWaves& waves) {
         for (int i = 0; i < points; ++i) {
             const Vec2 at = (Vec2(i, j) / float(points - 1) - 0.5f) * waves.size;
             const float u = std::min(glm::length(at) / std::max(waves.shoal_radius, 1e-6f), 1.0f);
-            const float share = 1.0f - u * u * (3.0f - 2.0f * u);
-            grid.depth.push_back(glm::mix(waves.depth, waves.shoal_depth, share));
+            const float blend = 1.0f - u * u * (3.0f - 2.0f * u);
+            grid.depth.push_back(glm::mix(waves.depth, waves.shoal_depth, blend));
         }
     }
     return grid;
@@ -60,9 +62,9 @@ void shape_mesh(const HeightField& field, MeshData& mesh) {
     const auto last = static_cast<float>(field.points - 1);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         Vec3& position = mesh.positions[v];
-        const Vec2 place = glm::clamp(Vec2(position.x, position.z) / field.size + 0.5f, 0.0f, 1.0f);
-        const auto i = static_cast<std::size_t>(std::lround(place.x * last));
-        const auto j = static_cast<std::size_t>(std::lround(place.y * last));
+        const Vec2 uv = glm::clamp(Vec2(position.x, position.z) / field.size + 0.5f, 0.0f, 1.0f);
+        const auto i = static_cast<std::size_t>(std::lround(uv.x * last));
+        const auto j = static_cast<std::size_t>(std::lround(uv.y * last));
         const std::size_t point = j * field.points + i;
         position.y = field.height[point];
         mesh.normals[v] = field.normal[point];

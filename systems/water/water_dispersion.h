@@ -13,6 +13,7 @@ namespace limn {
 // a wavelength, omega^2 = g k, and long waves are fastest. In very shallow water, all waves have
 // the speed sqrt(g h). No surface tension: ripples shorter than 2 cm are too slow. On land (h <= 0)
 // frequency and speeds are 0, and the wave number is infinite.
+// Techniques: water.shallow-refraction, water.travelling-wave
 
 inline constexpr double kGravity = 9.81;  ///< [m/s^2]
 

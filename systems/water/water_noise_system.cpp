@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.noise-surface
+
 namespace limn {
 
 namespace {
@@ -29,8 +31,8 @@ float noise_height(const NoiseSurface& noise, const Vec2& at, double time) {
     float frequency = noise.frequency;
     double speed = static_cast<double>(noise.speed);
     for (std::uint32_t i = 0; i < std::min(noise.octaves, kMaxOctaves); ++i) {
-        const Vec3 place = {at.x * frequency, at.y * frequency, static_cast<float>(time * speed)};
-        sum += amplitude * perlin_noise(place, noise.seed + i);
+        const Vec3 point = {at.x * frequency, at.y * frequency, static_cast<float>(time * speed)};
+        sum += amplitude * perlin_noise(point, noise.seed + i);
         amplitude *= 0.5f;
         frequency *= 2.0f;
         speed *= 2.0;

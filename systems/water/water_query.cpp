@@ -18,7 +18,7 @@ namespace {
 constexpr int kMaxEvaluations = 32;
 constexpr float kMiss = 1e-4f;           ///< tolerance [m]
 constexpr float kRoundedMiss = 2.5e-7f;  ///< tolerance relative to the distance from the origin
-constexpr float kMinShare =
+constexpr float kMinDamping =
     1.0f / 64;                  ///< smallest fraction of a Newton step tried by backtracking
 constexpr float kCusp = 0.01f;  ///< Jacobian below which the surface counts as a cusp
 constexpr std::size_t kQueryGrain = 64;  ///< points per task
@@ -26,9 +26,9 @@ constexpr std::size_t kQueryGrain = 64;  ///< points per task
 WavePoint evaluate_cascade(const OceanCascade& cascade, float step, const Vec2& rest) {
     const auto size = static_cast<float>(cascade.size);
     const Vec2 turns = rest / cascade.patch;
-    const Vec2 place = (turns - glm::floor(turns)) * size;
-    const IVec2 corner = glm::min(IVec2(place), IVec2(cascade.size - 1));
-    const Vec2 u = place - Vec2(corner);
+    const Vec2 cell = (turns - glm::floor(turns)) * size;
+    const IVec2 corner = glm::min(IVec2(cell), IVec2(cascade.size - 1));
+    const Vec2 u = cell - Vec2(corner);
     const int next_x = (corner.x + 1) % cascade.size;
     const int next_z = (corner.y + 1) % cascade.size;
     const auto blend = [&](const std::vector<float>& plane) {
@@ -69,8 +69,8 @@ Trial try_rest(const WaterSurface& surface, const Vec2& wanted, const Vec2& rest
     return trial;
 }
 
-/// Newton step: change of the rest point that moves the water by `way` to first order.
-Vec2 newton_step(const WavePoint& point, const Vec2& way) {
+/// Newton step: change of the rest point that moves the water by `delta` to first order.
+Vec2 newton_step(const WavePoint& point, const Vec2& delta) {
     const float xx = 1 + point.by_x.x;
     const float zx = point.by_x.z;
     const float xz = point.by_z.x;
@@ -79,7 +79,7 @@ Vec2 newton_step(const WavePoint& point, const Vec2& way) {
     // At a cusp the determinant is 0, and a small displacement needs a large change of the rest
     // point.
     const float divisor = std::abs(determinant) > kCusp ? determinant : kCusp;
-    return Vec2(zz * way.x - xz * way.y, xx * way.y - zx * way.x) / divisor;
+    return Vec2(zz * delta.x - xz * delta.y, xx * delta.y - zx * delta.x) / divisor;
 }
 
 /// Upward surface normal from these derivatives, including their products.
@@ -94,9 +94,9 @@ Vec3 normal_of(const WavePoint& point) {
 
 std::vector<WaterSurface> collect_water_surfaces(WaterQuery waters) {
     std::vector<WaterSurface> surfaces;
-    waters.each([&](Entity entity, const Water& water, const WorldTransform& place,
+    waters.each([&](Entity entity, const Water& water, const WorldTransform& transform,
                     const OceanState* ocean, const WaveTable* waves, const RippleState* ripples) {
-        surfaces.push_back({water_frame(place.world), water, ocean, waves, ripples, 0, entity});
+        surfaces.push_back({water_frame(transform.world), water, ocean, waves, ripples, 0, entity});
     });
     return surfaces;
 }
@@ -135,12 +135,13 @@ WaterPoint sample_water(const WaterSurface& surface, const Vec2& at) {
     int evaluations = 1;
     while (best.error > good && evaluations < kMaxEvaluations) {
         const Vec2 step = newton_step(best.point, best.missing);
-        float share = 1;
+        float damping = 1;
         Trial next = try_rest(surface, wanted, best.rest + step);
         ++evaluations;
-        while (!(next.error < best.error) && share > kMinShare && evaluations < kMaxEvaluations) {
-            share *= 0.5f;
-            next = try_rest(surface, wanted, best.rest + share * step);
+        while (!(next.error < best.error) && damping > kMinDamping
+               && evaluations < kMaxEvaluations) {
+            damping *= 0.5f;
+            next = try_rest(surface, wanted, best.rest + damping * step);
             ++evaluations;
         }
         if (!(next.error < best.error)) {
@@ -188,26 +189,26 @@ std::optional<WaterAround> find_water(std::span<const WaterSurface> surfaces, co
     return nearest;
 }
 
-std::optional<WaterPoint>
-hit_water(const WaterSurface& surface, const Vec3& origin, const Vec3& direction, float reach) {
+std::optional<WaterPoint> hit_water(
+    const WaterSurface& surface, const Vec3& origin, const Vec3& direction, float max_distance) {
     if (!(direction.y < 0) || !std::isfinite(glm::dot(origin, direction))) {
         return std::nullopt;
     }
     // Newton's method along the ray, starting at the rest surface.
-    float way = (surface.frame.origin.y - origin.y) / direction.y;
-    for (int i = 0; i < 12 && way >= 0 && way <= reach; ++i) {
-        const Vec3 there = origin + way * direction;
+    float distance = (surface.frame.origin.y - origin.y) / direction.y;
+    for (int i = 0; i < 12 && distance >= 0 && distance <= max_distance; ++i) {
+        const Vec3 there = origin + distance * direction;
         const WaterPoint point = sample_water(surface, {there.x, there.z});
         const float above = there.y - point.position.y;
         if (!point.is_water) {
             return std::nullopt;
         }
-        if (std::abs(above) < 1e-3f * (1 + 1e-3f * way)) {
+        if (std::abs(above) < 1e-3f * (1 + 1e-3f * distance)) {
             return point;
         }
         const Vec2 slope = point.slope();
         const float sinking = slope.x * direction.x + slope.y * direction.z - direction.y;
-        way += above / std::max(sinking, -0.5f * direction.y);
+        distance += above / std::max(sinking, -0.5f * direction.y);
     }
     return std::nullopt;
 }

@@ -82,9 +82,9 @@ struct WaterAround {
 [[nodiscard]] std::optional<WaterAround>
 find_water(std::span<const WaterSurface> surfaces, const Vec3& point);
 
-/// First intersection of a ray with the surface from above, within `reach` [m]. `direction` is
-/// unit. A grazing ray may miss the first crest of high waves.
-[[nodiscard]] std::optional<WaterPoint>
-hit_water(const WaterSurface& surface, const Vec3& origin, const Vec3& direction, float reach);
+/// First intersection of a ray with the surface from above, within `max_distance` [m]. `direction`
+/// is unit. A grazing ray may miss the first crest of high waves.
+[[nodiscard]] std::optional<WaterPoint> hit_water(
+    const WaterSurface& surface, const Vec3& origin, const Vec3& direction, float max_distance);
 
 }  // namespace limn

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.shallow-refraction
+
 namespace limn {
 
 namespace {
@@ -45,9 +47,9 @@ float rise(float number, float left, float right, float cell) {
 
 /// Bilinear depth, clamped at the edges.
 float depth_at(const DepthGrid& grid, const Vec2& at) {
-    const Vec2 place = glm::clamp(at / grid.cell, Vec2(0), Vec2(grid.points - 1));
-    const IVec2 corner = glm::min(IVec2(place), grid.points - 2);
-    const Vec2 u = place - Vec2(corner);
+    const Vec2 cell_position = glm::clamp(at / grid.cell, Vec2(0), Vec2(grid.points - 1));
+    const IVec2 corner = glm::min(IVec2(cell_position), grid.points - 2);
+    const Vec2 u = cell_position - Vec2(corner);
     const float* const first = grid.depth.data() + corner.y * grid.points.x + corner.x;
     return glm::mix(
         glm::mix(first[0], first[1], u.x),
@@ -75,10 +77,10 @@ WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
     }
     train.phase.resize(grid.depth.size());
 
-    const Vec2 way = {std::cos(direction), std::sin(direction)};
+    const Vec2 heading = {std::cos(direction), std::sin(direction)};
     Rows rows;
-    rows.along_x = std::abs(way.x) >= std::abs(way.y);
-    rows.backward = (rows.along_x ? way.x : way.y) < 0;
+    rows.along_x = std::abs(heading.x) >= std::abs(heading.y);
+    rows.backward = (rows.along_x ? heading.x : heading.y) < 0;
     rows.count = rows.along_x ? grid.points.x : grid.points.y;
     rows.length = rows.along_x ? grid.points.y : grid.points.x;
     rows.width = grid.points.x;
@@ -87,7 +89,7 @@ WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
         incoming = std::min(incoming, numbers[rows.at(0, i)]);
     }
     // Phase difference between points of a row, also extrapolated beyond its ends.
-    const float aside = incoming * (rows.along_x ? way.y : way.x) * grid.cell;
+    const float aside = incoming * (rows.along_x ? heading.y : heading.x) * grid.cell;
     const auto length = static_cast<std::size_t>(rows.length);
     std::vector<float> here(length + 2);
     std::vector<float> next(length + 2);
@@ -109,11 +111,12 @@ WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
         }
         const int substeps = std::clamp(static_cast<int>(std::ceil(quickest)), 1, kMaxSubsteps);
         for (int substep = 0; substep < substeps; ++substep) {
-            const float share = (static_cast<float>(substep) + 0.5f) / static_cast<float>(substeps);
+            const float fraction =
+                (static_cast<float>(substep) + 0.5f) / static_cast<float>(substeps);
             for (int i = 0; i < rows.length; ++i) {
                 const std::size_t p = static_cast<std::size_t>(i) + 1;
                 const float number =
-                    glm::mix(numbers[rows.at(row, i)], numbers[rows.at(row + 1, i)], share);
+                    glm::mix(numbers[rows.at(row, i)], numbers[rows.at(row + 1, i)], fraction);
                 next[p] =
                     here[p]
                     + grid.cell / static_cast<float>(substeps)
@@ -148,17 +151,17 @@ std::vector<Vec2> trace_wave_ray(
     std::vector<Vec2> ray;
     Vec2 at = from;
     Vec2 wave = number(at) * Vec2(std::cos(direction), std::sin(direction));
-    for (float way = 0; way <= length; way += step) {
+    for (float traveled = 0; traveled <= length; traveled += step) {
         const bool inside = at.x >= 0 && at.y >= 0 && at.x <= extent.x && at.y <= extent.y;
         if (!inside || !(depth_at(grid, at) > 0)) {
             break;
         }
         ray.push_back(at);
         // d x / d s = k / |k|, d k / d s = grad |k|, by the midpoint rule.
-        const Vec2 middle = at + 0.5f * step * glm::normalize(wave);
-        wave += step * slope(middle);
+        const Vec2 midpoint = at + 0.5f * step * glm::normalize(wave);
+        wave += step * slope(midpoint);
         const Vec2 turned = glm::normalize(wave);
-        at = middle + 0.5f * step * turned;
+        at = midpoint + 0.5f * step * turned;
         wave = number(at) * turned;
     }
     return ray;

@@ -73,9 +73,9 @@ void close_border(RippleState& state, std::vector<float>& field) {
 void open_border(
     const RippleState& state, const std::vector<float>& now, std::vector<float>& next,
     float courant) {
-    const float share = (courant - 1) / (courant + 1);
+    const float coefficient = (courant - 1) / (courant + 1);
     const auto carry = [&](std::size_t ghost, std::size_t inner) {
-        next[ghost] = now[inner] + share * (next[inner] - now[ghost]);
+        next[ghost] = now[inner] + coefficient * (next[inner] - now[ghost]);
     };
     const IVec2 n = state.cells;
     for (int z = 0; z < n.y; ++z) {
@@ -96,9 +96,9 @@ void fill_keep(std::vector<float>& keep, int cells, float base, bool absorbing) 
         kSponge * square(static_cast<float>(width) / static_cast<float>(kSpongeCells));
     for (int i = 0; absorbing && i < width; ++i) {
         const float depth = 1.0f - static_cast<float>(i) / static_cast<float>(width);
-        const float share = 1.0f - strength * depth * depth;
-        keep[static_cast<std::size_t>(i)] *= share;
-        keep[static_cast<std::size_t>(cells - 1 - i)] *= share;
+        const float damping = 1.0f - strength * depth * depth;
+        keep[static_cast<std::size_t>(i)] *= damping;
+        keep[static_cast<std::size_t>(cells - 1 - i)] *= damping;
     }
 }
 
@@ -345,10 +345,10 @@ RipplePoint sample_ripples(const RippleState& state, const Vec2& at) {
     if (state.cells.x == 0 || !is_over(state, at)) {
         return {};
     }
-    const Vec2 place = glm::clamp(
+    const Vec2 cell_position = glm::clamp(
         at / state.cell + 0.5f * Vec2(state.cells) - 0.5f, Vec2(0), Vec2(state.cells - 1));
-    const IVec2 corner = glm::min(IVec2(place), state.cells - 2);
-    const Vec2 u = place - Vec2(corner);
+    const IVec2 corner = glm::min(IVec2(cell_position), state.cells - 2);
+    const Vec2 u = cell_position - Vec2(corner);
     const std::size_t first = state.at(corner.x, corner.y);
     const std::size_t below = first + static_cast<std::size_t>(state.stride);
     const auto blend = [&](const std::vector<float>& field) {

@@ -20,13 +20,15 @@ struct CellBox {
 /// Bounding box of an ellipse, clipped to the grid.
 [[nodiscard]] inline CellBox
 box_around(const RippleState& state, const Vec2& center, const Vec2& radius) {
-    const Vec2 middle = center / state.cell + 0.5f * Vec2(state.cells) - 0.5f;
-    const Vec2 reach = radius / state.cell;
+    const Vec2 center_cell = center / state.cell + 0.5f * Vec2(state.cells) - 0.5f;
+    const Vec2 radius_cells = radius / state.cell;
     CellBox box;
     for (int axis = 0; axis < 2; ++axis) {
         const float cells = static_cast<float>(state.cells[axis]);
-        const float from = std::clamp(std::ceil(middle[axis] - reach[axis]), 0.0f, cells);
-        const float to = std::clamp(std::floor(middle[axis] + reach[axis]) + 1, 0.0f, cells);
+        const float from =
+            std::clamp(std::ceil(center_cell[axis] - radius_cells[axis]), 0.0f, cells);
+        const float to =
+            std::clamp(std::floor(center_cell[axis] + radius_cells[axis]) + 1, 0.0f, cells);
         box.first[axis] = static_cast<int>(from);
         box.last[axis] = static_cast<int>(to);
     }

@@ -29,7 +29,7 @@ struct Wall {
     float x = 0;
     std::size_t order = 0;
     const WaterWall* wall = nullptr;
-    const Affine* place = nullptr;
+    const Affine* transform = nullptr;
 };
 
 /// All bodies and walls.
@@ -49,13 +49,13 @@ void sort_along_x(std::vector<T>& all) {
     });
 }
 
-/// Those with x within `reach` [m] of `middle`.
+/// Those with x within `radius` [m] of `center`.
 template <typename T>
-std::span<const T> near_x(const std::vector<T>& sorted, float middle, float reach) {
+std::span<const T> near_x(const std::vector<T>& sorted, float center, float radius) {
     const auto below = [](const T& one, float x) { return one.x < x; };
-    const auto first = std::lower_bound(sorted.begin(), sorted.end(), middle - reach, below);
+    const auto first = std::lower_bound(sorted.begin(), sorted.end(), center - radius, below);
     const auto last = std::upper_bound(
-        first, sorted.end(), middle + reach, [](float x, const T& one) { return x < one.x; });
+        first, sorted.end(), center + radius, [](float x, const T& one) { return x < one.x; });
     return {first, last};
 }
 
@@ -86,7 +86,7 @@ void update_walls(const Pool& pool, std::span<const Wall> walls) {
     const WaterSurface& surface = pool.surface;
     for (const Wall& wall : walls) {
         const auto one = place_wall(
-            *wall.wall, *wall.place, surface.frame, surface.water.depth, pool.state->size());
+            *wall.wall, *wall.transform, surface.frame, surface.water.depth, pool.state->size());
         if (one) {
             placed.push_back(*one);
         }
@@ -100,14 +100,14 @@ void step_pool(const Pool& pool, const Surroundings& around, Random& random, flo
         state = make_ripples(pool.surface.water, *pool.ripples, step);
     }
     const float x = pool.surface.frame.origin.x;
-    const float reach = 0.5f * glm::length(state.size()) + state.cell;
-    update_walls(pool, near_x(around.walls, x, reach + around.widest));
+    const float radius = 0.5f * glm::length(state.size()) + state.cell;
+    update_walls(pool, near_x(around.walls, x, radius + around.widest));
     // The level of open water does not rise.
     const bool rises = pool.ripples->border == RippleBorder::Reflecting;
     const float level = rises ? static_cast<float>(state.level) : 0.0f;
     thread_local std::vector<WaterBulge> bulges;
     bulges.clear();
-    for (const Touching& body : near_x(around.bodies, x, reach)) {
+    for (const Touching& body : near_x(around.bodies, x, radius)) {
         bulges.push_back(bulge_of(body.shape, pool.surface, level, state.size()));
     }
     displace_ripples(state, bulges);
@@ -144,22 +144,22 @@ void update_water_ripples(
     surroundings.widest = 0;
     pools.clear();
     shapes.clear();
-    bodies.each([&](const WaterTouch& touch, const WorldTransform& place, const TouchParts* parts,
-                    const Deformed* deformed) {
+    bodies.each([&](const WaterTouch& touch, const WorldTransform& transform,
+                    const TouchParts* parts, const Deformed* deformed) {
         const bool skinned = deformed != nullptr && deformed->skin.index < assets->skins.size();
         add_touching_shapes(
-            touch, place.world, parts, skinned ? &assets->skins[deformed->skin.index] : nullptr,
+            touch, transform.world, parts, skinned ? &assets->skins[deformed->skin.index] : nullptr,
             skinned ? poses.find<const Pose>(deformed->character) : nullptr, shapes);
     });
     for (const TouchingShape& shape : shapes) {
         const float x = transform_point(shape.world, shape.offset).x;
         surroundings.bodies.push_back({x, surroundings.bodies.size(), shape});
     }
-    walls.each([&](const WaterWall& wall, const WorldTransform& place) {
-        const float x = transform_point(place.world, wall.offset).x;
-        surroundings.walls.push_back({x, surroundings.walls.size(), &wall, &place.world});
+    walls.each([&](const WaterWall& wall, const WorldTransform& transform) {
+        const float x = transform_point(transform.world, wall.offset).x;
+        surroundings.walls.push_back({x, surroundings.walls.size(), &wall, &transform.world});
         float square_sum = 0;
-        for (const Vec4& row : place.world.row) {
+        for (const Vec4& row : transform.world.row) {
             const Vec3 side = Vec3(row) * wall.half;
             square_sum += glm::dot(side, side);
         }
@@ -168,9 +168,9 @@ void update_water_ripples(
     sort_along_x(surroundings.bodies);
     sort_along_x(surroundings.walls);
     waters.each([&](Entity entity, const Water& water, const WaterRipples& ripples,
-                    const WorldTransform& place, const OceanState* ocean, const WaveTable* waves,
-                    RippleState& state) {
-        const WaterSurface surface = {water_frame(place.world), water, ocean, waves};
+                    const WorldTransform& transform, const OceanState* ocean,
+                    const WaveTable* waves, RippleState& state) {
+        const WaterSurface surface = {water_frame(transform.world), water, ocean, waves};
         pools.push_back({entity, &ripples, surface, &state});
     });
     const Surroundings& around = surroundings;

@@ -14,7 +14,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kBulgeReach =
+constexpr float kBulgeScale =
     2.0f;                   ///< extent of the water raised by a wall, relative to its half extents
 constexpr float kEdge = 4;  ///< weight of an edge in the Laplacian, in sixths of cell^-2
 constexpr float kCorner = 1;
@@ -73,7 +73,7 @@ std::vector<std::uint8_t> dry_cells(const RippleState& state, std::span<const Pl
     bool any = false;
     for (const PlacedWall& wall : walls) {
         const Vec3 half = widened(wall, state.cell);
-        const CellBox box = box_around(state, wall.center, wall.reach + 2 * state.cell);
+        const CellBox box = box_around(state, wall.center, wall.half_extent + 2 * state.cell);
         for (int z = box.first.y; z < box.last.y; ++z) {
             for (int x = box.first.x; x < box.last.x; ++x) {
                 if (is_in_wall(wall, half, cell_center(state, x, z))) {
@@ -118,12 +118,12 @@ float exchange(const RippleState& state, const IVec2& a, const IVec2& b, bool wa
     if (!wet(a) || !wet(b)) {
         return 0;
     }
-    const IVec2 way = b - a;
-    if (way.x != 0 && way.y != 0) {
-        const bool beside = wet({a.x + way.x, a.y}) || wet({a.x, a.y + way.y});
+    const IVec2 step = b - a;
+    if (step.x != 0 && step.y != 0) {
+        const bool beside = wet({a.x + step.x, a.y}) || wet({a.x, a.y + step.y});
         return beside ? kCorner : 0;
     }
-    const IVec2 side = {way.y, way.x};
+    const IVec2 side = {step.y, step.x};
     const auto mirrored = [&](const IVec2& s) { return !wet(a + s) && !wet(b + s) ? kCorner : 0; };
     return kEdge + mirrored(side) + mirrored(-side);
 }
@@ -178,7 +178,7 @@ void make_rims(RippleState& state, std::span<const IVec2> dry) {
     for (std::uint8_t now = 2; now <= 4; ++now) {
         for (const IVec2& cell : dry) {
             const std::size_t at = state.at(cell.x, cell.y);
-            const auto place = static_cast<std::uint32_t>(at);
+            const auto index = static_cast<std::uint32_t>(at);
             std::uint32_t from[8];
             int count = 0;
             for (int i = 0; i < 8 && layer[at] == 0; ++i) {
@@ -195,9 +195,9 @@ void make_rims(RippleState& state, std::span<const IVec2> dry) {
                 continue;
             }
             layer[at] = now;
-            state.wall_cells.push_back({place, place, 0});
+            state.wall_cells.push_back({index, index, 0});
             for (int i = 0; i < count && now < 4; ++i) {
-                state.wall_cells.push_back({place, from[i], 1.0f / static_cast<float>(count)});
+                state.wall_cells.push_back({index, from[i], 1.0f / static_cast<float>(count)});
             }
         }
     }
@@ -270,14 +270,14 @@ void move_water(
     }
 }
 
-/// Raises the water around a wall by `share` of its volume; if there is none nearby, all water.
-void raise(RippleState& state, const PlacedWall& wall, float share) {
-    const Vec2 radius = glm::max(kBulgeReach * wall.reach, Vec2(2.5f * state.cell));
+/// Raises the water around a wall by `fraction` of its volume; if there is none nearby, all water.
+void raise(RippleState& state, const PlacedWall& wall, float fraction) {
+    const Vec2 radius = glm::max(kBulgeScale * wall.half_extent, Vec2(2.5f * state.cell));
     double weights = 0;
     each_bump_cell(state, wall.center, radius, [&](std::size_t, float weight, int, int) {
         weights += static_cast<double>(weight);
     });
-    const double volume = static_cast<double>(share * wall.volume);
+    const double volume = static_cast<double>(fraction * wall.volume);
     const double height = volume / (static_cast<double>(state.cell) * state.cell);
     state.wall_volume += volume;
     const auto lift = [&](std::size_t at, float by) {
@@ -312,19 +312,19 @@ std::optional<PlacedWall> place_wall(
     const WaterShape shape = place_shape(wall.shape, wall.half, wall.offset, world, frame);
     const Mat3 axes(shape.axes[0], shape.axes[1], shape.axes[2]);
     const float check = glm::dot(shape.center, Vec3(1)) + shape.volume
-                        + glm::dot(shape.reach, Vec3(1)) + 1 / glm::determinant(axes);
-    if (!std::isfinite(check) || shape.center.y > shape.reach.y) {
+                        + glm::dot(shape.half_extent, Vec3(1)) + 1 / glm::determinant(axes);
+    if (!std::isfinite(check) || shape.center.y > shape.half_extent.y) {
         return std::nullopt;
     }
     // Only the fraction inside the field displaces water.
-    float share = 1;
+    float fraction = 1;
     for (const int axis : {0, 2}) {
         const float half = 0.5f * extent[axis / 2];
-        const float from = std::max(shape.center[axis] - shape.reach[axis], -half);
-        const float to = std::min(shape.center[axis] + shape.reach[axis], half);
-        share *= std::max(to - from, 0.0f) / (2 * shape.reach[axis]);
+        const float from = std::max(shape.center[axis] - shape.half_extent[axis], -half);
+        const float to = std::min(shape.center[axis] + shape.half_extent[axis], half);
+        fraction *= std::max(to - from, 0.0f) / (2 * shape.half_extent[axis]);
     }
-    if (!(share > 0)) {
+    if (!(fraction > 0)) {
         return std::nullopt;
     }
     const Mat3 inverse = glm::inverse(axes);
@@ -335,9 +335,9 @@ std::optional<PlacedWall> place_wall(
         placed.shape_from_water.row[i] = {inverse[0][i], inverse[1][i], inverse[2][i], -origin[i]};
     }
     placed.center = {shape.center.x, shape.center.z};
-    placed.reach = {shape.reach.x, shape.reach.z};
+    placed.half_extent = {shape.half_extent.x, shape.half_extent.z};
     placed.volume =
-        share * (volume_below(shape, 0) - (depth > 0 ? volume_below(shape, -depth) : 0.0f));
+        fraction * (volume_below(shape, 0) - (depth > 0 ? volume_below(shape, -depth) : 0.0f));
     return placed;
 }
 

@@ -9,9 +9,9 @@ namespace limn {
 
 namespace {
 
-/// Fraction of a ball's volume below a plane at the fraction `share` of its height.
-float cap_volume(float share) {
-    return share * share * (3 - 2 * share);
+/// Fraction of a ball's volume below a plane at a fraction of its height.
+float cap_volume(float fraction) {
+    return fraction * fraction * (3 - 2 * fraction);
 }
 
 float unit_volume(WallShape shape) {
@@ -42,13 +42,13 @@ WaterShape place_shape(
         const Vec3 along = glm::abs(Vec3(placed.axes[0][i], placed.axes[1][i], placed.axes[2][i]));
         switch (shape) {
         case WallShape::Box:
-            placed.reach[i] = along.x + along.y + along.z;
+            placed.half_extent[i] = along.x + along.y + along.z;
             break;
         case WallShape::Cylinder:
-            placed.reach[i] = std::sqrt(along.x * along.x + along.z * along.z) + along.y;
+            placed.half_extent[i] = std::sqrt(along.x * along.x + along.z * along.z) + along.y;
             break;
         case WallShape::Ball:
-            placed.reach[i] = glm::length(along);
+            placed.half_extent[i] = glm::length(along);
             break;
         }
     }
@@ -59,9 +59,10 @@ WaterShape place_shape(
 }
 
 float volume_below(const WaterShape& shape, float height) {
-    const float above_lowest = height - (shape.center.y - shape.reach.y);
-    const float share = std::clamp(above_lowest / std::max(2 * shape.reach.y, 1e-6f), 0.0f, 1.0f);
-    return shape.volume * (shape.shape == WallShape::Ball ? cap_volume(share) : share);
+    const float above_lowest = height - (shape.center.y - shape.half_extent.y);
+    const float fraction =
+        std::clamp(above_lowest / std::max(2 * shape.half_extent.y, 1e-6f), 0.0f, 1.0f);
+    return shape.volume * (shape.shape == WallShape::Ball ? cap_volume(fraction) : fraction);
 }
 
 }  // namespace limn

@@ -10,10 +10,10 @@ namespace limn {
 
 struct WaterShape {
     WallShape shape = WallShape::Box;
-    Vec3 center = {0, 0, 0};  ///< in the water's local space [m]
-    Vec3 axes[3];             ///< half axes, in the water's local space [m]
-    Vec3 reach = {0, 0, 0};   ///< half extents along the water's axes [m]
-    float volume = 0;         ///< [m^3]
+    Vec3 center = {0, 0, 0};       ///< in the water's local space [m]
+    Vec3 axes[3];                  ///< half axes, in the water's local space [m]
+    Vec3 half_extent = {0, 0, 0};  ///< half extents along the water's axes [m]
+    float volume = 0;              ///< [m^3]
 };
 
 /// Shape with half extents `half` about `offset`, both in the local space of an entity at `world`.

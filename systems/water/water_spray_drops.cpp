@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: water.crest-spray, water.impact-spray
+
 namespace limn {
 
 namespace {
@@ -96,7 +98,7 @@ void spray_crests(
             const float x = random.uniform(-0.5f, 0.5f);
             const float z = random.uniform(-0.5f, 0.5f);
             const float near = random.uniform(-kNearCrest, kNearCrest);
-            const Vec3 way = draw_direction(along, source.angle, random);
+            const Vec3 direction = draw_direction(along, source.angle, random);
             const float speed = draw_speed(orbital_speed(line), source.spread, random);
             Vec2 rest = Vec2(x, z) * size;
             const float crest = unleaned(line, 0.5f * kPi + near);
@@ -105,7 +107,7 @@ void spray_crests(
                 continue;
             }
             const Vec3 there = Vec3(rest.x, 0, rest.y) + displace_water(surface, rest).offset;
-            drops.push_back({surface.frame.world(there), speed * way});
+            drops.push_back({surface.frame.world(there), speed * direction});
         }
     }
 }
@@ -128,10 +130,11 @@ void spray_breakers(
         if (!(random.uniform() < threshold - jacobian) || !(speed > 0)) {
             continue;
         }
-        const Vec3 way = draw_direction(point.velocity / speed, source.angle, random);
+        const Vec3 direction = draw_direction(point.velocity / speed, source.angle, random);
         drops.push_back(
             {surface.frame.world(Vec3(rest.x, 0, rest.y) + point.offset),
-             surface.frame.direction_to_world(way) * draw_speed(speed, source.spread, random)});
+             surface.frame.direction_to_world(direction)
+                 * draw_speed(speed, source.spread, random)});
     }
 }
 
@@ -167,10 +170,10 @@ void spray_impact(
     const Vec3 back = along - 2 * glm::dot(along, normal) * normal;
     const int count = draw_count(obstacle.rate * impact_share(phase) * step, random);
     for (int i = 0; i < count; ++i) {
-        Vec3 way = draw_direction(back, obstacle.angle, random);
-        way -= 2 * std::min(glm::dot(way, normal), 0.0f) * normal;  // not into the wall
+        Vec3 direction = draw_direction(back, obstacle.angle, random);
+        direction -= 2 * std::min(glm::dot(direction, normal), 0.0f) * normal;  // not into the wall
         const float speed = draw_speed(orbital_speed(*strongest), obstacle.spread, random);
-        drops.push_back({{point.x, top.position.y, point.z}, speed * way});
+        drops.push_back({{point.x, top.position.y, point.z}, speed * direction});
     }
 }
 

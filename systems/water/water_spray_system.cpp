@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: water.crest-spray, water.impact-spray
+
 namespace limn {
 
 namespace {
@@ -40,13 +42,13 @@ void update_spray(
             spray_breakers(surface, source, time->step, random, drops->drops);
         }
     }
-    obstacles.each([&](Entity entity, const SprayObstacle& obstacle, const WorldTransform& place,
-                       SprayDrops& drops) {
+    obstacles.each([&](Entity entity, const SprayObstacle& obstacle,
+                       const WorldTransform& transform, SprayDrops& drops) {
         drops.drops.clear();
         Random random = random_of(entity);
-        const Vec3 point = transform_point(place.world, Vec3(0));
+        const Vec3 point = transform_point(transform.world, Vec3(0));
         const Vec3 normal =
-            normalize_or(transform_vector(place.world, obstacle.normal), Vec3(0, 1, 0));
+            normalize_or(transform_vector(transform.world, obstacle.normal), Vec3(0, 1, 0));
         for (const WaterSurface& surface : surfaces) {
             if (std::abs(surface.frame.origin.y - point.y) < kSprayReach) {
                 spray_impact(surface, obstacle, point, normal, time->step, random, drops.drops);

@@ -13,7 +13,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kTouchBulgeReach = 1.5f;  ///< of the bulge, relative to the body's half extents
+constexpr float kTouchBulgeScale = 1.5f;  ///< of the bulge, relative to the body's half extents
 constexpr float kUnitBall = 4.0f / 3.0f * kPi;
 constexpr float kMinHalfExtent = 1e-4f;  ///< half extent of a part [m]
 
@@ -119,14 +119,15 @@ void add_touching_shapes(
     case TouchShape::Mesh:
         for (std::size_t i = 0; parts != nullptr && i < parts->parts.size(); ++i) {
             const TouchPart& part = parts->parts[i];
-            Affine place = world;
+            Affine part_world = world;
             const auto joint = static_cast<std::size_t>(std::max(part.joint, 0));
             if (part.joint >= 0 && skin != nullptr && pose != nullptr && joint < skin->joints.size()
                 && joint < skin->joint_from_mesh.size()
                 && skin->joints[joint] < pose->joints.size()) {
-                place = world * pose->joints[skin->joints[joint]] * skin->joint_from_mesh[joint];
+                part_world =
+                    world * pose->joints[skin->joints[joint]] * skin->joint_from_mesh[joint];
             }
-            shapes.push_back({WallShape::Ball, part.half, part.center, place, parts->fill});
+            shapes.push_back({WallShape::Ball, part.half, part.center, part_world, parts->fill});
         }
         break;
     }
@@ -139,7 +140,7 @@ WaterBulge bulge_of(
         place_shape(touching.shape, touching.half, touching.offset, touching.world, frame);
     WaterBulge bulge;
     bulge.center = {shape.center.x, shape.center.z};
-    bulge.radius = kTouchBulgeReach * Vec2(shape.reach.x, shape.reach.z);
+    bulge.radius = kTouchBulgeScale * Vec2(shape.half_extent.x, shape.half_extent.z);
     // Also rejects positions that are not finite.
     const bool over = std::abs(bulge.center.x) <= 0.5f * extent.x
                       && std::abs(bulge.center.y) <= 0.5f * extent.y
@@ -149,9 +150,9 @@ WaterBulge bulge_of(
     }
     if (surface.ocean != nullptr || surface.waves != nullptr) {
         WaterSurface calm = surface;
-        calm.min_wavelength = 2 * std::max(shape.reach.x, shape.reach.z);
-        const Vec3 middle = frame.world(shape.center);
-        const WaterPoint top = sample_water(calm, {middle.x, middle.z});
+        calm.min_wavelength = 2 * std::max(shape.half_extent.x, shape.half_extent.z);
+        const Vec3 center = frame.world(shape.center);
+        const WaterPoint top = sample_water(calm, {center.x, center.z});
         level += top.is_water ? top.position.y - frame.origin.y : 0.0f;
     }
     bulge.volume = touching.fill * volume_below(shape, level);

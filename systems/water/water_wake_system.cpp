@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+// Techniques: water.wake
+
 namespace limn {
 
 namespace {
@@ -24,8 +26,8 @@ constexpr int kMaxRingsPerStep = 16;
 void add_wake_ring(
     const WakeEmitter& wake, const Vec2& at, float speed, float age,
     Query<const Water, const WorldTransform, WaterWaves> waters, float height) {
-    waters.each([&](const Water& water, const WorldTransform& place, WaterWaves& waves) {
-        const WaterFrame frame = water_frame(place.world);
+    waters.each([&](const Water& water, const WorldTransform& transform, WaterWaves& waves) {
+        const WaterFrame frame = water_frame(transform.world);
         const Vec3 local = frame.local({at.x, height, at.y});
         if (!is_inside(water, {local.x, local.z}) || std::abs(local.y) > kAbove
             || waves.packets.size() >= kMaxRings) {
@@ -55,8 +57,8 @@ void add_wake_states(Query<const WakeEmitter, Without<WakeState>> emitters, Comm
 void emit_wakes(
     Query<const WakeEmitter, WakeState, const WorldTransform> emitters,
     Query<const Water, const WorldTransform, WaterWaves> waters, Res<const FrameTime> time) {
-    emitters.each([&](const WakeEmitter& wake, WakeState& state, const WorldTransform& place) {
-        const Affine& world = place.world;
+    emitters.each([&](const WakeEmitter& wake, WakeState& state, const WorldTransform& transform) {
+        const Affine& world = transform.world;
         const Vec2 now = {world.row[0].w, world.row[2].w};
         const Vec2 before = std::exchange(state.previous, now);
         const float speed = glm::distance(now, before) / time->step;

@@ -10,6 +10,8 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+// Techniques: water.gerstner, water.wave-sum
+
 #ifndef LIMN_WATER_WAVE_CONSTANTS
 #define LIMN_WATER_WAVE_CONSTANTS
 namespace limn::waves {

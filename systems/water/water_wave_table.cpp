@@ -9,6 +9,9 @@
 #include <cmath>
 #include <span>
 
+// Techniques: water.geometric-texture-split, water.gerstner, water.radial-packet,
+//     water.radial-wave, water.travelling-wave, water.trochoid, water.wave-sum, water.wind-crest
+
 namespace limn {
 
 namespace {
@@ -90,7 +93,7 @@ void add_packet(const WavePacket& packet, double depth, WaveTable& table) {
 
 /// sin^2 envelope of a ring, and its derivative by r.
 struct Window {
-    float share = 1;
+    float weight = 1;
     float slope = 0;
 };
 Window window_at(const WaveRing& ring, float r) {
@@ -116,18 +119,18 @@ WavePoint evaluate_ring(const WaveRing& ring, const Vec2& at) {
     const float sine = std::sin(phase);
     const float cosine = std::cos(phase);
     const float fade_slope = fades ? -0.5f / r : 0.0f;  // logarithmic derivative
-    const float by_r =
-        amplitude
-        * (ring.k * cosine * window.share + sine * window.slope + sine * window.share * fade_slope);
+    const float by_r = amplitude
+                       * (ring.k * cosine * window.weight + sine * window.slope
+                          + sine * window.weight * fade_slope);
     WavePoint point;
-    point.offset.y = amplitude * sine * window.share;
+    point.offset.y = amplitude * sine * window.weight;
     if (r > 1e-6f) {
         point.by_x.y = by_r * out.x / r;
         point.by_z.y = by_r * out.y / r;
     }
     point.velocity.y =
         amplitude
-        * (ring.frequency * cosine * window.share - sine * window.slope * ring.front_speed);
+        * (ring.frequency * cosine * window.weight - sine * window.slope * ring.front_speed);
     return point;
 }
 

@@ -5,6 +5,7 @@
 #include "ecs/components/surface.h"
 #include "tests/app/run_program.h"
 #include "tests/one_mesh_glb.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -49,7 +50,9 @@ void check_fails(const TemporaryFolder& folder, const Words& more, int code, con
 
 }  // namespace
 
-TEST_CASE("bake: photometric writes the normals and the reflectance of what was photographed") {
+TEST_CASE(
+    "bake: photometric writes the normals and the reflectance of the photographed surface"
+    * technique("face.photometric-normals")) {
     const TemporaryFolder folder;
     const Vec3 normals[2] = {{0.2f, 0.3f, 0.932738f}, {-0.4f, 0.1f, 0.911043f}};
     const float albedo[2] = {0.7f, 0.35f};
@@ -88,7 +91,7 @@ TEST_CASE("bake: photometric writes the normals and the reflectance of what was 
     }
 }
 
-TEST_CASE("bake: photometric refuses lights in a plane, other sizes and missing files by name") {
+TEST_CASE("bake: photometric refuses coplanar lights, different sizes and missing files by name") {
     const TemporaryFolder folder;
     const auto says = [&](const char* shots, const char* expected) {
         write_text(folder.file("shots.json"), shots);
@@ -121,7 +124,7 @@ TEST_CASE("bake: photometric refuses lights in a plane, other sizes and missing 
         "b.exr: found 2 x 1 pixels, expected the 1 x 1 of the first image");
 }
 
-TEST_CASE("bake: furrows writes a height map and unit normals of the size asked for") {
+TEST_CASE("bake: furrows writes a height map and unit normals of the requested size") {
     const TemporaryFolder folder;
     const ProgramRun run =
         bake(folder, {"-o", "skin.exr", "--set", "size=96", "--recipe", "recipe.json"});
@@ -163,7 +166,7 @@ TEST_CASE("bake: furrows writes a height map and unit normals of the size asked 
     }
 }
 
-TEST_CASE("bake: the same command writes the same files, another seed others") {
+TEST_CASE("bake: the same command writes the same files, a different seed different ones") {
     const TemporaryFolder folder;
     for (const char* name : {"a.png", "b.png"}) {
         REQUIRE(
@@ -196,7 +199,7 @@ TEST_CASE("bake: the GPU makes the same height map") {
         == test::read_text(folder.file("gpu_height.png")));
 }
 
-TEST_CASE("bake: what is wrong is one line that says what was found and what was expected") {
+TEST_CASE("bake: an error is one line that says what was found and what was expected") {
     const TemporaryFolder folder;
     const ProgramRun unknown = run_limn(folder, {"bake", "furows", kModel, "-o", "a.png"});
     CHECK(unknown.exit_code == 2);
@@ -249,7 +252,9 @@ void write_normals(const std::string& path, std::uint8_t x, std::uint8_t y) {
 
 }  // namespace
 
-TEST_CASE("bake: a strain model has the slopes of the captured map, less those at rest") {
+TEST_CASE(
+    "bake: a strain model has the slopes of the captured map, less those at rest"
+    * technique("face.wrinkle-model")) {
     const TemporaryFolder folder;
     write_skin(folder.file("skin.glb"));
     write_normals(folder.file("narrow.png"), 128 + 56, 128 - 28);
@@ -279,7 +284,7 @@ TEST_CASE("bake: a strain model has the slopes of the captured map, less those a
     CHECK(loaded->format == PixelFormat::Rgba16F);
 }
 
-TEST_CASE("bake: a strain model of wrong shapes, maps or faces is refused by name") {
+TEST_CASE("bake: a strain model with wrong shapes, maps or faces is refused by name") {
     const TemporaryFolder folder;
     write_skin(folder.file("skin.glb"));
     write_normals(folder.file("a.png"), 128, 128);
@@ -303,7 +308,7 @@ TEST_CASE("bake: a strain model of wrong shapes, maps or faces is refused by nam
     says(R"({"face": "no.glb", "poses": [{"image": "a.png"}]})", "no.glb");
     says(
         R"({"face": "skin.glb", "uv_set": 1, "poses": [{"image": "a.png"}]})",
-        "skin.glb: found no texture coordinates 1, expected the maps' ones");
+        "skin.glb: found no texture coordinates 1, expected those of the maps");
     says(R"({"face": "skin.glb", "size": 0, "poses": [{"image": "a.png"}]})", "size");
 }
 

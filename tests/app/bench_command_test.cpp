@@ -9,7 +9,7 @@ namespace limn::test::bench_command_test {
 
 using Words = std::vector<std::string>;
 
-TEST_CASE("bench_command: what particles and faces are asked for goes to their programs") {
+TEST_CASE("bench_command: options of particles and faces are passed to their programs") {
     BenchOptions options;
     options.scene = "particles";
     options.frames = 1000;
@@ -23,7 +23,7 @@ TEST_CASE("bench_command: what particles and faces are asked for goes to their p
         == Words{"--repeats", "9", "--csv", "-", "--only", "growth", "--most", "2000"});
 }
 
-TEST_CASE("bench_command: parts are for programs that have them") {
+TEST_CASE("bench_command: --only is refused for scenes without parts") {
     BenchOptions options;
     options.scene = "gallery";
     options.only = "draw";

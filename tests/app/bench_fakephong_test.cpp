@@ -1,6 +1,7 @@
 #include "content/app/bench/bench_fakephong.h"
 #include "tests/app/run_program.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -15,7 +16,9 @@ using test::ProgramRun;
 using test::run_limn;
 using test::TemporaryFolder;
 
-TEST_CASE("bench_fakephong: costs are ratios to per-pixel shading of the same model and lights") {
+TEST_CASE(
+    "bench_fakephong: costs are ratios to per-pixel shading of the same model and lights"
+    * technique("fakephong.metric-efficiency")) {
     FakePhongBench bench{.machine = {.scene = "phonglab", .size = {64, 36}, .frames = 3}};
     for (const int lights : kFakePhongLights) {
         FakePhongPoint& point = bench.points.emplace_back(FakePhongPoint{"teapot", lights, {}});
@@ -32,7 +35,8 @@ TEST_CASE("bench_fakephong: costs are ratios to per-pixel shading of the same mo
     CHECK(fakephong_bench_table(bench).find("vertex") != std::string::npos);
 }
 
-TEST_CASE("bench_fakephong: counted lightings are the thesis's, and Phong shading's work is 1") {
+TEST_CASE("bench_fakephong: counted lighting evaluations match the thesis, and Phong shading's "
+          "work is 1") {
     const std::vector<FakePhongCount> counts = count_fakephong();
     const auto of = [&](const char* model, const char* method) {
         return std::find_if(
@@ -57,7 +61,9 @@ TEST_CASE("bench_fakephong: counted lightings are the thesis's, and Phong shadin
     CHECK(of("triangle", "quadratic, stepped").work < of("triangle", "quadratic").work);
 }
 
-TEST_CASE("bench_fakephong: every method is timed on every model under 1, 4 and 16 lights") {
+TEST_CASE(
+    "bench_fakephong: every method is timed on every model under 1, 4 and 16 lights"
+    * technique("fakephong.metric-efficiency")) {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(
         folder, {"bench", "fakephong", "--frames", "1", "--size", "32x18", "--csv", "b.csv"});
@@ -69,7 +75,7 @@ TEST_CASE("bench_fakephong: every method is timed on every model under 1, 4 and 
     CHECK(csv.find("sphere,16,quadratic_blinn,1,") != std::string::npos);
     CHECK(csv.find("sphere,\"quadratic-blinn\",6,") != std::string::npos);
     CHECK(csv.find("triangle,\"cubic, stepped\",10,") != std::string::npos);
-    CHECK(run.out.find("Counted on a processor") != std::string::npos);
+    CHECK(run.out.find("Counted on a CPU") != std::string::npos);
 }
 
 }  // namespace limn::bench_fakephong_test

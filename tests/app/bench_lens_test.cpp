@@ -58,7 +58,7 @@ TEST_CASE("bench_lens: every effect is measured alone, and the four together") {
     CHECK(together == kLensFour);
 }
 
-TEST_CASE("bench_lens: effects that are not asked for are off, the others as the level has them") {
+TEST_CASE("bench_lens: effects that are not requested are off, the others as in the level") {
     const auto opened = open_stage(kLensScene);
     REQUIRE(opened.ok());
     Stage& stage = **opened;
@@ -80,7 +80,7 @@ TEST_CASE("bench_lens: effects that are not asked for are off, the others as the
     CHECK(world.resource<Rendering>().antialiasing == Antialiasing::Temporal);
 }
 
-TEST_CASE("bench_lens: an effect costs what it adds to a frame, and what passes it brings") {
+TEST_CASE("bench_lens: an effect costs the time it adds to a frame, and lists its passes") {
     const LensBench bench = small_bench();
     const LensCost none = lens_cost(bench, bench.points.front());
     CHECK(none.frame == 10);

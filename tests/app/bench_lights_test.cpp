@@ -48,13 +48,14 @@ LightsBench small_bench() {
 
 }  // namespace
 
-TEST_CASE("bench_lights: powers of four up to all there are") {
+TEST_CASE("bench_lights: counts are powers of four up to all lights") {
     CHECK(light_counts(4096) == std::vector<int>{16, 64, 256, 1024, 4096});
     CHECK(light_counts(100) == std::vector<int>{16, 64, 100});
     CHECK(light_counts(3) == std::vector<int>{3});
 }
 
-TEST_CASE("bench_lights: as many lights shine as asked for, and fewer are among the more") {
+TEST_CASE("bench_lights: the requested number of lights is on, and smaller sets are subsets of "
+          "larger ones") {
     World world;
     for (int i = 0; i < 100; ++i) {
         world.create(PointLight{});
@@ -73,7 +74,7 @@ TEST_CASE("bench_lights: as many lights shine as asked for, and fewer are among 
     CHECK(shining(world, 1000) == std::vector<bool>(100, true));
 }
 
-TEST_CASE("bench_lights: the JSON tells what was measured, what was left out, and the ratio") {
+TEST_CASE("bench_lights: the JSON has what was measured, what was skipped, and the ratio") {
     const nlohmann::json json = nlohmann::json::parse(lights_bench_json(small_bench()));
     REQUIRE(json["methods"].size() == kLightMethods);
     CHECK(json["methods"][1]["name"] == "full_screen");
@@ -84,7 +85,7 @@ TEST_CASE("bench_lights: the JSON tells what was measured, what was left out, an
     CHECK(json["full_screen_over_clustered"][0]["ratio"] == 3.0);
 }
 
-TEST_CASE("bench_lights: the table has a line a number of lights, and says what it left out") {
+TEST_CASE("bench_lights: the table has a line per number of lights, and says what was skipped") {
     const std::string table = lights_bench_table(small_bench());
     CHECK(table.find("3.0x") != std::string::npos);
     CHECK(table.find("- full_screen, 64 lights: a frame would take up to 99 s") < table.size());

@@ -37,7 +37,7 @@ TEST_CASE("bench_report: the JSON parses and holds median, p95 and max of every 
     CHECK(json["systems"].empty());
 }
 
-TEST_CASE("bench_report: the CSV has a header and a line a series") {
+TEST_CASE("bench_report: the CSV has a header and a line per series") {
     const std::string csv = bench_csv(small_report());
     CHECK(csv.starts_with("kind,name,clock,median_ms,p95_ms,max_ms\n"));
     CHECK(csv.find("frame,frame,cpu,3.000000,4.000000,4.000000\n") != std::string::npos);
@@ -50,7 +50,7 @@ TEST_CASE("bench_report: the table names the slowest pass first") {
     CHECK(table.find("640 x 360") != std::string::npos);
 }
 
-TEST_CASE("bench_report: the table counts the systems that do nothing, the JSON has them") {
+TEST_CASE("bench_report: the table only counts idle systems, the JSON lists them") {
     BenchReport report = small_report();
     for (const auto& [name, ms] :
          {std::pair{"update_water", 0.4}, {"update_sails", 0.001}, {"update_stones", 0.0}}) {

@@ -73,7 +73,7 @@ TEST_CASE("cli: every command has help with an example") {
     }
 }
 
-TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
+TEST_CASE("cli: wrong usage exits with 2 and one line that names the mistake") {
     const TemporaryFolder folder;
     check_fails(folder, {"rendr"}, 2, "render");
     check_fails(folder, {"--what"}, 2);
@@ -116,7 +116,7 @@ TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
     check_fails(folder, {"view", "a.exr", "--gamma", "0"}, 2, "--gamma");
 }
 
-TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one line") {
+TEST_CASE("cli: for a scene that cannot be loaded, every command exits with 1 and one line") {
     const TemporaryFolder folder;
     test::write_text(folder.file("empty.glb"), "");
     test::write_text(folder.file("empty.gltf"), "");
@@ -136,7 +136,7 @@ TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one 
     CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
 }
 
-TEST_CASE("cli: render says what it wrote in one line, and nothing if it is to be quiet") {
+TEST_CASE("cli: render reports its file in one line, and nothing with --quiet") {
     const TemporaryFolder folder;
     test::write_text(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const Words words = {"render", "a.obj", "-o", "a.png", "--size", "64x36"};
@@ -158,7 +158,7 @@ TEST_CASE("cli: render says what it wrote in one line, and nothing if it is to b
     CHECK(silent.err.empty());
 }
 
-TEST_CASE("cli: a model without a mesh is told in one line") {
+TEST_CASE("cli: a model without a mesh gives one line") {
     const TemporaryFolder folder;
     test::write_text(
         folder.file("a.gltf"),
@@ -169,7 +169,7 @@ TEST_CASE("cli: a model without a mesh is told in one line") {
     CHECK(run.err == "warning: a.gltf: found no mesh to draw, expected one\n");
 }
 
-TEST_CASE("cli: errors of a level are a line each, whatever characters its names hold") {
+TEST_CASE("cli: errors of a level are one line each, whatever characters its names contain") {
     const TemporaryFolder folder;
     test::write_text(
         folder.file("bad.level.json"),
@@ -185,12 +185,12 @@ TEST_CASE("cli: errors of a level are a line each, whatever characters its names
     }
 }
 
-TEST_CASE("cli: a level's misspelled name finds the level that was meant") {
+TEST_CASE("cli: for a misspelled level, the error suggests the right name") {
     const TemporaryFolder folder;
     check_fails(folder, {"hash", "galery", "--frames", "1"}, 1, "gallery");
 }
 
-TEST_CASE("cli: images that cannot be read or compared end with 1 and one line") {
+TEST_CASE("cli: for images that cannot be read or compared, it exits with 1 and one line") {
     const TemporaryFolder folder;
     test::write_text(folder.file("empty.png"), "");
     check_fails(folder, {"compare", "missing.png", "missing.png"}, 1, "missing.png");
@@ -198,7 +198,7 @@ TEST_CASE("cli: images that cannot be read or compared end with 1 and one line")
     check_fails(folder, {"compare", ".", "."}, 1);
 }
 
-TEST_CASE("cli: shows lists techniques with their levels, and says how to see one") {
+TEST_CASE("cli: shows lists techniques with their levels, and how to show one") {
     const TemporaryFolder folder;
     const ProgramRun all = run_limn(folder, {"shows"});
     CHECK(all.exit_code == 0);
@@ -252,7 +252,7 @@ TEST_CASE("cli: a program that was moved with its tree finds the levels there") 
     CHECK(run.out.find("Moved") != std::string::npos);
 }
 
-TEST_CASE("cli: components NAME prints one type, as a level writes it") {
+TEST_CASE("cli: components NAME prints one type, as written in a level") {
     const TemporaryFolder folder;
     const auto printed = [&](const char* name) {
         const ProgramRun run = run_limn(folder, {"components", name});
@@ -350,7 +350,7 @@ TEST_CASE("cli: info shows the hierarchy, skins, and what textures hold") {
     CHECK(run.out.find(" joints  fox\n") != std::string::npos);
 }
 
-TEST_CASE("cli: info tells what particles may cost, by emitter and in all") {
+TEST_CASE("cli: info lists the capacity of particles, by emitter and in total") {
     const TemporaryFolder folder;
     test::write_text(folder.file("my.level.json"), R"({
         "entities": [{"name": "smoke", "particle_emitter": {"capacity": 1024}, "repeat": {"count": [3, 1, 1]}},
@@ -366,8 +366,8 @@ TEST_CASE("cli: info tells what particles may cost, by emitter and in all") {
                      "       3      3072 particles      108.0 KiB  cpu  smoke\n"
                      "       1       512 particles       18.0 KiB  cpu  spark\n"
                      "       1    300000 particles    18750.0 KiB  gpu  dust\n"
-                     "       4      3584 particles      126.0 KiB  cpu, in all\n"
-                     "       1    300000 particles    18750.0 KiB  gpu, in all\n")
+                     "       4      3584 particles      126.0 KiB  cpu, total\n"
+                     "       1    300000 particles    18750.0 KiB  gpu, total\n")
         != std::string::npos);
     test::write_text(folder.file("none.level.json"), R"({"entities": [{"name": "post"}]})");
     CHECK(run_limn(folder, {"info", "none.level.json"}).out.find("emitter") == std::string::npos);
@@ -386,7 +386,7 @@ TEST_CASE("cli: info names every material's shading model") {
     CHECK(run.out.find("    unlit") != std::string::npos);
 }
 
-TEST_CASE("cli: check draws a level that is right, and warns of what has no effect") {
+TEST_CASE("cli: check draws a valid level, and warns of what has no effect") {
     const TemporaryFolder folder;
     const ProgramRun good = run_limn(folder, {"check", "lights"});
     CAPTURE(good.err);
@@ -422,7 +422,7 @@ TEST_CASE("cli: check draws a level that is right, and warns of what has no effe
     CHECK(run_limn(folder, {"check", "none.level.json"}).exit_code == 1);
 }
 
-TEST_CASE("cli: info lists the joints of a glTF file, which a level can name") {
+TEST_CASE("cli: info lists the joints of a glTF file, which a level can refer to") {
     const TemporaryFolder folder;
     test::write_text(folder.file("arm.gltf"), R"({
       "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],

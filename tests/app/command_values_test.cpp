@@ -18,7 +18,7 @@ TEST_CASE("command_values: a size is two whole numbers of pixels") {
     }
 }
 
-TEST_CASE("command_values: a frame range holds both its ends") {
+TEST_CASE("command_values: a frame range includes both ends") {
     CHECK(*parse_frame_range("0:99") == FrameRange{0, 99});
     CHECK(*parse_frame_range("7") == FrameRange{7, 7});
     for (const char* bad :

@@ -88,7 +88,7 @@ TEST_CASE("edit_json: a copied entity, pasted into a level, is the same entity")
     CHECK(entity_as_json(other.world(), lamp) == text);
 }
 
-TEST_CASE("edit_json: a copied entity has its children, pasted into a level as well") {
+TEST_CASE("edit_json: a copied entity keeps its children when pasted into a level") {
     OpenLevel level(R"({
       "prefabs": {
         "bulb": {"point_light": {"intensity": 7}, "children": [{"name": "glow"}]},
@@ -123,7 +123,7 @@ TEST_CASE("edit_json: a copied entity has its children, pasted into a level as w
     CHECK(entity_as_json(world, other.find("post")) == text);
 }
 
-TEST_CASE("edit_json: a copy names its glTF file, and turns as people write it") {
+TEST_CASE("edit_json: a copy refers to its glTF file, and has rotations in degrees") {
     OpenLevel level(R"({
       "title": "A lantern",
       "entities": [
@@ -167,8 +167,7 @@ TEST_CASE("edit_json: a copied node of a glTF file, pasted into a level, changes
     CHECK(entity_as_json(other.world(), pasted) == text);
 }
 
-TEST_CASE(
-    "edit_json: a node of a file that is shown by itself names it; one without name says so") {
+TEST_CASE("edit_json: a node of a file opened directly names the file; an unnamed node says so") {
     OpenLevel lamp(kLevel, "lamp.gltf");
     const auto json_of_entity = [&](Entity entity) {
         const std::string text = entity_as_json(lamp.world(), entity);
@@ -185,7 +184,7 @@ TEST_CASE(
         [&](Entity entity, const MeshInstance&) { nameless = entity; });
     const auto [json, text] = json_of_entity(nameless);
     CHECK(json.members.size() == 1);
-    CHECK(text.find("// this node has no name") != std::string::npos);
+    CHECK(text.find("// unnamed node") != std::string::npos);
 }
 
 TEST_CASE("edit_json: an edit of a node of a glTF file is a change of nodes") {
@@ -207,7 +206,7 @@ TEST_CASE("edit_json: an edit of a node of a glTF file is a change of nodes") {
         == R"({"entities": [{"name": "left", "nodes": {"Bulb.001": {"point_light": {"intensity": 30}}}}]})");
 }
 
-TEST_CASE("edit_json: edits of children and of copies, pasted into the level, are there") {
+TEST_CASE("edit_json: edits of children and of copies survive being pasted into the level") {
     const std::string prefabs = R"("prefabs": {"lamp": {"children": [
         {"name": "bulb", "point_light": {"intensity": 5, "radius": 7}}]}})";
     const auto level_text = [&](const std::string& nodes, const std::string& events) {
@@ -264,8 +263,7 @@ TEST_CASE("edit_json: edits of children and of copies, pasted into the level, ar
     CHECK(edits_as_json(world, edits).find("// without edits of children") != std::string::npos);
 }
 
-TEST_CASE(
-    "edit_json: a note tells of entities whose edits cannot be saved, before they are edited") {
+TEST_CASE("edit_json: a note warns of entities whose edits cannot be copied") {
     OpenLevel level(R"({
       "prefabs": {"lamp": {"children": [{"name": "bulb", "point_light": {}}, {"transform": {}}]}},
       "entities": [
@@ -290,7 +288,7 @@ TEST_CASE(
         return edits_as_json(world, std::vector{edit}).find("scale") != std::string::npos;
     };
     const auto cannot = [](const std::string& note) {
-        return note.find("cannot be saved") != std::string::npos;
+        return note.find("cannot be copied") != std::string::npos;
     };
     for (const Entity kept : {level.find("single"), child_of("single", 0)}) {
         CHECK(edit_note(world, kept).empty());
@@ -299,7 +297,7 @@ TEST_CASE(
     CHECK(edit_note(world, child_of("single", 1)).starts_with("has no name"));
     CHECK_FALSE(is_kept(child_of("single", 1)));
     const std::string copy = edit_note(world, level.find("row[1]"));
-    CHECK(copy.starts_with("one of 3 copies of row by repeat: its edits are saved as an event"));
+    CHECK(copy.starts_with("one of 3 copies of row by repeat: its edits are copied as an event"));
     CHECK(is_kept(level.find("row[1]")));
     const std::string part = edit_note(world, child_of("row[1]", 0));
     CHECK(part.starts_with("part of one of 3 copies of row by repeat"));
@@ -326,7 +324,7 @@ TEST_CASE("edit_json: a child beside the nodes of a glTF file is changed where i
         == R"({"entities": [{"name": "door torch", "nodes": {"flame": {"point_light": {"intensity": 0}}}}]})");
 }
 
-TEST_CASE("edit_json: edits are a patch with the present values; removed components are null") {
+TEST_CASE("edit_json: edits are a patch with the current values; removed components are null") {
     OpenLevel level;
     World& world = level.world();
     const Entity lamp = level.find("lamp");

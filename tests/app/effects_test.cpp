@@ -10,6 +10,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/snapshot.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -66,8 +67,7 @@ constexpr const char* kCamera =
 
 }  // namespace
 
-TEST_CASE(
-    "effects: every prefab can be placed by itself, and gives particles or beams in a second") {
+TEST_CASE("effects: every prefab works by itself, and makes particles or beams within a second") {
     const std::vector<EffectFile> files = effect_files();
     CHECK(files.size() >= 9);
     const test::TemporaryFolder folder;
@@ -101,7 +101,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("explosion: each releases its children at its place, and none remains at the end") {
+TEST_CASE(
+    "explosion: each releases its children at its position, and none remains at the end"
+    * technique("engine.explosion")) {
     const test::TemporaryFolder folder;
     MadeAssets made;
     const std::unique_ptr<Stage> stage = open_text(
@@ -138,7 +140,7 @@ TEST_CASE("explosion: each releases its children at its place, and none remains 
     CHECK(count().second == 0);
 }
 
-TEST_CASE("explosion: a snapshot in its middle continues with the same bits") {
+TEST_CASE("explosion: a snapshot taken halfway continues with the same bits") {
     const test::TemporaryFolder folder;
     MadeAssets made;
     const std::string text = fmt::format(

@@ -13,6 +13,7 @@
 #include "ecs/world.h"
 #include "render/render_view.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -30,12 +31,12 @@ constexpr float kLength = 0.02f;  // of a vector of magnitude 1 [m]
 /// The tube from the front, at 1280 x 720.
 struct Seen {
     MeshData mesh = make_furrow_surface(FurrowSurface::Limb);
-    SeenMesh seen;
+    ViewedMesh viewed;
 
     Seen() {
         const RenderView view = make_render_view(
             Camera{}, look_at({0.1f, 0.1f, 1.2f}, {0, 0, 0}), look_at({0, 0, 1}, {0, 0, 0}));
-        seen = {&mesh, view.unjittered_from_world, {0.1f, 0.1f, 1.2f}, {view.width, view.height}};
+        viewed = {&mesh, view.unjittered_from_world, {0.1f, 0.1f, 1.2f}, {view.width, view.height}};
     }
 };
 
@@ -78,17 +79,21 @@ Vec3 random_unit(Random& random) {
 
 }  // namespace
 
-TEST_CASE("furrow edits: a pixel's ray goes through the point that is seen there") {
+TEST_CASE(
+    "furrow edits: a pixel's ray goes through the point visible there"
+    * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     for (std::size_t v = 0; v < tube.mesh.positions.size(); v += 7) {
         const Vec3& p = tube.mesh.positions[v];
-        const Ray ray = ray_of(tube.seen, *pixel_of(tube.seen, p));
+        const Ray ray = ray_of(tube.viewed, *pixel_of(tube.viewed, p));
         CHECK(glm::length(glm::cross(p - ray.origin, ray.direction)) < 1e-5f);
     }
-    CHECK_FALSE(pixel_of(tube.seen, {0, 0, 5}).has_value());  // behind the camera
+    CHECK_FALSE(pixel_of(tube.viewed, {0, 0, 5}).has_value());  // behind the camera
 }
 
-TEST_CASE("furrow edits: picking returns the nearest front vertex within 6 px, none beyond") {
+TEST_CASE(
+    "furrow edits: picking returns the nearest front-facing vertex within 6 px, none beyond"
+    * technique("wrinkle.furrow.editor")) {
     const Seen tube;
     Random random(1, 2, 3, 4);
     int picked = 0;
@@ -98,12 +103,12 @@ TEST_CASE("furrow edits: picking returns the nearest front vertex within 6 px, n
         std::vector<float> front;  // distances of front vertices [px]
         for (std::size_t v = 0; v < tube.mesh.positions.size(); ++v) {
             const Vec3& p = tube.mesh.positions[v];
-            const bool faces = glm::dot(tube.mesh.normals[v], tube.seen.eye - p) > 0;
-            front.push_back(faces ? glm::distance(*pixel_of(tube.seen, p), pointer) : INFINITY);
+            const bool faces = glm::dot(tube.mesh.normals[v], tube.viewed.eye - p) > 0;
+            front.push_back(faces ? glm::distance(*pixel_of(tube.viewed, p), pointer) : INFINITY);
         }
         const float least = *std::ranges::min_element(front);
-        const auto found = pick_furrow_vertex(tube.seen, pointer);
-        CHECK(found.has_value() == (least <= kFurrowReach));
+        const auto found = pick_furrow_vertex(tube.viewed, pointer);
+        CHECK(found.has_value() == (least <= kFurrowPickRadius));
         if (found) {
             CHECK(front[*found] == least);
         }
@@ -114,9 +119,11 @@ TEST_CASE("furrow edits: picking returns the nearest front vertex within 6 px, n
     CHECK(missed > 20);
 }
 
-TEST_CASE("furrow edits: neither the back of a mesh nor what another part hides is picked") {
+TEST_CASE(
+    "furrow edits: back-facing and occluded vertices are not picked"
+    * technique("wrinkle.furrow.editor")) {
     Seen tube;
-    const std::uint32_t front = *pick_furrow_vertex(tube.seen, {640, 360}, 40);
+    const std::uint32_t front = *pick_furrow_vertex(tube.viewed, {640, 360}, 40);
     CHECK(tube.mesh.positions[front].z > 0);
     // The same vertex behind a triangle that stands before it, and turned away.
     const Vec3 at = tube.mesh.positions[front];
@@ -127,33 +134,38 @@ TEST_CASE("furrow edits: neither the back of a mesh nor what another part hides 
         hidden.normals.emplace_back(0, 0, 1);
     }
     hidden.indices.insert(hidden.indices.end(), {first, first + 1, first + 2});
-    tube.seen.mesh = &hidden;
-    const Vec2 pointer = *pixel_of(tube.seen, at);
-    CHECK_FALSE(pick_furrow_vertex(tube.seen, pointer).has_value());
+    tube.viewed.mesh = &hidden;
+    const Vec2 pointer = *pixel_of(tube.viewed, at);
+    CHECK_FALSE(pick_furrow_vertex(tube.viewed, pointer).has_value());
     MeshData turned = tube.mesh;
     for (Vec3& n : turned.normals) {
         n = -n;
     }
-    tube.seen.mesh = &turned;
-    const auto found = pick_furrow_vertex(tube.seen, pointer);
+    tube.viewed.mesh = &turned;
+    const auto found = pick_furrow_vertex(tube.viewed, pointer);
     CHECK((!found || turned.positions[*found].z < 0));
 }
 
-TEST_CASE("furrow edits: of two tips the nearer one is taken, none beyond 6 px") {
+TEST_CASE(
+    "furrow edits: of two tips the nearer one is taken, none beyond 6 px"
+    * technique("wrinkle.furrow.editor")) {
     const Seen tube;
-    const std::uint32_t v = *pick_furrow_vertex(tube.seen, {640, 360}, 40);
+    const std::uint32_t v = *pick_furrow_vertex(tube.viewed, {640, 360}, 40);
     const Vec3& p = tube.mesh.positions[v];
     const FurrowVectors vectors = {Vec3(0, 1.5f, 0), Vec3(1.5f, 0, 0)};
     for (int f = 0; f < 2; ++f) {
-        const Vec2 tip = *pixel_of(tube.seen, p + kLength * vectors[static_cast<std::size_t>(f)]);
-        CHECK(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(3, 3)) == f);
-        CHECK_FALSE(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(5, 5)).has_value());
+        const Vec2 tip = *pixel_of(tube.viewed, p + kLength * vectors[static_cast<std::size_t>(f)]);
+        CHECK(pick_furrow_tip(tube.viewed, p, vectors, kLength, tip + Vec2(3, 3)) == f);
+        CHECK_FALSE(
+            pick_furrow_tip(tube.viewed, p, vectors, kLength, tip + Vec2(5, 5)).has_value());
         // A tip that is drawn larger, of an image with few rows.
-        CHECK(pick_furrow_tip(tube.seen, p, vectors, kLength, tip + Vec2(5, 5), 8) == f);
+        CHECK(pick_furrow_tip(tube.viewed, p, vectors, kLength, tip + Vec2(5, 5), 8) == f);
     }
 }
 
-TEST_CASE("furrow edits: a dragged vector is tangent, at most 2 long, with its tip under the ray") {
+TEST_CASE(
+    "furrow edits: a dragged vector is tangent, at most 2 long, with its tip under the ray"
+    * technique("wrinkle.furrow.editor")) {
     Random random(5, 6, 7, 8);
     int clamped = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -178,7 +190,9 @@ TEST_CASE("furrow edits: a dragged vector is tangent, at most 2 long, with its t
     CHECK(glm::distance(d, Vec3(1, 0, 0)) < 1e-5f);
 }
 
-TEST_CASE("furrow edits: an edited vertex keeps one arrow, which begins with what is shown there") {
+TEST_CASE(
+    "furrow edits: an edited vertex keeps one arrow, which begins with what is shown there"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     const std::uint32_t v = 40;
     const FurrowVectors shown = tube.skin().field[v];
@@ -197,7 +211,9 @@ TEST_CASE("furrow edits: an edited vertex keeps one arrow, which begins with wha
     REQUIRE(glm::distance(tube.mesh().positions[twin[0]], tube.mesh().positions[twin[1]]) < 1e-6f);
 }
 
-TEST_CASE("furrow edits: initialize brings back the fields of an unedited mesh") {
+TEST_CASE(
+    "furrow edits: initialize brings back the fields of an unedited mesh"
+    * technique("wrinkle.furrow.editor")) {
     for (const bool waits : {false, true}) {
         Edited tube;
         let_furrows_wait(tube.furrows(), waits);
@@ -209,7 +225,9 @@ TEST_CASE("furrow edits: initialize brings back the fields of an unedited mesh")
     }
 }
 
-TEST_CASE("furrow edits: each step takes on what the one before has made, and no more") {
+TEST_CASE(
+    "furrow edits: each step builds on the result of the previous one alone"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     let_furrows_wait(tube.furrows(), true);
     tube.update();
@@ -239,7 +257,9 @@ TEST_CASE("furrow edits: each step takes on what the one before has made, and no
     CHECK(tube.noiseless_hash() != scaled);
 }
 
-TEST_CASE("furrow edits: undo and redo of a dragged tip restore furrows to the bit") {
+TEST_CASE(
+    "furrow edits: undo and redo of a dragged tip restore furrows to the bit"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     UndoStack undo;
     const std::uint64_t before = tube.noiseless_hash();
@@ -263,7 +283,9 @@ TEST_CASE("furrow edits: undo and redo of a dragged tip restore furrows to the b
     CHECK(tube.noiseless_hash() == after);
 }
 
-TEST_CASE("furrow edits: the ranges and defaults of sliders are those of the editor of 2001") {
+TEST_CASE(
+    "furrow edits: the ranges and defaults of sliders are those of the editor of 2001"
+    * technique("wrinkle.furrow.editor")) {
     struct Range {
         const ComponentInfo& info;
         const char* field;
@@ -294,7 +316,9 @@ TEST_CASE("furrow edits: the ranges and defaults of sliders are those of the edi
     CHECK(FurrowArrow{}.weight == 1);
 }
 
-TEST_CASE("furrow edits: a look of skin comes back from the material that it was given to") {
+TEST_CASE(
+    "furrow edits: the look of skin survives a round trip through its material"
+    * technique("wrinkle.furrow.editor")) {
     for (const FurrowReflection reflection :
          {FurrowReflection::Own, FurrowReflection::Measured1, FurrowReflection::Measured2}) {
         const FurrowLook look = {reflection, 0.3f, 0.6f, 0.25f, 70};
@@ -307,7 +331,9 @@ TEST_CASE("furrow edits: a look of skin comes back from the material that it was
     }
 }
 
-TEST_CASE("furrow edits: the rough figure needs no new furrows after the smooth one") {
+TEST_CASE(
+    "furrow edits: the rough figure needs no new furrows after the smooth one"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     FurrowLook look;
     for (const FurrowPreset& preset : furrow_presets()) {
@@ -325,7 +351,9 @@ TEST_CASE("furrow edits: the rough figure needs no new furrows after the smooth 
     }
 }
 
-TEST_CASE("furrow edits: what is saved loads back to the bit, and grows the same furrows") {
+TEST_CASE(
+    "furrow edits: a saved file loads back to the bit, and grows the same furrows"
+    * technique("wrinkle.furrow.editor")) {
     Edited tube;
     const TemporaryFolder folder;
     FurrowFile file;
@@ -348,7 +376,9 @@ TEST_CASE("furrow edits: what is saved loads back to the bit, and grows the same
     CHECK(grow(loaded->furrows) == grow(file.furrows));
 }
 
-TEST_CASE("furrow edits: a file that is none is refused with its place") {
+TEST_CASE(
+    "furrow edits: an invalid file is refused with its position"
+    * technique("wrinkle.furrow.editor")) {
     const TemporaryFolder folder;
     const std::string path = folder.file("bad.json");
     struct Case {

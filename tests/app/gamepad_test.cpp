@@ -38,7 +38,7 @@ TEST_CASE("gamepad: at rest, and within the dead zone, nothing moves") {
     CHECK_FALSE(read_gamepad(state).click);
 }
 
-TEST_CASE("gamepad: outside the dead zone a stick begins at 0 and keeps its direction") {
+TEST_CASE("gamepad: outside the dead zone a stick starts at 0 and keeps its direction") {
     CHECK(glm::length(without_dead_zone({0.1501f, 0})) < 1e-3f);
     CHECK(glm::length(without_dead_zone({0, -1})) == test::near(1).epsilon(1e-6));
     CHECK(glm::length(without_dead_zone({1, 1})) == test::near(1).epsilon(1e-6));
@@ -63,7 +63,8 @@ TEST_CASE("gamepad: the left stick flies and drives, triggers rise and sink, B i
     CHECK(action_value(input_of(state), "steer_left") == test::near(0.5).epsilon(1e-5));
 }
 
-TEST_CASE("gamepad: the right stick looks as a mouse does, in equal times equally far") {
+TEST_CASE("gamepad: the right stick looks around like a mouse, at a speed independent of the frame "
+          "rate") {
     GLFWgamepadstate state = at_rest();
     state.axes[GLFW_GAMEPAD_AXIS_RIGHT_X] = 1;
     const Vec2 once = input_of(state, 0.2f).look;

@@ -6,7 +6,7 @@
 
 namespace limn::hud_style_test {
 
-TEST_CASE("hud_style: text is as high as the window allows, and never too small to read") {
+TEST_CASE("hud_style: text scales with the window, and is never too small to read") {
     const auto text = [](float content_scale, int height) {
         return 14 * hud_scale(content_scale, height);
     };

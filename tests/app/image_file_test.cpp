@@ -4,7 +4,7 @@
 
 namespace limn::image_file_test {
 
-TEST_CASE("image_file: the end of the name decides what is written") {
+TEST_CASE("image_file: the extension decides the format") {
     CHECK(*image_file_kind("a.png") == ImageFileKind::Png);
     CHECK(*image_file_kind("folder/A.EXR") == ImageFileKind::Exr);
     for (const char* bad : {"", "a", "a.jpg", ".png", "png", "a.png.txt"}) {
@@ -13,7 +13,7 @@ TEST_CASE("image_file: the end of the name decides what is written") {
     }
 }
 
-TEST_CASE("image_file: %04d becomes the frame's number and nothing else is a format") {
+TEST_CASE("image_file: %04d becomes the frame number, and any other % is refused") {
     CHECK(*has_frame_number("frame_%04d.png"));
     CHECK(*has_frame_number("%d.png"));
     CHECK_FALSE(*has_frame_number("frame.png"));

@@ -243,7 +243,7 @@ TEST_CASE("inspector: a color has the numbers of the file, and its swatch says t
     CHECK(text.find("0.735") == std::string::npos);  // 0.5 in sRGB
 }
 
-TEST_CASE("inspector: fields that the material's shading model does not use are folded away") {
+TEST_CASE("inspector: fields that the material's shading model does not use are collapsed") {
     register_all_components();
     for (const ShadingModel model : {ShadingModel::Pbr, ShadingModel::Skin}) {
         const OffscreenHud hud;
@@ -314,7 +314,7 @@ TEST_CASE("inspector: entities are found by their name, a component or a field")
     }
 }
 
-TEST_CASE("inspector: nameless entities are called by what they show or do") {
+TEST_CASE("inspector: unnamed entities are labeled by their mesh or kind") {
     World world;
     world.insert_resource(Assets{}).meshes.emplace_back().name = "teapot";
     CHECK(entity_label(world, world.create(Name{"lamp"}, PointLight{})) == "lamp");

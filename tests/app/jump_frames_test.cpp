@@ -101,7 +101,7 @@ Picture read_jump(const TemporaryFolder& folder, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("step jumps: no frame shows a loop's end and an event's set on their way, however it is "
+TEST_CASE("step jumps: no frame interpolates across a loop's end or an event's set, however it is "
           "blurred") {
     // A square has 16 x 16 px. At 120 frames a second every other one lies between two steps.
     constexpr double kSquare = 256;

@@ -13,7 +13,7 @@ namespace limn::key_list_test {
 namespace {
 
 /// 200 x 100 pixels from (10, 20); a value of 2 is at the upper edge.
-constexpr KeyPlot kPlot{.corner = {10, 20}, .size = {200, 100}, .top = 2, .reach = 8};
+constexpr KeyPlot kPlot{.corner = {10, 20}, .size = {200, 100}, .top = 2, .pick_radius = 8};
 
 std::vector<CurveKey> curve() {
     return {{0, 1}, {0.5f, 2}, {1, 0}};
@@ -21,9 +21,9 @@ std::vector<CurveKey> curve() {
 
 }  // namespace
 
-TEST_CASE("key list: keys are hit within reach, the nearest one first") {
-    CHECK(key_place(kPlot, CurveKey{0.5f, 2}) == Vec2(110, 20));
-    CHECK(key_place(kPlot, CurveKey{0, 1}) == Vec2(10, 70));
+TEST_CASE("key list: keys are picked within the pick radius, the nearest one first") {
+    CHECK(key_position(kPlot, CurveKey{0.5f, 2}) == Vec2(110, 20));
+    CHECK(key_position(kPlot, CurveKey{0, 1}) == Vec2(10, 70));
     CHECK(hit_key(kPlot, curve(), {110, 20}) == 1);
     CHECK(hit_key(kPlot, curve(), {110, 28}) == 1);
     CHECK(hit_key(kPlot, curve(), {110, 28.5f}) == -1);
@@ -38,7 +38,7 @@ TEST_CASE("key list: keys are hit within reach, the nearest one first") {
     CHECK(hit_key(kPlot, std::vector<ColorKey>{}, {110, 20}) == -1);
 }
 
-TEST_CASE("key list: a drag moves the selected key, past others too, and not out of the plot") {
+TEST_CASE("key list: a drag moves the selected key, even past others, but not out of the plot") {
     std::vector<CurveKey> keys = curve();
     int selected = -1;
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {12, 69}, .pressed = true}, keys, selected));
@@ -67,7 +67,7 @@ TEST_CASE("key list: a drag moves the selected key, past others too, and not out
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {60, 45}, .held = true}, keys, selected));
 }
 
-TEST_CASE("key list: a double click adds a key where there is none, in order, eight at most") {
+TEST_CASE("key list: a double click adds a key in order, unless there is one, eight at most") {
     std::vector<CurveKey> keys = curve();
     int selected = -1;
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {111, 21}, .double_clicked = true}, keys, selected));
@@ -117,7 +117,7 @@ TEST_CASE("key list: a right click removes the key under it, Delete the selected
     CHECK(selected == -1);
 }
 
-TEST_CASE("key list: the plot is as high as the values, in powers of two") {
+TEST_CASE("key list: the top of the plot is the next power of two above the values") {
     CHECK(plot_top({}) == 1);
     CHECK(plot_top({{0, 0.3f}}) == 1);
     CHECK(plot_top({{0, 1.01f}, {1, 0}}) == 2);
@@ -125,7 +125,8 @@ TEST_CASE("key list: the plot is as high as the values, in powers of two") {
     CHECK(plot_top({{0, 1000}}) == 1024);
 }
 
-TEST_CASE("emitter controls: counts, drops told, a restart without particles, and another seed") {
+TEST_CASE(
+    "emitter controls: counts, dropped particles, a restart without particles, and another seed") {
     register_all_components();
     World world;
     ParticleEmitter settings;
@@ -142,7 +143,7 @@ TEST_CASE("emitter controls: counts, drops told, a restart without particles, an
     CHECK(counts.born == 80);
     CHECK(counts.dropped == 5);
     CHECK_FALSE(counts.on_gpu);
-    CHECK(describe_drops(world).starts_with("no room for 5 births of 1 emitter:"));
+    CHECK(describe_drops(world).starts_with("5 particles of 1 emitter dropped:"));
     restart_emitter(world, emitter);
     CHECK(describe_drops(world).empty());
     CHECK(count_particles(world, emitter).alive == 0);

@@ -138,7 +138,7 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
     }
 }
 
-TEST_CASE("level: every level is named and has a camera that moves or that keys place") {
+TEST_CASE("level: every level is named and has a camera that moves or that keys move") {
     const std::vector<LevelEntry> levels = list_levels();
     for (std::size_t i = 0; i < levels.size(); ++i) {
         CAPTURE(levels[i].name);
@@ -166,7 +166,7 @@ TEST_CASE("level: every level looks the same with the formats and definitions of
     }
 }
 
-TEST_CASE("level: the cloister has shadows of every method, and no light is refused its own") {
+TEST_CASE("level: the cloister has shadows of every method, and every light gets one") {
     Result<std::unique_ptr<Stage>> stage = open_stage("cloister");
     REQUIRE(stage.ok());
     step_stage(**stage);

@@ -89,7 +89,7 @@ TEST_CASE("shows: each changes the image where it is on, or nothing where method
     }
 }
 
-TEST_CASE("shows: what a level shows is a row of TECHNIQUES.md that names the level") {
+TEST_CASE("shows: every technique of a level has a row in TECHNIQUES.md that names the level") {
     const Result<std::vector<FoundShow>> shows = list_shows();
     REQUIRE(shows.ok());
     std::ifstream page(std::string(LIMN_SOURCE_DIR) + "/TECHNIQUES.md");

@@ -54,7 +54,7 @@ float difference(const Affine& a, const Affine& b) {
 
 }  // namespace
 
-TEST_CASE("light drag: a lamp that something carries turns as a free one does") {
+TEST_CASE("light drag: a lamp with a parent turns like a free one") {
     const Affine camera = affine_from({0, 1.5f, 2}, glm::angleAxis(0.2f, Vec3(0, 1, 0)), Vec3(1));
     Studio free(false);
     Studio carried(true);
@@ -74,8 +74,7 @@ TEST_CASE("light drag: a lamp that something carries turns as a free one does") 
     CHECK(glm::distance(transform_point(carried.place(), Vec3(0)), Studio::kLamp) < 1e-5f);
 }
 
-TEST_CASE(
-    "light drag: the brightest on the side that is seen is meant, wherever its parent has it") {
+TEST_CASE("light drag: it takes the brightest light on the visible side, whatever its parent") {
     Studio studio(true);
     const Vec3 front = {0, 0, 1};
     const Entity weak =
@@ -94,7 +93,7 @@ TEST_CASE(
     CHECK(brightest_light(studio.world, kCenter, -front) == moon);
 }
 
-TEST_CASE("light drag: a light that is to face shines on the center from the direction") {
+TEST_CASE("light drag: facing makes a light shine on the center from the given direction") {
     Studio studio(true);
     const Vec3 direction = glm::normalize(Vec3(0.3f, 0.1f, 1));
     face_light(studio.world, studio.undo, kCenter, direction);

@@ -97,7 +97,7 @@ void add_sun(World& world, float lux) {
 
 }  // namespace
 
-TEST_CASE("model image: suns of any illuminance give the same image, neither black nor burnt") {
+TEST_CASE("model image: suns of any illuminance give the same image, neither black nor clipped") {
     const gpu::ByteImage one = draw_box([](World& world) { add_sun(world, 1); });
     const float front = green_at(one, 0.45f, 0.55f);
     CHECK(front > 0.4f);
@@ -160,7 +160,7 @@ TEST_CASE("model image: the reports of sizes and of far nodes show the same box"
     }
 }
 
-TEST_CASE("model image: a wide model is inside of upright, square and wide images") {
+TEST_CASE("model image: a wide model is inside upright, square and wide images") {
     World world;
     register_game_components();
     Assets assets;

@@ -8,6 +8,7 @@
 #include "ecs/world.h"
 #include "render/render_view.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -53,7 +54,7 @@ TEST_CASE("pick: the nearest triangle wins, not the nearest box") {
     CHECK(shifted->distance == test::near(2.0f));
 }
 
-TEST_CASE("pick: an inflated mesh is met where it is drawn") {
+TEST_CASE("pick: an inflated mesh is hit where it is drawn") {
     World world;
     MeshData mesh = half_square();
     mesh.normals.assign(3, {0, 0, 2});  // of any length
@@ -67,7 +68,7 @@ TEST_CASE("pick: an inflated mesh is met where it is drawn") {
     CHECK(entity_bounds(world, entity).max.x == test::near(2.0f));
 }
 
-TEST_CASE("pick: a posed mesh is met where its joints take it") {
+TEST_CASE("pick: a posed mesh is hit where its joints move it") {
     World world;
     MeshData mesh = half_square();
     mesh.skin = {.first = {0, 1, 2, 3}, .joints = {0, 0, 0}, .weights = {1, 1, 1}};
@@ -102,7 +103,7 @@ TEST_CASE("pick: a posed mesh is met where its joints take it") {
     CHECK_FALSE(pick_entity(world, where_it_is));
 }
 
-TEST_CASE("pick: nothing behind the eye, nothing without meshes") {
+TEST_CASE("pick: nothing is hit behind the camera or without meshes") {
     World world;
     CHECK_FALSE(pick_entity(world, {}));
     world.insert_resource(Assets{}).meshes.push_back(half_square());
@@ -110,7 +111,7 @@ TEST_CASE("pick: nothing behind the eye, nothing without meshes") {
     CHECK_FALSE(pick_entity(world, {{-0.2f, 0.2f, 0}, {0, 0, -1}}));
 }
 
-TEST_CASE("pick: the ray through the middle of the image is where the camera looks") {
+TEST_CASE("pick: the ray through the center of the image is the camera's view direction") {
     const Affine pose = look_at({1, 2, 3}, {4, 0, -5});
     const RenderView view = make_render_view(Camera{}, pose, pose, {.width = 640, .height = 360});
     const Ray ray = ray_through(view, {0.5f, 0.5f});
@@ -126,7 +127,9 @@ TEST_CASE("pick: the ray through the middle of the image is where the camera loo
     CHECK(clip.y / clip.w == test::near(1.0f).epsilon(1e-4));
 }
 
-TEST_CASE("skin drag: only a drag that begins on skin pulls, until the button is up") {
+TEST_CASE(
+    "skin drag: only a drag that begins on skin pulls, until the button is up"
+    * technique("face.pull")) {
     World world;
     world.insert_resource(Assets{}).meshes.push_back(half_square());
     const Entity face = place(world, {0, 0, -1});

@@ -233,7 +233,7 @@ TEST_CASE("play: Esc closes panel after panel, then asks; leaving with edits ask
     CHECK(session.program->wait().exit_code == 0);
 }
 
-TEST_CASE("play: what is edited while time stands shows at once, without its former color") {
+TEST_CASE("play: edits while paused show at once, without the previous color") {
     if (!can_play()) {
         return;
     }
@@ -275,7 +275,7 @@ TEST_CASE("play: what is edited while time stands shows at once, without its for
     session.quit();
 }
 
-TEST_CASE("play: who drives does not fly: the keys move the car, and not the camera") {
+TEST_CASE("play: while driving, the keys move the car and not the camera") {
     if (!can_play()) {
         return;
     }
@@ -297,7 +297,7 @@ TEST_CASE("play: who drives does not fly: the keys move the car, and not the cam
     session.quit();
 }
 
-TEST_CASE("play: effects follow their file, and a broken one is told and changes nothing") {
+TEST_CASE("play: effects follow their file, and a broken one is reported and changes nothing") {
     if (!can_play()) {
         return;
     }
@@ -383,7 +383,7 @@ TEST_CASE("play: a drag looks around, and the level comes back with R") {
     CHECK(run.err.find("error") == std::string::npos);
 }
 
-TEST_CASE("play: a model turns with a drag, moves with a right drag, comes near with the wheel") {
+TEST_CASE("play: a model orbits with a drag, pans with a right drag, zooms with the wheel") {
     if (!can_play()) {
         return;
     }
@@ -413,7 +413,7 @@ TEST_CASE("play: a model turns with a drag, moves with a right drag, comes near 
     CHECK(session.program->wait().exit_code == 0);
 }
 
-TEST_CASE("play: without a display it renders the camera's way and says where the images are") {
+TEST_CASE("play: without a display it renders the camera path and says where the images are") {
     const TemporaryFolder folder;
     test::write_text(folder.file("toy.level.json"), kLevel);
     const char* display = std::getenv("DISPLAY");

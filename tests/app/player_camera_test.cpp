@@ -38,26 +38,26 @@ TEST_CASE("player_camera: W flies forward at its pace of the distance ahead, wit
     for (const bool fast : {false, true}) {
         PlayerCamera camera;
         camera.pace = 0.5f;
-        camera.reach = 4.0f;
+        camera.view_distance = 4.0f;
         start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
         for (int i = 0; i < 60; ++i) {  // until it has got up speed
             step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
         }
-        const float before = camera.place.position.z;
+        const float before = camera.fly_pose.position.z;
         for (int i = 0; i < 60; ++i) {
             step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
         }
-        CHECK(camera.place.position.z - before == test::near(fast ? -10.0f : -2.0f).epsilon(1e-3));
+        CHECK(
+            camera.fly_pose.position.z - before == test::near(fast ? -10.0f : -2.0f).epsilon(1e-3));
     }
 }
 
-TEST_CASE(
-    "player_camera: the speed of flying follows the distance ahead, up to the scene's radius") {
+TEST_CASE("player_camera: the flying speed follows the distance ahead, up to the scene's radius") {
     PlayerCamera camera;
     start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
     const auto speed_before = [&](float ahead) {
         for (int i = 0; i < 300; ++i) {
-            follow_reach(camera, ahead, 40.0f, 1.0f / 60.0f);
+            update_view_distance(camera, ahead, 40.0f, 1.0f / 60.0f);
         }
         step_fly(camera, {}, 1.0f / 60.0f);
         return camera.fly.speed;
@@ -70,23 +70,24 @@ TEST_CASE(
     CHECK(camera.pace == test::near(0.6 * 1.2 * 1.2).epsilon(1e-5));
 }
 
-TEST_CASE("player_camera: what sinks stays above the floor, what is told to sink does not") {
+TEST_CASE("player_camera: it stays above the floor unless steered down") {
     PlayerCamera camera;
     start_fly(camera, look_at({0, 1, 0}, {0, 0, -1}));
     for (int i = 0; i < 300; ++i) {
         camera.previous = camera.pose =
-            affine_from(camera.place.position, camera.place.rotation, Vec3(1));
+            affine_from(camera.fly_pose.position, camera.fly_pose.rotation, Vec3(1));
         step_fly(camera, {.move = {0, 0, 1}}, 1.0f / 60.0f);
         stop_at_floor(camera, position_of(camera.previous).y);
     }
-    CHECK(camera.place.position.y == test::near(kEyeHeight).epsilon(1e-3));
-    CHECK(camera.place.position.z < -5.0f);  // it glides along
+    CHECK(camera.fly_pose.position.y == test::near(kEyeHeight).epsilon(1e-3));
+    CHECK(camera.fly_pose.position.z < -5.0f);  // it glides along
     stop_at_floor(camera, std::nullopt);
-    CHECK(camera.place.position.y == test::near(kEyeHeight).epsilon(1e-3));
-    camera.previous = affine_from({0, 0.1f, 0}, camera.place.rotation, Vec3(1));  // already below
-    camera.place.position.y = 0.05f;
+    CHECK(camera.fly_pose.position.y == test::near(kEyeHeight).epsilon(1e-3));
+    camera.previous =
+        affine_from({0, 0.1f, 0}, camera.fly_pose.rotation, Vec3(1));  // already below
+    camera.fly_pose.position.y = 0.05f;
     stop_at_floor(camera, 0.1f);
-    CHECK(camera.place.position.y == 0.05f);
+    CHECK(camera.fly_pose.position.y == 0.05f);
 }
 
 TEST_CASE("player_camera: a framed box fills most of the image's height") {
@@ -110,7 +111,7 @@ TEST_CASE("player_camera: around a model of any size, the camera moves as around
     const auto move = [](float unit) {
         PlayerCamera camera;
         camera.unit = unit;
-        camera.reach = 5 * unit;
+        camera.view_distance = 5 * unit;
         start_orbit(camera, look_at(unit * Vec3(3, 4, 5), {0, 0, 0}), {0, 0, 0});
         for (int i = 0; i < 90; ++i) {  // in as far as it goes
             step_orbit(camera, {.zoom = 1}, {0, 0, 0}, 1.0f / 60.0f);
@@ -118,7 +119,7 @@ TEST_CASE("player_camera: around a model of any size, the camera moves as around
         const float nearest = camera.orbit.distance;
         start_fly(camera, camera.pose);
         for (int i = 0; i < 60; ++i) {
-            follow_reach(camera, nearest, 2 * unit, 1.0f / 60.0f);
+            update_view_distance(camera, nearest, 2 * unit, 1.0f / 60.0f);
             step_fly(camera, {.move = {0, 0, -1}}, 1.0f / 60.0f);
         }
         return Vec3(nearest, position_of(camera.pose).y, position_of(camera.pose).z) / unit;
@@ -135,13 +136,14 @@ TEST_CASE("player_camera: two keys at once are no faster than one") {
     for (int i = 0; i < 120; ++i) {
         step_fly(camera, {.move = {1, 0, 1}}, 1.0f / 60.0f);
     }
-    const Vec3 before = camera.place.position;
+    const Vec3 before = camera.fly_pose.position;
     step_fly(camera, {.move = {1, 0, 1}}, 1.0f);
     CHECK(
-        glm::distance(before, camera.place.position) == test::near(camera.fly.speed).epsilon(1e-3));
+        glm::distance(before, camera.fly_pose.position)
+        == test::near(camera.fly.speed).epsilon(1e-3));
 }
 
-TEST_CASE("player_camera: looking up never goes over the head") {
+TEST_CASE("player_camera: looking up stops short of vertical") {
     PlayerCamera camera;
     start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
     for (int i = 0; i < 100; ++i) {
@@ -177,7 +179,7 @@ TEST_CASE("player_camera: the lag is the same at 30 and at 60 frames a second") 
     CHECK(slow.focus.x == test::near(quick.focus.x).epsilon(1e-4));
 }
 
-TEST_CASE("player_camera: what is at the focus follows the pointer when the orbit is panned") {
+TEST_CASE("player_camera: the point in focus follows the pointer when the orbit is panned") {
     PlayerCamera camera;
     const Vec3 target = {1, 2, 3};
     start_orbit(camera, look_at({4, 6, 9}, target), target);

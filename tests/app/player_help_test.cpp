@@ -108,7 +108,7 @@ TEST_CASE("player help: it lists the keys of this state, and no others") {
     CHECK_FALSE(has(help({.camera = CameraMode::Orbit}), "Drag: look"));
 }
 
-TEST_CASE("player help: actions of the level come with its things, and its own keys go first") {
+TEST_CASE("player help: actions are listed if the level uses them, and its own keys come first") {
     register_game_components();
     World world;
     CHECK_FALSE(has(help({}, world), "I K: wind"));

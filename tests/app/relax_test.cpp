@@ -9,6 +9,7 @@
 #include "ecs/components/transform.h"
 #include "render/gpu/readback.h"
 #include "render/render_view.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -106,7 +107,9 @@ bool differ(const gpu::ByteImage& a, const gpu::ByteImage& b, int x, int y) {
 
 }  // namespace
 
-TEST_CASE("relax: both clips move the same skin, and look different on the forehead alone") {
+TEST_CASE(
+    "relax: both clips move the same skin, and differ only on the forehead"
+    * technique("wrinkle.compression.ab-evaluation")) {
     Viewer viewer;
     struct Seen {
         std::vector<Vec3> positions;

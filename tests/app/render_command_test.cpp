@@ -46,7 +46,7 @@ double mean(const Picture& picture) {
 
 }  // namespace
 
-TEST_CASE("render_command: a PNG has the asked size and shows something") {
+TEST_CASE("render_command: a PNG has the requested size and is not uniform") {
     const TemporaryFolder folder;
     check_ok(run_limn(folder, render_words({"-o", "a.png"})));
     const Picture picture = read_image(folder.file("a.png"));
@@ -57,7 +57,7 @@ TEST_CASE("render_command: a PNG has the asked size and shows something") {
     CHECK(*most - *least > 0.3f);
 }
 
-TEST_CASE("render_command: an EXR holds linear radiance and every asked layer by name") {
+TEST_CASE("render_command: an EXR holds linear radiance and every requested layer by name") {
     const TemporaryFolder folder;
     check_ok(run_limn(
         folder, render_words({"-o", "a.exr", "--aov", "depth,normal,albedo,velocity,emission"})));
@@ -177,7 +177,7 @@ TEST_CASE("render_command: --show renders a technique at its time, and --off wit
     CHECK(on != test::read_text(folder.file("off.png")));
 }
 
-TEST_CASE("render_command: a range writes one numbered file a frame, the same as single images") {
+TEST_CASE("render_command: a range writes one numbered file per frame, the same as single images") {
     const TemporaryFolder folder;
     check_ok(
         run_limn(folder, render_words({"-o", "f_%03d.png", "--frames", "2:4", "--fps", "30"})));
@@ -190,7 +190,7 @@ TEST_CASE("render_command: a range writes one numbered file a frame, the same as
     CHECK(test::read_text(folder.file("f_003.png")) == test::read_text(folder.file("single.png")));
 }
 
-TEST_CASE("render_command: what cannot be done ends with 1, one line and no file") {
+TEST_CASE("render_command: on failure it exits with 1, one line and no file") {
     const TemporaryFolder folder;
     const std::vector<std::pair<Words, const char*>> cases = {
         {{"-o", "a.png", "--camera", "nobody"}, "nobody"},
@@ -209,7 +209,7 @@ TEST_CASE("render_command: what cannot be done ends with 1, one line and no file
     }
 }
 
-TEST_CASE("render_command: killed at any moment, it leaves whole files only") {
+TEST_CASE("render_command: killed at any time, it leaves only complete files") {
     const TemporaryFolder folder;
     int pictures = 0;
     unsigned state = 12345;  // of a small generator: the moments differ, the test repeats itself
@@ -241,7 +241,7 @@ TEST_CASE("render_command: killed at any moment, it leaves whole files only") {
     CHECK(pictures >= 5);
 }
 
-TEST_CASE("render_command: bench writes JSON and CSV that hold a line a pass") {
+TEST_CASE("render_command: bench writes JSON and CSV with a line per pass") {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(
         folder, {"bench", "gallery", "--frames", "3", "--warmup", "1", "--size", "64x36", "--json",

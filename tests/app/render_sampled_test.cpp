@@ -2,6 +2,7 @@
 #include "tests/app/read_image.h"
 #include "tests/app/run_program.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -72,7 +73,8 @@ double sum(const Picture& picture) {
 
 }  // namespace
 
-TEST_CASE("exposure samples: time runs on in equal steps about the middle, alone it is there") {
+TEST_CASE(
+    "exposure samples: times are equally spaced around the center, a single one is at the center") {
     for (const int count : {2, 7, 64}) {
         double sum = 0;
         for (int i = 0; i < count; ++i) {
@@ -88,7 +90,9 @@ TEST_CASE("exposure samples: time runs on in equal steps about the middle, alone
     CHECK(one.square == Vec2(0.5f));
 }
 
-TEST_CASE("exposure samples: each part of the time sees pixel and lens evenly") {
+TEST_CASE(
+    "exposure samples: every part of the exposure covers pixel and lens evenly"
+    * technique("post.distributed-sampling")) {
     // Of 256 samples every quarter of the time has about 16 in each of the 4 quarters of any two
     // of the other numbers.
     constexpr int kCount = 256;
@@ -115,7 +119,7 @@ TEST_CASE("exposure samples: each part of the time sees pixel and lens evenly") 
 }
 
 TEST_CASE(
-    "render sampled: what moves becomes a ramp as long as its way while the shutter is open") {
+    "render sampled: a moving edge becomes a ramp as long as its path while the shutter is open") {
     // At 0 it moves at 2.4 m/s: 64.8 px/s through the image, 180 degrees at 2 images a second
     // are a quarter of a second or 16.2 px, less than its 13.5 px of width and more.
     const TemporaryFolder folder;
@@ -151,7 +155,9 @@ TEST_CASE(
         red(still, static_cast<int>(middle + 0.7 * width), kHeight / 2) == test::near(0).scale(1));
 }
 
-TEST_CASE("render sampled: what goes less far than it is wide is a ramp at each edge") {
+TEST_CASE(
+    "render sampled: an object that moves less than its width has a ramp at each edge"
+    * technique("post.distributed-sampling")) {
     // As above with half the exposure: 8.1 px of way, 13.5 px of width.
     const TemporaryFolder folder;
     const std::string text = level(
@@ -177,7 +183,9 @@ TEST_CASE("render sampled: what goes less far than it is wide is a ramp at each 
     }
 }
 
-TEST_CASE("render sampled: out of focus a small light is a disc of the circle of confusion") {
+TEST_CASE(
+    "render sampled: an out-of-focus small light is a disc of the circle of confusion"
+    * technique("post.distributed-sampling")) {
     // f = 0.024 m / 2 behind tan(0.4636) = 0.5; the eye is 2 m away and focused at 1 m.
     const TemporaryFolder folder;
     const std::string text = level(
@@ -210,7 +218,9 @@ TEST_CASE("render sampled: out of focus a small light is a disc of the circle of
     CHECK(red(sharp, kWidth / 2 + 3, kHeight / 2) == 0);
 }
 
-TEST_CASE("render sampled: more samples come nearer, and layers are those of the moment shown") {
+TEST_CASE(
+    "render sampled: more samples converge, and layers are those at the frame's time"
+    * technique("post.distributed-sampling")) {
     const TemporaryFolder folder;
     const std::string text = level(
         R"json(, "motion_blur": {"shutter": 360})json",

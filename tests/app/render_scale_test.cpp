@@ -7,7 +7,7 @@
 
 namespace limn::render_scale_test {
 
-TEST_CASE("render_scale: a processor draws 640 x 360 of a 16:9 window, a GPU all of it") {
+TEST_CASE("render_scale: a CPU draws a 16:9 window at 640 x 360, a GPU at full resolution") {
     const IVec2 window = {1280, 720};
     CHECK(render_size(make_render_scale(0, false, true, window), window) == IVec2(640, 360));
     CHECK(render_size(make_render_scale(0, false, false, window), window) == window);
@@ -17,7 +17,7 @@ TEST_CASE("render_scale: a processor draws 640 x 360 of a 16:9 window, a GPU all
     CHECK(render_size(make_render_scale(0, false, true, small), small) == small);
 }
 
-TEST_CASE("render_scale: a processor adapts to 16 frames a second, unless a scale is asked for") {
+TEST_CASE("render_scale: a CPU adapts to 16 frames per second, unless a scale is requested") {
     RenderScale scale = make_render_scale(0, false, true, {1280, 720});
     CHECK(scale.automatic);
     float frame = 0.0f;
@@ -31,14 +31,14 @@ TEST_CASE("render_scale: a processor adapts to 16 frames a second, unless a scal
     CHECK_FALSE(make_render_scale(0, false, false, {1280, 720}).automatic);
 }
 
-TEST_CASE("render_scale: what the user asks for is what is drawn") {
+TEST_CASE("render_scale: a requested scale is used as is") {
     const IVec2 window = {1280, 720};
     CHECK(render_size(make_render_scale(0.5f, false, false, window), window) == IVec2(640, 360));
     CHECK(render_size(make_render_scale(1.0f, false, true, window), window) == window);
     CHECK(render_size(make_render_scale(0.1f, false, false, {20, 20}), {20, 20}) == IVec2(16, 16));
 }
 
-TEST_CASE("render_scale: auto settles where the frame time is met, from above and from below") {
+TEST_CASE("render_scale: auto converges to the target frame time, from above and from below") {
     for (const float start : {0.2f, 1.0f}) {
         RenderScale scale = make_render_scale(start, true, false, {1280, 720});
         float busy = 0.0f;
@@ -56,7 +56,8 @@ TEST_CASE("render_scale: auto settles where the frame time is met, from above an
     }
 }
 
-TEST_CASE("render_scale: only at the lowest resolution are particles thinned, until it is met") {
+TEST_CASE(
+    "render_scale: particles are thinned only at the lowest resolution, until the target is met") {
     RenderScale scale = make_render_scale(0, false, true, {1280, 720});
     scale.thins_particles = true;
     float frame = 0;

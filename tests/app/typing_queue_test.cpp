@@ -52,7 +52,7 @@ using Frames = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("typing queue: a key that is up again within a frame is down for one") {
+TEST_CASE("typing queue: a key pressed and released within a frame is down for one frame") {
     TypingQueue queue;
     CHECK(frames_of(queue, {press(kEnter), release(kEnter)}) == Frames{"+Enter", "-Enter"});
     CHECK(
@@ -65,7 +65,7 @@ TEST_CASE("typing queue: a key that is up again within a frame is down for one")
         == Frames{"+Ctrl+A", "-A-Ctrl"});
 }
 
-TEST_CASE("typing queue: what is typed after Backspace or Enter does not overtake it") {
+TEST_CASE("typing queue: text typed after Backspace or Enter does not overtake it") {
     TypingQueue queue;
     CHECK(
         frames_of(
@@ -76,7 +76,7 @@ TEST_CASE("typing queue: what is typed after Backspace or Enter does not overtak
     CHECK(frames_of(queue, {press(kBack), press('3'), text('3')}) == Frames{"+Back", "+3'3"});
 }
 
-TEST_CASE("typing queue: plain text does not wait, however much is typed in a frame") {
+TEST_CASE("typing queue: plain text never waits, however much is typed in a frame") {
     TypingQueue queue;
     CHECK(
         frames_of(

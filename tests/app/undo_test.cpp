@@ -43,7 +43,7 @@ void edit_intensity(World& world, UndoStack& stack, Entity lamp, float intensity
 
 }  // namespace
 
-TEST_CASE("undo: a value that comes back is as disabled as the one that it replaces") {
+TEST_CASE("undo: a restored value is disabled if the one that it replaces is") {
     World world;
     UndoStack stack;
     const Entity lamp = world.create(UndoneSwitch{2});
@@ -62,7 +62,7 @@ TEST_CASE("undo: a value that comes back is as disabled as the one that it repla
     CHECK(world.is_enabled<UndoneSwitch>(lamp));
 }
 
-TEST_CASE("undo: goes back edit by edit and forth again") {
+TEST_CASE("undo: edits are undone and redone one by one") {
     World world;
     UndoStack stack;
     const Entity lamp = world.create(bright(1));
@@ -80,7 +80,7 @@ TEST_CASE("undo: goes back edit by edit and forth again") {
     CHECK(stack.redo(world).empty());
 }
 
-TEST_CASE("undo: a new edit forgets what was undone") {
+TEST_CASE("undo: a new edit clears the redo history") {
     World world;
     UndoStack stack;
     const Entity lamp = world.create(bright(1));
@@ -92,7 +92,7 @@ TEST_CASE("undo: a new edit forgets what was undone") {
     CHECK(world.get<const PointLight>(lamp).intensity == 1);
 }
 
-TEST_CASE("undo: a drag that was extended is taken back in one step") {
+TEST_CASE("undo: an extended drag is undone in one step") {
     World world;
     UndoStack stack;
     const Entity lamp = world.create(bright(1));
@@ -104,7 +104,7 @@ TEST_CASE("undo: a drag that was extended is taken back in one step") {
     CHECK(world.get<const PointLight>(lamp).intensity == 9);
 }
 
-TEST_CASE("undo: a component that was added goes, one that was removed comes back") {
+TEST_CASE("undo: an added component is removed, a removed one restored") {
     World world;
     UndoStack stack;
     const Entity lamp = world.create(bright(4));
@@ -121,7 +121,7 @@ TEST_CASE("undo: a component that was added goes, one that was removed comes bac
     CHECK_FALSE(world.has<PointLight>(lamp));
 }
 
-TEST_CASE("undo: edits of an entity that is gone are passed over") {
+TEST_CASE("undo: edits of a destroyed entity are skipped") {
     World world;
     UndoStack stack;
     const Entity kept = world.create(bright(1));
@@ -134,7 +134,7 @@ TEST_CASE("undo: edits of an entity that is gone are passed over") {
     CHECK(stack.redo_count() == 1);
 }
 
-TEST_CASE("undo: resources and materials are put back too") {
+TEST_CASE("undo: resources and materials are restored, too") {
     World world;
     UndoStack stack;
     world.insert_resource(Exposure{});
@@ -163,7 +163,7 @@ TEST_CASE("undo: resources and materials are put back too") {
     CHECK(world.resource<Exposure>().ev == 0);
 }
 
-TEST_CASE("undo: edits that the level's file has now are no edits any more, others go on") {
+TEST_CASE("undo: edits that were saved in the level's file are dropped, others are kept") {
     World world;
     UndoStack stack;
     const Entity lamp = world.create(bright(1));
@@ -199,7 +199,7 @@ TEST_CASE("undo: edits that the level's file has now are no edits any more, othe
     CHECK(world.get<const PointLight>(lamp).intensity == 3);
 }
 
-TEST_CASE("undo: remembers a thousand edits, not more") {
+TEST_CASE("undo: it keeps at most a thousand edits") {
     World world;
     UndoStack stack;
     const Entity lamp = world.create(bright(0));

@@ -2,6 +2,7 @@
 #include "content/load/files/exr_file.h"
 #include "content/load/files/png_file.h"
 #include "tests/app/virtual_display.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -87,7 +88,7 @@ TEST_CASE(
     CHECK_FALSE(shown(folder, {"--ev", "0"}) == direct);
 }
 
-TEST_CASE("view: an image of 8 bits is shown code for code") {
+TEST_CASE("view: an image of 8 bits is shown unchanged") {
     const TemporaryFolder folder;
     std::vector<std::uint8_t> codes;
     for (int i = 0; i < 256; ++i) {
@@ -102,7 +103,9 @@ TEST_CASE("view: an image of 8 bits is shown code for code") {
     CHECK(test::read_png(folder.file("a.png")).bytes == codes);
 }
 
-TEST_CASE("view: every pixel of the PNG is the formula's to one code") {
+TEST_CASE(
+    "view: every pixel of the PNG matches the formula to one code value"
+    * technique("hdr.viewer")) {
     const TemporaryFolder folder;
     const std::vector<glm::vec3> pixels = make_ramp();
     write_picture_exr(folder.file("a.exr"), pixels);
@@ -136,7 +139,9 @@ TEST_CASE("view: every pixel of the PNG is the formula's to one code") {
     }
 }
 
-TEST_CASE("view: more exposure clips more, and defog with contrast clips less again") {
+TEST_CASE(
+    "view: more exposure clips more, and defog with contrast clips less again"
+    * technique("hdr.viewer")) {
     const TemporaryFolder folder;
     write_picture_exr(folder.file("a.exr"), make_ramp());
     const double low = clipped(shown(folder, {"--ev", "0"}));
@@ -150,7 +155,7 @@ TEST_CASE("view: more exposure clips more, and defog with contrast clips less ag
     CHECK(shown(folder, {"--curve", "local"}) != shown(folder, {"--curve", "reinhard"}));
 }
 
-TEST_CASE("view: says what the image holds, and where NaN is") {
+TEST_CASE("view: it prints statistics, and counts NaN" * technique("hdr.viewer")) {
     const TemporaryFolder folder;
     std::vector<glm::vec3> pixels(kWidth * kHeight, glm::vec3(0.5f));
     pixels[0] = glm::vec3(0.01f);
@@ -175,7 +180,7 @@ TEST_CASE("view: says what the image holds, and where NaN is") {
     CHECK(picture.bytes[3 * 7] == picture.bytes[3 * 8]);
 }
 
-TEST_CASE("view: what is no image of light ends with 1 and one line") {
+TEST_CASE("view: for a file that is not an image it exits with 1 and one line") {
     const TemporaryFolder folder;
     write_picture_exr(folder.file("a.exr"), make_ramp());
     static_cast<void>(shown(folder, {}));
@@ -192,7 +197,8 @@ TEST_CASE("view: what is no image of light ends with 1 and one line") {
     }
 }
 
-TEST_CASE("view: in the window a key and its opposite lead back to the same image") {
+TEST_CASE(
+    "view: in the window a key and its opposite restore the same image" * technique("hdr.viewer")) {
     if (!test::can_play()) {
         return;
     }

@@ -3,6 +3,7 @@
 #include "systems/animation/skin_kernels.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -11,7 +12,9 @@
 
 namespace limn::bar_test {
 
-TEST_CASE("bar: weights sum to 1, and change smoothly from one joint to the other") {
+TEST_CASE(
+    "bar: weights sum to 1, and change smoothly from one joint to the other"
+    * technique("char.skin-defects")) {
     const BarShape shape;
     const MeshData mesh = make_bar(shape);
     REQUIRE(mesh.skin.first.size() == mesh.positions.size() + 1);

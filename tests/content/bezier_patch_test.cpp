@@ -2,6 +2,7 @@
 #include "ecs/base/rng.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -60,8 +61,9 @@ float apart(const Vec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-TEST_CASE("bezier_patch: the weights of a cubic sum to 1, are positive inside, and their slopes "
-          "sum to 0") {
+TEST_CASE(
+    "bezier_patch: the weights of a cubic sum to 1, are positive inside, and their slopes sum to 0"
+    * technique("anim.bezier-eval")) {
     for (int k = 0; k <= 100; ++k) {
         const float u = static_cast<float>(k) / 100.0f;
         const Vec4 b = bernstein(u);
@@ -72,7 +74,9 @@ TEST_CASE("bezier_patch: the weights of a cubic sum to 1, are positive inside, a
     }
 }
 
-TEST_CASE("bezier_patch: a curve has its closed-form points, ends and end slopes") {
+TEST_CASE(
+    "bezier_patch: a curve has its closed-form points, ends and end slopes"
+    * technique("anim.bezier-eval")) {
     CHECK(bezier_point(kArch, 0.25f) == Vec2(0.15625f, 0.5625f));
     CHECK(bezier_point(kArch, 0.5f) == Vec2(0.5f, 0.75f));
     CHECK(bezier_point(kArch, 0.0f) == kArch[0]);
@@ -101,7 +105,9 @@ TEST_CASE("bezier_patch: a curve read backwards gives the same bits") {
     }
 }
 
-TEST_CASE("bezier_patch: affine maps commute with a curve, a perspective divide does not") {
+TEST_CASE(
+    "bezier_patch: affine maps commute with a curve, a perspective divide does not"
+    * technique("anim.bezier-eval")) {
     const std::array<Vec3, 4> p = {Vec3(0, 0, 1), Vec3(0, 1, 2), Vec3(1, 1, 4), Vec3(1, 0, 3)};
     const Affine map =
         affine_from({1, 2, 3}, glm::normalize(Quat(0.3f, 0.5f, -0.2f, 0.7f)), {2, 0.5f, 1.5f});
@@ -141,7 +147,9 @@ TEST_CASE("bezier_patch: curve and surface stay inside the box of their control 
     }
 }
 
-TEST_CASE("bezier_patch: the corners are control points and u goes with the first index") {
+TEST_CASE(
+    "bezier_patch: the corners are control points and u belongs to the first index"
+    * technique("anim.bezier-patch")) {
     const BezierPatch patch = crumpled(1);
     CHECK(patch_point(patch, 0, 0) == patch.p[0][0]);
     CHECK(patch_point(patch, 1, 0) == patch.p[3][0]);
@@ -149,7 +157,9 @@ TEST_CASE("bezier_patch: the corners are control points and u goes with the firs
     CHECK(patch_point(patch, 1, 1) == patch.p[3][3]);
 }
 
-TEST_CASE("bezier_patch: the unit square is (u, v, 0) with the frame of the axes") {
+TEST_CASE(
+    "bezier_patch: the unit square is (u, v, 0) with the frame of the axes"
+    * technique("bump.tangent-bezier")) {
     const BezierPatch square = unit_square();
     for (const float u : {0.0f, 0.3f, 1.0f}) {
         for (const float v : {0.0f, 0.6f, 1.0f}) {
@@ -163,7 +173,9 @@ TEST_CASE("bezier_patch: the unit square is (u, v, 0) with the frame of the axes
     }
 }
 
-TEST_CASE("bezier_patch: one inner point lifts the middle by 9/64 and no boundary") {
+TEST_CASE(
+    "bezier_patch: one inner point lifts the center by 9/64 and no boundary"
+    * technique("anim.bezier-patch")) {
     BezierPatch patch = unit_square();
     patch.p[1][1].z = 1;
     CHECK(patch_point(patch, 0.5f, 0.5f).z == test::near(0.140625));
@@ -186,7 +198,9 @@ TEST_CASE("bezier_patch: a boundary is the curve of its own control points") {
     }
 }
 
-TEST_CASE("bezier_patch: an affine map of the control points maps the surface") {
+TEST_CASE(
+    "bezier_patch: an affine map of the control points maps the surface"
+    * technique("anim.bezier-patch")) {
     const BezierPatch patch = crumpled(4);
     const Affine map =
         affine_from({-1, 0.5f, 2}, glm::normalize(Quat(0.9f, 0.1f, 0.4f, -0.3f)), {1, 2, 0.5f});
@@ -205,7 +219,8 @@ TEST_CASE("bezier_patch: an affine map of the control points maps the surface") 
 }
 
 TEST_CASE(
-    "bezier_patch: derivatives agree with differences, and with the control points at the corner") {
+    "bezier_patch: derivatives agree with differences, and with the control points at the corner"
+    * technique("anim.bezier-patch-frame, bump.tangent-bezier")) {
     const BezierPatch patch = crumpled(2);
     const double h = 1e-3;
     for (const double u : {0.2, 0.5, 0.9}) {
@@ -228,7 +243,9 @@ TEST_CASE(
     CHECK(glm::length(patch_frame(patch, 0, 0).normal - corner_normal) < 1e-5f);
 }
 
-TEST_CASE("bezier_patch: the saddle z = u v has the mixed derivative 1") {
+TEST_CASE(
+    "bezier_patch: the saddle z = u v has the mixed derivative 1"
+    * technique("anim.bezier-patch-frame")) {
     BezierPatch saddle = unit_square();
     for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t j = 0; j < 4; ++j) {
@@ -240,7 +257,9 @@ TEST_CASE("bezier_patch: the saddle z = u v has the mixed derivative 1") {
     CHECK(patch_point(saddle, 0.7f, 0.2f).z == test::near(0.14f));
 }
 
-TEST_CASE("bezier_patch: where an edge is a point, the frame is the limit from inside") {
+TEST_CASE(
+    "bezier_patch: where an edge is a point, the frame is the limit from inside"
+    * technique("anim.bezier-patch-frame")) {
     // A quarter of a cone whose tip is the edge v = 1.
     BezierPatch cone = unit_square();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -257,7 +276,8 @@ TEST_CASE("bezier_patch: where an edge is a point, the frame is the limit from i
     CHECK(glm::length(nowhere.tangent) == test::near(1.0f));
 }
 
-TEST_CASE("bezier_patch: four children are the parent") {
+TEST_CASE(
+    "bezier_patch: four children are the parent" * technique("anim.bezier-patch-tessellate")) {
     const BezierPatch patch = crumpled(5);
     const std::array<BezierPatch, 4> children = split_patch(patch);
     for (int k = 0; k < 25; ++k) {
@@ -272,7 +292,9 @@ TEST_CASE("bezier_patch: four children are the parent") {
     }
 }
 
-TEST_CASE("bezier_patch: uniform depth 2 makes 16 quads with 25 vertices, all on the surface") {
+TEST_CASE(
+    "bezier_patch: uniform depth 2 makes 16 quads with 25 vertices, all on the surface"
+    * technique("anim.bezier-patch-tessellate")) {
     const BezierPatch patch = crumpled(6);
     const PatchTriangles triangles = tessellate_uniform(1, 4);
     CHECK(triangles.samples.size() == 25);
@@ -287,7 +309,9 @@ TEST_CASE("bezier_patch: uniform depth 2 makes 16 quads with 25 vertices, all on
     CHECK(worst_tangent(mesh) > 0.5f);
 }
 
-TEST_CASE("bezier_patch: the error of flat quads falls four times with each depth") {
+TEST_CASE(
+    "bezier_patch: the error of flat quads falls by a factor of four with each depth"
+    * technique("anim.bezier-patch-tessellate")) {
     const BezierPatch patch = crumpled(8);
     const auto worst_error = [&](int divisions) {
         double worst = 0;
@@ -327,7 +351,9 @@ TEST_CASE("bezier_patch: a flat patch stays one quad, a bent one gets more where
     CHECK(2 * near_bend > static_cast<int>(fine.samples.size()));
 }
 
-TEST_CASE("bezier_patch: adaptive tessellation has no T-junctions, not even between patches") {
+TEST_CASE(
+    "bezier_patch: adaptive tessellation has no T-junctions, not even between patches"
+    * technique("anim.bezier-patch-tessellate")) {
     // A flat patch and a bent one, which share the boundary u = 1 / u = 0, that one read backwards.
     BezierPatch left = unit_square();
     left.p[3][1].z = 0.4f;
@@ -359,8 +385,9 @@ TEST_CASE("bezier_patch: adaptive tessellation has no T-junctions, not even betw
     CHECK(open > 8);
 }
 
-TEST_CASE("bezier_patch: level l holds 4^l sub-patches of the same surface, ever closer to their "
-          "control points") {
+TEST_CASE(
+    "bezier_patch: level l has 4^l sub-patches of the same surface, ever closer to control points"
+    * technique("anim.bezier-patch-lod")) {
     const BezierPatch patch = crumpled(9);
     const PatchLevels levels = make_patch_levels(patch, 4);
     float last = 1e9f;

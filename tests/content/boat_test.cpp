@@ -17,7 +17,7 @@ constexpr BoatPart kParts[] = {BoatPart::Hull, BoatPart::Deck, BoatPart::Spars, 
 
 }  // namespace
 
-TEST_CASE("boat: every part has frames at right angles that look the way its triangles do") {
+TEST_CASE("boat: every part has orthogonal frames that face as its triangles do") {
     for (const BoatPart part : kParts) {
         CAPTURE(static_cast<int>(part));
         for (const int stations : {6, 24, 40}) {
@@ -40,7 +40,7 @@ TEST_CASE("boat: every part has frames at right angles that look the way its tri
     }
 }
 
-TEST_CASE("boat: hull and deck are their own mirror image, as long as asked for") {
+TEST_CASE("boat: hull and deck are mirror symmetric, of the requested length") {
     for (const BoatPart part : {BoatPart::Hull, BoatPart::Deck}) {
         const MeshData mesh = make_boat({.part = part, .length = 9});
         CHECK(mesh.bounds.max.x == test::near(-mesh.bounds.min.x).epsilon(1e-3));

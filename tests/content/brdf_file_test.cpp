@@ -1,6 +1,7 @@
 #include "content/load/files/brdf_file.h"
 #include "content/load/level/level_load.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -22,7 +23,9 @@ std::string error_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("brdf file: each channel has its own lobes, and those it lacks are zero") {
+TEST_CASE(
+    "brdf file: each channel has its own lobes, padded with zero lobes"
+    * technique("skin.brdf-lafortune")) {
     const Result<BrdfFit> fit = parse_brdf(kSet, "x.brdf");
     REQUIRE(fit.ok());
     CHECK(fit->diffuse == Vec3(0.60f, 0.42f, 0.33f));

@@ -10,6 +10,7 @@
 #include "ecs/field_access.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -289,7 +290,9 @@ TEST_CASE("component json: angles turn about y, then x, then z") {
         != std::string::npos);
 }
 
-TEST_CASE("json: angles in between depend on the names of the poses, and lock a quarter turn up") {
+TEST_CASE(
+    "json: interpolated Euler angles depend on how poses are written, and lock at 90 degrees"
+    * technique("anim.euler")) {
     const auto apart = [](const Quat& a, const Quat& b) {
         return std::min(glm::length(a - b), glm::length(a + b));
     };
@@ -323,7 +326,7 @@ TEST_CASE("json: angles in between depend on the names of the poses, and lock a 
     CHECK(volume({30, 90, 10}) < 0.02f);
 }
 
-TEST_CASE("component json: what is wrong is named with its place, expectation and nearest name") {
+TEST_CASE("component json: errors name the position, the expectation and the nearest name") {
     CHECK(error_of<Everything>(R"({"lable": "a"})")
               .starts_with(
                   "t.json:1:2: thing: found the field \"lable\", expected one of on small "));
@@ -384,14 +387,14 @@ TEST_CASE("component json: numbers that become infinite as float are refused") {
     CHECK(read<Everything>(R"({"fine": 1e39})").fine == 1e39);
 }
 
-TEST_CASE("component json: a color of 0 .. 255 is told how to be written") {
+TEST_CASE("component json: the error for a color of 0 .. 255 says how to write it") {
     const std::string hint = "(for 0 .. 255 write \"#rrggbb\")";
     CHECK(error_of<Everything>(R"({"tint": [255, 128, 0]})").ends_with(hint));
     CHECK(error_of<Everything>(R"({"tint": [0, 0, 300]})").find(hint) == std::string::npos);
     CHECK(error_of<Everything>(R"({"tint": [-1, 0, 0]})").find(hint) == std::string::npos);
 }
 
-TEST_CASE("component json: colors and angles that are none are refused") {
+TEST_CASE("component json: invalid colors and angles are refused") {
     for (const char* text :
          {"\"ff8000\"", "\"#ff80\"", "\"#gg8000\"", "\"#ff800080\"", "\"\"", "\"#\""}) {
         CAPTURE(text);
@@ -533,7 +536,7 @@ TEST_CASE("component_json: old names of fields and enumerators are read, with on
             "lazy is renamed to calm; the next version rejects the old name"});
 }
 
-TEST_CASE("component_json: numbers with units as people write them, in the unit of the field") {
+TEST_CASE("component_json: numbers with units are converted to the unit of the field") {
     CHECK(read<Measures>(R"({"angle": "45deg"})").angle == test::near(0.78539816));
     CHECK(read<Measures>(R"({"angle": "-1rad"})").angle == -1.0f);
     CHECK(read<Measures>(R"({"turn": "30rpm"})").turn == test::near(3.14159265));
@@ -550,7 +553,7 @@ TEST_CASE("component_json: numbers with units as people write them, in the unit 
     }
 }
 
-TEST_CASE("component_json: a number out of range is told the range in the unit that was written") {
+TEST_CASE("component_json: the error for a number out of range has the range in the written unit") {
     const auto expected = [](const std::string& error) {
         return error.substr(std::min(error.find(", expected "), error.size()));
     };
@@ -573,7 +576,7 @@ TEST_CASE("component_json: a number out of range is told the range in the unit t
     CHECK(minutes("-61000ms") == ", expected a number -60000 .. 3600000 ms");
 }
 
-TEST_CASE("component_json: degrees where radians are expected are told how to be written") {
+TEST_CASE("component_json: the error for degrees instead of radians says how to write them") {
     const std::string error = error_of<Measures>(R"({"angle": 45})");
     CHECK(error.ends_with("(for degrees write \"45deg\")"));
     CHECK(error_of<Measures>(R"({"angle": 1000})").find("degrees") == std::string::npos);

@@ -13,6 +13,7 @@
 #include "systems/update_world.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -83,7 +84,7 @@ MeshData morphed(std::size_t target) {
 
 }  // namespace
 
-TEST_CASE("implicit_mesh: a ball is closed, even and as large as it should be") {
+TEST_CASE("implicit_mesh: a sphere is closed, even and of the right size") {
     const SignedDistance ball = [](const Vec3& p) { return glm::length(p) - 0.5f; };
     const ImplicitMesh net = mesh_surface(ball, {{Vec3(-0.6f), Vec3(0.6f)}, 0.05f, 4});
     MeshData mesh;
@@ -168,7 +169,9 @@ TEST_CASE("creature: skeleton, skin and clips are sound, and clips end as they b
     }
 }
 
-TEST_CASE("creature: a foot that stands goes with the ground, and does not sink or rise") {
+TEST_CASE(
+    "creature: a planted foot moves with the ground, and does not sink or rise"
+    * technique("char.foot-flight")) {
     for (const char* name : {"walk", "run", "idle"}) {
         INFO(std::string(name));
         const Gait& gait = gait_named(name);
@@ -250,7 +253,9 @@ TEST_CASE("creature: a run sets down both hind feet, then both fore feet, then f
     CHECK(gait_speed(run) > 4 * gait_speed(gait_named("walk")));
 }
 
-TEST_CASE("creature: a foot in the air rises in a third of its way and comes down in the rest") {
+TEST_CASE(
+    "creature: a foot in the air rises in a third of its path and comes down in the rest"
+    * technique("char.foot-flight")) {
     constexpr float kPiF = kPi;
     const auto at = [](float x) { return swing_height(x / (3 * kPi)); };
     CHECK(at(0) == 0);
@@ -281,7 +286,7 @@ TEST_CASE("creature: a foot in the air rises in a third of its way and comes dow
     }
 }
 
-TEST_CASE("creature: bones keep their lengths, and knees bend the way they should") {
+TEST_CASE("creature: bones keep their lengths, and knees bend in the right direction") {
     for (const ClipData& clip : rig().clips) {
         INFO(clip.name);
         for (int i = 0; i < 48; ++i) {
@@ -318,7 +323,7 @@ TEST_CASE("creature: blink closes the lids and moves nothing else, breath widens
     }
 }
 
-TEST_CASE("creature: twice as high is twice as large in all, and threads do not matter") {
+TEST_CASE("creature: twice the height doubles every length, on any number of threads") {
     const CreatureShape coarse = {.detail = 0.02f};
     const int before = thread_count();
     set_thread_count(1);

@@ -1,5 +1,6 @@
 #include "content/bake/even_chart.h"
 #include "content/make/head/head.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -137,7 +138,9 @@ TEST_CASE("head: behind the neck pores go on across the seam of the texture, har
     CHECK(stretch_within(bust, bust.uvs1, {0, 6.5f, 7}, {4, 10, 20}) < 1.2f);
 }
 
-TEST_CASE("head: pores are nearly round all over the face, beside the nose too") {
+TEST_CASE(
+    "head: pores are nearly round all over the face, beside the nose too"
+    * technique("skin.detail")) {
     const MeshData head = make_head({});
     REQUIRE(head.uvs1.size() == head.positions.size());
     CHECK(stretch_within(head, head.uvs1, {0, 6.5f, 7}, {4, 10, 20}) < 1.2f);     // forehead

@@ -6,6 +6,7 @@
 #include "ecs/components/all.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -45,7 +46,9 @@ double area_of(const MeshData& mesh, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-TEST_CASE("fragments: as sheets, the pieces are the triangles of the whole, each once") {
+TEST_CASE(
+    "fragments: as sheets, the pieces are the triangles of the whole, each once"
+    * technique("particle.mesh-particles")) {
     const Assets assets = with_ball();
     const MeshData& ball = assets.meshes[0];
     const MeshData pieces = make_fragments({.mesh = {0}, .count = 20, .thickness = 0}, assets);
@@ -114,7 +117,7 @@ TEST_CASE("fragments: each piece is connected and, with a thickness, closed") {
     CHECK(volume == near(4 * 3.14159265 / 3 * (1 - 0.9 * 0.9 * 0.9)).epsilon(0.02));
 }
 
-TEST_CASE("fragments: faces and normals point outward, of the inside inward") {
+TEST_CASE("fragments: faces and normals point outward, those of the inside inward") {
     const Assets assets = with_ball();
     const MeshData pieces = make_fragments({.mesh = {0}, .count = 12, .thickness = 0.2f}, assets);
     for (std::size_t i = 0; i < pieces.indices.size(); i += 3) {
@@ -135,7 +138,9 @@ TEST_CASE("fragments: faces and normals point outward, of the inside inward") {
     }
 }
 
-TEST_CASE("fragments: each piece is a mesh about its center, which lies in the whole as it did") {
+TEST_CASE(
+    "fragments: each piece is a mesh about its center, which keeps its position in the whole"
+    * technique("particle.mesh-particles")) {
     Assets assets = with_ball();
     assets.meshes.push_back(make_fragments({.mesh = {0}, .count = 9}, assets));
     assets.meshes[1].name = "shards";
@@ -164,7 +169,7 @@ TEST_CASE("fragments: each piece is a mesh about its center, which lies in the w
     CHECK(glm::length(sum) / 9 < 0.2f);
 }
 
-TEST_CASE("fragments: other seeds break it elsewhere, the same seed alike") {
+TEST_CASE("fragments: the same seed breaks it alike, other seeds elsewhere") {
     const Assets assets = with_ball();
     const MeshData one = make_fragments({.mesh = {0}, .seed = 1}, assets);
     const MeshData again = make_fragments({.mesh = {0}, .seed = 1}, assets);
@@ -174,7 +179,7 @@ TEST_CASE("fragments: other seeds break it elsewhere, the same seed alike") {
     CHECK(one.indices != other.indices);
 }
 
-TEST_CASE("fragments: of nothing there are none, and no more than triangles") {
+TEST_CASE("fragments: an empty mesh has none, and there are at most as many as triangles") {
     Assets assets = with_ball();
     CHECK(make_fragments({.mesh = {7}}, assets).pieces.empty());
     CHECK(make_fragments({}, assets).positions.empty());

@@ -3,6 +3,7 @@
 #include "content/make/models/shapes.h"
 #include "ecs/base/rng.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -45,7 +46,9 @@ Vec3 field_in(const FurrowTriangle& triangle, int field) {
 
 }  // namespace
 
-TEST_CASE("furrow field: initial vectors are tangent, perpendicular and equally long") {
+TEST_CASE(
+    "furrow field: initial vectors are tangent, perpendicular and equally long"
+    * technique("wrinkle.furrow.field-init")) {
     Random random(1, 2, 3, 4);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 n = random.direction();
@@ -66,7 +69,9 @@ TEST_CASE("furrow field: initial vectors are tangent, perpendicular and equally 
     }
 }
 
-TEST_CASE("furrow field: between two edits vectors are weighted by weight over distance") {
+TEST_CASE(
+    "furrow field: between two edits vectors are weighted by weight over distance"
+    * technique("wrinkle.furrow.field-interpolate")) {
     Pair pair;
     CHECK(near_to(pair.at_origin()[0], {0.75f, 0.5f, 0}));
     CHECK(near_to(pair.at_origin()[1], {0.5f, 0.75f, 0}));
@@ -80,7 +85,9 @@ TEST_CASE("furrow field: between two edits vectors are weighted by weight over d
     CHECK(near_to(pair.at_origin()[1], before[1]));
 }
 
-TEST_CASE("furrow field: one edit makes a constant field, and edited vertices keep their vectors") {
+TEST_CASE(
+    "furrow field: one edit makes a constant field, and edited vertices keep their vectors"
+    * technique("wrinkle.furrow.field-interpolate")) {
     Random random(5, 0, 0, 0);
     std::vector<Vec3> positions;
     std::vector<Vec3> normals(200, Vec3(0, 0, 1));
@@ -112,7 +119,9 @@ TEST_CASE("furrow field: one edit makes a constant field, and edited vertices ke
     }
 }
 
-TEST_CASE("furrow field: without any weight the initial field stays") {
+TEST_CASE(
+    "furrow field: without any weight the initial field stays"
+    * technique("wrinkle.furrow.field-interpolate")) {
     const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}};
     const std::vector<Vec3> normals = {{0, 0, 1}, {1, 0, 0}};
     const std::vector<FurrowEdit> edits = {{0, {Vec3(2, 0, 0), Vec3(0, 2, 0)}, 0}};
@@ -123,7 +132,9 @@ TEST_CASE("furrow field: without any weight the initial field stays") {
     }
 }
 
-TEST_CASE("furrow field: vectors are tangent on a ball, with the magnitude that was set") {
+TEST_CASE(
+    "furrow field: vectors are tangent on a ball, with the magnitude that was set"
+    * technique("wrinkle.furrow.field-interpolate")) {
     const MeshData ball = make_sphere({.radius = 1, .segments = 24, .rings = 12});
     const std::vector<FurrowArrow> arrows = {
         {.at = {0, 0, 1}, .first = {0, 1.5f, 3}, .second = {0.5f, 0, 0}}};
@@ -140,7 +151,9 @@ TEST_CASE("furrow field: vectors are tangent on a ball, with the magnitude that 
     }
 }
 
-TEST_CASE("furrow map: the angle around a cylinder runs from +z over +x") {
+TEST_CASE(
+    "furrow map: the angle around a cylinder runs from +z over +x"
+    * technique("wrinkle.furrow.map-cylinder")) {
     CHECK(cylinder_angle({1, 0, 0}) == test::near(kPi / 2));
     CHECK(cylinder_angle({-1, 5, 0}) == test::near(3 * kPi / 2));
     CHECK(cylinder_angle({0, 3, -1}) == test::near(kPi));
@@ -154,7 +167,9 @@ TEST_CASE("furrow map: the angle around a cylinder runs from +z over +x") {
     CHECK(near_to(unroll_vector({1, 2, 3}, 0), {1, 2, 3}));
 }
 
-TEST_CASE("furrow map: a plane seen from the front keeps lengths and directions") {
+TEST_CASE(
+    "furrow map: a plane seen from the front keeps lengths and directions"
+    * technique("wrinkle.furrow.map-planar")) {
     const MeshData square = make_square();
     const auto field = make_furrow_field(square.positions, square.normals, {});
     const auto map = make_furrow_map(square, field, {.projection = FurrowProjection::Planar});
@@ -173,7 +188,9 @@ TEST_CASE("furrow map: a plane seen from the front keeps lengths and directions"
     CHECK(first.field_right[0] == Vec2(0, 0));
 }
 
-TEST_CASE("furrow map: from the front the back is left out, and areas shrink by the slope") {
+TEST_CASE(
+    "furrow map: from the front the back is left out, and areas shrink by the slope"
+    * technique("wrinkle.furrow.map-planar")) {
     MeshData tilted = make_square();
     for (Vec3& p : tilted.positions) {
         p = {0.6f * p.x, p.y, 0.8f * p.x};  // its normal is (-0.8, 0, 0.6)
@@ -200,7 +217,9 @@ TEST_CASE("furrow map: from the front the back is left out, and areas shrink by 
     CHECK(none.error().message.find("found no triangle") != std::string::npos);
 }
 
-TEST_CASE("furrow map: a tube unrolls to a whole turn, with lengths equal along and around") {
+TEST_CASE(
+    "furrow map: a tube unrolls to a whole turn, with lengths equal along and around"
+    * technique("wrinkle.furrow.map-cylinder")) {
     const MeshData tube =
         make_cylinder({.radius = 0.5f, .height = 2, .segments = 64, .caps = false});
     const auto field = make_furrow_field(tube.positions, tube.normals, {});

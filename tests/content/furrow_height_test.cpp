@@ -8,6 +8,7 @@
 #include "ecs/base/rng.h"
 #include "tests/content/furrow_shapes.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -55,7 +56,9 @@ FurrowGrowth make_smooth_growth(const FurrowMap& map) {
 
 }  // namespace
 
-TEST_CASE("furrow height: without noise it is the lesser of both fields, and within 0 to 1") {
+TEST_CASE(
+    "furrow height: without noise it is the lesser of both fields, and within 0 to 1"
+    * technique("wrinkle.furrow.heightfield")) {
     const FurrowGrowth growth = grow_furrows(skin_map(), {});
     std::size_t first_lower = 0;
     std::size_t second_lower = 0;
@@ -71,7 +74,9 @@ TEST_CASE("furrow height: without noise it is the lesser of both fields, and wit
     CHECK(add_furrow_noise(growth, {}) == growth.height);
 }
 
-TEST_CASE("furrow height: swapping the fields with their random numbers gives the same height") {
+TEST_CASE(
+    "furrow height: swapping the fields with their random numbers gives the same height"
+    * technique("wrinkle.furrow.heightfield")) {
     FurrowMap swapped = skin_map();
     std::swap(swapped.stream[0], swapped.stream[1]);
     for (FurrowTriangle& t : swapped.triangles) {
@@ -85,7 +90,9 @@ TEST_CASE("furrow height: swapping the fields with their random numbers gives th
     CHECK(grow_furrows(swapped, {}).height != a.height);
 }
 
-TEST_CASE("furrow height: a field of magnitude 0 changes nothing, one of 2 goes to the bottom") {
+TEST_CASE(
+    "furrow height: a field of magnitude 0 changes nothing, one of 2 goes to the bottom"
+    * technique("wrinkle.furrow.heightfield")) {
     const FurrowMap still = test::make_flat_furrow_map({40, 40}, {0, 0}, {0, 0});
     for (const float h : grow_furrows(still, {}).height) {
         CHECK(h == 1.0f);
@@ -96,7 +103,9 @@ TEST_CASE("furrow height: a field of magnitude 0 changes nothing, one of 2 goes 
     CHECK(mean_of(growth.height) > 0.6);
 }
 
-TEST_CASE("furrow noise: heights fall by a uniform share of it, from the same start each time") {
+TEST_CASE(
+    "furrow noise: heights fall by a uniform share of it, from the same start each time"
+    * technique("wrinkle.furrow.noise")) {
     const FurrowGrowth growth = grow_furrows(skin_map(), {});
     FurrowStyle style;
     style.noise = 0.3f;
@@ -117,7 +126,9 @@ TEST_CASE("furrow noise: heights fall by a uniform share of it, from the same st
     CHECK(add_furrow_noise(growth, style) != noisy);
 }
 
-TEST_CASE("furrow normals: base normals are unit, exact at vertices and linear between them") {
+TEST_CASE(
+    "furrow normals: base normals are unit, exact at vertices and linear between them"
+    * technique("wrinkle.furrow.normal-base")) {
     const MeshData ball = make_sphere({.radius = 1, .segments = 32, .rings = 16});
     const auto field = make_furrow_field(ball.positions, ball.normals, {});
     const auto map =
@@ -151,7 +162,9 @@ TEST_CASE("furrow normals: base normals are unit, exact at vertices and linear b
     CHECK(glm::length(tilted[3] - glm::normalize(Vec3(0.35f, 0.6f, 0.8f))) < 1e-6f);
 }
 
-TEST_CASE("furrow normals: the perturbed normal is Equation 4.11, and never turns back") {
+TEST_CASE(
+    "furrow normals: the perturbed normal is Equation 4.11, and never turns back"
+    * technique("wrinkle.furrow.normal-perturb")) {
     CHECK(
         glm::length(perturb_furrow_normal({0, 0, 1}, {0.3f, -0.2f}) - Vec3(-0.3f, 0.2f, 1))
         < 1e-7f);
@@ -169,7 +182,9 @@ TEST_CASE("furrow normals: the perturbed normal is Equation 4.11, and never turn
     }
 }
 
-TEST_CASE("furrow normals: slopes to the right and upwards tilt normals against them") {
+TEST_CASE(
+    "furrow normals: slopes to the right and upwards tilt normals against them"
+    * technique("wrinkle.furrow.normal-perturb")) {
     const FurrowMap map = test::make_flat_furrow_map({9, 7}, {1, 0});
     const FurrowGrowth growth = make_smooth_growth(map);
     std::vector<float> height(63);
@@ -187,7 +202,9 @@ TEST_CASE("furrow normals: slopes to the right and upwards tilt normals against 
     CHECK(glm::length(wrapped[0 * 9 + 8] - glm::normalize(Vec3(0.08f, 0.15f, 1))) < 1e-6f);
 }
 
-TEST_CASE("furrow normals: without height or bump they are the base normals") {
+TEST_CASE(
+    "furrow normals: without height or bump they are the base normals"
+    * technique("wrinkle.furrow.normal-perturb")) {
     const FurrowGrowth growth = grow_furrows(skin_map(), {});
     const auto base = make_furrow_base_normals(skin_map(), growth);
     CHECK(make_furrow_normals(skin_map(), growth, growth.height, 0) == base);
@@ -196,7 +213,9 @@ TEST_CASE("furrow normals: without height or bump they are the base normals") {
     CHECK(make_furrow_normals(skin_map(), growth, growth.height, 1) != base);
 }
 
-TEST_CASE("furrow height: any number of threads gives the same bits") {
+TEST_CASE(
+    "furrow height: any number of threads gives the same bits"
+    * technique("wrinkle.furrow.heightfield")) {
     const int threads = thread_count();
     const FurrowStyle style = {.noise = 0.2f};
     std::uint64_t found[3] = {};
@@ -242,7 +261,7 @@ TEST_CASE("furrow maps: beyond the surface its border goes on for as many rings 
     CHECK(changed > 40);
 }
 
-TEST_CASE("furrow presets: they are the rows of Table 6.2") {
+TEST_CASE("furrow presets: they are the rows of Table 6.2" * technique("wrinkle.furrow.presets")) {
     struct Row {
         const char* figure;
         float noise, bump, melanin, blood, specular, shininess, scale;
@@ -279,7 +298,9 @@ TEST_CASE("furrow presets: they are the rows of Table 6.2") {
     }
 }
 
-TEST_CASE("furrow presets: faint and distinct differ in bump alone, smooth and rough in noise") {
+TEST_CASE(
+    "furrow presets: faint and distinct differ in bump alone, smooth and rough in noise"
+    * technique("wrinkle.furrow.presets")) {
     const auto style = [](std::string_view name) {
         for (const FurrowPreset& preset : furrow_presets()) {
             if (preset.name == name) {

@@ -1,6 +1,7 @@
 #include "content/bake/furrow_map.h"
 #include "content/make/patterns/furrow_patterns.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -40,7 +41,9 @@ TEST_CASE("furrows pattern: strong furrows of one field lie along its arrow") {
     CHECK(level.y > 3 * level.x);
 }
 
-TEST_CASE("furrows pattern: normals of a pad have its curvature, unless switched off") {
+TEST_CASE(
+    "furrows pattern: normals of a pad have its curvature, unless switched off"
+    * technique("wrinkle.furrow.normal-base")) {
     FurrowsPattern pattern = {
         .recipe = {.projection = FurrowProjection::Planar, .size = 128},
         .surface = FurrowSurface::Pad};
@@ -54,7 +57,9 @@ TEST_CASE("furrows pattern: normals of a pad have its curvature, unless switched
     CHECK(normal_at(make_furrows(pattern), 30, 64).z > 0.99f);
 }
 
-TEST_CASE("furrows pattern: a cylinder keeps furrows even around a limb, a plane does not") {
+TEST_CASE(
+    "furrows pattern: a cylinder keeps furrows even around a limb, a plane does not"
+    * technique("wrinkle.furrow.map-cylinder")) {
     FurrowsPattern pattern = {
         .recipe = {.projection = FurrowProjection::Cylinder, .size = 256},
         .surface = FurrowSurface::Limb};

@@ -6,6 +6,7 @@
 #include "content/make/patterns/furrow_patterns.h"
 #include "ecs/base/hash.h"
 #include "ecs/world.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -56,7 +57,9 @@ struct Sample {
 
 }  // namespace
 
-TEST_CASE("furrow skin: its images are the maps that the same recipe bakes") {
+TEST_CASE(
+    "furrow skin: its images are the maps that the same recipe bakes"
+    * technique("wrinkle.furrow.editor")) {
     Sample sample;
     FurrowRecipe recipe = {.size = kSize, .arrows = {kArrow}};
     FurrowMaps maps = make_furrow_maps(
@@ -82,7 +85,8 @@ TEST_CASE("furrow skin: its images are the maps that the same recipe bakes") {
     CHECK(furrowed > 500);
 }
 
-TEST_CASE("furrow skin: what did not change is not grown again") {
+TEST_CASE(
+    "furrow skin: what did not change is not grown again" * technique("wrinkle.furrow.editor")) {
     Sample sample;
     const std::uint32_t version = sample.skin().version;
     sample.update();
@@ -92,7 +96,9 @@ TEST_CASE("furrow skin: what did not change is not grown again") {
     CHECK(sample.skin().version != version);
 }
 
-TEST_CASE("furrow skin: noise and bump leave the noiseless height alone, the scale does not") {
+TEST_CASE(
+    "furrow skin: noise and bump leave the noiseless height alone, the scale does not"
+    * technique("wrinkle.furrow.editor")) {
     Sample sample;
     const std::uint64_t grown = sample.growth_hash();
     const std::vector<std::uint8_t> normals = sample.skin().normals;
@@ -106,7 +112,9 @@ TEST_CASE("furrow skin: noise and bump leave the noiseless height alone, the sca
     CHECK(sample.growth_hash() != grown);
 }
 
-TEST_CASE("furrow skin: edits that wait show at their own vertex until their step comes") {
+TEST_CASE(
+    "furrow skin: edits that wait show at their own vertex until their step comes"
+    * technique("wrinkle.furrow.editor")) {
     Sample sample;
     Furrows& furrows = sample.furrows();
     furrows.hold = {true, furrows.arrows, furrows.arrows, furrows.style};
@@ -136,7 +144,9 @@ TEST_CASE("furrow skin: edits that wait show at their own vertex until their ste
     CHECK(sample.growth_hash() != grown);
 }
 
-TEST_CASE("furrow skin: in the overview images are those of smooth skin") {
+TEST_CASE(
+    "furrow skin: in the overview images are those of smooth skin"
+    * technique("wrinkle.furrow.view-modes")) {
     Sample sample;
     sample.world.add(sample.entity, FurrowView{.mode = FurrowMode::Overview});
     sample.update();
@@ -155,7 +165,9 @@ TEST_CASE("furrow skin: in the overview images are those of smooth skin") {
     CHECK_FALSE(is_flat());
 }
 
-TEST_CASE("furrow skin: images and meshes that do not fit grow nothing, with a reason") {
+TEST_CASE(
+    "furrow skin: images and meshes that do not fit grow nothing, with a reason"
+    * technique("wrinkle.furrow.editor")) {
     struct Case {
         const char* expected;
         void (*spoil)(Sample&);

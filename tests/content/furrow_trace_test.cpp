@@ -2,6 +2,7 @@
 #include "ecs/base/rng.h"
 #include "tests/content/furrow_shapes.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -68,7 +69,9 @@ float distance_to_segment(const Vec2& p, const FurrowSegment& s) {
 
 }  // namespace
 
-TEST_CASE("furrow functions: they are those of Table 3.1 and Equations 5.1 to 5.6") {
+TEST_CASE(
+    "furrow functions: they are those of Table 3.1 and Equations 5.1 to 5.6"
+    * technique("wrinkle.furrow.functions")) {
     struct Row {
         float x, angle, length, density, width, depth;
         int limit;
@@ -91,7 +94,9 @@ TEST_CASE("furrow functions: they are those of Table 3.1 and Equations 5.1 to 5.
     }
 }
 
-TEST_CASE("furrow functions: no style makes furrows stand still or turn back") {
+TEST_CASE(
+    "furrow functions: no style makes furrows stand still or turn back"
+    * technique("wrinkle.furrow.trace")) {
     FurrowStyle style;
     style.functions.length = {0, 0};
     style.functions.density = {1, -6};
@@ -108,7 +113,9 @@ TEST_CASE("furrow functions: no style makes furrows stand still or turn back") {
     }
 }
 
-TEST_CASE("furrow trace: half a furrow that nothing stops has limit + 1 segments in a line") {
+TEST_CASE(
+    "furrow trace: half a furrow that nothing stops has limit + 1 segments in a line"
+    * technique("wrinkle.furrow.functions, wrinkle.furrow.trace")) {
     const FurrowStyle style = make_straight_style();
     for (const auto& [x, segments, length] :
          {std::tuple{0.001f, 30, 120.0f}, std::tuple{0.5f, 26, 117.0f},
@@ -124,7 +131,9 @@ TEST_CASE("furrow trace: half a furrow that nothing stops has limit + 1 segments
     }
 }
 
-TEST_CASE("furrow trace: a wall 12 px ahead ends a furrow there, in its third segment") {
+TEST_CASE(
+    "furrow trace: a wall 12 px ahead ends a furrow there, in its third segment"
+    * technique("wrinkle.furrow.trace")) {
     const FurrowMap map = test::make_flat_furrow_map({100, 40}, {1, 0});
     auto cover = cover_furrow_map(map);
     Traced drawing = {make_furrow_drawing(map)};
@@ -147,7 +156,8 @@ TEST_CASE("furrow trace: a wall 12 px ahead ends a furrow there, in its third se
     CHECK(other.segments[3].to.x == test::near(0).scale(1));
 }
 
-TEST_CASE("furrow trace: the shortest limit met on the way counts") {
+TEST_CASE(
+    "furrow trace: the shortest limit met on the way counts" * technique("wrinkle.furrow.trace")) {
     FurrowMap map = test::make_flat_furrow_map({300, 40}, {0.05f, 0});
     FurrowTriangle strong = map.triangles[0];
     strong.field[0] = {2, 0};
@@ -160,7 +170,9 @@ TEST_CASE("furrow trace: the shortest limit met on the way counts") {
     CHECK(drawing.segments.size() == 1 + 1 + 9 + 1);
 }
 
-TEST_CASE("furrow trace: where the field is zero a furrow is one point of the band") {
+TEST_CASE(
+    "furrow trace: where the field is zero a furrow is one point of the band"
+    * technique("wrinkle.furrow.trace")) {
     const FurrowMap map = test::make_flat_furrow_map({20, 20}, {0, 0});
     const Traced drawing = trace_half(map, {}, {10.5f, 10.5f});
     CHECK(drawing.segments.empty());
@@ -168,7 +180,9 @@ TEST_CASE("furrow trace: where the field is zero a furrow is one point of the ba
     CHECK(std::count(drawing.cells.begin(), drawing.cells.end(), 0u) == 399);
 }
 
-TEST_CASE("furrow trace: segments turn at random by up to the angle, evenly to both sides") {
+TEST_CASE(
+    "furrow trace: segments turn at random by up to the angle, evenly to both sides"
+    * technique("wrinkle.furrow.trace")) {
     const FurrowMap map = test::make_flat_furrow_map({400, 400}, {1, 0});
     FurrowStyle style;
     double sum = 0;
@@ -200,7 +214,9 @@ TEST_CASE("furrow trace: segments turn at random by up to the angle, evenly to b
     CHECK(std::atan2(d.y, d.x) == test::near(0.6));
 }
 
-TEST_CASE("furrow trace: furrows of one field never cross, they end on each other") {
+TEST_CASE(
+    "furrow trace: furrows of one field never cross, they end on each other"
+    * technique("wrinkle.furrow.topography")) {
     Random random(3, 0, 0, 0);
     for (int run = 0; run < 4; ++run) {
         const float angle = random.uniform(0, 2 * kPi);
@@ -230,7 +246,8 @@ TEST_CASE("furrow trace: furrows of one field never cross, they end on each othe
 }
 
 TEST_CASE(
-    "furrow trace: afterwards the whole surface is in a band, and nothing is drawn beyond it") {
+    "furrow trace: afterwards the whole surface is in a band, and nothing is drawn beyond it"
+    * technique("wrinkle.furrow.heightfield")) {
     FurrowMap map = test::make_flat_furrow_map({120, 120}, {0.8f, 0.3f});
     map.triangles.resize(1);  // the upper right half
     const auto cover = cover_furrow_map(map);
@@ -247,7 +264,9 @@ TEST_CASE(
     CHECK(covered == 120 * 121 / 2);
 }
 
-TEST_CASE("furrow trace: no furrow starts within half the band of an earlier one") {
+TEST_CASE(
+    "furrow trace: no furrow starts within half the band of an earlier one"
+    * technique("wrinkle.furrow.heightfield")) {
     const FurrowMap map = test::make_flat_furrow_map({200, 200}, {1.1f, -0.4f});
     const Traced drawing = trace_all(map, {});
     std::map<std::uint32_t, std::size_t> first;  // segment of each furrow
@@ -266,7 +285,9 @@ TEST_CASE("furrow trace: no furrow starts within half the band of an earlier one
     CHECK(first.size() > 100);
 }
 
-TEST_CASE("furrow trace: stronger fields have fewer, sparser furrows") {
+TEST_CASE(
+    "furrow trace: stronger fields have fewer, sparser furrows"
+    * technique("wrinkle.furrow.heightfield")) {
     std::size_t before = SIZE_MAX;
     for (const float x : {0.5f, 1.0f, 1.5f, 2.0f}) {
         const std::size_t furrows =
@@ -276,7 +297,9 @@ TEST_CASE("furrow trace: stronger fields have fewer, sparser furrows") {
     }
 }
 
-TEST_CASE("furrow trace: the same seed gives the same furrows, another seed others") {
+TEST_CASE(
+    "furrow trace: the same seed gives the same furrows, another seed others"
+    * technique("wrinkle.furrow.trace")) {
     const FurrowMap map = test::make_flat_furrow_map({100, 100}, {1, 0.5f});
     FurrowStyle style;
     const Traced once = trace_all(map, style);
@@ -286,7 +309,9 @@ TEST_CASE("furrow trace: the same seed gives the same furrows, another seed othe
     CHECK(trace_all(map, style).cells != once.cells);
 }
 
-TEST_CASE("furrow trace: furrows pass over the border of an image that repeats") {
+TEST_CASE(
+    "furrow trace: furrows pass over the border of an image that repeats"
+    * technique("wrinkle.furrow.trace")) {
     FurrowMap map = test::make_flat_furrow_map({64, 48}, {0.995f, 0.0995f});
     map.wrap_s = true;
     const Traced drawing = trace_half(map, make_straight_style(), {50.5f, 20.5f});
@@ -296,7 +321,9 @@ TEST_CASE("furrow trace: furrows pass over the border of an image that repeats")
     CHECK(trace_half(map, make_straight_style(), {50.5f, 20.5f}).segments.size() == 3);
 }
 
-TEST_CASE("furrow trace: a wide furrow owns the pixels that it covers") {
+TEST_CASE(
+    "furrow trace: a wide furrow owns the pixels that it covers"
+    * technique("wrinkle.furrow.trace")) {
     const FurrowMap map = test::make_flat_furrow_map({200, 40}, {2, 0});
     FurrowStyle style = make_straight_style();
     style.scale = 2;  // 4 px wide
@@ -307,7 +334,9 @@ TEST_CASE("furrow trace: a wide furrow owns the pixels that it covers") {
     }
 }
 
-TEST_CASE("furrow trace: a line of width w covers w of each pixel across it") {
+TEST_CASE(
+    "furrow trace: a line of width w covers w of each pixel across it"
+    * technique("wrinkle.furrow.trace")) {
     for (const float x : {0.3f, 0.7f, 1.0f, 1.6f}) {
         const FurrowMap map = test::make_flat_furrow_map({200, 40}, {x, 0});
         for (const float y : {20.5f, 20.3f, 20.0f}) {
@@ -323,7 +352,9 @@ TEST_CASE("furrow trace: a line of width w covers w of each pixel across it") {
     }
 }
 
-TEST_CASE("furrow topography: furrows of both fields cross and mostly enclose four-sided skin") {
+TEST_CASE(
+    "furrow topography: furrows of both fields cross and mostly enclose four-sided skin"
+    * technique("wrinkle.furrow.topography")) {
     constexpr int kSide = 240;
     const FurrowMap map = test::make_flat_furrow_map({kSide, kSide}, {1, 0.2f}, {-0.2f, 1});
     FurrowStyle style;

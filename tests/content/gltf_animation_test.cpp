@@ -91,13 +91,6 @@ struct Arm {
     }
 };
 
-std::string error_of(const std::function<void(Arm&)>& spoil) {
-    Arm arm;
-    spoil(arm);
-    const Result<GltfScene> scene = arm.load();
-    return scene ? "" : scene.error().message;
-}
-
 float apart(const Vec3& a, const Vec3& b) {
     return glm::length(a - b);
 }
@@ -223,63 +216,221 @@ TEST_CASE("gltf animation: what is in no scene or without a node moves nothing, 
         == R"(arm.glb: animations[0].channels[0].target.path: "weights" is ignored)");
 }
 
-TEST_CASE("gltf animation: bad samplers, keys and skins are refused with their place") {
-    CHECK(error_of([](Arm&) {}) == "");
-    CHECK(
-        error_of([](Arm& a) {
+TEST_CASE("gltf animation: a bad channel costs that channel") {
+    const auto spoiled = [](const std::function<void(Arm&)>& spoil, const std::string& warning,
+                            std::size_t channels) {
+        Arm arm;
+        spoil(arm);
+        const Result<GltfScene> scene = arm.load();
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        REQUIRE(!scene->warnings.empty());
+        CHECK(scene->warnings[0] == "arm.glb: " + warning);
+        std::size_t found = 0;
+        for (const ClipData& clip : scene->clips) {
+            for (const ClipSheet& sheet : clip.sheets) {
+                found += sheet.rotating.size() + sheet.translating.size() + sheet.scaling.size();
+            }
+        }
+        CHECK(found == channels);
+        CHECK(scene->skins.size() == 1);
+    };
+    spoiled(
+        [](Arm& a) {
             a.times = {0, 2, 1};
-        })
-        == "arm.glb: animations[0]: clip wave, sheet 0: key 2 at 1 s, expected later than 2 s");
-    CHECK(
-        error_of([](Arm& a) { a.sizes.resize(9); })
-        == "arm.glb: animations[0].samplers[2].output: found 3 values, expected 9 for 3 keys, with "
-           "in- and out-tangents");
-    CHECK(
-        error_of([](Arm& a) { a.places.resize(6); })
-        == "arm.glb: animations[0].samplers[1].output: found 2 values, expected 3 for 3 keys");
-    CHECK(
-        error_of(
-            [](Arm& a) { a.rotations[4] = a.rotations[5] = a.rotations[6] = a.rotations[7] = 0; })
-        == "arm.glb: animations[0]: clip wave, sheet 0: a rotation of length 0");
-    CHECK(
-        error_of([](Arm& a) {
-            a.channels = replace_once(a.channels, R"("sampler": 2)", R"("sampler": 3)");
-        })
-        == "arm.glb: animations[0].channels[2].sampler: found the number 3, expected an index "
-           "below "
-           "3");
-    CHECK(
-        error_of([](Arm& a) {
+        },
+        "animations[0].channels[0]: samplers[0].input: accessors[1]: found 1 after 2 at key 2, "
+        "expected increasing times; the channel is left out",
+        0);
+    spoiled(
+        [](Arm& a) { a.times[1] = std::nanf(""); },
+        "animations[0].channels[0]: samplers[0].input: accessors[1]: found NaN or infinity in "
+        "element 1, expected finite numbers; the channel is left out",
+        0);
+    spoiled(
+        [](Arm& a) { a.sizes.resize(9); },
+        "animations[0].channels[2]: samplers[2].output: found 3 values, expected 9 for 3 keys, "
+        "with in- and out-tangents; the channel is left out",
+        2);
+    spoiled(
+        [](Arm& a) { a.places.resize(6); },
+        "animations[0].channels[1]: samplers[1].output: found 2 values, expected 3 for 3 keys; the "
+        "channel is left out",
+        2);
+    spoiled(
+        [](Arm& a) { std::ranges::fill(a.rotations, 0.0f); },
+        "animations[0].channels[0]: samplers[0].output: accessors[2]: found no key that is a "
+        "rotation; the channel is left out",
+        2);
+    spoiled(
+        [](Arm& a) { a.channels = replace_once(a.channels, R"("sampler": 2)", R"("sampler": 3)"); },
+        "animations[0].channels[2]: sampler: found the number 3, expected an index below 3; the "
+        "channel is left out",
+        2);
+    spoiled(
+        [](Arm& a) {
             a.channels = replace_once(
                 a.channels, R"("node": 2, "path": "scale")", R"("node": 9, "path": "scale")");
-        })
-            .find("animations[0].channels[2].target.node: found the number 9, expected an index "
-                  "below 6")
-        != std::string::npos);
+        },
+        "animations[0].channels[2].target.node: found the number 9, expected an index below 6; "
+        "animations[0].channels[2] is left out",
+        2);
+    spoiled(
+        [](Arm& a) {
+            a.channels = replace_once(
+                a.channels, R"({"sampler": 1, "target": {"node": 2, "path": "translation"}})",
+                R"({"sampler": 0, "target": {"node": 1, "path": "rotation"}})");
+        },
+        "animations[0].channels[1]: target: found the rotation of node 1 twice; the channel is "
+        "left out",
+        2);
+    spoiled(
+        [](Arm& a) { a.samplers = replace_once(a.samplers, "CUBICSPLINE", "CUBIC"); },
+        "animations[0].samplers[2].interpolation: found the string \"CUBIC\", expected one of "
+        "LINEAR STEP CUBICSPLINE; animations[0].samplers[2] is left out",
+        2);
+    spoiled(
+        [](Arm& a) { a.samplers = replace_once(a.samplers, R"("output": 3)", R"("output": 44)"); },
+        "animations[0].samplers[1].output: found the number 44, expected an index below 6; "
+        "animations[0].samplers[1] is left out",
+        2);
+}
+
+TEST_CASE("gltf animation: a key without a value is as the one before it, the first as the next") {
+    const auto loaded = [](const std::function<void(Arm&)>& spoil) {
+        Arm arm;
+        spoil(arm);
+        const Result<GltfScene> scene = arm.load();
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        REQUIRE(scene->warnings.size() == 1);
+        return *scene;
+    };
+    const auto rotations = [](const GltfScene& scene) {
+        std::vector<float> angles;
+        for (const Quat& key : scene.clips[0].sheets[0].rotations) {
+            angles.push_back(degrees(2 * std::atan2(key.z, key.w)));
+        }
+        return angles;
+    };
+    const float nan = std::nanf("");
+    for (const float bad : {0.0f, nan}) {
+        const GltfScene second =
+            loaded([&](Arm& a) { std::fill_n(a.rotations.begin() + 4, 4, bad); });
+        CHECK(rotations(second)[0] == test::near(0));
+        CHECK(rotations(second)[1] == test::near(0));
+        CHECK(rotations(second)[2] == test::near(100));
+        const GltfScene first = loaded([&](Arm& a) { std::fill_n(a.rotations.begin(), 4, bad); });
+        CHECK(std::abs(std::remainder(rotations(first)[0], 360.0f)) == test::near(90));
+        CHECK(
+            first.warnings[0].find("arm.glb: animations[0].samplers[0].output: accessors[2]: ")
+            == 0);
+        CHECK(first.warnings[0].find("in key 0, expected a rotation") != std::string::npos);
+    }
+    const GltfScene moved = loaded([&](Arm& a) { a.places[4] = nan; });
     CHECK(
-        error_of([](Arm& a) {
-            a.channels = R"([{"sampler": 0, "target": {"node": 1, "path": "rotation"}},
-                             {"sampler": 0, "target": {"node": 1, "path": "rotation"}}])";
-        })
-        == "arm.glb: animations[0]: clip wave, sheet 0: rotations of index 2 twice");
-    CHECK(
-        error_of([](Arm& a) {
-            a.samplers = replace_once(a.samplers, "CUBICSPLINE", "CUBIC");
-        }).find("expected one of LINEAR STEP CUBICSPLINE")
-        != std::string::npos);
-    CHECK(
-        error_of([](Arm& a) { a.inverse_binds.resize(16); })
-        == "arm.glb: skins[0].inverseBindMatrices: found 1 matrices, expected one for each of 2 "
-           "joints");
-    CHECK(
-        error_of([](Arm& a) { a.inverse_binds[0] = 0; })
-        == "arm.glb: skins[0]: skin cloth: the matrix of joint 0 has no inverse");
-    CHECK(
-        error_of([](Arm& a) {
+        moved.clips[0].sheets[0].translations
+        == std::vector<Vec3>{{0, 1, 0}, {0, 1, 0}, {0, 4, 0}});
+    // Of a cubic key with a slope that is not finite the slope is 0; with a bad value both are.
+    const GltfScene slope = loaded([&](Arm& a) { a.sizes[15] = nan; });
+    const std::vector<Vec3>& scales = slope.clips[0].sheets[1].scales;
+    CHECK(scales[4] == Vec3(2, 1, 1));
+    CHECK(scales[5] == Vec3(0));
+    const GltfScene value = loaded([&](Arm& a) { a.sizes[12] = nan; });
+    CHECK(value.clips[0].sheets[1].scales[3] == Vec3(0));
+    CHECK(value.clips[0].sheets[1].scales[4] == Vec3(1, 1, 1));
+}
+
+TEST_CASE("gltf animation: a skin that cannot be costs the skin, its mesh stands with its node") {
+    const auto spoiled = [](const std::function<void(Arm&)>& spoil, const std::string& warning) {
+        Arm arm;
+        spoil(arm);
+        const Result<GltfScene> scene = arm.load();
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        REQUIRE(!scene->warnings.empty());
+        CHECK(scene->warnings[0] == "arm.glb: " + warning);
+        CHECK(scene->skins.empty());
+        const GltfNode& sleeve = scene->nodes.back();
+        REQUIRE(sleeve.name == "sleeve.skin");
+        CHECK(sleeve.skin == -1);
+        REQUIRE(sleeve.parent >= 0);
+        CHECK(scene->nodes[static_cast<std::size_t>(sleeve.parent)].name == "sleeve");
+    };
+    spoiled(
+        [](Arm& a) { a.inverse_binds.resize(16); },
+        "skins[0].inverseBindMatrices: found 1 matrices, expected one for each of 2 joints; its "
+        "meshes are drawn without it");
+    spoiled(
+        [](Arm& a) { a.inverse_binds[0] = 0; },
+        "skins[0]: skin cloth: the matrix of joint 0 has no inverse; its meshes are drawn without "
+        "it");
+    spoiled(
+        [](Arm& a) {
             a.joints = "[2, 5]";
             a.roots = "[0]";
-        })
-        == "arm.glb: skins[0].joints: found node 5, which is not in the scene");
+        },
+        "skins[0].joints: found node 5, which is not in the scene; its meshes are drawn without "
+        "it");
+}
+
+TEST_CASE("gltf animation: of keys at the same time the later counts from then on") {
+    Arm arm;
+    arm.times = {1, 1, 1};
+    arm.samplers = replace_once(arm.samplers, "CUBICSPLINE", "STEP");
+    arm.channels = R"([{"sampler": 1, "target": {"node": 2, "path": "translation"}}])";
+    const Result<GltfScene> scene = arm.load();
+    REQUIRE(scene.ok());
+    REQUIRE(scene->warnings.size() == 1);
+    CHECK(
+        scene->warnings[0]
+        == "arm.glb: animations[0].samplers[1].input: accessors[1]: found 1 again at key 1, "
+           "expected increasing times; from then on the later key counts");
+    const ClipSheet& sheet = scene->clips[0].sheets[0];
+    CHECK(sheet.times == std::vector<float>{std::nextafter(1.0f, 0.0f), 1});
+    CHECK(sheet.translations == std::vector<Vec3>{{0, 1, 0}, {0, 4, 0}});
+
+    arm.times = {0, 0, 2};
+    const ClipSheet start = arm.load()->clips[0].sheets[0];
+    CHECK(start.times == std::vector<float>{0, 2});
+    CHECK(start.translations == std::vector<Vec3>{{0, 2, 0}, {0, 4, 0}});
+}
+
+TEST_CASE("gltf animation: the reports of key times are where they should be at each time") {
+    struct Sample {
+        std::string file;
+        std::size_t warnings;
+        float time;
+        float x;
+    };
+    for (const Sample& sample : std::vector<Sample>{
+             {"duplicate", 1, 0, -1},   {"duplicate", 1, 0.999f, -1},
+             {"duplicate", 1, 1, 1},    {"duplicate", 1, 1.5f, 1},
+             {"decreasing", 1, 0, 0},  // at rest
+             {"single", 0, 0, 1},       {"single", 0, 5, 1},
+             {"single-cubic", 0, 0, 1}, {"single-cubic", 0, 5, 1},
+             {"late", 0, 0, 1},         {"late", 0, 1.9f, 1},
+             {"late", 0, 3, -1},        {"negative", 0, 0, 0},
+             {"negative", 0, 1, 1},     {"step", 0, 0.999f, -1},
+             {"step", 0, 1, 1},         {"step3", 0, 0.999f, -1},
+             {"step3", 0, 1, 1},        {"cubic", 0, 0.5f, -0.6875f},
+         }) {
+        CAPTURE(sample.file);
+        CAPTURE(sample.time);
+        const std::optional<std::string> path =
+            shared_report("11-key-times/" + sample.file + ".gltf");
+        if (!path) {
+            return;
+        }
+        const Result<GltfScene> scene = load_gltf(*path);
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        CHECK(scene->warnings.size() == sample.warnings);
+        LocalPose pose = scene->skeleton.rest;
+        for (const ClipData& clip : scene->clips) {
+            sample_clip(clip, sample.time, pose, {});
+        }
+        REQUIRE(scene->joints[0] >= 0);
+        CHECK(
+            pose.translations[static_cast<std::size_t>(scene->joints[0])].x
+            == test::near(sample.x).epsilon(1e-3));
+    }
 }
 
 TEST_CASE("gltf animation: Fox has 24 joints in a row of parents, and three ways to go") {

@@ -3,6 +3,7 @@
 #include "content/load/gltf/gltf_load.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -96,7 +97,9 @@ TEST_CASE("gltf clip: a file tells its shapes, their action units, and what turn
     CHECK(face->head_rotation == Quat(0, 0, 1, 0));
 }
 
-TEST_CASE("gltf clip: the clip is added, and everything else is as it was, in one file") {
+TEST_CASE(
+    "gltf clip: the clip is added, and everything else is as it was, in one file"
+    * technique("face.talking-head")) {
     const test::TemporaryFolder folder;
     const std::string path = write_face(folder.path());
     const GltfFace face = read_gltf_face(path).value();

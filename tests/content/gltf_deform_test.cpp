@@ -3,6 +3,7 @@
 #include "systems/animation/clip_sampling.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -136,7 +137,9 @@ TEST_CASE("gltf deform: further sets of weights, of other types, count as the fi
     CHECK(all[0].weight + all[1].weight == test::near(1.0).epsilon(1e-6));
 }
 
-TEST_CASE("gltf deform: weights that do not sum to 1 are scaled, with a warning") {
+TEST_CASE(
+    "gltf deform: weights that do not sum to 1 are scaled, with a warning"
+    * technique("char.skin-limits")) {
     const GltfScene scene = loaded([](Flag& f) {
         f.weights[0] = 0.5f;
         f.weights[4] = 0.05f;
@@ -157,31 +160,55 @@ TEST_CASE("gltf deform: weights that do not sum to 1 are scaled, with a warning"
     CHECK(loose.warnings[0].find("1 vertices have no weight") != std::string::npos);
 }
 
-TEST_CASE("gltf deform: bad joints and weights are refused with their place") {
+TEST_CASE("gltf deform: bad joints and weights are left out") {
     const std::string place = "flag.glb: meshes[0].primitives[0].attributes";
+    const GltfScene joint = loaded([](Flag& f) { f.joints[4] = 2; });
+    REQUIRE(!joint.warnings.empty());
     CHECK(
-        error_of([](Flag& f) { f.joints[4] = 2; })
-        == place + ".JOINTS_0: found joint 2 in element 1, expected one of the 2 of the skin");
-    CHECK(
-        error_of([](Flag& f) { f.weights[5] = -0.75f; })
-        == place + ".WEIGHTS_0: found -0.75 in element 1, expected at least 0");
-    CHECK(
-        error_of([](Flag& f) { f.weights[5] = std::numeric_limits<float>::quiet_NaN(); })
+        joint.warnings[0]
         == place
-               + ".WEIGHTS_0: accessors[2]: found NaN or infinity in element 1, expected finite "
-                 "numbers");
-    CHECK(
-        error_of([](Flag& f) { f.attributes = R"("POSITION": 0, "JOINTS_0": 1)"; })
-        == place + ": found JOINTS_0 alone, expected JOINTS_0 and WEIGHTS_0");
-    CHECK(
-        error_of([](Flag& f) { f.attributes = R"("POSITION": 0, "JOINTS_0": 2, "WEIGHTS_0": 2)"; })
-        == place + ".JOINTS_0: accessors[2].componentType: found 5126, expected 5121 or 5123");
-    CHECK(
-        error_of([](Flag& f) { f.weights.resize(12); })
-        == place + ".WEIGHTS_0: found 3 elements, expected as many as POSITION has, 4");
+               + ".JOINTS_0: found joint 2 of a skin of 2 in element 1; 1 such influences are "
+                 "left out");
+    CHECK(influences(joint.meshes[0].skin, 1).size() == 1);
+    CHECK(influences(joint.meshes[0].skin, 1)[0].weight == 1);
+    for (const float bad : {-0.75f, std::numeric_limits<float>::quiet_NaN()}) {
+        const GltfScene weight = loaded([&](Flag& f) { f.weights[5] = bad; });
+        REQUIRE(!weight.warnings.empty());
+        CHECK(weight.warnings[0].starts_with(place + ".WEIGHTS_0: found the weight "));
+        CHECK(weight.warnings[0].ends_with(" in element 1; 1 such influences are left out"));
+        CHECK(influences(weight.meshes[0].skin, 1).size() == 1);
+        CHECK(influences(weight.meshes[0].skin, 2) == influences(joint.meshes[0].skin, 2));
+    }
 }
 
-TEST_CASE("gltf deform: morph targets hold the vertices that move, dense or sparse, by name") {
+TEST_CASE("gltf deform: without joints or weights the skin of the primitive is left out") {
+    const std::string place = "flag.glb: meshes[0].primitives[0].attributes";
+    const auto warning_of = [](const std::function<void(Flag&)>& spoil) {
+        const GltfScene scene = loaded(spoil);
+        CHECK(scene.meshes[0].skin.empty());
+        return scene.warnings.at(0);
+    };
+    CHECK(
+        warning_of([](Flag& f) { f.attributes = R"("POSITION": 0, "JOINTS_0": 1)"; })
+        == place
+               + ": found JOINTS_0 alone, expected JOINTS_0 and WEIGHTS_0; it is drawn without "
+                 "its skin");
+    CHECK(
+        warning_of(
+            [](Flag& f) { f.attributes = R"("POSITION": 0, "JOINTS_0": 2, "WEIGHTS_0": 2)"; })
+        == place
+               + ".JOINTS_0: accessors[2].componentType: found 5126, expected 5121 or 5123; it "
+                 "is drawn without its skin");
+    CHECK(
+        warning_of([](Flag& f) { f.weights.resize(12); })
+        == place
+               + ".WEIGHTS_0: found 3 elements, expected as many as POSITION has, 4; it is drawn "
+                 "without its skin");
+}
+
+TEST_CASE(
+    "gltf deform: morph targets hold the vertices that move, dense or sparse, by name"
+    * technique("char.morph-target")) {
     const GltfScene scene = loaded();
     const std::vector<MorphTarget>& morphs = scene.meshes[0].morphs;
     REQUIRE(morphs.size() == 2);
@@ -243,7 +270,9 @@ TEST_CASE("gltf deform: a morph target has the drivers that the file names") {
     }
 }
 
-TEST_CASE("gltf deform: normals that were made turn with their morph targets, tangents follow") {
+TEST_CASE(
+    "gltf deform: normals that were made turn with their morph targets, tangents follow"
+    * technique("char.morph-target")) {
     const GltfScene scene = loaded([](Flag& f) { f.normals.clear(); });
     const MeshData& mesh = scene.meshes[0];
     for (const MorphTarget& morph : mesh.morphs) {
@@ -291,7 +320,8 @@ TEST_CASE("gltf deform: a vertex that is split keeps its joints and its morph ta
     }
 }
 
-TEST_CASE("gltf deform: clips move morph weights, straight and cubic") {
+TEST_CASE(
+    "gltf deform: clips move morph weights, straight and cubic" * technique("char.morph-anim")) {
     const GltfScene scene = loaded();
     CHECK(scene.skeleton.joints.size() == 3);  // the file, the pole and its top; not the cloth
     REQUIRE(scene.clips.size() == 1);
@@ -312,33 +342,66 @@ TEST_CASE("gltf deform: clips move morph weights, straight and cubic") {
     CHECK(weights[1] == test::near(1));
 }
 
-TEST_CASE("gltf deform: bad morph targets and their weights are refused with their place") {
+TEST_CASE("gltf deform: a bad part of a morph target or its weights costs that part") {
     const std::string mesh = "flag.glb: meshes[0]";
+    const auto warning_of = [](const std::function<void(Flag&)>& spoil) {
+        const GltfScene scene = loaded(spoil);
+        CHECK(scene.meshes[0].morphs.size() == 2);
+        return scene.warnings.at(0);
+    };
     CHECK(
-        error_of([](Flag& f) { f.rise.resize(9); })
+        warning_of([](Flag& f) { f.rise.resize(9); })
         == mesh
                + ".primitives[0].targets[0].POSITION: found 3 elements, expected as many as "
-                 "POSITION has, 4");
+                 "POSITION has, 4; it is left out");
     CHECK(
-        error_of([](Flag& f) { f.targets = R"([{"POSITION": 99}])"; })
+        warning_of([](Flag& f) { f.targets = R"([{"POSITION": 99}, {"POSITION": 9}])"; })
         == mesh
                + ".primitives[0].targets[0].POSITION: found the number 99, expected an index "
-                 "below 12");
+                 "below 12; it is left out");
+    const GltfScene infinite =
+        loaded([](Flag& f) { f.rise[3] = std::numeric_limits<float>::infinity(); });
     CHECK(
-        error_of([](Flag& f) {
-            f.rise[3] = std::numeric_limits<float>::infinity();
-        }).find("targets[0].POSITION: accessors[6]: found NaN or infinity in element 1")
-        != std::string::npos);
+        infinite.warnings.at(0)
+        == mesh
+               + ".primitives[0].targets[0].POSITION: found inf in element 1, expected at most "
+                 "1000000000; such elements do not move");
+    CHECK(infinite.meshes[0].morphs[0].positions == std::vector<Vec3>{{0, 0, 1}});
     CHECK(
-        error_of([](Flag& f) { f.mesh_weights = R"("weights": [1],)"; })
-        == mesh + ".weights: found 1, expected one for each of 2 targets");
+        warning_of([](Flag& f) { f.mesh_weights = R"("weights": [1],)"; })
+        == mesh + ".weights: found 1, expected one for each of 2 targets; missing ones are 0");
     CHECK(
-        error_of([](Flag& f) { f.node_weights = R"("weights": [1, 2, 3],)"; })
-        == "flag.glb: nodes[0].weights: found 3, expected one for each of 2 targets");
+        warning_of([](Flag& f) { f.node_weights = R"("weights": [1, 2, 3],)"; })
+        == "flag.glb: nodes[0].weights: found 3, expected one for each of 2 targets; missing ones "
+           "are 0");
     CHECK(
-        error_of([](Flag& f) { f.amounts.resize(2); })
-        == "flag.glb: animations[0].samplers[0].output: found 2 values, expected 4 for 2 keys of 2 "
-           "morph targets");
+        warning_of([](Flag& f) { f.amounts.resize(2); })
+        == "flag.glb: animations[0].channels[0]: samplers[0].output: found 2 values, expected 4 "
+           "for 2 keys of 2 morph targets; the channel is left out");
+}
+
+TEST_CASE("gltf deform: normals of a morph target that are not finite are made anew") {
+    // The flag's normals are the file's, so that only those of this target are made.
+    const auto with = [](float x) {
+        return loaded([&](Flag& f) {
+            f.rise = {0, 0, 0, 0, 0, 0, x, 0, 1, 0, 0, 0};
+            f.targets = R"([{"POSITION": 9, "NORMAL": 6}, {"POSITION": 9}])";
+        });
+    };
+    const GltfScene good = with(0);
+    const GltfScene bad = with(std::numeric_limits<float>::quiet_NaN());
+    CHECK(good.warnings.empty());
+    REQUIRE(bad.warnings.size() == 1);
+    CHECK(
+        bad.warnings[0]
+        == "flag.glb: meshes[0].primitives[0].targets[0].NORMAL: found NaN or infinity in element "
+           "2, expected finite numbers; its normals are made anew");
+    const std::vector<MorphTarget>& morphs = bad.meshes[0].morphs;
+    REQUIRE(morphs[0].normals.size() == morphs[0].vertices.size());
+    for (const Vec3& normal : morphs[0].normals) {
+        CHECK(is_finite(normal));
+    }
+    CHECK(morphs[1].normals.empty());
 }
 
 }  // namespace limn::gltf_deform_test

@@ -228,6 +228,47 @@ TEST_CASE("gltf: a normal of no length becomes one of length 1") {
     const GltfScene scene =
         load_with_attribute<float>("NORMAL", std::vector<float>(12, 0.0f), 5126, "VEC3", false);
     check_mesh(scene.meshes[0]);
+    for (const Vec3& normal : scene.meshes[0].normals) {
+        CHECK(normal == Vec3(0, 0, 1));  // as if there were none
+    }
+}
+
+TEST_CASE("gltf: a bad normal becomes that of the triangles about it, the others stay") {
+    for (const float bad : {0.0f, std::nanf(""), INFINITY}) {
+        const GltfScene scene = load_with_attribute<float>(
+            "NORMAL", {0, 0, -2, bad, bad, bad, 0, 1, 0, 1, 0, 0}, 5126, "VEC3", false);
+        check_mesh(scene.meshes[0]);
+        CHECK(
+            scene.meshes[0].normals
+            == std::vector<Vec3>{{0, 0, -1}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}});
+        REQUIRE(scene.warnings.size() == 1);
+        CHECK(
+            scene.warnings[0].find("square.glb: meshes[0].primitives[0].attributes.NORMAL: found ")
+            == 0);
+        CHECK(scene.warnings[0].find(" in element 1, expected ") != std::string::npos);
+    }
+}
+
+TEST_CASE("gltf: bad tangents are made anew, bad texture coordinates are 0, bad colors white") {
+    const GltfScene plain = load_square({});
+    for (const float bad : {0.0f, std::nanf("")}) {
+        const GltfScene scene = load_with_attribute<float>(
+            "TANGENT", {0, 1, 0, 1, bad, bad, bad, 1, 0, 1, 0, 1, 0, 1, 0, 1}, 5126, "VEC4", false);
+        check_mesh(scene.meshes[0]);
+        CHECK(scene.warnings.size() == 1);
+        CHECK(scene.meshes[0].tangents == plain.meshes[0].tangents);
+    }
+    const float nan = std::nanf("");
+    const GltfScene uvs =
+        load_with_attribute<float>("TEXCOORD_0", {0, 0, 1, nan, 1, 1, 0, 1}, 5126, "VEC2", false);
+    CHECK(uvs.warnings.size() == 1);
+    CHECK(uvs.meshes[0].uvs == std::vector<Vec2>{{0, 0}, {0, 0}, {1, 1}, {0, 1}});
+    const GltfScene colors = load_with_attribute<float>(
+        "COLOR_0", {0, 0, 0, nan, 0, 0, 1, 0, 0, 0, 1, 0}, 5126, "VEC3", false);
+    CHECK(colors.warnings.size() == 1);
+    CHECK(
+        colors.meshes[0].colors
+        == std::vector<Vec4>{{0, 0, 0, 1}, {1, 1, 1, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}});
 }
 
 TEST_CASE("gltf: materials have the defaults of the specification and what the extensions say") {

@@ -7,6 +7,7 @@
 #include "content/make/head/head_wrap.h"
 #include "content/speech/utterance.h"
 #include "tests/content/head_skin.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -99,7 +100,9 @@ constexpr Expected kExpected[] = {
     {"AU46_L", {3.3f, 3.2f, 9.3f}, 4, 6, 11, {0, -1, 0}},
 };
 
-TEST_CASE("head expressions: each unit moves what FACS says, as far as that says") {
+TEST_CASE(
+    "head expressions: each unit moves what FACS says, as far as that says"
+    * technique("wrinkle.compression.face-model")) {
     for (const Expected& expected : kExpected) {
         CAPTURE(expected.unit);
         const std::vector<Vec3> offsets = offsets_of(shape_called(expected.unit));
@@ -124,7 +127,9 @@ TEST_CASE("head expressions: each unit moves what FACS says, as far as that says
     }
 }
 
-TEST_CASE("head expressions: skin 3 cm beyond the region of a unit moves less than 0.1 mm") {
+TEST_CASE(
+    "head expressions: skin 3 cm beyond the region of a unit moves less than 0.1 mm"
+    * technique("wrinkle.compression.face-model")) {
     for (const Expected& expected : kExpected) {
         CAPTURE(expected.unit);
         const std::vector<Vec3> offsets = offsets_of(shape_called(expected.unit));
@@ -207,7 +212,9 @@ TEST_CASE("head expressions: there are more than 40 of them, of units, and 15 vi
     }
 }
 
-TEST_CASE("head expressions: every shape but silence moves something, and silence nothing") {
+TEST_CASE(
+    "head expressions: every shape but silence moves something, and silence nothing"
+    * technique("face.viseme")) {
     const std::vector<MorphTarget> mouth = make_expressions(make_mouth().points, kShape);
     for (std::size_t i = 0; i < shapes().size(); ++i) {
         CAPTURE(shapes()[i].name);
@@ -299,7 +306,8 @@ float lip_gap(std::string_view name) {
     return gap;
 }
 
-TEST_CASE("head expressions: p, b and m close the lips, vowels open them") {
+TEST_CASE(
+    "head expressions: p, b and m close the lips, vowels open them" * technique("face.viseme")) {
     CHECK(lip_gap("viseme_pbm") < 0.02f);
     CHECK(lip_gap("viseme_sil") < 0.001f);
     CHECK(lip_gap("viseme_a") > 1.0f);

@@ -1,4 +1,5 @@
 #include "content/make/head/head_furrow_pattern.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -35,7 +36,9 @@ TEST_CASE("head furrows: fine ones are everywhere on the head, coarse ones where
     CHECK(count_raised(coarse.normal, kSize / 5, kSize / 2, 0) > 300);
 }
 
-TEST_CASE("head furrows: layers are both coarse maps, the furrows along the folds first") {
+TEST_CASE(
+    "head furrows: layers are both coarse maps, the furrows along the folds first"
+    * technique("skin.pipeline")) {
     const PatternMaps layers = made(HeadFurrowMap::Layers);
     const PatternMaps compressed = made(HeadFurrowMap::Compressed);
     const PatternMaps stretched = made(HeadFurrowMap::Stretched);
@@ -51,7 +54,9 @@ TEST_CASE("head furrows: layers are both coarse maps, the furrows along the fold
     CHECK(differ);
 }
 
-TEST_CASE("head furrows: furrows along the folds of the forehead tilt its normals up and down") {
+TEST_CASE(
+    "head furrows: furrows along the folds of the forehead tilt its normals up and down"
+    * technique("skin.pipeline")) {
     const PatternMaps along = made(HeadFurrowMap::Compressed);
     const PatternMaps across = made(HeadFurrowMap::Stretched);
     const auto tilt = [](const ImageData& normal) {  // squares of x and y in the forehead

@@ -14,6 +14,7 @@
 #include "systems/animation/skin_kernels.h"
 #include "systems/animation/surface_binding_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -185,7 +186,9 @@ float gap(const std::vector<Vec3>& positions) {
 
 }  // namespace
 
-TEST_CASE("head markers: triangles are a surface with one border, the end of the neck") {
+TEST_CASE(
+    "head markers: triangles are a surface with one border, the end of the neck"
+    * technique("face.bids-surface")) {
     const HeadMarkers& markers = head_markers();
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     double area = 0;
@@ -215,7 +218,9 @@ TEST_CASE("head markers: triangles are a surface with one border, the end of the
     }
 }
 
-TEST_CASE("head markers: each lip and each lid has its own, and no triangle spans an opening") {
+TEST_CASE(
+    "head markers: each lip and each lid has its own, and no triangle spans an opening"
+    * technique("face.bids-project")) {
     const HeadMarkers& markers = head_markers();
     int upper = 0;
     int lower = 0;
@@ -283,7 +288,9 @@ TEST_CASE("head markers: they are vertices of the skin, and mirror images of eac
     CHECK(pairs > 80);
 }
 
-TEST_CASE("head markers: a recording of them moves the head through their surface, lips apart") {
+TEST_CASE(
+    "head markers: a recording of them moves the head through their surface, lips apart"
+    * technique("face.mocap-drive")) {
     const std::vector<Vec3> truth = laugh(skin(), 1);
     const float motion = rms(truth, skin().positions);
     REQUIRE(motion > 1e-3f);

@@ -3,6 +3,7 @@
 #include "ecs/components/animation.h"
 #include "systems/animation/deform_mesh.h"
 #include "systems/faces/wrinkle_measure.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -87,7 +88,8 @@ const std::vector<Folding>& foldings() {
 }
 
 TEST_CASE(
-    "head wrinkles: skin shortens across the folds where anatomy says, 5 times more than beside") {
+    "head wrinkles: skin shortens across the folds where anatomy says, 5 times more than beside"
+    * technique("wrinkle.dimples")) {
     for (const Folding& folding : foldings()) {
         CAPTURE(folding.region);
         const std::vector<Vec3> positions = posed(folding.shapes, 1);
@@ -122,11 +124,15 @@ TEST_CASE("head wrinkles: at rest nothing is shorter") {
     }
 }
 
-TEST_CASE("head expressions: all at weight 0, every vertex is at rest to the bit") {
+TEST_CASE(
+    "head expressions: all at weight 0, every vertex is at rest to the bit"
+    * technique("wrinkle.compression.face-model")) {
     CHECK(posed({}, 0) == head().positions);
 }
 
-TEST_CASE("head expressions: at half its weight a unit moves half as far, and no other vertex") {
+TEST_CASE(
+    "head expressions: at half its weight a unit moves half as far, and no other vertex"
+    * technique("wrinkle.compression.face-model")) {
     const std::vector<Vec3> whole = posed({"AU12_L"}, 1);
     const std::vector<Vec3> half = posed({"AU12_L"}, 0.5f);
     const MorphTarget& target = head().morphs[expression_index("AU12_L")];

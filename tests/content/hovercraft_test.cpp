@@ -11,7 +11,7 @@ namespace limn::hovercraft_test {
 
 using namespace test;
 
-TEST_CASE("hovercraft: closed, outward, of the length asked for, simplified or not") {
+TEST_CASE("hovercraft: closed, facing outward, of the requested length, simplified or not") {
     for (const int triangles : {0, 14000}) {
         CAPTURE(triangles);
         const MeshData mesh = make_hovercraft({.triangles = triangles});
@@ -37,7 +37,7 @@ TEST_CASE("hovercraft: closed, outward, of the length asked for, simplified or n
     CHECK(small.bounds.max.z - small.bounds.min.z == test::near(0.475).epsilon(0.05));
 }
 
-TEST_CASE("hovercraft: its own mirror image, with frames at right angles") {
+TEST_CASE("hovercraft: mirror symmetric, with orthogonal frames") {
     const MeshData mesh = make_hovercraft({.detail = 0.06f, .triangles = 0});
     CHECK(mesh.bounds.max.x == test::near(-mesh.bounds.min.x).epsilon(1e-3));
     double left = 0;

@@ -1,6 +1,7 @@
 #include "content/bake/image_compare.h"
 #include "ecs/base/rng.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -398,14 +399,17 @@ TEST_CASE("image_compare: the largest difference names its pixel and channel, an
     CHECK(largest_difference(b, b).difference == 0);
 }
 
-TEST_CASE("color_correctness: 1 for equal, 0 for black and white, 1 - 51/765 for 51 steps in one "
-          "channel") {
+TEST_CASE(
+    "color_correctness: 1 for equal, 0 for black and white, 1 - 51/765 for 51 steps in one channel"
+    * technique("fakephong.metric-color")) {
     CHECK(color_correctness(flat(4, 4, Vec3(0)), flat(4, 4, Vec3(1))) == 0);
     const ColorImage a = flat(4, 4, {0.4f, 0.2f, 0.6f});
     CHECK(color_correctness(a, flat(4, 4, {0.6f, 0.2f, 0.6f})) == test::near(1.0 - 51.0 / 765.0));
 }
 
-TEST_CASE("color_correctness: the background does not count, however large") {
+TEST_CASE(
+    "color_correctness: the background does not count, however large"
+    * technique("fakephong.metric-color")) {
     const auto picture = [](int size, float shade) {
         return drawn(
             size, size, [&](int x, int y) { return x < 4 && y < 4 ? Vec3(shade) : Vec3(0.1f); });
@@ -424,8 +428,9 @@ TEST_CASE("color_correctness: the background does not count, however large") {
     CHECK(color_correctness(picture(5, 0), picture(5, 1), std::vector<std::uint8_t>(25, 0)) == 1);
 }
 
-TEST_CASE("enhanced_difference: 0 stays 0, 255 stays 255, one step shows as 146.5, and it can be "
-          "undone") {
+TEST_CASE(
+    "enhanced_difference: 0 stays 0, 255 stays 255, one step shows as 146.5, and it can be undone"
+    * technique("fakephong.metric-diffimage")) {
     const auto shown = [](float difference) {
         return enhanced_difference(flat(1, 1, Vec3(0)), flat(1, 1, Vec3(difference))).pixels[0].x;
     };
@@ -441,7 +446,9 @@ TEST_CASE("enhanced_difference: 0 stays 0, 255 stays 255, one step shows as 146.
     }
 }
 
-TEST_CASE("scanline: white is 1, blue is a third, and the row is the one asked for") {
+TEST_CASE(
+    "scanline: white is 1, blue is a third, and the row is the one asked for"
+    * technique("fakephong.metric-scanline")) {
     const ColorImage image = drawn(3, 2, [](int x, int y) {
         return y == 0 ? Vec3(0) : x == 1 ? Vec3(0, 0, 1) : Vec3(1);
     });
@@ -449,7 +456,9 @@ TEST_CASE("scanline: white is 1, blue is a third, and the row is the one asked f
     CHECK(scanline(image, 0) == std::vector<float>{0, 0, 0});
 }
 
-TEST_CASE("scanline: place and height of a highlight, and a kink, are found") {
+TEST_CASE(
+    "scanline: place and height of a highlight, and a kink, are found"
+    * technique("fakephong.metric-scanline")) {
     std::vector<float> a(50);
     std::vector<float> b(50);
     for (std::size_t i = 0; i < 50; ++i) {

@@ -108,7 +108,7 @@ TEST_CASE("image: an EXR file reads as floats, whatever the file is called") {
     CHECK(values[4] == 1e5f);
 }
 
-TEST_CASE("image: every way to be no image is one line that names the place") {
+TEST_CASE("image: every invalid file gives one line that names it") {
     const TemporaryFolder folder;
     std::vector<std::byte> huge = png_bytes(4, 4, 3);
     set_png_size(huge, 100'000, 2);

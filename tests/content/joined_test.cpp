@@ -26,7 +26,7 @@ Assets box_and_tube() {
 
 }  // namespace
 
-TEST_CASE("joined: parts keep their volume, their normals and their tangents, however turned") {
+TEST_CASE("joined: parts keep their volume, normals and tangents under any rotation") {
     const Assets assets = box_and_tube();
     JoinedShape shape;
     shape.parts = {

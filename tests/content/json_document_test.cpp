@@ -65,7 +65,7 @@ TEST_CASE("json: a byte order mark and line ends of any kind are no part of the 
     CHECK(root.find("a")->at.line == 2);
 }
 
-TEST_CASE("json: what is no JSON is refused with its place and what was expected") {
+TEST_CASE("json: invalid JSON is refused with its position and what was expected") {
     CHECK(error_of("") == "t.json:1:1: found the end of the file, expected a value");
     CHECK(error_of("{\"a\": }") == "t.json:1:7: found \"}\", expected a value");
     CHECK(error_of("{\"a\" 1}") == "t.json:1:6: found \"1\", expected ':' after the key \"a\"");
@@ -123,7 +123,7 @@ TEST_CASE("json: nesting, size and count are bounded") {
         != std::string::npos);
 }
 
-TEST_CASE("json: a long line costs no more a character than short ones") {
+TEST_CASE("json: a long line costs no more per character than short ones") {
     std::string text = "[0";
     for (int i = 0; i < 300'000; ++i) {
         text += ",1";

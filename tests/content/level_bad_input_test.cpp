@@ -52,7 +52,7 @@ bool has(const std::string& text, std::string_view part) {
 
 }  // namespace
 
-TEST_CASE("bad level: what is in the wrong place or by another name is told where it belongs") {
+TEST_CASE("bad level: the error for a misplaced or misnamed key says where it belongs") {
     const struct {
         const char* level;
         const char* message;
@@ -98,7 +98,7 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
         {R"({"materials": {"m": {"base_color": [1, 1]}}})",
          R"(expected [r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"},
         {R"({"materials": {"m": {"pattern": "leaf.png"}}})",
-         R"(expected the name of a made image in "images" (for a file write )"
+         R"(expected the name of a generated image in "images" (for a file write )"
          R"("base_color_texture": {"image": "leaf"}, and "leaf": {"file": "leaf.png"} in "images"))"},
         {R"({"images": {"leaf": {"file": "leaf.png"}}, "materials": {"m": {"pattern": "leaf"}}})",
          R"((for a single image write "base_color_texture": {"image": "leaf"}))"},
@@ -126,7 +126,7 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
                 + " (did you mean Fox.glb?)"));
 }
 
-TEST_CASE("bad level: names beside one that has an error are told as names that exist") {
+TEST_CASE("bad level: names that exist are suggested even beside an error") {
     register_all_components();
     const Result<Level> level = parse_level(
         R"({"paths": {"way": {"knots": [{}]}},
@@ -142,7 +142,7 @@ TEST_CASE("bad level: names beside one that has an error are told as names that 
     CHECK(std::count(message.begin(), message.end(), '\n') == 2);
 }
 
-TEST_CASE("bad level: missing files and bad copies are told beside unknown prefabs") {
+TEST_CASE("bad level: missing files and bad copies are reported beside unknown prefabs") {
     const test::TemporaryFolder folder;
     const std::string path = folder.file("t.level.json");
     std::ofstream(path) << R"({"images": {"sky": {"file": "sky.exr"}}, "entities": [
@@ -159,7 +159,7 @@ TEST_CASE("bad level: missing files and bad copies are told beside unknown prefa
     CHECK(std::count(message.begin(), message.end(), '\n') == 3);
 }
 
-TEST_CASE("bad level: all unknown clips, skins and skeletons are told in one run") {
+TEST_CASE("bad level: all unknown clips, skins and skeletons are reported in one run") {
     const test::TemporaryFolder folder;
     const std::string path = folder.file("t.level.json");
     std::ofstream(path) << "{\"entities\": [\n{\"clip_player\": {\"clip\": \"Run\"}},\n"
@@ -243,8 +243,7 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
         error_of(R"({"entities": [{"mesh_instance": {"mesh": "a"}}]})"), "no names of that kind"));
 }
 
-TEST_CASE(
-    "bad level: errors that do not depend on each other come together, ten and how many more") {
+TEST_CASE("bad level: independent errors are reported together, ten and how many more") {
     register_all_components();
     const auto lines_of = [](const std::string& text) {
         const Result<Level> level = parse_level(text, "t.level.json");

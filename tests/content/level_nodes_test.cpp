@@ -246,7 +246,7 @@ TEST_CASE("level nodes: other changes need the level loaded again") {
     scene.write(with("4"));
     const Result<std::vector<LevelChange>> other = update_level(scene.world, scene.fields);
     REQUIRE_FALSE(other.ok());
-    CHECK(has(other.error().message, "nodes of a glTF file are changed otherwise: load it again"));
+    CHECK(has(other.error().message, "changes of glTF nodes differ: reload the level"));
 }
 
 }  // namespace limn::level_nodes_test

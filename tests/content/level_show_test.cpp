@@ -58,7 +58,7 @@ TEST_CASE("level_show: objects merge, null removes, anything else replaces") {
     CHECK(patched(R"({"a": 1})", show_with(R"("set": {"a": {"b": 2}})")) == R"({"a":{"b":2}})");
 }
 
-TEST_CASE("level_show: off is what is on and then the patch, or the level as it was") {
+TEST_CASE("level_show: off applies its patch on top of on, or is the plain level") {
     const std::string both = show_with(R"("set": {"x": 1, "y": 1}, "off": {"y": 2})");
     CHECK(patched(R"({"x": 0})", both) == R"({"x":1,"y":1})");
     CHECK(patched(R"({"x": 0})", both, true) == R"({"x":1,"y":2})");
@@ -85,7 +85,7 @@ TEST_CASE("level_show: entities are patched by name, wherever they are, added an
     CHECK(removed.find("ball") != std::string::npos);
 }
 
-TEST_CASE("level_show: an unknown entity is an error with its place and the nearest name") {
+TEST_CASE("level_show: an unknown entity is an error with its position and the nearest name") {
     const std::string error = patched(kLevel, show_with(R"("set": {"entities": {"lmp": {}}})"));
     CHECK(error.find("a.level.json:1:") != std::string::npos);
     CHECK(error.find("show a.b") != std::string::npos);

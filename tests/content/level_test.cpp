@@ -201,7 +201,7 @@ TEST_CASE("level: a second one stands behind the assets of the first") {
     }
 }
 
-TEST_CASE("level: prefabs are copied with their children, changed and extended by who uses them") {
+TEST_CASE("level: prefabs are copied with their children, changed and extended by their users") {
     World world;
     spawn_into(world, R"({
         "prefabs": {
@@ -232,7 +232,8 @@ TEST_CASE("level: prefabs are copied with their children, changed and extended b
     CHECK(names_below("b") == std::vector<std::string>{"bulb", "shade"});
 }
 
-TEST_CASE("level: names mean the copy's own entity first, and may be used before they are given") {
+TEST_CASE(
+    "level: names refer to the copy's own entity first, and may be used before their definition") {
     World world;
     spawn_into(world, R"({
         "prefabs": {"rig": {"orbit_camera": {"target": "focus"},
@@ -255,7 +256,7 @@ TEST_CASE("level: names mean the copy's own entity first, and may be used before
     CHECK(named<OrbitCamera>(world, "third").target == find_named(world, "second"));
 }
 
-TEST_CASE("level: a prefab inside a prefab knows the names around it") {
+TEST_CASE("level: a prefab inside a prefab resolves the names around it") {
     World world;
     spawn_into(world, R"({
         "prefabs": {"eye": {"orbit_camera": {"target": "head"}, "children": [{"name": "lid"}]},
@@ -265,7 +266,7 @@ TEST_CASE("level: a prefab inside a prefab knows the names around it") {
     CHECK(parent_of(world, target) == find_named(world, "one"));
 }
 
-TEST_CASE("level: a sway without a center swings about where its entity stands") {
+TEST_CASE("level: a sway without a center swings about its entity's position") {
     World world;
     spawn_into(world, R"({"entities": [
         {"name": "a", "transform": {"position": [1, 2, 3]}, "sway": {}},
@@ -304,7 +305,8 @@ TEST_CASE("level: a ring turns its copies with it") {
     }
 }
 
-TEST_CASE("level: copies differ as asked: in between, picked, at random, and the same every time") {
+TEST_CASE(
+    "level: copies vary as specified: interpolated, picked, at random, and the same every time") {
     constexpr const char* kText = R"({
         "materials": {"red": {}, "green": {}, "blue": {}},
         "entities": [{"name": "v", "point_light": {}, "mesh_instance": {}, "sway": {}, "transform": {},
@@ -394,7 +396,8 @@ TEST_CASE("level: noise blurs where one item of a pick ends and the next begins"
     CHECK(count_strays("0.2") < 40);
 }
 
-TEST_CASE("level: who uses a repeated prefab changes single keys of the repetition, or ends it") {
+TEST_CASE(
+    "level: a user of a repeated prefab may override single keys of its repeat, or disable it") {
     World world;
     spawn_into(world, R"({
         "prefabs": {"row": {"repeat": {"count": [3, 1, 1], "spacing": [2, 0, 0], "jitter": [0.1, 0, 0], "seed": 1}}},
@@ -571,7 +574,7 @@ TEST_CASE("set: one field of an entity, a resource or a material changes") {
     CHECK(named<CameraPath>(world, "eye").keys.size() == 1);
 }
 
-TEST_CASE("set: a resource that the scene lacks is made, with its defaults otherwise") {
+TEST_CASE("set: a resource that the scene lacks is created with defaults") {
     World world;
     spawn_into(world, R"({"entities": []})");
     CHECK(set_value(world, "exposure.ev", "-2").ok());
@@ -589,11 +592,11 @@ TEST_CASE("set: a component that the entity lacks is added, with its defaults an
     REQUIRE(messages.size() == 1);
     CHECK(
         messages[0]
-        == "--set lamp.point_light.intensity: the entity has no point_light; it is added, with "
+        == "--set lamp.point_light.intensity: the entity has no point_light; it is added with "
            "defaults");
 }
 
-TEST_CASE("set: names may contain dots; the longest is meant") {
+TEST_CASE("set: names may contain dots; the longest match is used") {
     World world;
     spawn_into(world, R"({"materials": {"gold": {}, "gold.001": {}}})");
     const Entity bone = world.create(Name{"Bone"}, PointLight{});

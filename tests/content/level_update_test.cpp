@@ -58,7 +58,7 @@ struct Playing {
 
 }  // namespace
 
-TEST_CASE("level update: what has changed in an included file comes to living entities") {
+TEST_CASE("level update: changes of an included file are applied to the running level") {
     Playing level;
     const Entity one = level.fields.entities[0];
     // What has happened since then stays: a place, particles.
@@ -82,7 +82,7 @@ TEST_CASE("level update: what has changed in an included file comes to living en
     CHECK(level.update() == "1");
 }
 
-TEST_CASE("level update: fields of resources, materials and components come each by itself") {
+TEST_CASE("level update: fields of resources, materials and components are updated individually") {
     Playing level;
     const auto write = [&](const char* ev, const char* color, const char* place) {
         std::ofstream(level.path())
@@ -123,7 +123,7 @@ TEST_CASE("level update: fields of resources, materials and components come each
     CHECK(world.get<const Transform>(one).position == Vec3(0));
 }
 
-TEST_CASE("level update: what a new event sets at the start comes to a level that has started") {
+TEST_CASE("level update: what a new event sets at the start is applied to a running level") {
     Playing level;
     const auto write = [&](const std::string& events) {
         std::ofstream(level.path())
@@ -156,7 +156,7 @@ TEST_CASE("level update: what a new event sets at the start comes to a level tha
     CHECK(world.resource<EventList>().events.size() == 2);
 }
 
-TEST_CASE("level update: names of entities become those that were spawned") {
+TEST_CASE("level update: names of entities resolve to the spawned ones") {
     Playing level;
     std::ofstream(level.path()) << R"({"include": ["a.effect.json"], "entities": [
             {"name": "one", "prefab": "spark", "transform": {"position": [1, 0, 0]}},
@@ -168,7 +168,7 @@ TEST_CASE("level update: names of entities become those that were spawned") {
     CHECK(source.emitter == level.fields.entities[0]);
 }
 
-TEST_CASE("level update: a broken file is told with its line, and changes nothing") {
+TEST_CASE("level update: a broken file is reported with its line, and changes nothing") {
     Playing level;
     level.write_effect("{\"prefabs\":\n {\"spark\": {\"particle_emitter\": {\"rate\": -4}}}}");
     CHECK(level.update().starts_with("a.effect.json:2:"));
@@ -181,10 +181,10 @@ TEST_CASE("level update: a broken file is told with its line, and changes nothin
     CHECK(level.emitter(0).rate == 20);
 }
 
-TEST_CASE("level update: other entities, components or assets need the level loaded again") {
+TEST_CASE("level update: added or removed entities, components or assets need a reload") {
     Playing level;
     const std::string refusal =
-        "t.level.json: entities, components or assets were added or removed: load it again";
+        "t.level.json: entities, components or assets were added or removed: reload the level";
     level.write_level(R"(, {"name": "three"})");
     CHECK(level.update() == refusal);
     level.write_level("");
@@ -198,7 +198,7 @@ TEST_CASE("level update: other entities, components or assets need the level loa
     CHECK(level.emitter(0).rate == 10);
 }
 
-TEST_CASE("level update: events spawn what the files say now") {
+TEST_CASE("level update: events spawn what the updated files define") {
     Playing level;
     level.write_level("");
     std::ofstream(level.path()) << R"({"include": ["a.effect.json"], "entities": [

@@ -5,6 +5,7 @@
 #include "ecs/base/rng.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -69,7 +70,9 @@ MarkerMotion make_take() {
 
 }  // namespace
 
-TEST_CASE("marker file: names, rate and positions in meters, and what is not seen") {
+TEST_CASE(
+    "marker file: names, rate and positions in meters, and what is not seen"
+    * technique("face.mocap-drive")) {
     const MarkerMotion motion = *parse_trc(kTake, "take.trc");
     CHECK(motion.names == std::vector<std::string>{"brow", "lip"});
     CHECK(motion.rate == 50);
@@ -109,7 +112,9 @@ TEST_CASE("marker file: what is wrong is named with its line") {
     }
 }
 
-TEST_CASE("marker import: triangles cover the face once, and no marker is in a triangle's circle") {
+TEST_CASE(
+    "marker import: triangles cover the face once, and no marker is in a triangle's circle"
+    * technique("face.mocap-drive")) {
     std::vector<Vec3> points;
     Random random(4, 3, 2, 1);
     for (int i = 0; i < 60; ++i) {
@@ -145,7 +150,9 @@ TEST_CASE("marker import: triangles cover the face once, and no marker is in a t
     CHECK(triangulate_markers(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).empty());
 }
 
-TEST_CASE("marker import: the file has the face's motion without the head's") {
+TEST_CASE(
+    "marker import: the file has the face's motion without the head's"
+    * technique("face.head-stabilise")) {
     MarkerMotion take = make_take();
     const std::size_t count = take.markers();
     take.positions[3 * count + 12] = Vec3(NAN);  // hidden for a frame

@@ -1,6 +1,7 @@
 #include "content/bake/marker_motion.h"
 #include "ecs/base/rng.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -52,7 +53,9 @@ float determinant(const Affine& a) {
 
 }  // namespace
 
-TEST_CASE("head motion: what moves with the head rests when it is stabilized") {
+TEST_CASE(
+    "head motion: what moves with the head rests when it is stabilized"
+    * technique("face.head-stabilise")) {
     MarkerMotion motion = make_motion(20, 0, true);
     const std::vector<Affine> heads = *stabilize_head(motion, kRest, kHead);
     REQUIRE(heads.size() == 20);
@@ -66,7 +69,7 @@ TEST_CASE("head motion: what moves with the head rests when it is stabilized") {
     }
 }
 
-TEST_CASE("head motion: what the face does on its own is kept") {
+TEST_CASE("head motion: what the face does on its own is kept" * technique("face.head-stabilise")) {
     MarkerMotion motion = make_motion(20, 0.001f, true);
     REQUIRE(stabilize_head(motion, kRest, kHead).ok());
     const MarkerMotion want = make_motion(20, 0.001f, false);
@@ -75,7 +78,9 @@ TEST_CASE("head motion: what the face does on its own is kept") {
     }
 }
 
-TEST_CASE("head motion: a fit is a rotation, of mirrored points too, and the best one of noisy") {
+TEST_CASE(
+    "head motion: a fit is a rotation, of mirrored points too, and the best one of noisy"
+    * technique("face.head-stabilise")) {
     std::vector<Vec3> mirrored;
     std::vector<Vec3> noisy;
     Random random(7, 7, 7, 7);
@@ -101,7 +106,9 @@ TEST_CASE("head motion: a fit is a rotation, of mirrored points too, and the bes
     }
 }
 
-TEST_CASE("head motion: too few markers, those in a line and missing ones are named") {
+TEST_CASE(
+    "head motion: too few markers, those in a line and missing ones are named"
+    * technique("face.head-stabilise")) {
     MarkerMotion motion = make_motion(3, 0, true);
     const auto error = [&](const std::vector<std::uint32_t>& head) {
         const std::vector<Vec3> before = motion.positions;
@@ -116,7 +123,9 @@ TEST_CASE("head motion: too few markers, those in a line and missing ones are na
     CHECK(error({0, 2, 3}) == "none");
 }
 
-TEST_CASE("markers: between frames they are on the line between, and beyond the ends they rest") {
+TEST_CASE(
+    "markers: between frames they are on the line between, and beyond the ends they rest"
+    * technique("face.mocap-drive")) {
     const MarkerMotion motion = make_motion(5, 0.01f, false);
     CHECK(sample_markers(motion, 0.1f)[4].y == near(-0.06));
     CHECK(sample_markers(motion, 0.125f)[4].y == near(-0.0625));
@@ -125,7 +134,9 @@ TEST_CASE("markers: between frames they are on the line between, and beyond the 
     CHECK(sample_markers(motion, 99)[4].y == near(-0.09));
 }
 
-TEST_CASE("markers: one that is hidden goes with its neighbors, from where it was to where it is") {
+TEST_CASE(
+    "markers: one that is hidden goes with its neighbors, from where it was to where it is"
+    * technique("face.mocap-drive")) {
     // It moves as they do: found exactly.
     MarkerMotion motion = make_motion(12, 0.002f, false);
     const MarkerMotion want = motion;

@@ -19,7 +19,7 @@ int brightness(const ImageData& image, int x, int y) {
 
 }  // namespace
 
-TEST_CASE("masonry_patterns: a rose window is black outside of its rim and at its bars") {
+TEST_CASE("masonry_patterns: a rose window is black outside its rim and at its bars") {
     const ImageData rose = make_rose_window({.image = {.size = 256}, .variation = 0}).base_color;
     int lit = 0;
     for (int y = 0; y < 256; ++y) {
@@ -66,7 +66,8 @@ TEST_CASE("masonry_patterns: the first petal points up, in the color of the fiel
     }
 }
 
-TEST_CASE("masonry_patterns: courses of ashlar are level, and their joints the share asked for") {
+TEST_CASE("masonry_patterns: courses of ashlar are level, and their joints cover the requested "
+          "fraction") {
     const AshlarPattern pattern{
         .image = {.size = 256},
         .rows = 4,
@@ -107,7 +108,8 @@ TEST_CASE("masonry_patterns: wear polishes ashlar where feet go") {
     CHECK(mean_roughness(1) < 0.6);
 }
 
-TEST_CASE("masonry_patterns: glass is colored between black lead, one pane in six another way") {
+TEST_CASE(
+    "masonry_patterns: glass is colored between black lead, one pane in six in the accent color") {
     StainedGlassPattern pattern{.image = {.size = 256}, .panes = 8, .variation = 0};
     pattern.color = {0, 0, 1};
     pattern.accent = {0, 1, 0};
@@ -126,7 +128,7 @@ TEST_CASE("masonry_patterns: glass is colored between black lead, one pane in si
     CHECK(share[1] + share[2] > 0.5);
 }
 
-TEST_CASE("masonry_patterns: stars are bright on dark and as many as asked for") {
+TEST_CASE("masonry_patterns: stars are bright on dark, and as many as requested") {
     const ImageData sky = make_stars({.image = {.size = 256}, .rows = 4}).base_color;
     // A row begins with half a star or a whole gap: its bright runs are its stars.
     for (const int y : {32, 96, 160, 224}) {

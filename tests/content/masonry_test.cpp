@@ -37,33 +37,33 @@ double area_below(double span, double rise, double radius) {
 
 }  // namespace
 
-TEST_CASE("masonry: the curve goes from the springing to the point, upright at its begin") {
+TEST_CASE("masonry: the curve runs from the springing to the point, and starts upright") {
     for (const float radius : {0.0f, 0.5f, 0.8f, 1.0f, 3.0f}) {
         const std::vector<CurvePoint> curve = pointed_curve(3.0f, 2.5f, radius, 9);
         REQUIRE(curve.size() == 10);
-        CHECK(curve.front().place == Vec2(1.5f, 0));
+        CHECK(curve.front().position == Vec2(1.5f, 0));
         CHECK(curve.front().normal == Vec2(1, 0));
-        CHECK(curve.back().place == Vec2(0, 2.5f));
+        CHECK(curve.back().position == Vec2(0, 2.5f));
         for (std::size_t i = 1; i < curve.size(); ++i) {
-            CHECK(curve[i].place.x < curve[i - 1].place.x);
-            CHECK(curve[i].place.y > curve[i - 1].place.y);
-            const Vec2 chord = glm::normalize(curve[i].place - curve[i - 1].place);
+            CHECK(curve[i].position.x < curve[i - 1].position.x);
+            CHECK(curve[i].position.y > curve[i - 1].position.y);
+            const Vec2 chord = glm::normalize(curve[i].position - curve[i - 1].position);
             const Vec2 between = glm::normalize(curve[i].normal + curve[i - 1].normal);
             CHECK(std::abs(glm::dot(chord, between)) < 0.02f);
         }
     }
 }
 
-TEST_CASE("masonry: an equilateral arch has its arcs about the opposite springing") {
+TEST_CASE("masonry: the arcs of an equilateral arch are centered at the opposite springing") {
     const float rise = std::sqrt(3.0f);
     for (const float radius : {0.0f, 1.0f}) {  // by its rise, or by its name
         for (const CurvePoint& point : pointed_curve(2.0f, rise, radius, 16)) {
-            CHECK(glm::distance(point.place, Vec2(-1, 0)) == test::near(2.0f));
+            CHECK(glm::distance(point.position, Vec2(-1, 0)) == test::near(2.0f));
         }
     }
     // What is too low for two arcs is half an ellipse; half a circle has no point.
     for (const CurvePoint& point : pointed_curve(4.0f, 1.0f, 0.0f, 16)) {
-        CHECK(glm::length(point.place * Vec2(0.5f, 1)) == test::near(1.0f));
+        CHECK(glm::length(point.position * Vec2(0.5f, 1)) == test::near(1.0f));
     }
     CHECK(pointed_curve(2.0f, 1.0f, 0.5f, 4).back().normal == Vec2(0, 1));
 }
@@ -103,7 +103,7 @@ TEST_CASE("masonry: frames agree with position and texture") {
     CHECK(worst_tangent(make_wall({.sill = 1, .segments = 32})) > 0.95f);
 }
 
-TEST_CASE("masonry: a wall weighs what its opening leaves of it") {
+TEST_CASE("masonry: the volume of a wall is that of its box without the opening") {
     const MeshData door = make_wall(
         {.size = {4, 6, 0.5f}, .span = 2, .spring = 3, .rise = 2, .radius = 1, .segments = 64});
     CHECK(
@@ -122,7 +122,7 @@ TEST_CASE("masonry: vaults are closed over squares and oblongs") {
     check_solid(make_vault({.size = {3, 5}, .radius = 0.5f, .segments = 1}));
 }
 
-TEST_CASE("masonry: a vault is as thick everywhere, and lies on the arch over its diagonal") {
+TEST_CASE("masonry: a vault has constant thickness, and fits the arch over its diagonal") {
     const VaultShape shape{.size = {6, 4}, .rise = 3, .radius = 0.8f, .thickness = 0.2f};
     const MeshData vault = make_vault(shape);
     CHECK(signed_volume(vault) == test::near(6 * 4 * 0.2).epsilon(1e-4));
@@ -130,10 +130,11 @@ TEST_CASE("masonry: a vault is as thick everywhere, and lies on the arch over it
     CHECK(vault.bounds.max == Vec3(3, 3.2f, 2));
     const float diagonal = std::sqrt(52.0f);
     for (const CurvePoint& rib : pointed_curve(diagonal, 3, 0.8f, shape.segments)) {
-        const Vec3 place = {rib.place.x * 6 / diagonal, rib.place.y, rib.place.x * 4 / diagonal};
+        const Vec3 position = {
+            rib.position.x * 6 / diagonal, rib.position.y, rib.position.x * 4 / diagonal};
         float nearest = 1;
         for (const Vec3& p : vault.positions) {
-            nearest = std::min(nearest, glm::distance(p, place));
+            nearest = std::min(nearest, glm::distance(p, position));
         }
         CHECK(nearest < 1e-5f);
     }

@@ -158,7 +158,7 @@ TEST_CASE("obj material: options of an image are read, others skipped with their
 }
 
 TEST_CASE("obj material: a library is found by any name that programs write for it") {
-    for (const auto& [file, mtllib] : std::vector<std::pair<std::string, std::string>>{
+    for (const auto& [file, line] : std::vector<std::pair<std::string, std::string>>{
              {"a.mtl", "a.mtl"},
              {"my house.mtl", "my house.mtl"},
              {"my house.mtl", "my%20house.mtl"},
@@ -174,6 +174,7 @@ TEST_CASE("obj material: a library is found by any name that programs write for 
              {"a.mtl", "C:\\models\\a.mtl"},
              {"a.mtl", "../models/a.mtl"},
              {"a.mtl", "A.MTL"}}) {
+        const std::string& mtllib = line;  // a binding cannot be captured
         CAPTURE(mtllib);
         const Model model;
         model.write("other.mtl", "newmtl other\nKd 0 0 0\n");
@@ -334,13 +335,14 @@ TEST_CASE("obj material: a missing or damaged image is a warning, and the materi
 }
 
 TEST_CASE("obj material: images stand beside their library or the model, in any case of letters") {
-    for (const auto& [file, named] : std::vector<std::pair<std::string, std::string>>{
+    for (const auto& [file, name] : std::vector<std::pair<std::string, std::string>>{
              {"wood.png", "wood.png"},
              {"lib/wood.png", "wood.png"},
              {"lib/textures/wood.png", "textures\\\\wood.png"},
              {"wood.png", "D:\\work\\wood.png"},
              {"wood.png", "/home/someone/wood.png"},
              {"Wood.PNG", "wood.png"}}) {
+        const std::string& named = name;
         CAPTURE(named);
         const Model model;
         model.write_image(file, kRgb);

@@ -345,7 +345,8 @@ TEST_CASE("obj: the reports of byte order marks, colors and polygons are read as
         {"36-obj-polygons/zero-index.obj", 1},
         {"36-obj-polygons/nan.obj", 1},
         {"36-obj-polygons/ind.obj", 1}};
-    for (const auto& [file, warnings] : squares) {
+    for (const auto& [name, warnings] : squares) {
+        const std::string& file = name;  // a binding cannot be captured
         const auto path = test::shared_report(file);
         if (!path) {
             return;

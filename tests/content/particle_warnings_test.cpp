@@ -75,29 +75,29 @@ TEST_CASE("bad emitter: rates, lifetimes and capacities that are refused, with w
         has(error_of(R"("rate_curve": [{"at": 1.5}])"), "rate_curve[0].at: found the number 1.5"));
 }
 
-TEST_CASE("bad emitter: one without room, or whose particles do not live, is told") {
+TEST_CASE("bad emitter: a capacity or lifetime of zero is reported") {
     CHECK(warnings_beside("").empty());
     CHECK(
         warnings_beside("", R"("capacity": 0)")
-        == Lines{R"(entity "fire": particle_emitter.capacity is 0, so that nothing is born)"});
+        == Lines{R"(entity "fire": particle_emitter.capacity is 0: it emits nothing)"});
     CHECK(
         warnings_beside("", R"("life": 0, "life_spread": 0)")
-        == Lines{R"(entity "fire": particle_emitter.life is 0 s, so that nothing is seen)"});
+        == Lines{R"(entity "fire": particle_emitter.life is 0 s: nothing is visible)"});
     CHECK(warnings_beside("", R"("life": 0)").empty());  // give or take half a second
 }
 
 TEST_CASE("bad emitter: a source that is itself, by itself or through others") {
     CHECK(
         warnings_beside(R"(, "particle_source": {"emitter": "fire"})")
-        == Lines{R"(entity "fire": particle_source names itself, so that nothing is born)"});
+        == Lines{R"(entity "fire": particle_source names itself: it emits nothing)"});
     CHECK(
         warnings_of(R"({"entities": [
             {"name": "a", "particle_look": {}, "particle_emitter": {}, "particle_source": {"emitter": "b"}},
             {"name": "b", "particle_look": {}, "particle_emitter": {}, "particle_source": {"emitter": "a"}},
             {"name": "c", "particle_look": {}, "particle_emitter": {}, "particle_source": {"emitter": "a"}}]})")
         == Lines{
-            R"(entity "a": particle_source leads back to itself, so that nothing is born)",
-            R"(entity "b": particle_source leads back to itself, so that nothing is born)"});
+            R"(entity "a": particle_source is part of a cycle: it emits nothing)",
+            R"(entity "b": particle_source is part of a cycle: it emits nothing)"});
 }
 
 TEST_CASE("bad emitter: a flipbook with more frames than its image has pixels") {
@@ -143,10 +143,10 @@ TEST_CASE("bad emitter: a mesh without triangles") {
     find_particle_warnings(world, found);
     REQUIRE(found.size() == 1);
     CHECK(found[0].text.ends_with(
-        "particle_surface is on a mesh without triangles: nothing is born"));
+        "particle_surface is on a mesh without triangles: it emits nothing"));
 }
 
-TEST_CASE("bad emitter: births for which there was no room, with the limit to raise") {
+TEST_CASE("bad emitter: dropped particles are reported with the limit to raise") {
     World world;
     ParticlePool pool;
     ParticleEmitter emitter;
@@ -159,7 +159,7 @@ TEST_CASE("bad emitter: births for which there was no room, with the limit to ra
     REQUIRE(found.size() == 1);
     CHECK(
         found[0].text
-        == R"(entity "smoke": 5 births were dropped; particle_emitter.capacity is 78)");
+        == R"(entity "smoke": 5 new particles were dropped; particle_emitter.capacity is 78)");
 }
 
 }  // namespace limn::particle_warnings_test

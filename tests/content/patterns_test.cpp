@@ -10,6 +10,7 @@
 #include "ecs/base/math.h"
 #include "ecs/base/srgb.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -78,7 +79,7 @@ std::vector<PatternKind> plain_kinds() {
 
 }  // namespace
 
-TEST_CASE("patterns: every kind makes three whole images of the size asked for") {
+TEST_CASE("patterns: every kind makes three complete images of the requested size") {
     REQUIRE(pattern_kinds().size() == 39);
     for (const PatternKind& kind : plain_kinds()) {
         INFO(std::string(kind.name));
@@ -153,7 +154,9 @@ TEST_CASE("patterns: flames end below the upper edge and repeat without a jump")
     CHECK(steps[15] < 1.3 * most);
 }
 
-TEST_CASE("patterns: a frame of fire moved by its motion map is closer to the next than it was") {
+TEST_CASE(
+    "patterns: a frame of fire moved by its motion map is closer to the next than it was"
+    * technique("particle.motion-vectors")) {
     constexpr int kSide = 64;
     for (const char* const name : {"fire", "fireball"}) {
         CAPTURE(name);
@@ -172,7 +175,7 @@ TEST_CASE("patterns: a frame of fire moved by its motion map is closer to the ne
                 for (int x = 0; x < kSide; ++x) {
                     const auto motion = [&](int c) {
                         const int encoded = at(maps.motion, frame, x, y, c);
-                        return kMotionReach * kSide * static_cast<float>(encoded - 128) / 127;
+                        return kMotionRange * kSide * static_cast<float>(encoded - 128) / 127;
                     };
                     // Nearest texel: half a pixel of error at most.
                     const int from_x =
@@ -206,7 +209,7 @@ TEST_CASE("patterns: billows of smoke are lit from above, a veil is white") {
     CHECK(upper > 1.03 * lower);
 }
 
-TEST_CASE("patterns: a crystal of snow looks alike after a sixth of a turn") {
+TEST_CASE("patterns: a snow crystal looks alike after a sixth of a turn") {
     const ImageData image = make_snowflake({.image = {.size = 512}, .frames = 1}).base_color;
     const auto opacity = [&](double x, double y) {
         return channel(image, static_cast<int>(256 + x), static_cast<int>(256 + y), 3);
@@ -313,8 +316,8 @@ TEST_CASE("patterns: a crown widens from frame to frame, rises, and falls back t
     CHECK(tops.back() < *highest - 8);
 }
 
-TEST_CASE("patterns: a bubble reflects all beyond the critical angle, the sky above, and is clear "
-          "within") {
+TEST_CASE("patterns: a bubble has total reflection beyond the critical angle, mirrors the sky, and "
+          "is clear inside") {
     constexpr int kSide = 512;
     constexpr float kRadius = 0.4f * kSide;
     const ImageData image =
@@ -343,7 +346,7 @@ TEST_CASE("patterns: a bubble reflects all beyond the critical angle, the sky ab
     }
 }
 
-TEST_CASE("fluid: pressure takes out the divergence, heat rises, cools and spreads by expansion") {
+TEST_CASE("fluid: pressure removes the divergence, heat rises, cools and spreads by expansion") {
     const auto run = [](float expansion, int steps) {
         FluidGrid fluid = make_fluid(48);
         for (int y = 20; y < 28; ++y) {
@@ -388,7 +391,9 @@ TEST_CASE("fluid: pressure takes out the divergence, heat rises, cools and sprea
     CHECK(moments(burst, burst.soot).radius2 > 1.5 * moments(run(0, 6), run(0, 6).soot).radius2);
 }
 
-TEST_CASE("patterns: masks are 1 inside, 0 outside, and nowhere more than 1 together") {
+TEST_CASE(
+    "patterns: masks are 1 inside, 0 outside, and their sum is at most 1"
+    * technique("wrinkle.maps.masks")) {
     MasksPattern pattern;
     pattern.image.size = 64;
     pattern.regions = {{0, {0.3f, 0.5f}, {0.25f, 0.25f}}, {3, {0.6f, 0.5f}, {0.25f, 0.25f}}};
@@ -410,7 +415,7 @@ TEST_CASE("patterns: masks are 1 inside, 0 outside, and nowhere more than 1 toge
     CHECK(channel(masks, 2, 2, 0) == 0);
 }
 
-TEST_CASE("patterns: no seam shows where an image meets itself") {
+TEST_CASE("patterns: images tile without a seam") {
     for (const PatternKind& kind : plain_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 192);
@@ -435,7 +440,7 @@ TEST_CASE("patterns: a bump at one edge of the image bends the normals at the ot
     CHECK(channel(maps.normal, 16, 16, 0) == 128);
 }
 
-TEST_CASE("patterns: a brick that is cut by the edge of the image goes on at the other edge") {
+TEST_CASE("patterns: a brick that is cut by the edge of the image continues at the opposite edge") {
     const PatternMaps wall = make_bricks({.image = {.size = 256}, .variation = 1});
     double seam = 0;
     double joint = 0;
@@ -451,7 +456,7 @@ TEST_CASE("patterns: a brick that is cut by the edge of the image goes on at the
     CHECK(seam < 0.5 * joint);
 }
 
-TEST_CASE("patterns: normals are unit, point outwards and have no lean") {
+TEST_CASE("patterns: normals are unit, point outwards and have no bias") {
     for (const PatternKind& kind : plain_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 128);
@@ -489,7 +494,7 @@ TEST_CASE("patterns: red points right and green up where the surface falls that 
         == test::near(127.5 * (1 + 1 / std::sqrt(5.0))).epsilon(0.01));
 }
 
-TEST_CASE("patterns: a texel's numbers arrive in their channels") {
+TEST_CASE("patterns: the values of a texel are in the right channels") {
     const PatternMaps maps = make_pattern_maps(2, [](const Vec2& uv) {
         return PatternTexel{
             .color = {1, 0.2159f, uv.x < 0.5f ? 0.0f : 1.0f},
@@ -540,7 +545,7 @@ TEST_CASE("patterns: metals are metal, rust is not, and everything else is no me
     }
 }
 
-TEST_CASE("patterns: kinds are found by name, and a slip is answered with the nearest") {
+TEST_CASE("patterns: kinds are found by name, and the error for a typo suggests the nearest") {
     REQUIRE(find_kind(pattern_kinds(), "marble") != nullptr);
     CHECK(find_kind(pattern_kinds(), "Marble") == nullptr);
     CHECK(kind_suggestion(pattern_kinds(), "marbel") == " (did you mean marble?)");

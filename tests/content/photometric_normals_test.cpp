@@ -1,6 +1,7 @@
 #include "content/bake/photometric_normals.h"
 #include "ecs/base/rng.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -29,7 +30,9 @@ std::vector<float> shot(const std::vector<Vec3>& lights, const Vec3& normal, flo
     return radiance;
 }
 
-TEST_CASE("photometric normals: the published measurements give their normal and reflectance") {
+TEST_CASE(
+    "photometric normals: the published measurements give their normal and reflectance"
+    * technique("face.photometric-normals")) {
     const Vec3 normal = {0.2f, 0.3f, 0.932738f};
     const std::vector<float> measured = shot(three_lights(), normal, 0.7f);
     CHECK(measured[0] == near(0.560677).epsilon(1e-5));
@@ -41,7 +44,9 @@ TEST_CASE("photometric normals: the published measurements give their normal and
     CHECK(found.reflectance == near(0.7).epsilon(2e-6));
 }
 
-TEST_CASE("photometric normals: brighter lights change the reflectance, never the normal") {
+TEST_CASE(
+    "photometric normals: brighter lights change the reflectance, never the normal"
+    * technique("face.photometric-normals")) {
     const std::vector<float> once = {0.3f, 0.2f, 0.4f};
     std::vector<float> tenfold = once;
     for (float& radiance : tenfold) {
@@ -53,7 +58,9 @@ TEST_CASE("photometric normals: brighter lights change the reflectance, never th
     CHECK(b.reflectance == near(10 * a.reflectance));
 }
 
-TEST_CASE("photometric normals: any normal that three of five lights reach is found") {
+TEST_CASE(
+    "photometric normals: any normal that three of five lights reach is found"
+    * technique("face.photometric-normals")) {
     std::vector<Vec3> lights = three_lights();
     lights.push_back(glm::normalize(Vec3(0, -1, 1)));
     lights.push_back(Vec3(0, 0, 1));
@@ -82,7 +89,9 @@ TEST_CASE("photometric normals: any normal that three of five lights reach is fo
     CHECK(shadowed > 10);
 }
 
-TEST_CASE("photometric normals: too few, coplanar or empty lights are refused with their number") {
+TEST_CASE(
+    "photometric normals: too few, coplanar or empty lights are refused with their number"
+    * technique("face.photometric-normals")) {
     const auto refusal = [](const std::vector<Vec3>& lights) {
         const Status status = check_photometric_lights(lights);
         return status ? "they are taken" : status.error().message;

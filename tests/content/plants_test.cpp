@@ -1,6 +1,7 @@
 #include "content/make/models/plants.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -22,7 +23,7 @@ PlantShape small_tree() {
 
 bool is_same(const PlantParticle& a, const PlantParticle& b) {
     return a.root == b.root && a.along == b.along && a.width == b.width
-           && a.share_root == b.share_root;
+           && a.root_fraction == b.root_fraction;
 }
 
 /// How many of `plants` are not the same as those in their place of `others`, which may be longer.
@@ -38,7 +39,8 @@ differing(const std::vector<PlantParticle>& plants, const std::vector<PlantParti
 
 }  // namespace
 
-TEST_CASE("plants: a description under 1 KB grows 16^5 leaves") {
+TEST_CASE(
+    "plants: a description under 1 KB grows 16^5 leaves" * technique("particle.volume-fill")) {
     const PlantShape shape{.stems = 1, .levels = 5, .branches = 16};
     static_assert(sizeof(PlantShape) < 1024);
     const std::vector<PlantParticle> plants = grow_plants(shape);
@@ -46,12 +48,14 @@ TEST_CASE("plants: a description under 1 KB grows 16^5 leaves") {
     REQUIRE(plants.size() == 1118481);
     std::size_t leaves = 0;
     for (const PlantParticle& plant : plants) {
-        leaves += plant.share_tip > 0.9999f ? 1 : 0;
+        leaves += plant.tip_fraction > 0.9999f ? 1 : 0;
     }
     CHECK(leaves == 1048576);
 }
 
-TEST_CASE("plants: the same seed grows the same, another one nothing of it") {
+TEST_CASE(
+    "plants: the same seed grows the same plants, another one entirely different ones"
+    * technique("particle.volume-fill")) {
     const std::vector<PlantParticle> plants = grow_plants(small_tree());
     CHECK(differing(plants, grow_plants(small_tree())) == 0);
     PlantShape other = small_tree();
@@ -59,7 +63,9 @@ TEST_CASE("plants: the same seed grows the same, another one nothing of it") {
     CHECK(differing(plants, grow_plants(other)) == plants.size());
 }
 
-TEST_CASE("plants: fewer levels are the beginning of more, as roots, tips and widths go") {
+TEST_CASE(
+    "plants: fewer levels are a prefix of more, in roots, tips and widths"
+    * technique("particle.volume-fill")) {
     PlantShape shape = small_tree();
     const std::vector<PlantParticle> all = grow_plants(shape);
     CHECK(all.size() == 5 * (1 + 4 + 16 + 64));
@@ -81,7 +87,7 @@ TEST_CASE("plants: a branch begins at its parent's tip, within the spread of it"
     for (std::size_t i = 5; i < plants.size(); ++i) {
         const PlantParticle& parent = plants[(i - 5) / 4];  // of a forest in order of levels
         CHECK(plants[i].root == parent.root + parent.along);
-        CHECK(plants[i].share_root == parent.share_tip);
+        CHECK(plants[i].root_fraction == parent.tip_fraction);
         const float cosine =
             glm::dot(glm::normalize(plants[i].along), glm::normalize(parent.along));
         CHECK(cosine >= std::cos(shape.spread) - 1e-5f);
@@ -107,10 +113,11 @@ TEST_CASE("plants: stems stand evenly on their area, within their spread of upri
 }
 
 TEST_CASE(
-    "plants: wind moves no root, the last tip by its share of the length, and bends between") {
+    "plants: wind moves no root, the last tip by a fraction of the length, and bends between"
+    * technique("particle.volume-fill")) {
     PlantShape shape = small_tree();
     const std::vector<PlantParticle> still = grow_plants(shape);
-    const float reach = shape.length * (1 + 0.7f + 0.49f + 0.343f);
+    const float length_sum = shape.length * (1 + 0.7f + 0.49f + 0.343f);
     PlantShape windy = shape;
     windy.wind = {0.4f, -0.1f, 0.2f};
     CHECK(differing(still, grow_plants(windy)) == 0);
@@ -118,19 +125,19 @@ TEST_CASE(
         for (const float at : {0.0f, 0.25f, 1.0f}) {
             const Vec3 line = plant.root + at * plant.along;
             CHECK(plant_point(shape, plant, at) == line);
-            const float share = std::lerp(plant.share_root, plant.share_tip, at);
+            const float fraction = std::lerp(plant.root_fraction, plant.tip_fraction, at);
             const Vec3 moved = plant_point(windy, plant, at) - line;
-            CHECK(glm::distance(moved, windy.wind * reach * share * share) < 1e-5f);
+            CHECK(glm::distance(moved, windy.wind * length_sum * fraction * fraction) < 1e-5f);
         }
     }
     CHECK(plant_point(windy, still[0], 0) == still[0].root);
     const PlantParticle& leaf = still.back();
     CHECK(
-        glm::distance(plant_point(windy, leaf, 1), leaf.root + leaf.along + windy.wind * reach)
+        glm::distance(plant_point(windy, leaf, 1), leaf.root + leaf.along + windy.wind * length_sum)
         < 1e-5f);
 }
 
-TEST_CASE("plants: the mesh has two triangles a segment, one at a tip, and no hole in its arrays") {
+TEST_CASE("plants: the mesh has two triangles per segment, one at a tip, and complete arrays") {
     PlantShape shape = small_tree();
     const MeshData mesh = make_plants(shape);
     check_arrays(mesh);
@@ -142,7 +149,7 @@ TEST_CASE("plants: the mesh has two triangles a segment, one at a tip, and no ho
     CHECK(make_plants(shape).bounds.max.y == near(0.3f * (1 + 0.7f + 0.49f + 0.343f)));
 }
 
-TEST_CASE("plants: as many as any level may ask for stay within two million") {
+TEST_CASE("plants: the largest request stays within two million particles") {
     const PlantShape shape{.stems = 100, .levels = 10, .branches = 16, .segments = 1};
     const std::vector<PlantParticle> plants = grow_plants(shape);
     CHECK(plants.size() == 100 * (1 + 16 + 256 + 4096));

@@ -1,4 +1,5 @@
 #include "content/bake/point_warp.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -13,7 +14,7 @@ const std::vector<Vec3> kFrom = {{0, 0, 0}, {1, 0, 0},    {0, 1, 0},         {0,
 
 }  // namespace
 
-TEST_CASE("point warp: given points go where they are told") {
+TEST_CASE("point warp: given points go where they are told" * technique("face.retarget-fit")) {
     const std::vector<Vec3> to = {{0, 0.1f, 0}, {1.2f, 0, 0}, {0, 1, 0.3f},      {0, 0, 1.5f},
                                   {1, 2, 1},    {2, 1, 0},    {0.5f, 0.2f, 1.7f}};
     const Result<PointWarp> warp = make_point_warp(kFrom, to);
@@ -23,7 +24,7 @@ TEST_CASE("point warp: given points go where they are told") {
     }
 }
 
-TEST_CASE("point warp: an affine map is reproduced everywhere") {
+TEST_CASE("point warp: an affine map is reproduced everywhere" * technique("face.retarget-fit")) {
     const auto map = [](const Vec3& p) {
         return Vec3(2 * p.x + 0.5f * p.y + 1, p.y - 3 * p.z, 0.1f * p.x + p.z - 2);
     };

@@ -41,7 +41,7 @@ TEST_CASE("puff pattern: its images are linear, opacity is that of the shape, no
     }
 }
 
-TEST_CASE("puff pattern: a ball covers by its optical depth") {
+TEST_CASE("puff pattern: the opacity of a sphere follows from its optical depth") {
     for (const float density : {0.4f, 0.8f, 1.6f}) {
         CAPTURE(density);
         // 0.62 in radius, less half of the rim of 0.24, on both sides of the middle.
@@ -70,7 +70,7 @@ TEST_CASE("puff pattern: light from the front and from behind is the integral al
         == near(behind / front).epsilon(0.03));
 }
 
-TEST_CASE("puff pattern: a ball is lit alike from all sides, each turned") {
+TEST_CASE("puff pattern: a sphere is lit alike from all sides, up to rotation") {
     const PatternMaps maps = make_plain_ball(6);
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
@@ -86,7 +86,7 @@ TEST_CASE("puff pattern: a ball is lit alike from all sides, each turned") {
     CHECK(light(maps, 48, 32, Right) > 1.5f * light(maps, 16, 32, Right));
 }
 
-TEST_CASE("puff pattern: no pixel is brighter than an even light from everywhere") {
+TEST_CASE("puff pattern: under uniform light no pixel is brighter than white") {
     for (const int seed : {1, 2, 3}) {
         const PatternMaps maps = make_puff({.image = {.size = 256, .seed = seed}});
         float brightest = 0;
@@ -106,7 +106,7 @@ TEST_CASE("puff pattern: no pixel is brighter than an even light from everywhere
     }
 }
 
-TEST_CASE("puff pattern: what frays covers less in the last frame") {
+TEST_CASE("puff pattern: with fray the last frame covers less") {
     const auto mean_opacity = [](float fray) {
         const PatternMaps maps = make_puff({.image = {.size = 256}, .fray = fray});
         double sum = 0;

@@ -3,6 +3,7 @@
 #include "content/make/models/shapes.h"
 #include "ecs/components/weld.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -85,7 +86,9 @@ MeshData refined(const MeshData& mesh, float edge, int times) {
 
 }  // namespace
 
-TEST_CASE("refined: edges of what folds are short, the rest is as it was, and no gap opens") {
+TEST_CASE(
+    "refined: edges of regions that fold are short, the rest is unchanged, and no gap opens"
+    * technique("wrinkle.displacement")) {
     const MeshData ball = make_ball();
     REQUIRE(open_edges(ball) == 0);
     const MeshData fine = refined(ball, 0.008f, 5);
@@ -102,7 +105,7 @@ TEST_CASE("refined: edges of what folds are short, the rest is as it was, and no
     CHECK(refined(ball, 1, 5).positions.size() == ball.positions.size());
 }
 
-TEST_CASE("refined: a ball becomes rounder, a plane stays flat") {
+TEST_CASE("refined: a sphere becomes rounder, a plane stays flat") {
     const auto flattest = [](const MeshData& mesh) {
         float least = 1;
         for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -129,7 +132,7 @@ TEST_CASE("refined: a ball becomes rounder, a plane stays flat") {
     }
 }
 
-TEST_CASE("refined: weights sum to 1, and morph targets move middles by the mean of both ends") {
+TEST_CASE("refined: weights sum to 1, and morph targets move midpoints by the mean of both ends") {
     const MeshData ball = make_ball();
     const MeshData fine = refined(ball, 0.008f, 5);
     REQUIRE(fine.skin.first.size() == fine.positions.size() + 1);

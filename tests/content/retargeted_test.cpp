@@ -5,6 +5,7 @@
 #include "ecs/base/triangle.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -60,7 +61,9 @@ TEST_CASE(
     CHECK(make_simplified({.mesh = {7}}, Assets{}).positions.empty());
 }
 
-TEST_CASE("retargeted: onto the same face the surface and its motion stay") {
+TEST_CASE(
+    "retargeted: onto the same face the surface and its motion stay"
+    * technique("face.retarget-fit, face.retarget-warp")) {
     const MeshData same = *retarget_surface(coarse(), young(), young(), 1, 0.2f);
     for (std::size_t v = 0; v < same.positions.size(); ++v) {
         CHECK(glm::distance(same.positions[v], coarse().positions[v]) < 2e-5f);
@@ -74,7 +77,9 @@ TEST_CASE("retargeted: onto the same face the surface and its motion stay") {
     }
 }
 
-TEST_CASE("retargeted: onto a larger face markers and motion are larger, and a gain exaggerates") {
+TEST_CASE(
+    "retargeted: onto a larger face markers and motion are larger, and a gain exaggerates"
+    * technique("face.retarget-warp")) {
     const Affine larger = affine_from({0.1f, 0.2f, 0}, Quat(1, 0, 0, 0), Vec3(1.4f));
     const MeshData moved = *retarget_surface(coarse(), young(), map_head(larger), 1.5f, 0.2f);
     for (std::size_t v = 0; v < moved.positions.size(); ++v) {
@@ -93,7 +98,8 @@ TEST_CASE("retargeted: onto a larger face markers and motion are larger, and a g
     CHECK(most > 0.02f);
 }
 
-TEST_CASE("retargeted: onto another face markers lie on its skin") {
+TEST_CASE(
+    "retargeted: onto another face markers lie on its skin" * technique("face.retarget-fit")) {
     const MeshData elder = make_head({.age = 0.95f, .sex = 0.8f, .build = 0.9f});
     const MeshData fitted = *retarget_surface(coarse(), young(), elder, 1, 0.02f);
     double sum = 0;

@@ -12,6 +12,7 @@
 #include "ecs/world.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -52,16 +53,17 @@ TEST_CASE("scene warnings: keyframes whose times do not increase") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "eye", "camera": {},
         "camera_path": {"keys": [{"time": 0}, {"time": 2}, {"time": 1}]}}]})")
-        == Warnings{"entity \"eye\": camera_path.keys[2].time is 1 s, not after the key before it "
+        == Warnings{"entity \"eye\": camera_path.keys[2].time is 1 s, not after the previous key "
                     "(2 s)"});
     CHECK(
         warnings_of(R"({"entities": [{"name": "pot",
         "rotation_track": {"keys": [{"time": 1}, {"time": 1}]}}]})")
-        == Warnings{"entity \"pot\": rotation_track.keys[1].time is 1 s, not after the key before "
-                    "it (1 s)"});
+        == Warnings{
+            "entity \"pot\": rotation_track.keys[1].time is 1 s, not after the previous key "
+            "(1 s)"});
 }
 
-TEST_CASE("scene warnings: components that do nothing without another") {
+TEST_CASE("scene warnings: components that have no effect without another") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "eye", "camera": {}, "autofocus": {}}]})")
         == Warnings{"entity \"eye\": autofocus has no effect without lens"});
@@ -73,7 +75,7 @@ TEST_CASE("scene warnings: components that do nothing without another") {
         == Warnings{"entity \"eye\": camera_path has no effect without camera"});
 }
 
-TEST_CASE("scene warnings: surfaces that are not there, or on which nothing is born") {
+TEST_CASE("scene warnings: surfaces that are missing, or that emit nothing") {
     CHECK(
         warnings_of(R"({"entities": [
         {"name": "a", "particle_surface": {}},
@@ -92,11 +94,11 @@ TEST_CASE("scene warnings: surfaces that are not there, or on which nothing is b
             "entity \"c\": particle_surface on a path needs a path",
             "entity \"d\": particle_surface on pieces needs a particle_mesh of \"fragments\"",
             "entity \"f\": particle_surface has no effect beside a particle_source",
-            "entity \"e\": particle_surface has no effect on particles of the GPU; set "
+            "entity \"e\": particle_surface has no effect on GPU particles; set "
             "particle_emitter.executor to cpu"});
 }
 
-TEST_CASE("scene warnings: colliders that are not there") {
+TEST_CASE("scene warnings: missing colliders") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "sparks", "particle_emitter": {},
         "particle_look": {}, "particle_collision": {}}]})")
@@ -113,11 +115,11 @@ TEST_CASE("scene warnings: colliders that are not there") {
             "entity \"c\": particle_collider of this shape needs noise_surface"});
 }
 
-TEST_CASE("scene warnings: what particles of the GPU cannot do") {
+TEST_CASE("scene warnings: what GPU particles cannot do") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "sparks", "particle_look": {},
         "particle_emitter": {"executor": "gpu"}, "particle_light": {}}]})")
-        == Warnings{"entity \"sparks\": particle_light has no effect on particles of the GPU; set "
+        == Warnings{"entity \"sparks\": particle_light has no effect on GPU particles; set "
                     "particle_emitter.executor to cpu"});
     CHECK(
         warnings_of(R"({"entities": [
@@ -125,11 +127,11 @@ TEST_CASE("scene warnings: what particles of the GPU cannot do") {
         {"name": "smoke", "particle_look": {"lit_at": "middle"}, "particle_emitter": {}},
         {"name": "mist", "particle_look": {}, "particle_emitter": {"executor": "gpu"}}]})")
         == Warnings{
-            "entity \"sparks\": particle_look.lit_at has no effect on particles of the GPU, "
+            "entity \"sparks\": particle_look.lit_at has no effect on GPU particles, "
             "whose light is evaluated at their corners; set particle_emitter.executor to cpu"});
 }
 
-TEST_CASE("scene warnings: bodies with a mass that cannot move, and what acts on none") {
+TEST_CASE("scene warnings: bodies with a mass that cannot move, and forces without a body") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "cart", "transform": {}, "children": [
             {"name": "shot", "transform": {}, "point_mass": {}}]}]})")
@@ -165,13 +167,13 @@ TEST_CASE("scene warnings: events on a component that the entity lacks") {
     CHECK(warnings_of(with(R"(, "spin": {})", "set")).empty());
     CHECK(
         warnings_of(with("", "set"))
-        == Warnings{"events[0]: entity \"box\" has no spin; the event adds it, with defaults"});
+        == Warnings{"events[0]: entity \"box\" has no spin; the event adds it with defaults"});
     CHECK(
         warnings_of(with("", "impulse"))
         == Warnings{"events[0]: entity \"box\" has no spin; the event does nothing"});
 }
 
-TEST_CASE("scene warnings: a camera inside of what is solid") {
+TEST_CASE("scene warnings: a camera inside a solid mesh") {
     const auto with = [](const char* place, const char* mesh, const char* material) {
         return fmt::format(
             R"({{"meshes": {{"m": {{{}}}}}, "materials": {{"a": {{{}}}}},
@@ -186,7 +188,7 @@ TEST_CASE("scene warnings: a camera inside of what is solid") {
     };
     const std::string box = R"("make": "box", "size": [1, 1, 1])";
     const Warnings inside = {
-        "entity \"eye\": the camera starts inside of entity \"stone\", at [5, 3, 0]"};
+        "entity \"eye\": the camera starts inside entity \"stone\", at [5, 3, 0]"};
     // The box is 2 x 3 x 4 m about (5, 3, 0).
     CHECK(warnings_of(with("[4, 3, 0]", box.c_str(), "")) == inside);
     CHECK(warnings_of(with("[4, 4.4, 0]", box.c_str(), "")).size() == 1);
@@ -241,7 +243,7 @@ TEST_CASE("scene warnings: caustics without a sun above the horizon") {
     }
 }
 
-TEST_CASE("scene warnings: a sun far brighter than the exposure is made for") {
+TEST_CASE("scene warnings: a sun far too bright for the exposure") {
     const auto level = [](std::string_view exposure, std::string_view sun) {
         return fmt::format(
             R"({{"resources": {{{}}}, "entities": [{{"name": "sun",
@@ -251,7 +253,7 @@ TEST_CASE("scene warnings: a sun far brighter than the exposure is made for") {
     CHECK(
         warnings_of(level("", "40000"))
         == Warnings{
-            "entity \"sun\": 40000 lx are far too bright for the exposure, which suits about "
+            "entity \"sun\": 40000 lx is far too bright for the exposure, which suits about "
             "5 lx, as skies and effects do; \"exposure\": {\"metering\": \"auto\"} follows any "
             "light"});
     CHECK(warnings_of(level(R"("exposure": {"ev": 2})", "30")).size() == 1);
@@ -288,11 +290,11 @@ TEST_CASE("scene warnings: events on an entity that is destroyed before") {
                             {"at": 1, "destroy": ["box"]},
                             {"at": 1, "destroy": ["box"], "set_resources": {"glow": {"strength": 1}}})"))
         == Warnings{
-            "events[0]: entity \"lid\" does not exist any more: events[1] destroys it at 1 s",
-            "events[2]: entity \"box\" does not exist any more: events[1] destroys it at 1 s"});
+            "events[0]: entity \"lid\" no longer exists: events[1] destroys it at 1 s",
+            "events[2]: entity \"box\" no longer exists: events[1] destroys it at 1 s"});
 }
 
-TEST_CASE("scene warnings: a line of a level names the place in its file") {
+TEST_CASE("scene warnings: a warning names the position in the level's file") {
     const test::TemporaryFolder folder;
     const std::string path = folder.file("t.level.json");
     std::ofstream(path) << R"({"prefabs": {"lamp": {"children": [
@@ -314,7 +316,7 @@ TEST_CASE("scene warnings: a line of a level names the place in its file") {
             path + ":6:5: events[0]: entity \"a\" has no spin; the event does nothing"});
 }
 
-TEST_CASE("scene warnings: of several active cameras, with the place of the last") {
+TEST_CASE("scene warnings: several active cameras, with the position of the last") {
     register_all_components();
     const test::TemporaryFolder folder;
     const std::string path = folder.file("t.level.json");
@@ -333,7 +335,7 @@ TEST_CASE("scene warnings: of several active cameras, with the place of the last
               "\"active\": false on the others"});
 }
 
-TEST_CASE("scene warnings: state that systems keep, written by hand") {
+TEST_CASE("scene warnings: internal state of systems in a level") {
     register_all_components();
     const std::vector<std::string> logged = test::messages_of([] {
         CHECK(parse_level(R"({"entities": [{"name": "a", "world_transform": {}}]})", "t.level.json")
@@ -346,7 +348,9 @@ TEST_CASE("scene warnings: state that systems keep, written by hand") {
            "what is written here");
 }
 
-TEST_CASE("scene warnings: wrinkle maps and masks of another aspect ratio than the skin") {
+TEST_CASE(
+    "scene warnings: wrinkle maps and masks of another aspect ratio than the skin"
+    * technique("wrinkle.maps.texture-set")) {
     World world;
     Assets assets;
     const auto add = [&](const char* name, int width, int height) {
@@ -435,7 +439,7 @@ TEST_CASE("scene warnings: wrinkles whose material has no map of them") {
         lines.push_back(warning.text);
     }
     const char* const kText =
-        "wrinkle_surface draws nothing without a wrinkle_texture of its material";
+        "wrinkle_surface draws nothing unless its material has a wrinkle_texture";
     CHECK(
         lines
         == Warnings{

@@ -3,6 +3,7 @@
 #include "content/make/models/shapes.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -137,7 +138,9 @@ TEST_CASE("shapes: lobes keep a lathe closed, and its area is that of the curve"
     CHECK(signed_volume(mesh) == test::near(kPiD * 0.25 * 1.02).epsilon(1e-3));
 }
 
-TEST_CASE("shapes: a triangle in n divisions has n^2 facets of equal area that fill it") {
+TEST_CASE(
+    "shapes: a triangle in n divisions has n^2 facets of equal area that fill it"
+    * technique("fakephong.scenes")) {
     for (const int n : {1, 2, 5}) {
         const MeshData mesh = make_triangle({.radius = 1, .divisions = n});
         CHECK(mesh.indices.size() == static_cast<std::size_t>(3 * n * n));
@@ -225,7 +228,7 @@ TEST_CASE("shapes: a hard-edged box has 24 vertices and swelling it opens gaps o
     CHECK(pairs == 8 * 3);
 }
 
-TEST_CASE("shapes: a rounded box has one normal at a point, so that swelling it opens no gap") {
+TEST_CASE("shapes: a rounded box has one normal per point, so that swelling it opens no gap") {
     const MeshData box = make_box({.bevel = 0.1f, .bevel_segments = 2});
     std::map<std::array<float, 3>, Vec3> normals;
     for (std::size_t i = 0; i < box.positions.size(); ++i) {
@@ -288,7 +291,7 @@ TEST_CASE("shapes: an image stands upright and unmirrored on the front of a sphe
     }
 }
 
-TEST_CASE("shapes: kinds are found by name, and a slip is answered with the nearest") {
+TEST_CASE("shapes: kinds are found by name, and the error for a typo suggests the nearest") {
     REQUIRE(find_kind(mesh_kinds(), "teapot") != nullptr);
     CHECK(find_kind(mesh_kinds(), "tea pot") == nullptr);
     CHECK(kind_suggestion(mesh_kinds(), "teapod") == " (did you mean teapot?)");

@@ -1,6 +1,7 @@
 #include "content/bake/skin_cells.h"
 #include "ecs/base/rng.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -33,7 +34,9 @@ Vec2 two_distances(const Vec2& uv, const SkinCells& cells) {
 
 }  // namespace
 
-TEST_CASE("skin cells: they are 0 on the edges, 1 at the sites and cover the image") {
+TEST_CASE(
+    "skin cells: they are 0 on the edges, 1 at the sites and cover the image"
+    * technique("wrinkle.furrow.polygon-models")) {
     for (int y = 0; y < 9; ++y) {
         for (int x = 0; x < 9; ++x) {
             CHECK(
@@ -53,7 +56,9 @@ TEST_CASE("skin cells: they are 0 on the edges, 1 at the sites and cover the ima
     CHECK(least < 0.01);
 }
 
-TEST_CASE("skin cells: finer levels are within the coarser one, and half as deep") {
+TEST_CASE(
+    "skin cells: finer levels are within the coarser one, and half as deep"
+    * technique("wrinkle.furrow.polygon-models")) {
     const SkinCells two = {.cells = 9, .levels = 2, .seed = 3};
     double lower = 0;
     Random random(2, 0, 0, 0);
@@ -68,7 +73,7 @@ TEST_CASE("skin cells: finer levels are within the coarser one, and half as deep
     CHECK(lower > 500);
 }
 
-TEST_CASE("skin cells: the image tiles") {
+TEST_CASE("skin cells: the image tiles" * technique("wrinkle.furrow.polygon-models")) {
     for (float v = 0; v < 1; v += 0.01f) {
         CHECK(
             skin_cell_height({0.0f, v}, kOne)

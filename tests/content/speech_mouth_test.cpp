@@ -5,6 +5,7 @@
 #include "content/speech/mouth.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -35,7 +36,9 @@ float middle_of(const SpeechTrack& track, const char* sound) {
 
 }  // namespace
 
-TEST_CASE("dominance: two equal sounds and a strong one between weak ones blend as published") {
+TEST_CASE(
+    "dominance: two equal sounds and a strong one between weak ones blend as published"
+    * technique("face.dominance")) {
     const std::vector<DominanceTarget> two{{0.0f, 1.0f}, {0.2f, 0.0f}};
     CHECK(blend_targets(two, 0.0f) == test::near(0.880797).epsilon(1e-5));
     CHECK(blend_targets(two, 0.1f) == test::near(0.5).epsilon(1e-5));
@@ -48,7 +51,8 @@ TEST_CASE("dominance: two equal sounds and a strong one between weak ones blend 
 }
 
 TEST_CASE(
-    "dominance: one sound is constant, blends stay within targets, and strengths are ratios") {
+    "dominance: one sound is constant, blends stay within targets, and strengths are ratios"
+    * technique("face.dominance")) {
     const std::vector<DominanceTarget> one{{0.5f, 0.7f}};
     std::vector<DominanceTarget> many{
         {0.1f, 0.3f, 0.5f, 8.0f, 15.0f},
@@ -72,7 +76,9 @@ TEST_CASE(
     CHECK(blend_targets({}, 0.0f, 0.25f) == 0.25f);
 }
 
-TEST_CASE("mouth: lips close at p, b and m between wide vowels, and teeth meet the lip at f") {
+TEST_CASE(
+    "mouth: lips close at p, b and m between wide vowels, and teeth meet the lip at f"
+    * technique("face.viseme")) {
     for (const char* word : {"apa", "aba", "ama"}) {
         const SpeechTrack track = say(word);
         const MouthTrack mouth = make_mouth_track(track);
@@ -86,7 +92,8 @@ TEST_CASE("mouth: lips close at p, b and m between wide vowels, and teeth meet t
         > 0.85f);
 }
 
-TEST_CASE("mouth: lips round for the vowel of stew before it sounds") {
+TEST_CASE(
+    "mouth: lips round for the vowel of stew before it sounds" * technique("face.dominance")) {
     const SpeechTrack track = say("stew");
     const MouthTrack mouth = make_mouth_track(track);
     const float at_t = axis(mouth_at(mouth, middle_of(track, "t")), MouthAxis::Protrusion);
@@ -192,7 +199,9 @@ TEST_CASE("face clip: shapes are found by action unit, halves are both used, bes
     CHECK(!opens_mouth(link_shapes(std::vector<GltfShape>{{"x", "AU12"}})));
 }
 
-TEST_CASE("face clip: channels at zero leave the face at rest, and channels of other shapes add") {
+TEST_CASE(
+    "face clip: channels at zero leave the face at rest, and channels of other shapes add"
+    * technique("face.categories")) {
     const std::vector<GltfShape> shapes{{"a", "AU26"}, {"b", "AU45"}, {"c", "AU61"}};
     const std::vector<FaceLink> links = link_shapes(shapes);
     std::vector<float> rest(3, 0.0f);
@@ -210,7 +219,9 @@ TEST_CASE("face clip: channels at zero leave the face at rest, and channels of o
     CHECK(both == std::vector<float>{0.45f, 0.25f, 0.5f});
 }
 
-TEST_CASE("face clip: speech takes the mouth from an expression, and leaves it the brows") {
+TEST_CASE(
+    "face clip: speech takes the mouth from an expression, and leaves it the brows"
+    * technique("face.categories")) {
     CHECK(moves_mouth({"smile", "AU12_L"}));
     CHECK(moves_mouth({"puff", "AU34"}));
     CHECK(!moves_mouth({"brow", "AU1"}));

@@ -3,6 +3,7 @@
 #include "content/speech/utterance.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -26,7 +27,9 @@ std::string spelled(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("speech: every sound has one viseme, p, b and m the same one, and silence is at rest") {
+TEST_CASE(
+    "speech: every sound has one viseme, p, b and m the same one, and silence is at rest"
+    * technique("face.viseme")) {
     std::set<Viseme> visemes;
     std::set<std::string_view> unique;
     for (const Phoneme& phoneme : phonemes()) {
@@ -46,7 +49,7 @@ TEST_CASE("speech: every sound has one viseme, p, b and m the same one, and sile
     CHECK(find_phoneme("qq") == -1);
 }
 
-TEST_CASE("speech: English words are spelled as they sound") {
+TEST_CASE("speech: English words are spelled as they sound" * technique("face.talking-head")) {
     CHECK(spelled("The time is now") == "dh ax t aa ih m ih z n aa uh");
     CHECK(
         spelled("exactly one in the afternoon")
@@ -121,7 +124,9 @@ TEST_CASE("speech: the phonetic alphabet is read with stress, length and joined 
     CHECK(sounds_of_ipa("ˌaftənˈuːn")[5].stressed);
 }
 
-TEST_CASE("speech: a track covers its time without gaps, and the last syllable is longest") {
+TEST_CASE(
+    "speech: a track covers its time without gaps, and the last syllable is longest"
+    * technique("face.viseme")) {
     const SpeechTrack track = make_speech_track(sounds_of_text("no no no"));
     REQUIRE(track.segments.size() == 11);
     CHECK(track.segments.front().start == 0.0f);
@@ -143,7 +148,9 @@ TEST_CASE("speech: a track covers its time without gaps, and the last syllable i
     CHECK(SpeechTrack{}.duration() == 0.0f);
 }
 
-TEST_CASE("speech: sounds of a phrase end with its audio, and phrases stay in step with theirs") {
+TEST_CASE(
+    "speech: sounds of a phrase end with its audio, and phrases stay in step with theirs"
+    * technique("face.talking-head")) {
     Recording wave{.rate = 8000, .samples = std::vector<std::int16_t>(4000, 0)};
     for (std::size_t i = 1000; i < 3000; ++i) {
         wave.samples[i] = i % 2 == 0 ? 8000 : -8000;
@@ -164,7 +171,9 @@ TEST_CASE("speech: sounds of a phrase end with its audio, and phrases stay in st
     CHECK(utterance.wave.samples[sample] != 0);
 }
 
-TEST_CASE("speech: text is cut into phrases at its punctuation, and empty text says nothing") {
+TEST_CASE(
+    "speech: text is cut into phrases at its punctuation, and empty text says nothing"
+    * technique("face.talking-head")) {
     CHECK(phrases_of("Yes, I do!  - ") == std::vector<std::string>{"Yes,", " I do!"});
     CHECK(phrases_of(" ... ?").empty());
     CHECK(spell_utterance("").track.segments.empty());

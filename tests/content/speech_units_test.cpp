@@ -2,6 +2,7 @@
 #include "content/speech/speech_units.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -117,7 +118,9 @@ std::size_t fewest_units(
 
 }  // namespace
 
-TEST_CASE("speech units: words cover a sentence once, and p sounds have p + 1 diphones") {
+TEST_CASE(
+    "speech units: words cover a sentence once, and p sounds have p + 1 diphones"
+    * technique("face.unit-generate")) {
     const std::vector<SpeechRecording> recordings = record({"the time is now"});
     const std::size_t sounds = recordings[0].track.segments.size() - 2;
     std::vector<int> covered(sounds + 2, 0);
@@ -144,7 +147,9 @@ TEST_CASE("speech units: words cover a sentence once, and p sounds have p + 1 di
     CHECK(covered == std::vector<int>(sounds + 2, 1));
 }
 
-TEST_CASE("unit selection: a recorded sentence is one unit and is replayed as it was recorded") {
+TEST_CASE(
+    "unit selection: a recorded sentence is one unit and is replayed as it was recorded"
+    * technique("face.speech-fragments, face.unit-select")) {
     const std::vector<SpeechRecording> recordings = record(kClock);
     const SpeechTrack target = say("exactly two");
     const auto placed = select_units(target, generate_units(recordings), recordings, 0.25f);
@@ -163,7 +168,9 @@ TEST_CASE("unit selection: a recorded sentence is one unit and is replayed as it
     }
 }
 
-TEST_CASE("unit selection: any sentence of the clock is made of its phrases") {
+TEST_CASE(
+    "unit selection: any sentence of the clock is made of its phrases"
+    * technique("face.speech-fragments")) {
     const std::vector<SpeechRecording> recordings = record(kClock);
     const std::vector<SpeechUnit> units = generate_units(recordings);
     for (const char* hour : {"one", "two"}) {
@@ -184,7 +191,9 @@ TEST_CASE("unit selection: any sentence of the clock is made of its phrases") {
     }
 }
 
-TEST_CASE("unit selection: without a price for jumps the cover is as small as trying all finds") {
+TEST_CASE(
+    "unit selection: without a price for jumps the cover is as small as trying all finds"
+    * technique("face.unit-select")) {
     const std::vector<SpeechRecording> recordings = record({"no time", "time is", "is no", "mine"});
     const std::vector<SpeechUnit> units = generate_units(recordings);
     for (const char* text : {"no time is no time", "mine is no", "time mine", "is is is", "nine"}) {
@@ -198,7 +207,9 @@ TEST_CASE("unit selection: without a price for jumps the cover is as small as tr
     }
 }
 
-TEST_CASE("unit selection: a high price for jumps takes more units that fit better") {
+TEST_CASE(
+    "unit selection: a high price for jumps takes more units that fit better"
+    * technique("face.unit-select")) {
     std::vector<SpeechRecording> recordings = record({"one two", "three", "one", "two"});
     const SpeechTrack target = say("one two three");
     // "one two" now ends far from where "three" starts; single words do not.
@@ -232,7 +243,7 @@ TEST_CASE("unit selection: a high price for jumps takes more units that fit bett
     CHECK(cost(*dear) < cost(*cheap));
 }
 
-TEST_CASE("unit selection: what was never recorded is named") {
+TEST_CASE("unit selection: what was never recorded is named" * technique("face.unit-select")) {
     const std::vector<SpeechRecording> recordings = record({"no time"});
     const std::vector<SpeechUnit> units = generate_units(recordings);
     CHECK(
@@ -244,7 +255,9 @@ TEST_CASE("unit selection: what was never recorded is named") {
            "it");
 }
 
-TEST_CASE("resampling: the spline is the radial basis function r^3 with a linear part") {
+TEST_CASE(
+    "resampling: the spline is the radial basis function r^3 with a linear part"
+    * technique("face.align-resample")) {
     const SampledCurves curves = curves_of(
         [](float t) { return std::sin(9.0f * t) + 0.3f * std::cos(31.0f * t); }, 12, 30.0f);
     for (double time = -0.05; time < 0.42; time += 0.007) {
@@ -255,7 +268,8 @@ TEST_CASE("resampling: the spline is the radial basis function r^3 with a linear
 }
 
 TEST_CASE(
-    "resampling: samples are kept, lines are exact, and twice the duration halves the speed") {
+    "resampling: samples are kept, lines are exact, and twice the duration halves the speed"
+    * technique("face.align-resample")) {
     const auto wave = [](float t) { return std::sin(7.0f * t); };
     const SampledCurves curves = curves_of(wave, 40, 60.0f);
     for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -282,7 +296,9 @@ TEST_CASE(
     CHECK(slow == test::near(0.5f * fast).epsilon(0.02));
 }
 
-TEST_CASE("blending: the weight is smooth, symmetric and flat at both ends") {
+TEST_CASE(
+    "blending: the weight is smooth, symmetric and flat at both ends"
+    * technique("face.fragment-blend")) {
     CHECK(blend_weight(0.0f) == 0.0f);
     CHECK(blend_weight(0.5f) == 0.5f);
     CHECK(blend_weight(1.0f) == 1.0f);
@@ -294,7 +310,9 @@ TEST_CASE("blending: the weight is smooth, symmetric and flat at both ends") {
     }
 }
 
-TEST_CASE("joining: the motion lasts as long as the utterance and has no jumps at joins") {
+TEST_CASE(
+    "joining: the motion lasts as long as the utterance and has no jumps at joins"
+    * technique("face.fragment-blend, face.speech-fragments")) {
     std::vector<SpeechRecording> recordings = record(kClock);
     for (float& value : recordings[1].motion.values) {
         value += 0.4f;  // so that joins have something to blend
@@ -320,7 +338,9 @@ TEST_CASE("joining: the motion lasts as long as the utterance and has no jumps a
     }
 }
 
-TEST_CASE("speech library: recordings survive writing, and bad ones are refused with their place") {
+TEST_CASE(
+    "speech library: recordings survive writing, and bad ones are refused with their place"
+    * technique("face.unit-generate")) {
     SpeechLibrary library{kRate, record({"exactly one", "two"})};
     const std::string text = write_speech_library(library);
     const Result<SpeechLibrary> read = parse_speech_library(text, "x.json");

@@ -61,7 +61,7 @@ int stretches(const std::vector<std::uint8_t>& values, std::size_t first, std::s
 
 }  // namespace
 
-TEST_CASE("studio: a light is at its longitude and latitude, as large as it is seen") {
+TEST_CASE("studio: a light is at its longitude and latitude, of its apparent size") {
     const Vec3 directions[] = {
         {0, 0, -1}, {1, 0, 0}, {-1, 0, -0.5f}, {0.5f, 0.3f, -1}, {0.2f, -0.4f, 0.9f}};
     for (const Vec3& toward : directions) {
@@ -77,7 +77,7 @@ TEST_CASE("studio: a light is at its longitude and latitude, as large as it is s
     CHECK(std::abs(wide.extent.y - kSize * 2 * std::atan(0.5f) / kPi) <= 2);
 }
 
-TEST_CASE("studio: a window has its panes, a soft box none; nothing shines from nowhere") {
+TEST_CASE("studio: a window has panes, a soft box none; there is no light elsewhere") {
     const StudioLight window = {
         .toward = {0, 0, -1}, .size = {1.5f, 1.5f}, .edge = 0, .panes = {2, 3}, .bars = 0.2f};
     const std::vector<std::uint8_t> panes = reds(window);

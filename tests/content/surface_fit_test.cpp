@@ -3,6 +3,7 @@
 #include "ecs/base/rng.h"
 #include "ecs/base/triangle.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -43,7 +44,9 @@ MeshData make_target() {
 
 }  // namespace
 
-TEST_CASE("surface fit: energy never rises, and vertices end on the target") {
+TEST_CASE(
+    "surface fit: energy never rises, and vertices end on the target"
+    * technique("face.retarget-fit")) {
     const MeshData coarse = make_ball(1, 16);
     const MeshData target = make_target();
     const SurfaceFit fit = fit_surface(
@@ -61,7 +64,9 @@ TEST_CASE("surface fit: energy never rises, and vertices end on the target") {
     CHECK(farthest < 0.02f);
 }
 
-TEST_CASE("surface fit: the more strain and bending cost, the more of the structure is kept") {
+TEST_CASE(
+    "surface fit: the more strain and bending cost, the more of the structure is kept"
+    * technique("face.retarget-fit")) {
     const MeshData coarse = make_ball(1, 16);
     const MeshData target = make_target();
     float last = 0.0f;
@@ -81,7 +86,9 @@ TEST_CASE("surface fit: the more strain and bending cost, the more of the struct
     }
 }
 
-TEST_CASE("surface fit: a surface that lies on the target stays as it is") {
+TEST_CASE(
+    "surface fit: a surface that lies on the target stays as it is"
+    * technique("face.retarget-fit")) {
     const MeshData ball = make_ball(1, 16);
     const SurfaceFit fit =
         fit_surface(ball.positions, ball.indices, ball.positions, ball.indices, {}, 10);
@@ -91,7 +98,8 @@ TEST_CASE("surface fit: a surface that lies on the target stays as it is") {
     CHECK(fit.energies.back() < 1e-10);
 }
 
-TEST_CASE("surface fit: a label is the vertex nearest to a marker") {
+TEST_CASE(
+    "surface fit: a label is the vertex nearest to a marker" * technique("face.retarget-fit")) {
     const MeshData ball = make_ball(1, 24);
     std::vector<Vec3> points;
     for (const std::uint32_t v : {40u, 57u, 120u}) {
@@ -121,7 +129,9 @@ TEST_CASE("triangle: the nearest point is within it, and no other is nearer") {
     }
 }
 
-TEST_CASE("retarget: motion is scaled and turned as one face is by the other") {
+TEST_CASE(
+    "retarget: motion is scaled and turned as one face is by the other"
+    * technique("face.retarget-warp")) {
     std::vector<Vec3> from;
     Random random(3, 3, 3, 3);
     for (int i = 0; i < 20; ++i) {

@@ -70,7 +70,7 @@ TEST_CASE(
     CHECK(mesh.bounds.max.x == test::near(12).epsilon(1e-3));
 }
 
-TEST_CASE("sweep: a tube is closed and holds what a torus or a cylinder holds") {
+TEST_CASE("sweep: a tube is closed and has the volume of a torus or a cylinder") {
     SweepShape shape;
     shape.path = {0};
     shape.radius = 1;
@@ -98,7 +98,7 @@ TEST_CASE("sweep: edges sharper than the crease stay edges") {
     CHECK(area(sharp) == test::near(10 * 4));
 }
 
-TEST_CASE("sweep: dashes cover their share of the way, between begin and end") {
+TEST_CASE("sweep: dashes cover their fraction of the path, between begin and end") {
     SweepShape shape;
     shape.profile = {{-0.1f, 0}, {0.1f, 0}};
     shape.begin = 1;
@@ -128,7 +128,7 @@ TEST_CASE("sweep: a tube that climbs straight up does not twist") {
     CHECK(worst_facing(mesh) > 0.9f);
 }
 
-TEST_CASE("sweep: levels name their paths, and a bad one is told of with its place") {
+TEST_CASE("sweep: levels name their paths, and a bad one is reported with its position") {
     register_all_components();
     const Result<Level> level = parse_level(
         R"json({

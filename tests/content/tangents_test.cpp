@@ -1,6 +1,7 @@
 #include "content/bake/tangents.h"
 #include "ecs/components/surface.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -91,7 +92,9 @@ std::vector<Vec3> corner_normals(const MeshData& mesh) {
 
 }  // namespace
 
-TEST_CASE("tangents: the frame of a triangle is the gradient of position along u and v") {
+TEST_CASE(
+    "tangents: the frame of a triangle is the gradient of position along u and v"
+    * technique("bump.tangent-triangle")) {
     SUBCASE("uv equal to the position") {
         const TriangleFrame frame = triangle_frame(kUnitTriangle, {{0, 0}, {1, 0}, {0, 1}});
         CHECK(near(frame.tangent, {1, 0, 0}));
@@ -120,7 +123,9 @@ TEST_CASE("tangents: the frame of a triangle is the gradient of position along u
     }
 }
 
-TEST_CASE("tangents: a frame does not move with the triangle and turns with it") {
+TEST_CASE(
+    "tangents: a frame does not move with the triangle and turns with it"
+    * technique("bump.tangent-triangle")) {
     const Vec2 uv[3] = {{0.1f, 0.2f}, {0.7f, 0.3f}, {0.4f, 0.9f}};
     const Vec3 p[3] = {{0.3f, 0, 1}, {1, 0.5f, 0.2f}, {0, 1, 0.4f}};
     const TriangleFrame frame = triangle_frame(p, uv);
@@ -144,7 +149,9 @@ TEST_CASE("tangents: a triangle whose uvs span no area has no frame") {
     }
 }
 
-TEST_CASE("tangents: the normals of a cube's corners do not depend on how its faces are cut") {
+TEST_CASE(
+    "tangents: the normals of a cube's corners do not depend on how its faces are cut"
+    * technique("bump.tangent-vertex")) {
     for (unsigned diagonals = 0; diagonals < 64; ++diagonals) {
         MeshData cube = make_cube(diagonals);
         generate_normals(cube);
@@ -191,7 +198,8 @@ TEST_CASE("tangents: triangles that share no vertices are smoothed where they to
     }
 }
 
-TEST_CASE("tangents: the order of the triangles does not matter") {
+TEST_CASE(
+    "tangents: the order of the triangles does not matter" * technique("bump.tangent-vertex")) {
     MeshData forward = make_sphere(12, 7);
     MeshData backward = forward;
     std::reverse(
@@ -211,7 +219,9 @@ TEST_CASE("tangents: the order of the triangles does not matter") {
     }
 }
 
-TEST_CASE("tangents: every frame is orthonormal, even without usable uvs") {
+TEST_CASE(
+    "tangents: every frame is orthonormal, even without usable uvs"
+    * technique("bump.tangent-vertex")) {
     for (const bool degenerate : {false, true}) {
         MeshData mesh = make_sphere(16, 9);
         if (degenerate) {
@@ -228,7 +238,7 @@ TEST_CASE("tangents: every frame is orthonormal, even without usable uvs") {
     }
 }
 
-TEST_CASE("tangents: on a globe they point east") {
+TEST_CASE("tangents: on a globe they point east" * technique("bump.tangent-vertex")) {
     constexpr int kColumns = 64;
     MeshData globe = make_sphere(kColumns, 32);
     generate_tangents(globe);
@@ -261,7 +271,9 @@ TEST_CASE("tangents: the bitangent points against v, and mirroring u turns w") {
     }
 }
 
-TEST_CASE("tangents: a vertex between mirrored halves is split, not averaged away") {
+TEST_CASE(
+    "tangents: a vertex between mirrored halves is split, not averaged away"
+    * technique("bump.tangent-vertex")) {
     // Two squares side by side that share the edge x = 0, u = |x|: a face textured by one half.
     MeshData face;
     face.positions = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}};

@@ -1,6 +1,7 @@
 #include "content/make/models/teapot.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -29,7 +30,7 @@ MeshData part_mesh(TeapotPart part, float tolerance) {
 
 }  // namespace
 
-TEST_CASE("teapot: 32 patches, 28 without the bottom") {
+TEST_CASE("teapot: 32 patches, 28 without the bottom" * technique("bump.teapot")) {
     CHECK(teapot_patches(true).size() == 32);
     CHECK(teapot_patches(false).size() == 28);
 }
@@ -58,7 +59,7 @@ TEST_CASE("teapot: the control points are those of the public data") {
     CHECK(mixed == test::near(111.9469).epsilon(1e-6));
 }
 
-TEST_CASE("teapot: n divisions make 64 n^2 triangles") {
+TEST_CASE("teapot: n divisions make 64 n^2 triangles" * technique("bump.teapot")) {
     for (const int n : {1, 4, 10}) {
         CHECK(
             make_teapot({.divisions = n}).indices.size()
@@ -67,7 +68,8 @@ TEST_CASE("teapot: n divisions make 64 n^2 triangles") {
 }
 
 TEST_CASE(
-    "teapot: all frames are finite and unit, also at the collapsed middles of lid and bottom") {
+    "teapot: all frames are finite and unit, also at the collapsed centers of lid and bottom"
+    * technique("bump.teapot")) {
     for (const int n : {1, 2, 3, 10, 16}) {
         check_arrays(make_teapot({.divisions = n}));
     }
@@ -99,7 +101,7 @@ TEST_CASE("teapot: triangles and normals face outwards") {
     }
 }
 
-TEST_CASE("teapot: it stands on y = 0, is as high as asked, and its spout points along +x") {
+TEST_CASE("teapot: it stands on y = 0, has the requested height, and its spout points along +x") {
     const MeshData pot = make_teapot({.height = 2.0f});
     CHECK(pot.bounds.min.y == 0);
     CHECK(pot.bounds.max.y == test::near(2.0f));
@@ -107,7 +109,8 @@ TEST_CASE("teapot: it stands on y = 0, is as high as asked, and its spout points
     CHECK(pot.bounds.max.z == -pot.bounds.min.z);
 }
 
-TEST_CASE("teapot: turned parts are circles but for the error of the cubic") {
+TEST_CASE(
+    "teapot: turned parts are circles but for the error of the cubic" * technique("bump.teapot")) {
     for (const TeapotPatch& patch : teapot_patches(true)) {
         if (!is_turned(patch.part)) {
             continue;
@@ -176,7 +179,7 @@ TEST_CASE("teapot: adaptive needs fewer triangles for the same error") {
     CHECK(adaptive.indices.size() > 3 * 500);
 }
 
-TEST_CASE("teapot: the image stands upright and goes on from patch to patch around the body") {
+TEST_CASE("teapot: the image is upright and continues from patch to patch around the body") {
     CHECK(worst_tangent(make_teapot({.divisions = 24})) > 0.4f);  // the spout's v is askew to its u
     const std::vector<TeapotPatch> patches = teapot_patches(true);
     for (const TeapotPatch& patch : patches) {

@@ -25,8 +25,7 @@ TEST_CASE("terrain: a landscape is a proper mesh within its size and about its h
     CHECK(worst_facing(land) > 0.5f);
 }
 
-TEST_CASE("terrain: vertices stand at the height that anybody may ask for, whatever the number of "
-          "quads") {
+TEST_CASE("terrain: vertices are at the height of the function, whatever the number of quads") {
     const TerrainShape coarse = {.size = {64, 64}, .divisions = 16};
     const TerrainShape fine = {.size = {64, 64}, .divisions = 64};
     for (const TerrainShape& shape : {coarse, fine}) {
@@ -67,7 +66,7 @@ TEST_CASE("terrain: the clearing is level and joins the hills without a step") {
     CHECK(terrain_height(shape, 30, 30) == terrain_height(TerrainShape{}, 30, 30));
 }
 
-TEST_CASE("terrain: an island rises from its coast, and is the land it was far from it") {
+TEST_CASE("terrain: an island rises from its coast, and is unchanged far from it") {
     const TerrainShape island = {.size = {200, 100}, .shore = 20};
     const TerrainShape land = {.size = {200, 100}};
     for (int i = 0; i < 64; ++i) {
@@ -171,7 +170,7 @@ TEST_CASE("noise: the second octave of a tile does not repeat within it") {
     CHECK(apart > 0.1f);
 }
 
-TEST_CASE("noise: the border of a cell is where two feature points are equally far") {
+TEST_CASE("noise: the border of a cell is where two feature points are equally distant") {
     float least = 1;
     for (int i = 0; i < 2000; ++i) {
         const CellSample c =

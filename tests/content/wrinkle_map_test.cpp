@@ -2,6 +2,7 @@
 #include "content/make/patterns/fold_pattern.h"
 #include "systems/faces/wrinkle_fold.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -31,7 +32,9 @@ float steepest(const ImageData& map) {
 
 }  // namespace
 
-TEST_CASE("wrinkle map: normals beyond 0.6 come back to it, in their direction, and are counted") {
+TEST_CASE(
+    "wrinkle map: normals beyond 0.6 come back to it, in their direction, and are counted"
+    * technique("wrinkle.compression.map")) {
     ImageData map = {.name = "map", .width = 256, .height = 1, .pixels = {}};
     int expected = 0;
     for (int i = 0; i < 256; ++i) {
@@ -62,7 +65,9 @@ TEST_CASE("wrinkle map: normals beyond 0.6 come back to it, in their direction, 
     CHECK(limit_wrinkle_map(map) == 0);
 }
 
-TEST_CASE("wrinkle map: folds can be made as flat as the fit to the sphere needs them") {
+TEST_CASE(
+    "wrinkle map: folds can be made as flat as the fit to the sphere needs them"
+    * technique("wrinkle.compression.map")) {
     const FoldsPattern steep = {.image = {.size = 64}, .count = 4, .depth = 1};
     CHECK(steepest(make_folds(steep).normal) > 0.7f);
     FoldsPattern limited = steep;

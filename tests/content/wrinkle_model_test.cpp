@@ -7,6 +7,7 @@
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -72,7 +73,9 @@ TEST_CASE("wrinkle model: degrees 1, 2 and 3 have 3, 9 and 19 terms beside the c
     CHECK(wrinkle_terms(3) == 19);
 }
 
-TEST_CASE("wrinkle model: skin at rest is smooth, whatever the poses and the degree") {
+TEST_CASE(
+    "wrinkle model: skin at rest is smooth, whatever the poses and the degree"
+    * technique("face.wrinkle-model")) {
     for (int degree = 1; degree <= 3; ++degree) {
         const WrinkleModel model = fit_wrinkle_model(
             1, pose_texel(24, 0.2f, [](const Vec3& e) { return quadratic(e) + 0.3f; }),
@@ -81,7 +84,9 @@ TEST_CASE("wrinkle model: skin at rest is smooth, whatever the poses and the deg
     }
 }
 
-TEST_CASE("wrinkle model: sixteen poses of a quadratic give it back, and of a line at degree 1") {
+TEST_CASE(
+    "wrinkle model: sixteen poses of a quadratic give it back, and of a line at degree 1"
+    * technique("face.wrinkle-model")) {
     const auto poses = pose_texel(16, 0.2f, quadratic);
     const WrinkleModel model = fit_wrinkle_model(1, poses, {.degree = 2, .ridge = 1e-9f});
     Random random(12, 0, 0, 0);
@@ -97,7 +102,9 @@ TEST_CASE("wrinkle model: sixteen poses of a quadratic give it back, and of a li
     CHECK(glm::distance(modeled_slope(linear, 0, strain), line(strain)) < 1e-6f);
 }
 
-TEST_CASE("wrinkle model: at its poses it is no worse than no wrinkles, and better by degree") {
+TEST_CASE(
+    "wrinkle model: at its poses it is no worse than no wrinkles, and better by degree"
+    * technique("face.wrinkle-model")) {
     const auto poses = pose_texel(30, 0.3f, [](const Vec3& e) {
         return Vec2(std::sqrt(std::max(-e.x, 0.0f)), std::sin(20 * e.y) * e.z);
     });
@@ -117,7 +124,9 @@ TEST_CASE("wrinkle model: at its poses it is no worse than no wrinkles, and bett
     }
 }
 
-TEST_CASE("wrinkle model: strain beyond the poses counts as the nearest within them") {
+TEST_CASE(
+    "wrinkle model: strain beyond the poses counts as the nearest within them"
+    * technique("face.wrinkle-model")) {
     const auto poses = pose_texel(16, 0.2f, quadratic);
     const WrinkleModel model = fit_wrinkle_model(1, poses, {.degree = 2, .ridge = 1e-9f});
     const Vec3 beyond = {1, -1, 1};
@@ -176,7 +185,9 @@ MeshData make_bent() {
     return mesh;
 }
 
-TEST_CASE("skin texels: the strain is that of the wrinkle driver, where it is small") {
+TEST_CASE(
+    "skin texels: the strain is that of the wrinkle driver, where it is small"
+    * technique("face.wrinkle-model")) {
     const MeshData mesh = make_bent();
     std::vector<Vec3> deformed = mesh.positions;
     for (Vec3& p : deformed) {

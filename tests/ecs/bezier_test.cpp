@@ -2,6 +2,7 @@
 #include "ecs/base/rng.h"
 #include "ecs/base/rotation.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -63,7 +64,9 @@ bool is_smooth(const BezierKnot& knot) {
 
 }  // namespace
 
-TEST_CASE("bezier: chords measure the way from below, the better the more they are") {
+TEST_CASE(
+    "bezier: chords measure the way from below, the better the more they are"
+    * technique("anim.arclength")) {
     // The arch is 2 long; until u it is 3 u - 3 u^2 + 2 u^3.
     const ChordTable table = measure_chords(kArch);
     CHECK(table.total() == test::near(1.999921).epsilon(1e-6));
@@ -77,14 +80,18 @@ TEST_CASE("bezier: chords measure the way from below, the better the more they a
     CHECK(measure_chords(kBend).total() == test::near(11.0366).epsilon(1e-5));
 }
 
-TEST_CASE("bezier: equal shares of the way are equally long, equal steps of u are not") {
+TEST_CASE(
+    "bezier: equal shares of the way are equally long, equal steps of u are not"
+    * technique("anim.arclength")) {
     const ChordTable table = measure_chords(kBend);
     CHECK(unevenness(kBend, [](float u) { return u; }) == test::near(4.1301).epsilon(1e-4));
     const float even = unevenness(kBend, [&](float share) { return table.parameter_at(share); });
     CHECK(even == test::near(1.042).epsilon(1e-3));
 }
 
-TEST_CASE("bezier: on a straight, even curve the share is u; on a point it is, too") {
+TEST_CASE(
+    "bezier: on a straight, even curve the share is u; on a point it is, too"
+    * technique("anim.arclength")) {
     const ChordTable line = measure_chords(Bezier<float>{2, 3, 4, 5});
     const ChordTable point = measure_chords(Bezier<float>{7, 7, 7, 7});
     CHECK(line.total() == test::near(3));
@@ -103,7 +110,9 @@ TEST_CASE("bezier: on a straight, even curve the share is u; on a point it is, t
     CHECK(early.parameter_at(1) == test::near(1).epsilon(0.2));
 }
 
-TEST_CASE("bezier: joined curves are classed by place, direction and speed") {
+TEST_CASE(
+    "bezier: joined curves are classed by place, direction and speed"
+    * technique("anim.bezier-join")) {
     for (const float k : {1.0f, 2.0f}) {
         const Joined joined(k);
         const Vec3 in = bezier_derivative(joined.first, 1);
@@ -126,7 +135,9 @@ TEST_CASE("bezier: joined curves are classed by place, direction and speed") {
     CHECK(find_join(torn.first, torn.second) == BezierJoin::None);
 }
 
-TEST_CASE("bezier: a key may slide, turn and move with its control points, and stays smooth") {
+TEST_CASE(
+    "bezier: a key may slide, turn and move with its control points, and stays smooth"
+    * technique("anim.bezier-edit")) {
     const BezierKnot knot = {Vec3(1, 0, 0), Vec3(2, 1, 0.5f), Vec3(4, 3, 1.5f)};
     REQUIRE(is_smooth(knot));
     for (const float t : {-1.0f, 0.0f, 0.3f, 0.9f, 1.0f}) {
@@ -151,7 +162,9 @@ TEST_CASE("bezier: a key may slide, turn and move with its control points, and s
     CHECK(moved.after - moved.key == knot.after - knot.key);
 }
 
-TEST_CASE("bezier: a parabolic blend runs from corner to corner of its base") {
+TEST_CASE(
+    "bezier: a parabolic blend runs from corner to corner of its base"
+    * technique("anim.parabolic-blend")) {
     const std::array<Vec2, 4> square = {Vec2(0, 0), Vec2(0, 1), Vec2(1, 1), Vec2(1, 0)};
     CHECK(parabolic_blend(square, 0.0f) == square[0]);
     CHECK(parabolic_blend(square, 1.0f) == square[3]);
@@ -169,7 +182,9 @@ TEST_CASE("bezier: a parabolic blend runs from corner to corner of its base") {
     CHECK(glm::length(second_difference(general, 0.8f) - second_difference(general, 0.2f)) > 1e-2f);
 }
 
-TEST_CASE("bezier: every cubic is the parabolic blend of some corners, and comes back from them") {
+TEST_CASE(
+    "bezier: every cubic is the parabolic blend of some corners, and comes back from them"
+    * technique("anim.boehm-quadrangle")) {
     Random random(3, 0, 0, 0);
     for (int i = 0; i < 100; ++i) {
         const Bezier<Vec3> p = {

@@ -1,5 +1,6 @@
 #include "ecs/components/camera_path.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -159,7 +160,9 @@ TEST_CASE("camera path: keys out of order do no harm") {
     }
 }
 
-TEST_CASE("camera path: interpolated rotations are set upright without turning the view") {
+TEST_CASE(
+    "camera path: interpolated rotations are set upright without turning the view"
+    * technique("anim.camera-upright")) {
     // anim.camera-upright: half way from rest to yaw 90 times pitch 60 the camera rolls.
     const Quat end = glm::angleAxis(radians(90.0f), Vec3(0, 1, 0))
                      * glm::angleAxis(radians(60.0f), Vec3(1, 0, 0));
@@ -193,7 +196,9 @@ TEST_CASE("camera path: interpolated rotations are set upright without turning t
     CHECK(right(camera_pose(path, 1).rotation).y == test::near(-0.219275f).epsilon(1e-4));
 }
 
-TEST_CASE("camera path: looking along a direction is exact for vertical and missing ones") {
+TEST_CASE(
+    "camera path: looking along a direction is exact for vertical and missing ones"
+    * technique("anim.camera-upright")) {
     for (const Vec3 d : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(1e-9f, -1, 0), Vec3(3, 4, -5)}) {
         const Quat q = look_along(d);
         CHECK(glm::length(ahead(q) - glm::normalize(d)) < 1e-5f);

@@ -1,6 +1,7 @@
 #include "ecs/base/depth_sort.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -96,7 +97,8 @@ TEST_CASE("particle sort: 32-bit keys are sorted as by std::stable_sort") {
 }
 
 TEST_CASE(
-    "particle sort: 32-bit keys are sorted wherever they lie and however little they differ") {
+    "particle sort: 32-bit keys are sorted wherever they lie and however little they differ"
+    * technique("particle.distance-sort")) {
     SortScratch scratch;
     constexpr std::uint32_t kEnd = 0xffffffff;
     for (const std::uint32_t range : {1u, 0x3ffu, 0x7fbffffu, 0x8000000u, 0x8100000u, kEnd}) {
@@ -180,7 +182,9 @@ TEST_CASE("particle sort: particles are drawn from far to near, each once") {
     }
 }
 
-TEST_CASE("particle sort: three quads in sorted order blend as the farthest first does") {
+TEST_CASE(
+    "particle sort: three quads in sorted order blend as the farthest first does"
+    * technique("particle.distance-sort")) {
     const float depth[] = {2, 9, 5};
     const float color[] = {0.2f, 1.0f, 0.6f};
     const float alpha[] = {0.5f, 0.25f, 0.75f};
@@ -199,7 +203,9 @@ TEST_CASE("particle sort: three quads in sorted order blend as the farthest firs
     CHECK(std::abs(blended - 0.35625f) < 1e-6f);
 }
 
-TEST_CASE("bitonic sort: passes and comparisons are those of the network") {
+TEST_CASE(
+    "bitonic sort: passes and comparisons are those of the network"
+    * technique("particle.bitonic-sort")) {
     const std::pair<std::size_t, std::uint32_t> passes[] = {
         {1, 0},     {2, 1},     {4, 3},       {8, 6},       {16, 10},
         {1024, 55}, {4096, 78}, {16384, 105}, {65536, 136}, {1048576, 210}};
@@ -219,7 +225,9 @@ TEST_CASE("bitonic sort: passes and comparisons are those of the network") {
     }
 }
 
-TEST_CASE("bitonic sort: all permutations of eight come out sorted") {
+TEST_CASE(
+    "bitonic sort: all permutations of eight come out sorted"
+    * technique("particle.bitonic-sort")) {
     std::vector<std::uint32_t> permutation = {0, 1, 2, 3, 4, 5, 6, 7};
     int permutations = 0;
     bool all_sorted = true;
@@ -233,7 +241,9 @@ TEST_CASE("bitonic sort: all permutations of eight come out sorted") {
     CHECK(all_sorted);
 }
 
-TEST_CASE("bitonic sort: all binary vectors of sixteen come out sorted, so everything does") {
+TEST_CASE(
+    "bitonic sort: all binary vectors of sixteen come out sorted, so everything does"
+    * technique("particle.bitonic-sort")) {
     bool all_sorted = true;
     for (std::uint32_t bits = 0; bits < 1u << 16; ++bits) {
         std::vector<std::uint32_t> entries(16);

@@ -1,5 +1,6 @@
 #include "ecs/components/path.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -34,7 +35,9 @@ PathShape circle() {
 
 }  // namespace
 
-TEST_CASE("path: n segments have n + 1 knots, closed ones n, and go exactly through them") {
+TEST_CASE(
+    "path: n segments have n + 1 knots, closed ones n, and go exactly through them"
+    * technique("anim.bezier-track")) {
     PathShape shape;
     for (int i = 0; i < 5; ++i) {
         const auto x = static_cast<float>(i);
@@ -56,7 +59,9 @@ TEST_CASE("path: n segments have n + 1 knots, closed ones n, and go exactly thro
     CHECK(make_path(shape)->segments.size() == 1);
 }
 
-TEST_CASE("path: control points at thirds of the way make straight lines at constant speed") {
+TEST_CASE(
+    "path: control points at thirds of the way make straight lines at constant speed"
+    * technique("anim.bezier-track")) {
     PathShape shape;
     shape.knots = {
         {{0, 0, 0}, {}, {1, 0, 0}, 0},
@@ -71,7 +76,9 @@ TEST_CASE("path: control points at thirds of the way make straight lines at cons
     }
 }
 
-TEST_CASE("path: the first knot's incoming and the last one's outgoing point have no effect") {
+TEST_CASE(
+    "path: the first knot's incoming and the last one's outgoing point have no effect"
+    * technique("anim.bezier-track")) {
     PathShape shape;
     shape.knots = {{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 0}, {{3, 2, 0}, {-1, 0, 0}, {0, 1, 0}, 0}};
     const PathData path = *make_path(shape);
@@ -84,7 +91,7 @@ TEST_CASE("path: the first knot's incoming and the last one's outgoing point hav
     }
 }
 
-TEST_CASE("path: equal distances are equal ways, round and round") {
+TEST_CASE("path: equal distances are equal ways, round and round" * technique("anim.arclength")) {
     const PathData path = *make_path(circle());
     const double length = path.length();
     CHECK(length == test::near(2 * kPi * 10).epsilon(1e-3));
@@ -154,7 +161,9 @@ TEST_CASE("path: a knot on its control point, or two in one place, still have a 
     CHECK(path_frame_at(path, std::numeric_limits<double>::infinity()).position == Vec3(0));
 }
 
-TEST_CASE("path: of a smooth one all joins are of one speed, of a bent one there are corners") {
+TEST_CASE(
+    "path: of a smooth one all joins are of one speed, of a bent one there are corners"
+    * technique("anim.bezier-join")) {
     PathShape shape = circle();
     CHECK(path_joins(*make_path(shape)) == std::vector<BezierJoin>(4, BezierJoin::Speed));
     shape.knots[1].after *= 2.0f;
@@ -165,7 +174,9 @@ TEST_CASE("path: of a smooth one all joins are of one speed, of a bent one there
         == std::vector<BezierJoin>{BezierJoin::Direction, BezierJoin::Position});
 }
 
-TEST_CASE("path: a knot slides between its control points and turns them, and stays smooth") {
+TEST_CASE(
+    "path: a knot slides between its control points and turns them, and stays smooth"
+    * technique("anim.bezier-edit")) {
     PathShape shape = circle();
     shape.knots[0].slide = 0.25f;
     shape.knots[1].turn = glm::angleAxis(0.5f, Vec3(0, 1, 0));
@@ -183,7 +194,9 @@ TEST_CASE("path: a knot slides between its control points and turns them, and st
             BezierJoin::Speed, BezierJoin::Speed, BezierJoin::Speed, BezierJoin::Direction});
 }
 
-TEST_CASE("path: corners of a parabolic blend make the curve that the blend is") {
+TEST_CASE(
+    "path: corners of a parabolic blend make the curve that the blend is"
+    * technique("anim.boehm-quadrangle, anim.parabolic-blend")) {
     PathShape shape;
     shape.curve = PathCurve::Parabolic;
     shape.knots = {{{0, 0, 0}, {0, 0, 0}, {1, 2, 0}, 0}, {{6, 0, 1}, {-2, 3, 0}, {0, 0, 0}, 0}};

@@ -1,5 +1,6 @@
 #include "ecs/components/periodic.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -19,14 +20,18 @@ PeriodicFunction plain(Wave wave) {
 
 }  // namespace
 
-TEST_CASE("periodic: a sine of 0.5 and 0.5 is at 0.5, 1 and 0 after quarters of a period") {
+TEST_CASE(
+    "periodic: a sine of 0.5 and 0.5 is at 0.5, 1 and 0 after quarters of a period"
+    * technique("engine.periodic")) {
     const PeriodicFunction sine;
     CHECK(evaluate(sine, 0) == near(0.5));
     CHECK(evaluate(sine, 0.25) == near(1));
     CHECK(evaluate(sine, 0.75) == near(0).scale(1));
 }
 
-TEST_CASE("periodic: each wave repeats after 1 / frequency, and at no time before") {
+TEST_CASE(
+    "periodic: each wave repeats after 1 / frequency, and at no time before"
+    * technique("engine.periodic")) {
     for (const Wave wave : kWaves) {
         CAPTURE(static_cast<int>(wave));
         const PeriodicFunction f = {.wave = wave, .phase = 0.3f, .frequency = 4};
@@ -40,7 +45,7 @@ TEST_CASE("periodic: each wave repeats after 1 / frequency, and at no time befor
     }
 }
 
-TEST_CASE("periodic: waves at the eighths of a period") {
+TEST_CASE("periodic: waves at the eighths of a period" * technique("engine.periodic")) {
     const float half = std::sqrt(0.5f);
     const float expected[][8] = {
         {0, half, 1, half, 0, -half, -1, -half},
@@ -59,7 +64,9 @@ TEST_CASE("periodic: waves at the eighths of a period") {
     }
 }
 
-TEST_CASE("periodic: without amplitude it is constant, and shares are clamped") {
+TEST_CASE(
+    "periodic: without amplitude it is constant, and shares are clamped"
+    * technique("engine.periodic")) {
     for (const double t : {0.0, 0.1, 7.3, 1e9}) {
         CHECK(evaluate(constant_function(0.7f), t) == 0.7f);
     }
@@ -69,7 +76,9 @@ TEST_CASE("periodic: without amplitude it is constant, and shares are clamped") 
     CHECK(evaluate_share(wide, 0) == near(0.5));
 }
 
-TEST_CASE("periodic: after thirty years it is as smooth as in the first second") {
+TEST_CASE(
+    "periodic: after thirty years it is as smooth as in the first second"
+    * technique("engine.periodic")) {
     const double years = std::floor(30 * 365.25 * 86400);
     for (const Wave wave : {Wave::Sine, Wave::Triangle, Wave::Sawtooth}) {
         for (int i = 0; i < 200; ++i) {

@@ -1,6 +1,7 @@
 #include "ecs/base/rng.h"
 #include "ecs/base/rotation.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/gtc/quaternion.hpp>
@@ -49,7 +50,9 @@ float angle_of(const Quat& q) {
 
 }  // namespace
 
-TEST_CASE("rotation: exp undoes log, also near no rotation and near a whole turn") {
+TEST_CASE(
+    "rotation: exp undoes log, also near no rotation and near a whole turn"
+    * technique("anim.quat-algebra")) {
     Quats quats;
     for (int i = 0; i < 1000; ++i) {
         const Quat q = quats.next();
@@ -67,14 +70,18 @@ TEST_CASE("rotation: exp undoes log, also near no rotation and near a whole turn
     }
 }
 
-TEST_CASE("rotation: the unit quaternion of nothing, of infinity and of NaN is no rotation") {
+TEST_CASE(
+    "rotation: the unit quaternion of nothing, of infinity and of NaN is no rotation"
+    * technique("anim.quat-algebra")) {
     CHECK(normalize_or_identity(Quat(0, 0, 0, 0)) == kNone);
     CHECK(normalize_or_identity(Quat(NAN, 1, 0, 0)) == kNone);
     CHECK(normalize_or_identity(Quat(INFINITY, 1, 0, 0)) == kNone);
     CHECK(apart(normalize_or_identity(Quat(0, 0, 3, 4)), Quat(0, 0, 0.6f, 0.8f)) < 1e-7f);
 }
 
-TEST_CASE("rotation: vectors turn about the axis by the angle, right-handed") {
+TEST_CASE(
+    "rotation: vectors turn about the axis by the angle, right-handed"
+    * technique("anim.quat-rotate")) {
     CHECK(apart(about_z(90) * kX, kY) < 1e-6f);
     const Quat odd = rotation_about({1, 2, 3}, radians(50));
     CHECK(apart(odd * Vec3(0.3f, -0.7f, 2), Vec3(1.566738f, -0.425110f, 1.394494f)) < 2e-6f);
@@ -96,7 +103,9 @@ TEST_CASE("rotation: vectors turn about the axis by the angle, right-handed") {
     }
 }
 
-TEST_CASE("rotation: axis and angle come back, from 0 to a whole turn") {
+TEST_CASE(
+    "rotation: axis and angle come back, from 0 to a whole turn"
+    * technique("anim.quat-axis-angle")) {
     CHECK(apart(about_z(90), Quat(0.70710678f, 0, 0, 0.70710678f)) < 1e-7f);
     const Vec3 axis = glm::normalize(Vec3(2, -1, 0.5f));
     for (int degree = 1; degree < 360; ++degree) {
@@ -113,7 +122,8 @@ TEST_CASE("rotation: axis and angle come back, from 0 to a whole turn") {
 }
 
 TEST_CASE(
-    "rotation: an affine map scales along the mesh's axes, turns, then moves; -q is the same") {
+    "rotation: an affine map scales along the mesh's axes, turns, then moves; -q is the same"
+    * technique("anim.quat-to-matrix")) {
     Quats quats;
     for (int i = 0; i < 1000; ++i) {
         const Quat q = quats.next();
@@ -137,7 +147,9 @@ TEST_CASE(
     CHECK(third.row[2] == Vec4(0, 2, 0, 9));
 }
 
-TEST_CASE("rotation: a matrix gives its quaternion back, half turns included") {
+TEST_CASE(
+    "rotation: a matrix gives its quaternion back, half turns included"
+    * technique("anim.quat-from-matrix")) {
     Quats quats;
     for (int i = 0; i < 10'000; ++i) {
         const Quat q = quats.next();
@@ -155,7 +167,8 @@ TEST_CASE("rotation: a matrix gives its quaternion back, half turns included") {
 }
 
 TEST_CASE(
-    "rotation: scale and shear are taken out of a matrix, mirrors and flat ones are refused") {
+    "rotation: scale and shear are taken out of a matrix, mirrors and flat ones are refused"
+    * technique("anim.quat-from-matrix")) {
     const Quat q = rotation_about({1, 2, 3}, 1.1f);
     Mat3 m = glm::mat3_cast(q);
     CHECK(apart(*extract_rotation(Mat3(2.0f * m[0], 5e3f * m[1], 1e-3f * m[2])), q) < 1e-6f);
@@ -168,7 +181,7 @@ TEST_CASE(
     CHECK_FALSE(extract_rotation(m).has_value());
 }
 
-TEST_CASE("rotation: slerp goes the great circle at constant speed") {
+TEST_CASE("rotation: slerp goes the great circle at constant speed" * technique("anim.slerp")) {
     CHECK(apart(slerp(kNone, about_z(90), 1.0f / 3), Quat(0.965926f, 0, 0, 0.258819f)) < 1e-6f);
     CHECK(apart(slerp(kNone, about_z(90), 0.25f), Quat(0.980785f, 0, 0, 0.195090f)) < 1e-6f);
     Quats quats;
@@ -190,7 +203,9 @@ TEST_CASE("rotation: slerp goes the great circle at constant speed") {
     }
 }
 
-TEST_CASE("rotation: slerp does not jump where it becomes a straight line, nor divide by zero") {
+TEST_CASE(
+    "rotation: slerp does not jump where it becomes a straight line, nor divide by zero"
+    * technique("anim.slerp")) {
     for (const float u : {0.25f, 0.5f, 0.9f}) {
         for (const float share : {0.999f, 1.001f, 10.0f, 100.0f}) {
             const float omega = share * std::sqrt(2e-6f);
@@ -209,7 +224,9 @@ TEST_CASE("rotation: slerp does not jump where it becomes a straight line, nor d
     }
 }
 
-TEST_CASE("rotation: the straight way is slow at the ends and fast in the middle") {
+TEST_CASE(
+    "rotation: the straight way is slow at the ends and fast in the middle"
+    * technique("anim.quat-lerp")) {
     for (const float u : {0.0f, 0.5f, 1.0f}) {
         CHECK(apart(nlerp(kNone, about_z(90), u), slerp(kNone, about_z(90), u)) < 1e-6f);
     }
@@ -226,7 +243,9 @@ TEST_CASE("rotation: the straight way is slow at the ends and fast in the middle
     CHECK(glm::length(nlerp(kNone, -kNone, 0.5f)) == test::near(1));
 }
 
-TEST_CASE("rotation: aligned keys are near each other and stay the rotations they were") {
+TEST_CASE(
+    "rotation: aligned keys are near each other and stay the rotations they were"
+    * technique("anim.shortest-arc")) {
     Quats quats;
     std::vector<Quat> keys;
     for (int i = 0; i < 200; ++i) {
@@ -251,7 +270,9 @@ TEST_CASE("rotation: aligned keys are near each other and stay the rotations the
     CHECK(turned(middle, about_z(-5)) < 1e-6f);
 }
 
-TEST_CASE("rotation: squad passes through its keys with the tangent of their neighbors") {
+TEST_CASE(
+    "rotation: squad passes through its keys with the tangent of their neighbors"
+    * technique("anim.squad")) {
     const std::array<float, 4> angles = {0, 10, 40, 90};
     std::array<Quat, 4> q;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -275,7 +296,8 @@ TEST_CASE("rotation: squad passes through its keys with the tangent of their nei
     CHECK(right == test::near(40).epsilon(0.02));
 }
 
-TEST_CASE("rotation: squad over evenly spaced keys about one axis is slerp") {
+TEST_CASE(
+    "rotation: squad over evenly spaced keys about one axis is slerp" * technique("anim.squad")) {
     const Quat inner_30 = squad_point(about_z(0), about_z(30), about_z(60));
     const Quat inner_60 = squad_point(about_z(30), about_z(60), about_z(90));
     CHECK(apart(inner_30, about_z(30)) < 1e-6f);
@@ -283,7 +305,9 @@ TEST_CASE("rotation: squad over evenly spaced keys about one axis is slerp") {
     CHECK(angle_of(q) == test::near(37.5).epsilon(1e-5));
 }
 
-TEST_CASE("rotation: squad has no corner at a key where slerp has one, and turns with its keys") {
+TEST_CASE(
+    "rotation: squad has no corner at a key where slerp has one, and turns with its keys"
+    * technique("anim.squad")) {
     Quats quats;
     double largest_corner = 0;
     for (int i = 0; i < 50; ++i) {

@@ -1,3 +1,4 @@
+#include "ecs/param_group.h"
 #include "ecs/system.h"
 #include "ecs/world.h"
 #include "tests/ecs/stop_message.h"
@@ -31,12 +32,21 @@ void inspect(const World& world, Res<Label> label) {
     label->numbers.push_back(static_cast<int>(world.entity_count()));
 }
 
+/// A group of two parameters.
+struct SpeedLog {
+    Query<const Velocity> moving;
+    Res<Label> label;
+};
+
 std::vector<ComponentId> ids(std::vector<ComponentId> list) {
     std::sort(list.begin(), list.end());
     return list;
 }
 
 }  // namespace
+
+template <>
+struct limn::SystemParam<SpeedLog> : ParamGroup<SpeedLog, Query<const Velocity>, Res<Label>> {};
 
 TEST_CASE("system: what it may touch follows from its parameters") {
     const SystemAccess a = access_of<integrate>();
@@ -78,6 +88,23 @@ TEST_CASE("system: two conflict when one writes what the other touches") {
     CHECK(conflict(all, write));
     CHECK(conflict(all, resource));
     CHECK(conflict(exclusive, read));
+}
+
+TEST_CASE("system: a group of parameters counts as its members") {
+    static constexpr auto log_speeds = [](Query<const Position> positions, SpeedLog log) {
+        log.label->numbers.push_back(static_cast<int>(positions.count()));
+        log.label->numbers.push_back(static_cast<int>(log.moving.count()));
+    };
+    System system = make_system("log_speeds", log_speeds);
+    CHECK(system.access().reads == ids({component_id<Position>, component_id<Velocity>}));
+    CHECK(system.access().resource_writes == ids({component_id<Label>}));
+    CHECK(system.queries().size() == 2);
+    World world;
+    world.insert_resource(Label{});
+    world.create_many(5, Position{});
+    world.create_many(2, Position{}, Velocity{});
+    run_system(world, system);
+    CHECK(world.resource<Label>().numbers == std::vector<int>{7, 2});
 }
 
 TEST_CASE("system: is named after its function") {

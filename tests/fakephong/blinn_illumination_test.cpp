@@ -1,6 +1,7 @@
 #include "bench/fakephong/blinn_illumination.h"
 #include "bench/fakephong/lookup_texture.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -26,7 +27,7 @@ SurfacePoint at_origin(const dvec3& normal) {
 
 }  // namespace
 
-TEST_CASE("fakephong: R mirrors L at N, and mirrored again is L") {
+TEST_CASE("fakephong: R mirrors L at N, and mirrored again is L" * technique("fakephong.vectors")) {
     const Vec3r n = {0, 0, 1};
     const Vec3r l = {0.6, 0, 0.8};
     const dvec3 r = plain(reflect(l, n));
@@ -39,7 +40,9 @@ TEST_CASE("fakephong: R mirrors L at N, and mirrored again is L") {
     CHECK(glm::distance(plain(reflect(l, h)), plain(v)) < 1e-15);  // N = H: R = V
 }
 
-TEST_CASE("fakephong: illumination is linear in each light, and ks where N = H") {
+TEST_CASE(
+    "fakephong: illumination is linear in each light, and ks where N = H"
+    * technique("fakephong.illum-blinn")) {
     PhongScene scene = {.lights = {{.at = {0.3, 0.2, 2}}, {.directional = true, .at = {1, 1, 1}}}};
     scene.channels = Channels::Full;
     const SurfacePoint point = at_origin({0.1, 0.2, 1});
@@ -58,7 +61,9 @@ TEST_CASE("fakephong: illumination is linear in each light, and ks where N = H")
     CHECK(peak.tinted.x.value == near(facing.material.ambient + facing.material.diffuse));
 }
 
-TEST_CASE("fakephong: no highlight without a half vector, at a light, at the eye or behind") {
+TEST_CASE(
+    "fakephong: no highlight without a half vector, at a light, at the eye or behind"
+    * technique("fakephong.vectors")) {
     PhongScene scene = {.lights = {{.at = {0, 0, -5}}}};
     scene.camera.eye = {0, 0, 5};
     const SurfacePoint between = at_origin({0, 0, 1});  // L = -V
@@ -77,7 +82,9 @@ TEST_CASE("fakephong: no highlight without a half vector, at a light, at the eye
     CHECK(illuminate(behind, at_origin({0, 0, -1})).highlight.x.value == 0);
 }
 
-TEST_CASE("fakephong: the Blinn texture is the power of the projected normal") {
+TEST_CASE(
+    "fakephong: the Blinn texture is the power of the projected normal"
+    * technique("fakephong.blinn-texture")) {
     CHECK(blinn_texture_value(32, 0, 0) == 1);
     CHECK(blinn_texture_value(1, 0.6, 0) == near(0.8));
     CHECK(blinn_texture_value(32, 0, 0.6) == near(std::pow(0.8, 32)).epsilon(1e-12));
@@ -93,7 +100,9 @@ TEST_CASE("fakephong: the Blinn texture is the power of the projected normal") {
     }
 }
 
-TEST_CASE("fakephong: at the rim and beyond, any texture is dark") {
+TEST_CASE(
+    "fakephong: at the rim and beyond, any texture is dark"
+    * technique("fakephong.blinn-texture")) {
     const LookupTexture diffuse =
         bake_texture(256, [](double x, double y) { return dvec3(blinn_texture_value(1, x, y)); });
     CHECK(fetch(diffuse, {0, 0}).x.value == near(1).epsilon(1e-4));
@@ -103,7 +112,9 @@ TEST_CASE("fakephong: at the rim and beyond, any texture is dark") {
     }
 }
 
-TEST_CASE("fakephong: Blinn coordinates are those of the thesis and lie at sqrt(1 - (N.H)^2)") {
+TEST_CASE(
+    "fakephong: Blinn coordinates are those of the thesis and lie at sqrt(1 - (N.H)^2)"
+    * technique("fakephong.blinn-map")) {
     const PhongScene front = scene_with_half_vector({0, 0, 1});
     const Vec2r at = blinn_coordinates(front, front.lights[0], at_origin({0.6, 0, 0.8}));
     CHECK(std::abs(at.x.value) < 1e-9);
@@ -128,7 +139,9 @@ TEST_CASE("fakephong: Blinn coordinates are those of the thesis and lie at sqrt(
     CHECK(std::abs(other.x.value - general.x.value) > 0.1);
 }
 
-TEST_CASE("fakephong: the axis of the worst case leaves one row of the texture") {
+TEST_CASE(
+    "fakephong: the axis of the worst case leaves one row of the texture"
+    * technique("fakephong.blinn-axis")) {
     PhongScene scene = scene_with_half_vector({0.2, 1, 1});
     scene.axis = BlinnAxis::WorstCase;
     for (const dvec3& n : {dvec3(0.3, 0.2, 1), dvec3(-0.5, 0.4, 1), dvec3(0, 1, 0.1)}) {
@@ -138,7 +151,9 @@ TEST_CASE("fakephong: the axis of the worst case leaves one row of the texture")
     }
 }
 
-TEST_CASE("fakephong: Blinn coordinates stay valid where the axis is parallel to H") {
+TEST_CASE(
+    "fakephong: Blinn coordinates stay valid where the axis is parallel to H"
+    * technique("fakephong.blinn-axis")) {
     const PhongScene scene = scene_with_half_vector({0, 1, 1e-13});
     PhongScene up = scene;
     up.camera.up = {0, 0, 1};
@@ -158,7 +173,9 @@ TEST_CASE(
     CHECK(blinn_texture_value(32, printed.x.value, printed.y.value) > 0.8);
 }
 
-TEST_CASE("fakephong: appendix B shrinks the coordinates and brightens the vertex") {
+TEST_CASE(
+    "fakephong: appendix B shrinks the coordinates and brightens the vertex"
+    * technique("fakephong.hw-blinn")) {
     const PhongScene scene = scene_with_half_vector({0, 1, 1});
     const SurfacePoint point = at_origin({0.3, 0.2, 1});
     const Vec2r at = blinn_coordinates_as_printed(scene, scene.lights[0], point);
@@ -169,7 +186,9 @@ TEST_CASE("fakephong: appendix B shrinks the coordinates and brightens the verte
     CHECK(blinn_texture_value(32, exact.x.value, exact.y.value) == near(0.000738).epsilon(1e-3));
 }
 
-TEST_CASE("fakephong: a Phong map holds N.L whatever the eye, and 0 behind") {
+TEST_CASE(
+    "fakephong: a Phong map holds N.L whatever the eye, and 0 behind"
+    * technique("fakephong.phong-map")) {
     PhongScene scene = {.lights = {{.directional = true, .at = {0.3, 0.4, 1}}}};
     const SurfacePoint point = at_origin({0.2, -0.3, 1});
     const Vec2r at = phong_map_coordinates(scene, scene.lights[0], point);
@@ -183,7 +202,9 @@ TEST_CASE("fakephong: a Phong map holds N.L whatever the eye, and 0 behind") {
     CHECK(blinn_texture_value(1, behind.x.value, behind.y.value) < 1e-6);
 }
 
-TEST_CASE("fakephong: sphere map coordinates lie in the disc and are inverted by its directions") {
+TEST_CASE(
+    "fakephong: sphere map coordinates lie in the disc and are inverted by its directions"
+    * technique("fakephong.envmap")) {
     PhongScene scene;
     scene.camera = {.eye = {0, 0, 1e9}, .target = dvec3(0)};
     // V = z: W = (0, 0, 1), (1, 0, 0) and (0, 0.6, 0.8) are mirrored at these normals.
@@ -203,7 +224,9 @@ TEST_CASE("fakephong: sphere map coordinates lie in the disc and are inverted by
     CHECK(std::isfinite(singular.x.value + singular.y.value));
 }
 
-TEST_CASE("fakephong: an environment map of two lights is the sum of their maps") {
+TEST_CASE(
+    "fakephong: an environment map of two lights is the sum of their maps"
+    * technique("fakephong.envmap-bake")) {
     PhongScene scene = {
         .lights = {
             {.directional = true, .at = {0, 0, 1}, .color = {1, 0.5, 0}},

@@ -1,6 +1,7 @@
 #include "bench/fakephong/fakephong_report.h"
 #include "bench/fakephong/phong_models.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -34,7 +35,9 @@ double distance_from_printed(const SceneResult& result, const PrintedRow& row) {
 
 }  // namespace
 
-TEST_CASE("fakephong: the fitted triangle has the printed figures within 0.01, in their order") {
+TEST_CASE(
+    "fakephong: the fitted triangle has the printed figures within 0.01, in their order"
+    * technique("fakephong.results")) {
     const SceneResult result = evaluate_scene(printed_triangle_scene());
     CHECK(distance_from_printed(result, printed_table()[1]) < 0.01);
     CHECK(
@@ -44,7 +47,9 @@ TEST_CASE("fakephong: the fitted triangle has the printed figures within 0.01, i
             "envmap"});
 }
 
-TEST_CASE("fakephong: the canonical triangle has its derived figures, in the printed order") {
+TEST_CASE(
+    "fakephong: the canonical triangle has its derived figures, in the printed order"
+    * technique("fakephong.results")) {
     constexpr double kDerived[] = {0.7726, 0.8754, 0.8782, 0.5548, 0.8177, 0.9149};
     const SceneResult result = evaluate_scene(triangle_scene());
     for (std::size_t i = 0; i < kTableColumns; ++i) {
@@ -53,14 +58,18 @@ TEST_CASE("fakephong: the canonical triangle has its derived figures, in the pri
     CHECK(distance_from_printed(result, printed_table()[1]) < 0.028);
 }
 
-TEST_CASE("fakephong: the fitted teapot has the printed order, which fine textures do not give") {
+TEST_CASE(
+    "fakephong: the fitted teapot has the printed order, which fine textures do not give"
+    * technique("fakephong.results")) {
     PhongScene scene = printed_teapot_scene();
     CHECK(distance_from_printed(evaluate_scene(scene), printed_table()[0]) < 0.0035);
     scene.texture_size = 256;
     CHECK(rank_by_correctness(evaluate_scene(scene))[0] == "quadratic-blinn");
 }
 
-TEST_CASE("fakephong: methods of samples are exact there, and the environment map nowhere") {
+TEST_CASE(
+    "fakephong: methods of samples are exact there, and the environment map nowhere"
+    * technique("fakephong.metric-analytic")) {
     const SceneResult result = evaluate_scene(sphere_scene());
     for (std::size_t i = 0; i < kTableColumns; ++i) {
         const MethodResult& one = result.methods[i];
@@ -74,7 +83,9 @@ TEST_CASE("fakephong: methods of samples are exact there, and the environment ma
     }
 }
 
-TEST_CASE("fakephong: the environment map costs least on coarse and fine meshes alike") {
+TEST_CASE(
+    "fakephong: the environment map costs least on coarse and fine meshes alike"
+    * technique("fakephong.metric-efficiency")) {
     for (const PhongScene& scene : {sphere_scene(), triangle_scene()}) {
         const Ids ranked = rank_by_work(evaluate_scene(scene));
         CHECK(ranked[0] == "envmap");
@@ -83,7 +94,9 @@ TEST_CASE("fakephong: the environment map costs least on coarse and fine meshes 
     CHECK(weighted_operations({.additions = 1, .multiplications = 2, .fetches = 1}) == 7);
 }
 
-TEST_CASE("fakephong: chords and quadratics miss an arc by the derived distances") {
+TEST_CASE(
+    "fakephong: chords and quadratics miss an arc by the derived distances"
+    * technique("fakephong.blinn-path")) {
     constexpr double kDegree = 3.141592653589793 / 180;
     const PathDeviation d30 = path_deviation(30 * kDegree);
     const PathDeviation d60 = path_deviation(60 * kDegree);
@@ -105,7 +118,9 @@ TEST_CASE("fakephong: chords and quadratics miss an arc by the derived distances
     CHECK(path_deviation(1e-3).linear_cosine < 1e-6);
 }
 
-TEST_CASE("fakephong: Blinn coordinates stray from their chords as those of the derived corners") {
+TEST_CASE(
+    "fakephong: Blinn coordinates stray from their chords as those of the derived corners"
+    * technique("fakephong.blinn-path")) {
     // Edges of the canonical triangle: the mean of two corners' coordinates against the midpoint's.
     const EdgePaths triangle = edge_paths(triangle_scene());
     CHECK(triangle.edges == 3);
@@ -116,7 +131,9 @@ TEST_CASE("fakephong: Blinn coordinates stray from their chords as those of the 
     CHECK(triangle.quadratic < 0.8 * triangle.linear);  // the light is near: H turns along an edge
 }
 
-TEST_CASE("fakephong: without a turn of normals and with all far away, coordinates are straight") {
+TEST_CASE(
+    "fakephong: without a turn of normals and with all far away, coordinates are straight"
+    * technique("fakephong.blinn-path")) {
     PhongScene far = triangle_scene();
     far.lights = {{.directional = true, .at = {0.3, 0.2, 1}}};
     far.camera.eye = {0, 0, 1e7};
@@ -126,7 +143,9 @@ TEST_CASE("fakephong: without a turn of normals and with all far away, coordinat
     CHECK(paths.from_h == near(0.5 * std::acos(1 / std::sqrt(1.13))).epsilon(1e-3));
 }
 
-TEST_CASE("fakephong: facets half as large stray a quarter as far, and quadratics an eighth") {
+TEST_CASE(
+    "fakephong: facets half as large stray a quarter as far, and quadratics an eighth"
+    * technique("fakephong.blinn-path")) {
     PhongScene scene = sphere_scene();
     scene.mesh = make_coarse_sphere(16, 16);
     const EdgePaths coarse = edge_paths(scene);

@@ -3,6 +3,7 @@
 #include "bench/fakephong/phong_models.h"
 #include "bench/fakephong/phong_raster.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -44,7 +45,9 @@ float largest_difference(const PhongImage& a, const PhongImage& b) {
 
 }  // namespace
 
-TEST_CASE("forward differences: the thesis's quadratic takes its values by steps of 12, 16, 20") {
+TEST_CASE(
+    "forward differences: the thesis's quadratic takes its values by steps of 12, 16, 20"
+    * technique("fakephong.forward-difference")) {
     auto row = difference_table<std::int64_t>(2, [](int x, int y) {
                    return printed_quadratic(x, 3 + y);
                }).rows[0];
@@ -61,7 +64,9 @@ TEST_CASE("forward differences: the thesis's quadratic takes its values by steps
     }
 }
 
-TEST_CASE("forward differences: steps right, left and down lead to the polynomial's own values") {
+TEST_CASE(
+    "forward differences: steps right, left and down lead to the polynomial's own values"
+    * technique("fakephong.forward-difference")) {
     for (const std::size_t degree : {1u, 2u, 3u}) {
         CAPTURE(degree);
         const auto f = [degree](int x, int y) -> std::int64_t {
@@ -95,7 +100,9 @@ TEST_CASE("forward differences: steps right, left and down lead to the polynomia
     }
 }
 
-TEST_CASE("forward differences: a quadratic costs 2 additions, not 4 and 3 multiplications") {
+TEST_CASE(
+    "forward differences: a quadratic costs 2 additions, not 4 and 3 multiplications"
+    * technique("fakephong.forward-difference")) {
     const Real a = 2, b = 3, d = 1, y = 3;
     auto row = difference_table<Real>(2, [](int i, int j) {
                    return Real(static_cast<double>(printed_quadratic(i, 3 + j)));
@@ -131,7 +138,9 @@ TEST_CASE("forward differences: over a row of 4,096 pixels a cubic drifts by les
     CHECK(largest > 0);
 }
 
-TEST_CASE("forward differences: without perspective a method's image is that of each pixel asked") {
+TEST_CASE(
+    "forward differences: without perspective a method's image is that of each pixel asked"
+    * technique("fakephong.forward-difference")) {
     for (const PhongScene& scene : stepped_scenes()) {
         for (const char* id : {"gouraud", "quadratic", "cubic"}) {
             CAPTURE(scene.name);
@@ -167,7 +176,8 @@ TEST_CASE("forward differences: a pixel takes six additions per degree and no mu
 }
 
 TEST_CASE(
-    "fakephong: with w = 1, 1, 3 the middle of an edge from u = 0 to 1 on the screen is 1/4") {
+    "fakephong: with w = 1, 1, 3 the middle of an edge from u = 0 to 1 on the screen is 1/4"
+    * technique("fakephong.texmap")) {
     // Checks a quarter wide: the color changes where u is 1/4, 1/2 and 3/4.
     PhongScene scene = {.name = "edge", .lights = {{}}};
     scene.channels = Channels::Full;

@@ -1,6 +1,7 @@
 #include "bench/fakephong/phong_models.h"
 #include "bench/fakephong/phong_raster.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -37,7 +38,7 @@ bool all_finite(const PhongImage& image) {
 
 }  // namespace
 
-TEST_CASE("fakephong: the models have the facets of the thesis") {
+TEST_CASE("fakephong: the models have the facets of the thesis" * technique("fakephong.scenes")) {
     CHECK(sphere_scene().mesh.triangles.size() == 40);
     CHECK(dodecahedron_scene().mesh.triangles.size() == 30);
     CHECK(fine_sphere_scene().mesh.triangles.size() == 3750);
@@ -88,7 +89,9 @@ TEST_CASE("fakephong: the image of the triangle is its own mirror image, by ever
     }
 }
 
-TEST_CASE("fakephong: on coarse spheres the quadratic Blinn map is best and the Blinn map next") {
+TEST_CASE(
+    "fakephong: on coarse spheres the quadratic Blinn map is best and the Blinn map next"
+    * technique("fakephong.quadratic-blinn, fakephong.scenes")) {
     PhongScene fans = sphere_scene();
     fans.mesh = make_dodecahedron();
     PhongScene flat = sphere_scene();
@@ -102,14 +105,16 @@ TEST_CASE("fakephong: on coarse spheres the quadratic Blinn map is best and the 
     }
 }
 
-TEST_CASE("fakephong: on 3,750 facets every method exceeds 0.98") {
+TEST_CASE("fakephong: on 3,750 facets every method exceeds 0.98" * technique("fakephong.scenes")) {
     for (std::size_t i = 1; i <= kTableColumns; ++i) {
         const std::string id(shading_methods()[i].id);
         CHECK(correctness(fine_sphere_scene(), id.c_str()) > 0.98);
     }
 }
 
-TEST_CASE("fakephong: perspective divides s, t and texture coordinates") {
+TEST_CASE(
+    "fakephong: perspective divides s, t and texture coordinates"
+    * technique("fakephong.barycentric, fakephong.texmap")) {
     // A square in two triangles that leans away: the far half is less than half of its image.
     PhongScene scene = triangle_scene();
     scene.channels = Channels::Full;
@@ -208,7 +213,9 @@ TEST_CASE("fakephong: of edges through pixel centers, each belongs to one side")
     CHECK(parts == 17 * 17);
 }
 
-TEST_CASE("fakephong: a triangle through the eye is cut at the near plane") {
+TEST_CASE(
+    "fakephong: a triangle through the eye is cut at the near plane"
+    * technique("fakephong.pipeline")) {
     PhongScene scene = triangle_scene();
     scene.mesh.positions = {{0, 0.02, 0}, {-50, -0.5, 60}, {50, -0.5, 60}};
     scene.mesh.normals = std::vector<dvec3>(3, dvec3(0, 1, 0));

@@ -3,6 +3,7 @@
 #include "bench/fakephong/shading_method.h"
 #include "bench/fakephong/taylor_series.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -71,7 +72,9 @@ Spot spot_of(const PhongScene& scene, const char* id) {
 
 }  // namespace
 
-TEST_CASE("fakephong: each method is exact at the sample points that it claims, and only there") {
+TEST_CASE(
+    "fakephong: each method is exact at the sample points that it claims, and only there"
+    * technique("fakephong.metric-analytic")) {
     const PhongScene scene = bent_triangle();
     const ShadingContext context = make_shading_context(scene);
     const Facet facet = facet_of(scene);
@@ -99,7 +102,9 @@ TEST_CASE("fakephong: each method is exact at the sample points that it claims, 
     }
 }
 
-TEST_CASE("fakephong: lightings per triangle are 3, 6, 6, 3, 3, 6") {
+TEST_CASE(
+    "fakephong: lightings per triangle are 3, 6, 6, 3, 3, 6"
+    * technique("fakephong.metric-efficiency")) {
     const PhongScene scene = bent_triangle();
     const ShadingContext context = make_shading_context(scene);
     const Facet facet = facet_of(scene);
@@ -117,7 +122,9 @@ TEST_CASE("fakephong: lightings per triangle are 3, 6, 6, 3, 3, 6") {
     }
 }
 
-TEST_CASE("fakephong: colors along a shared edge depend on that edge alone") {
+TEST_CASE(
+    "fakephong: colors along a shared edge depend on that edge alone"
+    * technique("fakephong.quadratic")) {
     // Two triangles on one edge, the far corners and their normals different.
     PhongScene scene = bent_triangle();
     scene.mesh.positions.push_back({0, -2, 0.7});
@@ -151,7 +158,8 @@ TEST_CASE("fakephong: colors along a shared edge depend on that edge alone") {
     }
 }
 
-TEST_CASE("fakephong: linear colors have no maximum inside a triangle") {
+TEST_CASE(
+    "fakephong: linear colors have no maximum inside a triangle" * technique("fakephong.gouraud")) {
     const Spot spot = spot_of(triangle_scene(), "gouraud");
     CHECK(spot.peak == near(0.0107).epsilon(0.01));
     CHECK(spot.share == 0);
@@ -196,7 +204,9 @@ TEST_CASE("fakephong: a Phong map has the diffuse light of the corners") {
     }
 }
 
-TEST_CASE("fakephong: diffuse light from a Blinn texture is exact at the samples, by either map") {
+TEST_CASE(
+    "fakephong: diffuse light from a Blinn texture is exact at the samples, by either map"
+    * technique("fakephong.blinn-map")) {
     PhongScene scene = bent_triangle();
     scene.channels = Channels::Full;
     scene.diffuse_texture = true;
@@ -219,7 +229,9 @@ TEST_CASE("fakephong: diffuse light from a Blinn texture is exact at the samples
     }
 }
 
-TEST_CASE("fakephong: a quadratic goes through its samples and reproduces quadratic fields") {
+TEST_CASE(
+    "fakephong: a quadratic goes through its samples and reproduces quadratic fields"
+    * technique("fakephong.quadratic")) {
     const auto field = [](double s, double t) {
         return 1 + 2 * s - 3 * t + 4 * s * s - s * t + t * t;
     };
@@ -242,7 +254,7 @@ TEST_CASE("fakephong: a quadratic goes through its samples and reproduces quadra
     CHECK(printed[4].value == near(1.06805).epsilon(1e-3));
 }
 
-TEST_CASE("fakephong: a cubic is exact at its ten nodes") {
+TEST_CASE("fakephong: a cubic is exact at its ten nodes" * technique("fakephong.cubic")) {
     const PhongScene scene = bent_triangle();
     const ShadingContext context = make_shading_context(scene);
     const Facet facet = facet_of(scene);
@@ -260,7 +272,9 @@ TEST_CASE("fakephong: a cubic is exact at its ten nodes") {
     CHECK(shade_cubic(context, setup, 0.37, 0.21).highlight.x.value == near(1));
 }
 
-TEST_CASE("fakephong: the Taylor series has the derivatives of N.L of a unit N") {
+TEST_CASE(
+    "fakephong: the Taylor series has the derivatives of N.L of a unit N"
+    * technique("fakephong.taylor")) {
     const dvec3 l = glm::normalize(dvec3(0.3, 0.2, 1));
     const dvec3 a = {0.2, 0.1, -0.05};
     const dvec3 b = {-0.1, 0.3, 0.02};
@@ -286,7 +300,8 @@ TEST_CASE("fakephong: the Taylor series has the derivatives of N.L of a unit N")
 }
 
 TEST_CASE(
-    "fakephong: spherical normals meet the normalized sum halfway, quadratic ones overshoot 1") {
+    "fakephong: spherical normals meet the normalized sum halfway, quadratic ones overshoot 1"
+    * technique("fakephong.normal-interp-variants")) {
     PhongScene scene = bent_triangle();
     const Facet facet = facet_of(scene);
     const ShadingContext context = make_shading_context(scene);
@@ -328,7 +343,8 @@ TEST_CASE("fakephong: normals that cancel or are zero become that of the face") 
 }
 
 TEST_CASE(
-    "fakephong: appendix A equals quadratic shading but for its 8-bit coordinates and its gate") {
+    "fakephong: appendix A equals quadratic shading but for its 8-bit coordinates and its gate"
+    * technique("fakephong.hw-quadratic")) {
     const PhongScene scene = bent_triangle();
     const ShadingContext context = make_shading_context(scene);
     const Facet facet = facet_of(scene);

@@ -94,7 +94,7 @@ TEST_CASE("racer: boosts last four seconds, and come back in twelve") {
     CHECK(racer.energy == 1);
 }
 
-TEST_CASE("racer: it steers to the side it is steered to, leans there, and straightens itself") {
+TEST_CASE("racer: it turns and leans to the side it is steered to, and straightens itself") {
     const PathData track = straight();
     for (const float side : {-1.0f, 1.0f}) {
         TestRacer racer{{.speed = 30}, {.half_width = 100}};
@@ -123,7 +123,7 @@ TEST_CASE("racer: bends carry it outward, the inner lane is shorter, and walls h
     CHECK(inside.distance / outside.distance == test::near(1.05 / 0.95).epsilon(0.01));
 }
 
-TEST_CASE_FIXTURE(Race, "racer: left alone it keeps its lane, round and round, within its grip") {
+TEST_CASE_FIXTURE(Race, "racer: on autopilot it keeps its lane, lap after lap, within its grip") {
     const Entity entity = add({.track = {0}, .lane = -2});
     start_world(world, add_game_systems);
     run(600);
@@ -141,7 +141,7 @@ TEST_CASE_FIXTURE(Race, "racer: left alone it keeps its lane, round and round, w
     CHECK(at.y == test::near(Racer{}.height).epsilon(0.1));
 }
 
-TEST_CASE_FIXTURE(Race, "racer: who is faster goes around who is slower") {
+TEST_CASE_FIXTURE(Race, "racer: faster racers overtake slower ones") {
     const Entity slow = add({.track = {1}, .distance = 60, .top_speed = 20, .lane = 0.5f});
     const Entity fast = add({.track = {1}, .top_speed = 40, .lane = 0.5f});
     start_world(world, add_game_systems);
@@ -157,7 +157,7 @@ TEST_CASE_FIXTURE(Race, "racer: who is faster goes around who is slower") {
     CHECK(std::abs(world.get<RacerState>(fast).lateral - 0.5f) < 0.3f);  // and back to its lane
 }
 
-TEST_CASE_FIXTURE(Race, "racer: a player's drives itself until somebody steers, then obeys") {
+TEST_CASE_FIXTURE(Race, "racer: a player's racer is on autopilot until somebody steers") {
     const Entity mine = add({.track = {1}, .player = true});
     const Entity other = add({.track = {1}, .lane = 4});
     start_world(world, add_game_systems);
@@ -174,7 +174,7 @@ TEST_CASE_FIXTURE(Race, "racer: a player's drives itself until somebody steers, 
     CHECK(world.get<RacerState>(mine).speed == 0);  // it does not take over again
 }
 
-TEST_CASE_FIXTURE(Race, "racer: the lens opens with speed, where there is a motion blur") {
+TEST_CASE_FIXTURE(Race, "racer: the field of view and the shutter widen with speed") {
     const Entity racer = add({.track = {1}, .speed = 90});
     const Entity camera = world.create(Camera{}, SpeedView{.racer = racer});
     start_world(world, add_game_systems);
@@ -191,7 +191,7 @@ TEST_CASE_FIXTURE(Race, "racer: the lens opens with speed, where there is a moti
     CHECK(world.resource<MotionBlur>().shutter == test::near(120));
 }
 
-TEST_CASE_FIXTURE(Race, "racer: a track that does not exist leaves it in place") {
+TEST_CASE_FIXTURE(Race, "racer: without its track it stays put") {
     const Entity entity = add({.track = {9}, .speed = 5});
     start_world(world, add_game_systems);
     run(3);

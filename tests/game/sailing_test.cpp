@@ -119,7 +119,7 @@ TEST_CASE("sailing: a foil lifts to the side that the flow comes from, as much o
     CHECK(foil_force(radians(90.0f)).drag > 1.1f);
 }
 
-TEST_CASE("sailing: without wind it comes to rest, and never gains on the way") {
+TEST_CASE("sailing: without wind it comes to rest, and never speeds up") {
     Boat boat;
     boat.run(5);
     boat.body.velocity = {0.5f, 0, 3};
@@ -170,7 +170,7 @@ TEST_CASE("sailing: more wind is more speed, until the hull's own waves are too 
     CHECK(strong < 1.6f * fresh);
 }
 
-TEST_CASE("sailing: it heels to leeward and stands up again when the wind is over") {
+TEST_CASE("sailing: it heels to leeward and rights itself when the wind drops") {
     Boat boat;
     boat.wind = wind_from(radians(80.0f), 9);  // from starboard
     boat.run_straight(20);
@@ -196,7 +196,7 @@ TEST_CASE("sailing: it turns to the side that the rudder is on") {
     }
 }
 
-TEST_CASE("sailing: a boat that stands does not turn by its rudder") {
+TEST_CASE("sailing: the rudder of a boat at rest has no effect") {
     Boat boat;
     boat.run(3);
     boat.boat.rudder = 1;
@@ -204,7 +204,7 @@ TEST_CASE("sailing: a boat that stands does not turn by its rudder") {
     CHECK(heading_of(boat.place.rotation) == test::near(kPi / 2).epsilon(1e-3));
 }
 
-TEST_CASE("sailing: in a mirror it sails the mirrored way") {
+TEST_CASE("sailing: a mirrored boat sails the mirrored course") {
     Boat one;
     Boat other;
     one.wind = {5, 0, 3};
@@ -224,7 +224,7 @@ TEST_CASE("sailing: in a mirror it sails the mirrored way") {
     CHECK(std::abs(one.place.position.x) > 1);
 }
 
-TEST_CASE("sailing: the wind pulls no more out of a boat than it has") {
+TEST_CASE("sailing: no rig makes the boat much faster than the wind") {
     // Whatever the rig: no part of it is ever faster than the wind could make it.
     for (const float area : {16.0f, 200.0f, 1e4f}) {
         for (const float wind : {2.0f, 60.0f}) {
@@ -248,7 +248,7 @@ TEST_CASE("sailing: the wind pulls no more out of a boat than it has") {
     }
 }
 
-TEST_CASE("sailing: nothing wrong in, nothing wrong out") {
+TEST_CASE("sailing: NaN, infinite and extreme values give finite results") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
     for (const float bad : {nan, inf, -inf, -1.0f, 0.0f, 1e30f}) {
@@ -351,7 +351,7 @@ struct Bay {
 
 }  // namespace
 
-TEST_CASE("sailing: the keys steer a player's boat, once they do") {
+TEST_CASE("sailing: a player's boat is autonomous until a key is used") {
     Bay bay;
     const Entity boat = bay.add_boat({0, 0, 0}, {.player = true});
     start_world(bay.world, add_game_systems);
@@ -376,7 +376,7 @@ TEST_CASE("sailing: the keys steer a player's boat, once they do") {
     CHECK(bay.world.get<SailboatState>(boat).auto_trim);
 }
 
-TEST_CASE("sailing: a player who looks elsewhere steers nothing") {
+TEST_CASE("sailing: the keys steer only while the boat's camera is active") {
     Bay bay;
     const Entity camera = bay.world.create(Transform{}, Camera{.active = false});
     const Entity boat = bay.add_boat({0, 0, 0}, {.player = true, .camera = camera});
@@ -400,7 +400,7 @@ TEST_CASE("sailing: a boom swings to leeward and its sail fills to the same side
     CHECK(swung.scale.x > 0.5f);
 }
 
-TEST_CASE("sailing: a lookout goes with its boat and stays upright") {
+TEST_CASE("sailing: a lookout moves with its boat and stays upright") {
     Bay bay({.wind_speed = 11, .wind_direction = 0});
     const Entity lookout = bay.world.create(Transform{});
     const Entity boat = bay.add_boat({0, 0, 0}, {.camera_target = lookout});
@@ -414,7 +414,7 @@ TEST_CASE("sailing: a lookout goes with its boat and stays upright") {
     CHECK(heading_of(upright.rotation) == test::near(heading_of(hull.rotation)));
 }
 
-TEST_CASE("sailing: any number of threads sails fifty boats to the same places, to the bit") {
+TEST_CASE("sailing: fifty boats end at the same positions for any number of threads, to the bit") {
     const auto sail = [](int threads) {
         const int before = thread_count();
         set_thread_count(threads);

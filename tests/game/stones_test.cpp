@@ -76,7 +76,7 @@ TEST_CASE("water stones: a click makes the water splash where the pointer is, on
     CHECK(scene.world.get<StoneThrowerState>(scene.hand).thrown == 1);
 }
 
-TEST_CASE("water stones: beside the water, above it and too far away nothing is thrown") {
+TEST_CASE("water stones: nothing is thrown beside the water, above it or too far away") {
     Poolside scene(kStones);
     scene.click_on({9, 0, 0});
     scene.click_on({0, 9, 0});
@@ -113,7 +113,7 @@ TEST_CASE("water stones: a stone flies, falls in where it was aimed at, and sink
     CHECK(depth == test::near(2 - 0.15).epsilon(0.01).scale(0));
 }
 
-TEST_CASE("water stones: the oldest make room") {
+TEST_CASE("water stones: the oldest are removed beyond the limit") {
     Poolside scene(kStones);
     for (int i = 0; i < 7; ++i) {
         scene.click_on({1, 0, static_cast<float>(i) * 0.3f});

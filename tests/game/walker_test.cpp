@@ -53,7 +53,7 @@ struct Pool {
 
 }  // namespace
 
-TEST_CASE("walker: stands still where nobody moves it") {
+TEST_CASE("walker: stands still without input") {
     Pool pool;
     pool.run(3);
     CHECK(pool.feet == Vec3(0, 0, 2));
@@ -61,7 +61,7 @@ TEST_CASE("walker: stands still where nobody moves it") {
     CHECK(pool.walker.depth < 0);
 }
 
-TEST_CASE("walker: goes as fast as it can on land, and where it looks") {
+TEST_CASE("walker: walks at full speed on land, in the direction of view") {
     Pool pool;
     pool.walker.yaw = -kPi / 2;  // to the right: +x
     pool.input.move = {0, 0, 1};
@@ -75,7 +75,7 @@ TEST_CASE("walker: goes as fast as it can on land, and where it looks") {
     CHECK(pool.feet.z > 2.3f);
 }
 
-TEST_CASE("walker: goes down the steps, the slower the deeper, until its eyes are under") {
+TEST_CASE("walker: descends the steps, slower in deeper water, until its eyes are under") {
     Pool pool;
     pool.input.move = {0, 0, 1};
     float highest = pool.feet.y;
@@ -116,7 +116,7 @@ TEST_CASE("walker: a wall stops it, and it slides along") {
     CHECK(pool.feet.y == test::near(0).scale(1).epsilon(0.001));
 }
 
-TEST_CASE("walker: swims where it cannot stand, eyes above the water, and dives when told") {
+TEST_CASE("walker: swims in deep water with its eyes above the surface, and dives on input") {
     Pool pool;
     pool.water.water.depth = 0;  // deep
     pool.grounds.clear();
@@ -148,7 +148,7 @@ TEST_CASE("walker: falls no faster in water than it sinks") {
     CHECK(std::abs(pool.feet.y + pool.settings.eye) < 0.1f);  // and swims then
 }
 
-TEST_CASE("walker: numbers that are none move nobody") {
+TEST_CASE("walker: NaN and infinite input moves nobody") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     Pool pool;
     pool.input.move = {nan, 0, 1};
@@ -161,7 +161,7 @@ TEST_CASE("walker: numbers that are none move nobody") {
     CHECK(pool.feet == Vec3(0, 0, 2));
 }
 
-TEST_CASE("walker: in a world it obeys while its eyes are looked out of, and pushes the water") {
+TEST_CASE("walker: in a world it obeys while its camera is active, and pushes the water") {
     register_game_components();
     World world;
     Schedule schedule = make_world_schedule(add_game_systems);

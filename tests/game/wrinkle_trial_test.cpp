@@ -1,5 +1,6 @@
 #include "content/game/wrinkle_trial_system.h"
 #include "ecs/world.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -64,7 +65,9 @@ bool all_are(const std::vector<bool>& values, bool value) {
 
 }  // namespace
 
-TEST_CASE("wrinkle trial: both clips show the same frames, one with and one without wrinkles") {
+TEST_CASE(
+    "wrinkle trial: both clips show the same frames, one with and one without wrinkles"
+    * technique("wrinkle.compression.ab-evaluation")) {
     for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
         Viewing viewing(seed);
         const std::vector<Viewing::Clip> clips = viewing.watch();
@@ -79,7 +82,7 @@ TEST_CASE("wrinkle trial: both clips show the same frames, one with and one with
     }
 }
 
-TEST_CASE("wrinkle trial: of each two viewers one sees wrinkles first, and the seed says which") {
+TEST_CASE("wrinkle trial: of every two viewers one sees wrinkles first, chosen by the seed") {
     int first = 0;
     for (std::size_t pair = 0; pair < 200; ++pair) {
         CHECK(wrinkles_come_first(7, 2 * pair) != wrinkles_come_first(7, 2 * pair + 1));
@@ -89,7 +92,8 @@ TEST_CASE("wrinkle trial: of each two viewers one sees wrinkles first, and the s
     CHECK(first < 130);
 }
 
-TEST_CASE("wrinkle trial: who saw nothing is told and shown both again, then all are asked again") {
+TEST_CASE("wrinkle trial: a viewer who saw no difference is told and shown both again, then asked "
+          "again") {
     Viewing viewing;
     viewing.watch();
     viewing.answer(TrialAnswer::First);  // not asked yet
@@ -117,7 +121,9 @@ TEST_CASE("wrinkle trial: who saw nothing is told and shown both again, then all
     CHECK(viewing.state().stage == TrialStage::FirstClip);
 }
 
-TEST_CASE("wrinkle trial: ten answers as the source's are counted as 2/3, 1/4 and 8/2") {
+TEST_CASE(
+    "wrinkle trial: ten answers like those of the original study count as 2/3, 1/4 and 8/2"
+    * technique("wrinkle.compression.ab-evaluation")) {
     std::vector<TrialRecord> records;
     for (int i = 0; i < 10; ++i) {
         records.push_back(
@@ -127,7 +133,7 @@ TEST_CASE("wrinkle trial: ten answers as the source's are counted as 2/3, 1/4 an
     }
     const std::string text = describe_tally(tally_trials(records));
     for (const char* const pair :
-         {"2/3, the source 2/3", "1/4, the source 1/4", "8/2, the source 8/2"}) {
+         {"2/3, original study 2/3", "1/4, original study 1/4", "8/2, original study 8/2"}) {
         CHECK(text.find(pair) != std::string::npos);
     }
     const auto again = parse_trials(write_trials(records), "answers.csv");
@@ -135,7 +141,7 @@ TEST_CASE("wrinkle trial: ten answers as the source's are counted as 2/3, 1/4 an
     CHECK(describe_tally(tally_trials(*again)) == text);
 }
 
-TEST_CASE("wrinkle trial: a bad file of answers is refused with its place") {
+TEST_CASE("wrinkle trial: a bad file of answers is refused with its position") {
     const auto message = [](const char* text) {
         const auto parsed = parse_trials(text, "a.csv");
         return parsed ? std::string() : parsed.error().message;

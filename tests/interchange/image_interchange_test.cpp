@@ -5,6 +5,7 @@
 #include "content/load/files/png_file.h"
 #include "ecs/components/surface.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <OpenImageIO/imageio.h>
 #include <doctest/doctest.h>
@@ -36,7 +37,7 @@ void write_with_oiio(
 
 }  // namespace
 
-TEST_CASE("exr: OpenImageIO sees the same channels and values") {
+TEST_CASE("exr: OpenImageIO sees the same channels and values" * technique("hdr.openexr")) {
     const TemporaryFolder folder;
     ExrImage image{.width = 7, .height = 5};
     std::vector<float> color;

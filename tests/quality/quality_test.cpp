@@ -1,5 +1,6 @@
 #include "bench/quality/quality.h"
 #include "tests/app/run_program.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -166,7 +167,8 @@ TEST_CASE("quality: lights keep their bounds by every method, and no list misses
 }
 
 TEST_CASE(
-    "quality: fakephong keeps the printed figures and orders, and tells each method on the page") {
+    "quality: fakephong keeps the printed figures and orders, and tells each method on the page"
+    * technique("fakephong.results")) {
     const TemporaryFolder folder;
     measured_rows("fakephong", folder);
     const std::string page = read_text(folder.file("q.html"));

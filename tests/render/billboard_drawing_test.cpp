@@ -6,6 +6,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 #include <glm/packing.hpp>
@@ -72,7 +73,9 @@ struct BillboardScene : Scene {
 
 }  // namespace
 
-TEST_CASE("billboard: about y it turns by the signed angle, its normal toward the viewpoint") {
+TEST_CASE(
+    "billboard: about y it turns by the signed angle, its normal toward the viewpoint"
+    * technique("engine.billboard")) {
     // V, from the viewpoint to the billboard, and the angle from +z [degrees].
     const std::vector<Vec4> table = {{0, 0, -1, 0}, {1, 0, 0, -90}, {-1, 0, 0, 90}, {0, 0, 1, 180}};
     std::vector<Vec3> to_camera;
@@ -98,7 +101,9 @@ TEST_CASE("billboard: about y it turns by the signed angle, its normal toward th
     }
 }
 
-TEST_CASE("billboard: over the axis it keeps the last angle of a camera that came there") {
+TEST_CASE(
+    "billboard: over the axis it keeps the last angle of a camera that came there"
+    * technique("engine.billboard")) {
     // It comes from +z, with +x to its right, until it is exactly above.
     const std::vector<Vec3> way = rights(
         "vec3(0.0, 1.0, 0.0)", {{0, 3, 1}, {0, 3, 0.01f}, {0, 3, 1e-5f}, {0, 3, 0}, {0, 0, 0}});
@@ -108,7 +113,8 @@ TEST_CASE("billboard: over the axis it keeps the last angle of a camera that cam
 }
 
 TEST_CASE(
-    "composite billboard: axes of the book's example, orthonormal, and turning with the camera") {
+    "composite billboard: axes of the book's example, orthonormal, and turning with the camera"
+    * technique("engine.billboard-composite")) {
     // X = V x Mz, to the left of the quad: V = (1, 0, 0), Mz = (0, 0, 1) give (0, -1, 0).
     const std::string axis = "vec3(0.0, 0.0, 1.0)";
     const Vec3 x = -rights(axis, {{1, 0, 0}})[0];
@@ -135,7 +141,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("billboard: colors are mixed by the function, and its extents and opacity vary") {
+TEST_CASE(
+    "billboard: colors are mixed by the function, and its extents and opacity vary"
+    * technique("engine.billboard")) {
     ParticleLook look = unlit({1, 0, 0});
     look.colors = {{0, {1, 0, 0}, 1}, {1, {0, 0, 1}, 1}};
     look.color_function = {.wave = Wave::Sawtooth};
@@ -174,7 +182,8 @@ TEST_CASE("billboard: numbers that are no numbers, and no extent, draw nothing")
 }
 
 TEST_CASE_FIXTURE(
-    BillboardScene, "billboard: parallel to the image it is as large wherever it is seen from") {
+    BillboardScene, "billboard: parallel to the image it is as large wherever it is seen from"
+                        * technique("engine.billboard")) {
     ParticleLook look = unlit({1, 1, 1});
     look.image = white();
     stand({}, look, at({0, 0, 0}));
@@ -193,7 +202,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     BillboardScene,
-    "billboard: one that stands as it is vanishes edge-on, a tree does not and keeps its axis") {
+    "billboard: one that stands as it is vanishes edge-on, a tree does not and keeps its axis"
+        * technique("engine.billboard")) {
     ParticleLook look = unlit({1, 1, 1});
     look.image = white();
     const Entity entity =
@@ -208,7 +218,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BillboardScene, "composite billboard: end-on one quad shows, from the side the other") {
+    BillboardScene, "composite billboard: end-on one quad shows, from the side the other"
+                        * technique("engine.billboard-composite")) {
     ParticleLook look = unlit({1, 1, 1});
     look.image = white();
     Billboard shot = {.alignment = BillboardAlignment::Composite, .aspect = 0.25f};
@@ -223,7 +234,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BillboardScene, "billboard: frames of its flipbook, and covered from back to front") {
+    BillboardScene, "billboard: frames of its flipbook, and covered from back to front"
+                        * technique("engine.billboard")) {
     // Two frames side by side: red, green.
     ImageData frames;
     frames.width = 16;
@@ -257,7 +269,9 @@ TEST_CASE_FIXTURE(
     CHECK(middle().x == near(0.5).epsilon(0.01));
 }
 
-TEST_CASE("particle visibility: those in view are those of a brute-force test") {
+TEST_CASE(
+    "particle visibility: those in view are those of a brute-force test"
+    * technique("particle.visibility")) {
     std::vector<ParticleInstance> instances(2000);
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const auto n = static_cast<float>(i);
@@ -305,7 +319,9 @@ TEST_CASE("particle visibility: a streak out of view is seen as far as its speed
     CHECK_FALSE(shown(50, 0, 128));
 }
 
-TEST_CASE("particle visibility: an emitter hides all with it, bounds only if none is in view") {
+TEST_CASE(
+    "particle visibility: an emitter hides all with it, bounds only if none is in view"
+    * technique("particle.visibility")) {
     std::vector<ParticleInstance> instances(2);
     instances[0].position = {0, 0, 0};  // in view
     instances[1].position = {50, 0, 0};
@@ -324,7 +340,8 @@ TEST_CASE("particle visibility: an emitter hides all with it, bounds only if non
 
 TEST_CASE_FIXTURE(
     BillboardScene,
-    "particle visibility: an emitter out of view hides what flew into it, unless bounds count") {
+    "particle visibility: an emitter out of view hides what flew into it, unless bounds count"
+        * technique("particle.visibility")) {
     ParticleLook look = unlit({1, 1, 1});
     ParticlePool pool;
     for (auto* const column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz}) {

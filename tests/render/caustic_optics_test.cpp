@@ -2,6 +2,7 @@
 #include "ecs/base/optics.h"
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -62,7 +63,9 @@ Mirror mirror_at(float a) {
 
 }  // namespace
 
-TEST_CASE("caustic optics: a ray meets a plane where it should, and one beside it never does") {
+TEST_CASE(
+    "caustic optics: a ray meets a plane where it should, and one beside it never does"
+    * technique("caustic.projected-vertices")) {
     const Plane plane = {{0, 0, 1}, 0};
     CHECK(distance_to_plane({0, 0, 2}, {0, 0, -1}, plane) == test::near(2));
     CHECK(distance_to_plane({0, 0, 2}, {1, 0, 0}, plane) == kFarPlane);
@@ -73,7 +76,9 @@ TEST_CASE("caustic optics: a ray meets a plane where it should, and one beside i
     }
 }
 
-TEST_CASE("caustic optics: rays land on the first of a pool's planes") {
+TEST_CASE(
+    "caustic optics: rays land on the first of a pool's planes"
+    * technique("caustic.projected-vertices")) {
     const std::array<Plane, 5> planes = pool_planes({2, 3}, 1.5f);
     for (int i = 0; i < 500; ++i) {
         const Vec3 from = start_of(i);
@@ -91,7 +96,9 @@ TEST_CASE("caustic optics: rays land on the first of a pool's planes") {
     }
 }
 
-TEST_CASE("caustic optics: by areas no light is made or lost, and flat water lights evenly") {
+TEST_CASE(
+    "caustic optics: by areas no light is made or lost, and flat water lights evenly"
+    * technique("caustic.projected-vertices")) {
     const Plane bottom = {kUp, -2};
     const Vec3 to_sun = glm::normalize(Vec3(0.3f, 1, -0.2f));
     const auto moved = [&](float x, float z, float high) {
@@ -120,7 +127,9 @@ TEST_CASE("caustic optics: by areas no light is made or lost, and flat water lig
     }
 }
 
-TEST_CASE("caustic optics: a pool is as bright as the water is high, cubed") {
+TEST_CASE(
+    "caustic optics: a pool is as bright as the water is high, cubed"
+    * technique("caustic.refraction-pool")) {
     const float least = -0.3f;
     const float scale = pool_scale(least, 0.5f);
     const auto at = [&](float share) { return pool_light(least + 0.8f * share, least, scale); };
@@ -142,7 +151,8 @@ TEST_CASE("caustic optics: a pool is as bright as the water is high, cubed") {
 }
 
 TEST_CASE(
-    "caustic optics: crests gather light, troughs scatter it, flat water lets it straight down") {
+    "caustic optics: crests gather light, troughs scatter it, flat water lets it straight down"
+    * technique("caustic.refraction-pool")) {
     const Plane bottom = {kUp, -2};
     const Vec3 below =
         hit_nearest_plane({0.4f, 0, -0.7f}, refract_ray(kUp, kUp, 1 / kIndex), {&bottom, 1});
@@ -152,7 +162,9 @@ TEST_CASE(
     CHECK(lit_area(0) == test::near(1).epsilon(1e-4));
 }
 
-TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book computes it") {
+TEST_CASE(
+    "caustic optics: a vertex mirrors light onto a plane as the book computes it"
+    * technique("caustic.reflection-plane")) {
     const Plane plane = {{0, 0, 1}, 0};
     const Vec3 vertex(1, 0, 1);
     const Vec3 l = glm::normalize(Vec3(1, 0, -1));
@@ -184,7 +196,8 @@ TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book compu
 }
 
 TEST_CASE(
-    "caustic optics: a round mirror's rays cross its axis at 1 / (2 cos a), and touch a nephroid") {
+    "caustic optics: a round mirror's rays cross its axis at 1 / (2 cos a), and touch a nephroid"
+    * technique("caustic.reflection-plane")) {
     const Plane axis = {{0, 0, 1}, 0};
     const float expected[][2] = {{1, 0.500076f}, {10, 0.507713f}, {30, 0.577350f}, {45, 0.707107f}};
     for (const auto& [degrees, crossing] : expected) {
@@ -208,7 +221,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "caustic optics: shaders have the same functions") {
+TEST_CASE_FIXTURE(
+    RenderTest, "caustic optics: shaders have the same functions"
+                    * technique("caustic.reflection-plane, caustic.refraction-pool")) {
     std::vector<Vec4> mirrors;
     for (int i = 0; i < 256; ++i) {
         mirrors.emplace_back(start_of(i), static_cast<float>(i));

@@ -6,6 +6,7 @@
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +80,8 @@ float relative_difference(const gpu::FloatImage& found, const gpu::FloatImage& e
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Floor, "caustics: cascades show far out what one large map shows, without a seam") {
+    Floor, "caustics: cascades show far out what one large map shows, without a seam"
+               * technique("caustic.projected-vertices")) {
     const Entity water = sea({.resolution = 1024, .spacing = 1, .window = 128});
     // Sixteen meters to each side: the finest window ends at four, the next at sixteen.
     const RenderView view = from({0, -0.5f, 0});
@@ -90,7 +92,9 @@ TEST_CASE_FIXTURE(
     CHECK(relative_difference(radiance(view), exact) > 0.05f);
 }
 
-TEST_CASE_FIXTURE(Floor, "caustics: cascades do not swim: they move in whole texels of their own") {
+TEST_CASE_FIXTURE(
+    Floor, "caustics: cascades do not swim: they move in whole texels of their own"
+               * technique("caustic.projected-vertices")) {
     sea({.resolution = 64, .spacing = 2, .window = 8, .cascades = 2});
     draw(from({0.01f, -0.5f, 0.01f}));
     const gpu::FloatImage here = map();
@@ -112,7 +116,8 @@ TEST_CASE_FIXTURE(Floor, "caustics: cascades do not swim: they move in whole tex
 }
 
 TEST_CASE_FIXTURE(
-    Floor, "caustics: a hundred pools are as many passes as one, and light lies in each of them") {
+    Floor, "caustics: a hundred pools are as many passes as one, and light lies in each of them"
+               * technique("caustic.projected-vertices")) {
     const float red = 0.2f;
     const auto fill_pool = [&](int i) {
         return fill(

@@ -9,6 +9,7 @@
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -138,7 +139,8 @@ oracle::CausticSurfaceAt surface_of(const WaveTable& table) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: flat water mirrors the sun evenly onto a ceiling, as much as Fresnel says") {
+    Grotto, "caustics: flat water mirrors the sun evenly onto a ceiling, as much as Fresnel says"
+                * technique("caustic.projected-vertices")) {
     fill(kCaustics);
     for (const float height : {70.0f, 35.0f}) {
         const Vec3 to_sun = sun_at(radians(height));
@@ -159,7 +161,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Grotto, "caustics: all light that waves mirror arrives above, to 1 %") {
+TEST_CASE_FIXTURE(
+    Grotto, "caustics: all light that waves mirror arrives above, to 1 %"
+                * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill(kCaustics));
     for (const float height : {65.0f, 40.0f}) {
         const Vec3 to_sun = sun_at(radians(height));
@@ -178,7 +182,9 @@ TEST_CASE_FIXTURE(Grotto, "caustics: all light that waves mirror arrives above, 
     }
 }
 
-TEST_CASE_FIXTURE(Grotto, "caustics: what waves reflect onto a ceiling is that of traced photons") {
+TEST_CASE_FIXTURE(
+    Grotto, "caustics: what waves reflect onto a ceiling is that of traced photons"
+                * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill(kCaustics));
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);
@@ -211,7 +217,8 @@ TEST_CASE_FIXTURE(Grotto, "caustics: what waves reflect onto a ceiling is that o
 }
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: what hangs above the water cuts a hole into its mirrored light") {
+    Grotto, "caustics: what hangs above the water cuts a hole into its mirrored light"
+                * technique("caustic.projected-vertices")) {
     fill(kCaustics);
     const Vec3 to_sun = sun_at(radians(60), 0);
     sun(to_sun);
@@ -230,7 +237,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Grotto, "caustics: a wall gets mirrored light, and the same by every method") {
+TEST_CASE_FIXTURE(
+    Grotto, "caustics: a wall gets mirrored light, and the same by every method"
+                * technique("caustic.projected-vertices")) {
     fill(kCaustics);
     const Vec3 to_sun = sun_at(radians(45), 0);
     sun(to_sun);

@@ -15,6 +15,7 @@
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -164,7 +165,8 @@ Vec2 slant_of(const Vec3& to_sun, float index) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: flat water gathers nothing: even to 0.5 %, at any height of the sun") {
+    Pool, "caustics: flat water gathers nothing: even to 0.5 %, at any height of the sun"
+              * technique("caustic.projected-vertices")) {
     const Entity water = fill({.resolution = 128});
     Entity light = sun(sun_at(radians(80)));
     for (const float height : {80.0f, 50.0f, 15.0f}) {
@@ -191,7 +193,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: the floor of flat water gets what Fresnel and Snell let through") {
+    Pool, "caustics: the floor of flat water gets what Fresnel and Snell let through"
+              * technique("caustic.projected-vertices")) {
     const float absorption = 0.3f;
     const Entity water = fill({.resolution = 64});
     world.get<Water>(water).absorption = {absorption, 0.0f, 0.0f};
@@ -213,7 +216,9 @@ TEST_CASE_FIXTURE(
     CHECK(rgb_at(radiance(from_below()), 48, 48).x == test::near(to_sun.y / kPi).epsilon(0.005));
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: all light that waves let in arrives, to 1 %") {
+TEST_CASE_FIXTURE(
+    Pool, "caustics: all light that waves let in arrives, to 1 %"
+              * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill({.resolution = 256}), some_waves());
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);
@@ -232,7 +237,8 @@ TEST_CASE_FIXTURE(Pool, "caustics: all light that waves let in arrives, to 1 %")
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: they are those of traced photons, the nearer the finer the grid") {
+    Pool, "caustics: they are those of traced photons, the nearer the finer the grid"
+              * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill({.resolution = 256}), some_waves());
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);
@@ -267,7 +273,9 @@ TEST_CASE_FIXTURE(
     CHECK(before < 0.04);
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: a ripple that moves takes its caustic along") {
+TEST_CASE_FIXTURE(
+    Pool, "caustics: a ripple that moves takes its caustic along"
+              * technique("caustic.projected-vertices")) {
     const Entity water = fill({.resolution = 256});
     sun(sun_at(radians(89)));
     const WaterRipples ripples = {.cell = 0.05f};
@@ -298,7 +306,8 @@ TEST_CASE_FIXTURE(Pool, "caustics: a ripple that moves takes its caustic along")
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: what stands in the water cuts a hole where bent light would go") {
+    Pool, "caustics: what stands in the water cuts a hole where bent light would go"
+              * technique("caustic.projected-vertices")) {
     fill({.resolution = 256});
     const Vec3 to_sun = sun_at(radians(45), 0);
     sun(to_sun);
@@ -315,7 +324,9 @@ TEST_CASE_FIXTURE(
     CHECK(floor_at(aside + 0.28f) > 0.1f);
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: what stands above the water shades what lies below it") {
+TEST_CASE_FIXTURE(
+    Pool, "caustics: what stands above the water shades what lies below it"
+              * technique("caustic.projected-vertices")) {
     fill({.resolution = 256});
     const Vec3 to_sun = sun_at(radians(45), 0);
     world.add(sun(to_sun), Shadow{.resolution = 1024, .cascades = 1, .distance = 10});
@@ -344,7 +355,9 @@ TEST_CASE_FIXTURE(Pool, "caustics: no strength is flat water, and the same twice
     CHECK(largest_difference(first, map()) == 0);
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: those of the book are as bright as the water is high") {
+TEST_CASE_FIXTURE(
+    Pool, "caustics: those of the book are as bright as the water is high"
+              * technique("caustic.refraction-pool")) {
     const Entity water = fill({.method = CausticMethod::Pool, .resolution = 256});
     world.get<Water>(water).depth = 0.01f;  // where it lands is where it comes from
     sun(sun_at(radians(89.9f)));
@@ -374,7 +387,8 @@ TEST_CASE_FIXTURE(Pool, "caustics: those of the book are as bright as the water 
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "caustics: GPUs sum light as the CPU does, to the rounding of a texel") {
+    RenderTest, "caustics: GPUs sum light as the CPU does, to the rounding of a texel"
+                    * technique("caustic.projected-vertices")) {
     constexpr int kCells = 16;
     constexpr int kSide = 32;
     layout::CausticRecord record{};
@@ -426,7 +440,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: a mirror sends the sun where the book says, and nowhere else") {
+TEST_CASE_FIXTURE(
+    Pool, "caustics: a mirror sends the sun where the book says, and nowhere else"
+              * technique("caustic.reflection-plane")) {
     // Upright at x = 1, a meter above the plane, turned toward -x; the sun comes down along (1,
     // -1).
     const float floor_height = -kDepth;

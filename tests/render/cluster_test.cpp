@@ -3,6 +3,7 @@
 #include "bench/oracles/light_oracle.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -200,7 +201,9 @@ TEST_CASE("clusters: what would overflow the lists is left out, counted, and los
     CHECK(clusters.dropped + static_cast<int>(clusters.lights.size()) == 1001);
 }
 
-TEST_CASE_FIXTURE(Scene, "clusters: the image equals the sum of all lights at every pixel") {
+TEST_CASE_FIXTURE(
+    Scene, "clusters: the image equals the sum of all lights at every pixel"
+               * technique("deferred.light-pass")) {
     const Material matte = {
         .shading = ShadingModel::Blinn, .base_color = {0.8f, 0.8f, 0.8f, 1}, .specular = {0, 0, 0}};
     place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {40, 40, 1}));

@@ -131,7 +131,7 @@ TEST_CASE("coarse triangles: a million points or lines are not simplified, a sur
 
 TEST_CASE("coarse triangles: every vertex of the mesh is within the error of each level") {
     for (const MeshData& mesh :
-         {ball(), make_torus({}), make_box({.bevel = 0.05f, .bevel_segments = 4})}) {
+         {ball(), make_torus({.segments = 32, .sides = 16}), make_box({.bevel = 0.05f})}) {
         const std::vector<CoarseTriangles> levels = simplify_triangles(mesh);
         CHECK(levels.size() >= 3);
         std::size_t count = mesh.indices.size();

@@ -2,6 +2,7 @@
 #include "render/gpu/context.h"
 #include "render/gpu/readback.h"
 #include "tests/render/render_fixture.h"
+#include "tests/technique.h"
 
 #include <cstdlib>
 #include <string>
@@ -167,7 +168,9 @@ TEST_CASE("context: LIMN_GL_DEVICE is obeyed and a wrong one is one clear line")
         .join();
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "context: a limit is met, and exceeded by one more") {
+TEST_CASE_FIXTURE(
+    test::RenderTest,
+    "context: a limit is met, and exceeded by one more" * technique("shade.profile")) {
     const gpu::DeviceCaps& caps = device().caps();
     gpu::PassRequirements needs;
     needs.fragment_textures = caps.max_fragment_textures;
@@ -182,7 +185,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "context: a limit is met, and exceeded by on
     CHECK(status.error().message.find("glow: capacity: ") == 0);
 }
 
-TEST_CASE("context: what a device has none of is a capability error") {
+TEST_CASE("context: what a device has none of is a capability error" * technique("shade.profile")) {
     gpu::DeviceCaps caps;
     caps.max_combined_textures = 16;
     caps.max_vertex_textures = 0;
@@ -191,7 +194,7 @@ TEST_CASE("context: what a device has none of is a capability error") {
     CHECK(errors[0].kind == gpu::ProfileErrorKind::Capability);
 }
 
-TEST_CASE("context: the first version of a pass that fits is chosen") {
+TEST_CASE("context: the first version of a pass that fits is chosen" * technique("shade.profile")) {
     gpu::DeviceCaps caps;
     caps.max_samples = 4;
     caps.max_texture_size = 16384;

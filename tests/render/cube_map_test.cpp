@@ -2,6 +2,7 @@
 #include "render/gpu/readback.h"
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -29,8 +30,9 @@ void check_point(const Vec3& direction, int face, const Vec2& st) {
 
 }  // namespace
 
-TEST_CASE("cube_map: the axes are the middles of faces 0 to 5, other directions where OpenGL's "
-          "table has them") {
+TEST_CASE(
+    "cube_map: the axes are the centers of faces 0 to 5, other directions are those of OpenGL"
+    * technique("env.cube-addressing")) {
     const Vec3 axes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     for (int face = 0; face < kCubeFaces; ++face) {
         check_point(axes[face], face, {0.5f, 0.5f});
@@ -41,7 +43,9 @@ TEST_CASE("cube_map: the axes are the middles of faces 0 to 5, other directions 
     check_point({0, 0, 0}, 4, {0.5f, 0.5f});
 }
 
-TEST_CASE("cube_map: the length of a direction does not count, and every point has its direction") {
+TEST_CASE(
+    "cube_map: the length of a direction does not count, and every point has its direction"
+    * technique("env.cube-addressing")) {
     for (const Vec3& d : random_directions(200)) {
         const CubePoint point = cube_point(d);
         const CubePoint scaled = cube_point(16.0f * d);
@@ -51,7 +55,8 @@ TEST_CASE("cube_map: the length of a direction does not count, and every point h
     }
 }
 
-TEST_CASE("cube_map: a face is a sixth of the sphere, whatever its texels") {
+TEST_CASE(
+    "cube_map: a face is a sixth of the sphere, whatever its texels" * technique("env.capture")) {
     for (const int size : {1, 2, 7, 32}) {
         double sum = 0;
         for (int y = 0; y < size; ++y) {
@@ -64,7 +69,8 @@ TEST_CASE("cube_map: a face is a sixth of the sphere, whatever its texels") {
     CHECK(cube_texel_solid_angle(32, 16, 16) > 4 * cube_texel_solid_angle(32, 0, 0));
 }
 
-TEST_CASE_FIXTURE(RenderTest, "cube_map: the hardware finds the same texel") {
+TEST_CASE_FIXTURE(
+    RenderTest, "cube_map: the hardware finds the same texel" * technique("env.cube-addressing")) {
     constexpr int kSize = 8;
     gpu::Texture cube(
         "cube",

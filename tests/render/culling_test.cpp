@@ -1,5 +1,6 @@
 #include "render/geometry/culling.h"
 #include "render/render_view.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -65,7 +66,9 @@ TEST_CASE("culling: the kernel agrees with the scalar version in 1e5 random boxe
     CHECK(visible < kBoxes / 2);
 }
 
-TEST_CASE("culling: no box with a point in the image is lost, in 1e5 random boxes") {
+TEST_CASE(
+    "culling: no box with a point in the image is lost, in 1e5 random boxes"
+    * technique("fakephong.pipeline")) {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> unit(0, 1);
     const auto block = std::make_unique<BoxBlock>();
@@ -93,7 +96,9 @@ TEST_CASE("culling: no box with a point in the image is lost, in 1e5 random boxe
     CHECK(seen > 1000);
 }
 
-TEST_CASE("culling: what lies behind, above or beside the camera is dropped") {
+TEST_CASE(
+    "culling: what lies behind, above or beside the camera is dropped"
+    * technique("fakephong.pipeline")) {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view =
         make_render_view({.near = 0.1f}, pose, pose, {.width = 64, .height = 64});

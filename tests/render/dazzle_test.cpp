@@ -1,6 +1,7 @@
 #include "render/lens/dazzle_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -38,7 +39,9 @@ struct DazzleScene : Scene {
 
 }  // namespace
 
-TEST_CASE("dazzle: all of the opacity straight ahead, half at half the angle, none beyond") {
+TEST_CASE(
+    "dazzle: all of the opacity straight ahead, half at half the angle, none beyond"
+    * technique("engine.obfuscating-point")) {
     CHECK(dazzle_weight(kLamp, 0) == near(0.8));
     CHECK(dazzle_weight(kLamp, 0.25f) == near(0.4));
     CHECK(dazzle_weight(kLamp, 0.5f) == 0);
@@ -47,7 +50,9 @@ TEST_CASE("dazzle: all of the opacity straight ahead, half at half the angle, no
     CHECK(dazzle_weight({.angle = 0}, 0) == 0);
 }
 
-TEST_CASE_FIXTURE(DazzleScene, "dazzle: the image is mixed with the color by the weight") {
+TEST_CASE_FIXTURE(
+    DazzleScene, "dazzle: the image is mixed with the color by the weight"
+                     * technique("engine.obfuscating-point")) {
     shine_at({0, 0, -5});
     const Vec3 mixed = corner();
     for (int c = 0; c < 3; ++c) {
@@ -65,7 +70,8 @@ TEST_CASE_FIXTURE(DazzleScene, "dazzle: the image is mixed with the color by the
 }
 
 TEST_CASE_FIXTURE(
-    DazzleScene, "dazzle: what stands before the point hides it, what is behind does not") {
+    DazzleScene, "dazzle: what stands before the point hides it, what is behind does not"
+                     * technique("engine.obfuscating-point")) {
     shine_at({0, 0, -5});
     const MeshId square = add(make_square());
     const MaterialId black =
@@ -80,7 +86,9 @@ TEST_CASE_FIXTURE(
     CHECK(weight() == near(0.4).epsilon(0.2));
 }
 
-TEST_CASE_FIXTURE(DazzleScene, "dazzle: a directional light does so from where it comes") {
+TEST_CASE_FIXTURE(
+    DazzleScene, "dazzle: a directional light does so from where it comes"
+                     * technique("engine.obfuscating-point")) {
     const Affine pose = affine_from({0, 0, 0}, glm::angleAxis(kPi, Vec3(0, 1, 0)), Vec3(1));
     const Entity sun =
         world.create(kLamp, DirectionalLight{.enabled = false}, WorldTransform{pose});

@@ -6,6 +6,7 @@
 #include "render/shaders/depth_of_field_gpu.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -134,7 +135,8 @@ Show spark(float distance, int x0, int y0) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: a point is a disc of the right diameter and all its light") {
+    Darkroom, "depth_of_field: a point is a disc of the right diameter and all its light"
+                  * technique("post.circle-of-confusion")) {
     const RenderView view = lens_view(192, 192, kAll);
     for (const float diameter :
          {-44.0f, -30.0f, -20.0f, -12.0f, -7.0f, -3.0f, 2.0f, 4.5f, 9.0f, 16.0f, 26.0f, 40.0f}) {
@@ -393,7 +395,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Darkroom, "depth_of_field: what is in focus keeps every bit") {
+TEST_CASE_FIXTURE(
+    Darkroom, "depth_of_field: what is in focus keeps every bit" * technique("post.dof-mip")) {
     Random random(5, 0, 0, 0);
     std::vector<Vec3> light(64 * 48);
     for (Vec3& one : light) {
@@ -476,7 +479,9 @@ TEST_CASE_FIXTURE(Scene, "depth_of_field: glow is of the image through the lens"
 
 // ---- the cheapest kind (post.dof-mip)
 
-TEST_CASE_FIXTURE(Darkroom, "depth_of_field: by mip levels, an uniform image stays uniform") {
+TEST_CASE_FIXTURE(
+    Darkroom,
+    "depth_of_field: by mip levels, an uniform image stays uniform" * technique("post.dof-mip")) {
     RenderView view = lens_view(64, 64, 14);
     view.lens.method = FocusMethod::Mip;
     const gpu::FloatImage image = photograph(view, [](int x, int y) {
@@ -491,7 +496,8 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: by mip levels, an uniform image sta
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: by mip levels, a circle of 8 px is level 3 and keeps the mean") {
+    Darkroom, "depth_of_field: by mip levels, a circle of 8 px is level 3 and keeps the mean"
+                  * technique("post.dof-mip")) {
     RenderView view = lens_view(64, 64, 14);
     view.lens.method = FocusMethod::Mip;
     const float distance = distance_of(8, 14);
@@ -513,7 +519,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: by mip levels, a circle of less than a pixel is level 0") {
+    Darkroom, "depth_of_field: by mip levels, a circle of less than a pixel is level 0"
+                  * technique("post.dof-mip")) {
     RenderView view = lens_view(64, 64, 14);
     view.lens.method = FocusMethod::Mip;
     for (const float diameter : {0.9f, -0.9f}) {
@@ -539,7 +546,9 @@ TEST_CASE_FIXTURE(
 
 // ---- depth buffers (post.linear-to-window-depth)
 
-TEST_CASE("depth_of_field: window depth of eye distances, and back") {
+TEST_CASE(
+    "depth_of_field: window depth of eye distances, and back"
+    * technique("post.linear-to-window-depth")) {
     CHECK(window_depth(1, 1, 100) == 0);
     CHECK(window_depth(100, 1, 100) == test::near(1));
     CHECK(window_depth(2, 1, 100) == test::near(0.505051).epsilon(1e-5));
@@ -567,7 +576,8 @@ TEST_CASE("depth_of_field: window depth of eye distances, and back") {
 }
 
 TEST_CASE(
-    "depth_of_field: reversed depth without a far plane is the limit, as the projection has it") {
+    "depth_of_field: reversed depth without a far plane is the limit, as the projection has it"
+    * technique("post.linear-to-window-depth")) {
     const RenderView view = lens_view(64, 64, 10);
     for (const float z : {0.1f, 0.5f, 3.0f, 1000.0f}) {
         const Vec4 clip = view.clip_from_world * Vec4(0, 0, -z, 1);

@@ -3,6 +3,7 @@
 #include "render/lens/tone_mapper.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,9 @@ struct DodgeBurn : RenderTest {
 
 }  // namespace
 
-TEST_CASE("hdr: a uniform image is burned as a whole, by the global curve") {
+TEST_CASE(
+    "hdr: a uniform image is burned as a whole, by the global curve"
+    * technique("hdr.dodge-burn")) {
     for (const double l : {0.02, 0.18, 3.0}) {
         const oracle::DodgeBurn local =
             oracle::dodge_burn(Picture(kWidth * kHeight, l), kWidth, kHeight);
@@ -113,7 +116,8 @@ TEST_CASE("hdr: a uniform image is burned as a whole, by the global curve") {
     CHECK(*std::min_element(local.scale.begin(), local.scale.end()) == 8);
 }
 
-TEST_CASE("hdr: regions are small near an edge and large far from it") {
+TEST_CASE(
+    "hdr: regions are small near an edge and large far from it" * technique("hdr.dodge-burn")) {
     const oracle::DodgeBurn local = oracle::dodge_burn(make_spot(), kWidth, kHeight);
     const int middle = kHeight / 2;
     const int edge = local.scale[index(kWidth / 2 + 13, middle)];
@@ -124,7 +128,9 @@ TEST_CASE("hdr: regions are small near an edge and large far from it") {
     CHECK(far_away == 8);
 }
 
-TEST_CASE("hdr: against the global curve, local contrast is kept or raised") {
+TEST_CASE(
+    "hdr: against the global curve, local contrast is kept or raised"
+    * technique("hdr.dodge-burn")) {
     const Picture room = make_room();
     const oracle::DodgeBurn local = oracle::dodge_burn(room, kWidth, kHeight);
     for (std::size_t i = 0; i < room.size(); ++i) {
@@ -141,7 +147,9 @@ TEST_CASE("hdr: against the global curve, local contrast is kept or raised") {
     }
 }
 
-TEST_CASE_FIXTURE(DodgeBurn, "hdr: the blurs of the GPU are the oracle's Gaussians") {
+TEST_CASE_FIXTURE(
+    DodgeBurn,
+    "hdr: the blurs of the GPU are the oracle's Gaussians" * technique("hdr.dodge-burn")) {
     const Picture room = make_room();
     const gpu::Texture texture = upload(room);
     graph.begin_frame();
@@ -182,7 +190,8 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: the blurs of the GPU are the oracle's Gaussia
     }
 }
 
-TEST_CASE_FIXTURE(DodgeBurn, "hdr: the GPU dodges and burns like the oracle") {
+TEST_CASE_FIXTURE(
+    DodgeBurn, "hdr: the GPU dodges and burns like the oracle" * technique("hdr.dodge-burn")) {
     for (const Picture& picture :
          {make_spot(), make_spot(1.2, 0.3), make_room(), Picture(kWidth * kHeight, 0.4)}) {
         const Picture got = show(picture);

@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "ecs/components/env_probe.h"
 #include "ecs/hierarchy.h"
@@ -70,7 +71,8 @@ double relative_difference(const gpu::FloatImage& a, const gpu::FloatImage& b) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ProbeScene, "env_probe: in a room of six colors a mirror shows each where its wall is") {
+    ProbeScene, "env_probe: in a room of six colors a mirror shows each where its wall is"
+                    * technique("env.capture")) {
     room(5);
     const EnvProbe probe = {.radius = 2, .resolution = 64};
     ball(kMirror, &probe);
@@ -90,7 +92,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ProbeScene, "env_probe: one that sees nothing but the sky changes nothing, seams included") {
+    ProbeScene, "env_probe: one that sees nothing but the sky changes nothing, seams included"
+                    * technique("env.capture")) {
     for (const SkyKind sky : {SkyKind::Gradient, SkyKind::Studio}) {
         for (const bool visible : {true, false}) {
             world.insert_resource(Environment{.sky = sky, .visible = visible});
@@ -127,7 +130,9 @@ TEST_CASE_FIXTURE(ProbeScene, "env_probe: diffuse surfaces get the irradiance of
     CHECK(away.at(16, 16, 0) < 0.1f);
 }
 
-TEST_CASE_FIXTURE(ProbeScene, "env_probe: its entity and what is below that is not seen by it") {
+TEST_CASE_FIXTURE(
+    ProbeScene,
+    "env_probe: its entity and what is below that is not seen by it" * technique("env.capture")) {
     room(5);
     const EnvProbe probe = {.radius = 2, .resolution = 64};
     const Entity mirror = ball(kMirror, &probe);
@@ -149,8 +154,8 @@ TEST_CASE_FIXTURE(ProbeScene, "env_probe: its entity and what is below that is n
 }
 
 TEST_CASE_FIXTURE(
-    ProbeScene, "env_probe: in a box a mirror shows the point of the wall that its ray "
-                "meets") {
+    ProbeScene, "env_probe: in a box a mirror shows the point of the wall that its ray meets"
+                    * technique("env.capture")) {
     room(4);
     // A plane mirror off the middle, and a probe in it: without the box, what is seen from there.
     const Vec3 place_of_mirror = {0, -3, 0};

@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "ecs/components/rendering.h"
 #include "render/environment/environment_light.h"
@@ -77,7 +78,9 @@ double worst_reflection(MirrorScene& scene, const Vec3& eye, Normal&& normal) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "env_reflect: the shader's reflection is V - 2 N (V.N)") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "env_reflect: the shader's reflection is V - 2 N (V.N)" * technique("env.reflect")) {
     std::mt19937 random(5);
     std::normal_distribution<float> normal;
     const auto draw = [&] { return Vec3(normal(random), normal(random), normal(random)); };
@@ -103,7 +106,8 @@ TEST_CASE_FIXTURE(RenderTest, "env_reflect: the shader's reflection is V - 2 N (
 }
 
 TEST_CASE_FIXTURE(
-    MirrorScene, "env_reflect: every pixel of a mirror shows the sky along its reflected ray") {
+    MirrorScene, "env_reflect: every pixel of a mirror shows the sky along its reflected ray"
+                     * technique("env.reflect")) {
     ball(at({0, 0, 0}));
     for (const Vec3& eye : {Vec3(0, 0, 2.2f), Vec3(1.3f, 1.1f, -1.4f), Vec3(-0.5f, -1.9f, 0.9f)}) {
         CHECK(
@@ -112,7 +116,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    MirrorScene, "env_reflect: of a stretched, turned ball, by the normals of the ellipsoid") {
+    MirrorScene, "env_reflect: of a stretched, turned ball, by the normals of the ellipsoid"
+                     * technique("env.reflect")) {
     const Affine pose = affine_from(
         {0, 0, 0}, glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 3))), {1.3f, 0.6f, -0.9f});
     ball(pose);
@@ -125,7 +130,9 @@ TEST_CASE_FIXTURE(
     CHECK(worst_reflection(*this, {1.3f, 1.1f, -1.4f}, normal) < 0.05);
 }
 
-TEST_CASE_FIXTURE(MirrorScene, "env_reflect: the image does not turn with the mirror") {
+TEST_CASE_FIXTURE(
+    MirrorScene,
+    "env_reflect: the image does not turn with the mirror" * technique("env.reflect")) {
     const Entity entity = ball(at({0, 0, 0}));
     const RenderView view = look({0.3f, 0.8f, 2}, {0, 0, 0}, 96, 96);
     const gpu::FloatImage still = radiance(view);
@@ -141,7 +148,9 @@ TEST_CASE_FIXTURE(MirrorScene, "env_reflect: the image does not turn with the mi
     CHECK(sum / static_cast<double>(image.pixels.size()) < 0.003);
 }
 
-TEST_CASE_FIXTURE(MirrorScene, "env_reflect: the distance of the eye changes nothing along a ray") {
+TEST_CASE_FIXTURE(
+    MirrorScene,
+    "env_reflect: the distance of the eye changes nothing along a ray" * technique("env.reflect")) {
     place(add(make_square()), mirror, affine_from({0, 0, 0}, {1, 0, 0, 0}, {9, 9, 1}));
     const Vec3 toward_eye = {0.4f, 1.1f, 1.0f};
     const auto middle = [&](float distance) {
@@ -194,7 +203,8 @@ TextureSlot nearest(ImageId image) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ControlScene, "env_control_map: unlit, a share r of the color gives way to the surroundings") {
+    ControlScene, "env_control_map: unlit, a share r of the color gives way to the surroundings"
+                      * technique("env.control-map")) {
     const Vec3 own = {0.8f, 0.6f, 0.1f};
     for (const AlphaMode mode : {AlphaMode::Opaque, AlphaMode::Blend}) {
         for (const float r : {0.0f, 0.125f, 0.25f, 0.5f, 0.75f, 1.0f}) {
@@ -213,7 +223,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(ControlScene, "env_control_map: the same by every way of lighting") {
+TEST_CASE_FIXTURE(
+    ControlScene,
+    "env_control_map: the same by every way of lighting" * technique("env.control-map")) {
     const Material material = {
         .shading = ShadingModel::Unlit,
         .base_color = {0.8f, 0.6f, 0.1f, 1},
@@ -231,7 +243,8 @@ TEST_CASE_FIXTURE(ControlScene, "env_control_map: the same by every way of light
 }
 
 TEST_CASE_FIXTURE(
-    ControlScene, "env_control_map: the map is data, its halves are two materials in one draw") {
+    ControlScene, "env_control_map: the map is data, its halves are two materials in one draw"
+                      * technique("env.control-map")) {
     Material material = {
         .shading = ShadingModel::Unlit,
         .base_color = {0.8f, 0.6f, 0.1f, 1},
@@ -252,7 +265,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ControlScene, "env_control_map: lit, a share m of metal is linear between without and all") {
+    ControlScene, "env_control_map: lit, a share m of metal is linear between without and all"
+                      * technique("env.control-map")) {
     shine(PointLight{.intensity = 2}, at({0.3f, 0.4f, 0.8f}));
     for (const float roughness : {0.1f, 0.5f, 1.0f}) {
         Material material = {.base_color = {0.8f, 0.6f, 0.1f, 1}, .roughness = roughness};
@@ -276,7 +290,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(ControlScene, "env_control_map: with Fresnel's weight, without it and with all") {
+TEST_CASE_FIXTURE(
+    ControlScene, "env_control_map: with Fresnel's weight, without it and with all"
+                      * technique("env.control-map")) {
     // Head on a dielectric mirrors 4 %; of the rest it is the color.
     const gpu::FloatImage without =
         picture({.base_color = {0.8f, 0.6f, 0.1f, 1}, .metalness = 0, .roughness = 0});

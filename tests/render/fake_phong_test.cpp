@@ -1,6 +1,7 @@
 #include "render/light/highlight_layers.h"
 #include "tests/near.h"
 #include "tests/render/laboratory_fixture.h"
+#include "tests/technique.h"
 
 #include <cmath>
 #include <utility>
@@ -58,7 +59,8 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: eight lights are as the laboratory ha
 
 TEST_CASE_FIXTURE(
     Laboratory,
-    "fake phong: eight of twelve lights have terms of their own, the rest is lit per vertex") {
+    "fake phong: eight of twelve lights have terms of their own, the rest is lit per vertex"
+        * technique("fakephong.blinn-map")) {
     show(make_ball(5));
     std::vector<Entity> lights;
     for (const Vec3& to_light : kAround) {
@@ -90,7 +92,8 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: a base color map tints what is no hig
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: with each axis a Blinn map is as the laboratory has it") {
+    Laboratory, "fake phong: with each axis a Blinn map is as the laboratory has it"
+                    * technique("fakephong.blinn-axis")) {
     show(make_ball(5));
     point_light({0.6f, 1.5f, 3});
     constexpr fakephong::BlinnAxis kTheirs[] = {
@@ -123,7 +126,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: diffuse light from a Blinn texture is as the laboratory has it") {
+    Laboratory, "fake phong: diffuse light from a Blinn texture is as the laboratory has it"
+                    * technique("fakephong.blinn-map")) {
     show(make_ball(5));
     point_light({0.6f, 1.5f, 3});
     directional_light({-0.5f, 0.1f, 1});
@@ -170,8 +174,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory,
-    "fake phong: without the perspective divide methods are as the laboratory has them") {
+    Laboratory, "fake phong: without the perspective divide methods are as the laboratory has them"
+                    * technique("fakephong.texmap")) {
     show(make_spread_triangle());
     // The triangle leans away, within the image: Mesa 22.3 clips at its border with perspective.
     eye = {1.4f, 0.9f, 2.1f};
@@ -190,7 +194,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: without the perspective divide a texture lies where the screen says") {
+    Laboratory, "fake phong: without the perspective divide a texture lies where the screen says"
+                    * technique("fakephong.texmap")) {
     // Along the lower edge w grows from 1 to 3 and u from 0 to 1; the left half of the texture is
     // black. In perspective that is up to a half of u, at 3/4 of the edge on the screen.
     std::vector<std::uint8_t> pixels;
@@ -228,7 +233,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: a sphere map follows lights, the camera, materials and objects") {
+    Laboratory, "fake phong: a sphere map follows lights, the camera, materials and objects"
+                    * technique("fakephong.envmap-bake")) {
     constexpr NamedRate kRate = {ShadingRate::Environment, "envmap"};
     show(make_ball(8));
     directional_light({0.2f, 0.4f, 1});
@@ -259,7 +265,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: on a fine ball a sphere map has Phong's own highlights") {
+    Laboratory, "fake phong: on a fine ball a sphere map has Phong's own highlights"
+                    * technique("fakephong.envmap-bake, fakephong.illum-phong")) {
     auto& material = world.resource<Assets>().materials[shiny.index];
     material.shading = ShadingModel::Phong;
     material.shininess = 8;
@@ -270,8 +277,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory,
-    "fake phong: at the centroid a Taylor series is exact for lights and eye far away") {
+    Laboratory, "fake phong: at the centroid a Taylor series is exact for lights and eye far away"
+                    * technique("fakephong.taylor")) {
     show(make_spread_triangle());
     directional_light({0.3f, 0.2f, 1});
     rendering.infinite_viewer = true;
@@ -288,7 +295,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: without its defects the hardware of 2002 draws what is meant") {
+    Laboratory, "fake phong: without its defects the hardware of 2002 draws what is meant"
+                    * technique("fakephong.hw-blinn, fakephong.hw-quadratic")) {
     show(make_ball(5));
     world.get<WorldTransform>(object).world = affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.9f));
     world.get<PreviousWorldTransform>(object) = {world.get<WorldTransform>(object).world};
@@ -318,7 +326,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: only the hardware of 2002 lights normals that point away from H") {
+    Laboratory, "fake phong: only the hardware of 2002 lights normals that point away from H"
+                    * technique("fakephong.hw-blinn")) {
     MeshData mesh = make_square();
     mesh.normals.assign(4, {-0.8f, 0, -0.6f});
     show(mesh);
@@ -441,7 +450,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("highlight layers: one per exponent, whatever the number of materials") {
+TEST_CASE(
+    "highlight layers: one per exponent, whatever the number of materials"
+    * technique("fakephong.blinn-texture")) {
     const std::vector<Material> materials = {
         {.shading = ShadingModel::Blinn, .shininess = 80},
         {.shading = ShadingModel::Pbr, .shininess = 7},
@@ -452,7 +463,9 @@ TEST_CASE("highlight layers: one per exponent, whatever the number of materials"
     CHECK(layers.of_record == std::vector<std::uint32_t>{0, 0, 2, 0, 2, 1});
 }
 
-TEST_CASE("highlight layers: sphere maps have one per material, as long as there is room") {
+TEST_CASE(
+    "highlight layers: sphere maps have one per material, as long as there is room"
+    * technique("fakephong.blinn-texture")) {
     std::vector<Material> materials = {
         {.shading = ShadingModel::Blinn, .shininess = 80},
         {.shading = ShadingModel::Pbr, .shininess = 7},
@@ -464,7 +477,9 @@ TEST_CASE("highlight layers: sphere maps have one per material, as long as there
     CHECK(layers_by_material(materials).exponents == std::vector<float>{1, 80});
 }
 
-TEST_CASE("highlight layers: a thousand exponents share those that there is room for") {
+TEST_CASE(
+    "highlight layers: a thousand exponents share those that there is room for"
+    * technique("fakephong.blinn-texture")) {
     std::vector<Material> materials;
     for (int i = 0; i < 1000; ++i) {
         materials.push_back(

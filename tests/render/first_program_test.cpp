@@ -4,6 +4,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -154,7 +155,9 @@ RenderView cube_view(const Vec3& eye) {
 
 // ---- shade.pipeline-model --------------------------------------------------------------------
 
-TEST_CASE_FIXTURE(PairTest, "pipeline: interpolation is that of space, not of the screen") {
+TEST_CASE_FIXTURE(
+    PairTest, "pipeline: interpolation is that of space, not of the screen"
+                  * technique("shade.pipeline-model")) {
     draw(full_quad(1, 3, Vec3(0), Vec3(1)));
     const gpu::FloatImage image = gpu::read_floats(color);
     CHECK(image.at(32, 32, 0) == test::near(0.25).epsilon(1e-5));
@@ -164,7 +167,9 @@ TEST_CASE_FIXTURE(PairTest, "pipeline: interpolation is that of space, not of th
     }
 }
 
-TEST_CASE_FIXTURE(PairTest, "pipeline: a fragment that fails a test changes no bit") {
+TEST_CASE_FIXTURE(
+    PairTest,
+    "pipeline: a fragment that fails a test changes no bit" * technique("shade.pipeline-model")) {
     draw(full_quad(1, 1, {0.1f, 0.2f, 0.3f}, {0.9f, 0.7f, 0.5f}));
     const gpu::FloatImage colors = gpu::read_floats(color);
     const gpu::FloatImage depths = gpu::read_floats(depth);
@@ -194,7 +199,8 @@ TEST_CASE_FIXTURE(PairTest, "pipeline: a fragment that fails a test changes no b
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "pipeline: a mesh without tangents goes without its normal map, and says so once") {
+    Scene, "pipeline: a mesh without tangents goes without its normal map, and says so once"
+               * technique("shade.pipeline-model")) {
     MeshData mesh = make_square();
     mesh.name = "sheet";
     mesh.tangents.clear();
@@ -223,7 +229,8 @@ TEST_CASE_FIXTURE(
 
 // ---- shade.passthrough-cube ------------------------------------------------------------------
 
-TEST_CASE("first_program: the cube's triangles look outward") {
+TEST_CASE(
+    "first_program: the cube's triangles look outward" * technique("shade.passthrough-cube")) {
     const std::vector<std::uint32_t> indices = cube_indices();
     REQUIRE(indices.size() == 36);
     for (std::size_t i = 0; i < indices.size(); i += 3) {
@@ -234,7 +241,9 @@ TEST_CASE("first_program: the cube's triangles look outward") {
     }
 }
 
-TEST_CASE("first_program: every pixel of the color cube is the position it shows") {
+TEST_CASE(
+    "first_program: every pixel of the color cube is the position it shows"
+    * technique("shade.passthrough-cube")) {
     for (const Vec3& eye : {Vec3(0, 0, 5), Vec3(2.6f, 2.9f, 3.2f), Vec3(-3, -2, 3.4f)}) {
         const RenderView view = cube_view(eye);
         std::vector<Vertex> vertices;
@@ -249,7 +258,9 @@ TEST_CASE("first_program: every pixel of the color cube is the position it shows
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "first_program: the renderer's own programs draw the same cube") {
+TEST_CASE_FIXTURE(
+    Scene, "first_program: the renderer's own programs draw the same cube"
+               * technique("shade.passthrough-cube")) {
     MeshData cube;
     cube.name = "color cube";
     for (int i = 0; i < 8; ++i) {
@@ -275,7 +286,8 @@ TEST_CASE_FIXTURE(Scene, "first_program: the renderer's own programs draw the sa
 // ---- shade.parameters ------------------------------------------------------------------------
 
 TEST_CASE_FIXTURE(
-    RenderTest, "parameters: programs of meshes read what meshes have, and all of it") {
+    RenderTest, "parameters: programs of meshes read what meshes have, and all of it"
+                    * technique("shade.parameters")) {
     std::set<int> read;
     for (const char* fragment : {"gbuffer.frag", "shadow_map.frag"}) {
         for (const std::vector<gpu::ShaderDefine>& defines :
@@ -301,7 +313,9 @@ TEST_CASE_FIXTURE(
     CHECK(read == had);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "parameters: what does not flow from end to end is a context error") {
+TEST_CASE_FIXTURE(
+    RenderTest, "parameters: what does not flow from end to end is a context error"
+                    * technique("shade.parameters")) {
     gpu::ShaderFiles files;
     files.put("pass.vert", kPassVertex);
     files.put("pass.frag", kPassFragment);
@@ -331,7 +345,9 @@ void main() { color = vec4(passed + never_written, 1.0); })");
     CHECK_FALSE((*whole)->expect_inputs(whole_numbers).ok());
 }
 
-TEST_CASE_FIXTURE(PairTest, "parameters: an interpolated normal is short, the renderer's is not") {
+TEST_CASE_FIXTURE(
+    PairTest, "parameters: an interpolated normal is short, the renderer's is not"
+                  * technique("shade.parameters")) {
     for (const auto& [degrees, length] : {std::pair(60.0f, 0.8660), std::pair(90.0f, 0.7071)}) {
         const float half = radians(0.5f * degrees);
         const Vec3 left = {-std::sin(half), 0, std::cos(half)};

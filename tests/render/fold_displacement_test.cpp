@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/wrinkle_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "ecs/components/shadow.h"
 #include "systems/faces/wrinkle_fold.h"
@@ -128,7 +129,8 @@ int range_of(const std::vector<int>& ends) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FoldScene, "fold displacement: skin moves as high as folds that keep its length") {
+    FoldScene, "fold displacement: skin moves as high as folds that keep its length"
+                   * technique("wrinkle.displacement")) {
     for (const float weight : {0.25f, 0.5f, 1.0f}) {
         const float left = 1 + weight * (kLeft - 1);
         const float excess = 1 / left - 1;
@@ -170,7 +172,9 @@ TEST_CASE_FIXTURE(FoldScene, "fold displacement: vertices that a seam doubles mo
     }
 }
 
-TEST_CASE_FIXTURE(FoldScene, "fold displacement: at rest every bit is as without") {
+TEST_CASE_FIXTURE(
+    FoldScene,
+    "fold displacement: at rest every bit is as without" * technique("wrinkle.displacement")) {
     shine(SpotLight{.intensity = 30, .radius = 20, .outer_angle = 0.8f}, at({0.4f, 0.3f, 4}));
     const RenderView front = look({0, 0, 1.6f}, {0, 0, 0}, 96, 96);
     for (const float weight : {0.0f, -0.5f}) {  // at rest and stretched
@@ -186,7 +190,8 @@ TEST_CASE_FIXTURE(FoldScene, "fold displacement: at rest every bit is as without
 }
 
 TEST_CASE_FIXTURE(
-    FoldScene, "fold displacement: the outline folds by twice the amplitude in pixels") {
+    FoldScene, "fold displacement: the outline folds by twice the amplitude in pixels"
+                   * technique("wrinkle.displacement")) {
     const RenderView front = look({0, 0, 2}, {0, 0, 0}, 400, 400);
     const float excess = 1 / kLeft - 1;
     const float amplitude =
@@ -202,7 +207,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FoldScene, "fold displacement: depth and shadow are those of folds made of triangles") {
+    FoldScene, "fold displacement: depth and shadow are those of folds made of triangles"
+                   * technique("wrinkle.displacement")) {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0, 0, 0}});
     const Material matte = {
         .shading = ShadingModel::Blinn, .double_sided = true, .specular = {0, 0, 0}};

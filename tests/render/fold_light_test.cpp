@@ -4,6 +4,7 @@
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
 #include "tests/render/wrinkle_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -83,7 +84,9 @@ const WrinkleSurface kSingleSlopes = {.bounce = false, .share = 1};
 
 }  // namespace
 
-TEST_CASE("fold light: the light on each wall of a groove, in its shadow too, is the oracle's") {
+TEST_CASE(
+    "fold light: the light on each wall of a groove, in its shadow too, is the oracle's"
+    * technique("wrinkle.fold-light")) {
     std::vector<Vec4> inputs;
     for (const GrooveLight& light : groove_lights()) {
         inputs.push_back(shader_input(light, 0));
@@ -100,8 +103,9 @@ TEST_CASE("fold light: the light on each wall of a groove, in its shadow too, is
     }
 }
 
-TEST_CASE("fold light: with all bounces a wall of skin is as bright as by radiosity, to 3 % of the "
-          "light") {
+TEST_CASE(
+    "fold light: with all bounces a wall of skin is as bright as by radiosity, to 3 % of the light"
+    * technique("wrinkle.fold-light")) {
     for (const double albedo : {0.1, 0.3, 0.6}) {
         std::vector<Vec4> inputs;
         for (const GrooveLight& light : groove_lights()) {
@@ -124,7 +128,9 @@ TEST_CASE("fold light: with all bounces a wall of skin is as bright as by radios
     }
 }
 
-TEST_CASE("fold light: in light from all around a groove is as bright as by radiosity, to 2.5 %") {
+TEST_CASE(
+    "fold light: in light from all around a groove is as bright as by radiosity, to 2.5 %"
+    * technique("wrinkle.fold-light")) {
     std::vector<Vec4> inputs;
     for (const float slope : {0.0f, 10.0f, 25.0f, 40.0f, 50.0f, 60.0f}) {
         for (const float albedo : {0.0f, 0.3f, 0.6f, 0.9f, 1.0f}) {
@@ -143,7 +149,9 @@ TEST_CASE("fold light: in light from all around a groove is as bright as by radi
     }
 }
 
-TEST_CASE("fold light: a white groove is as bright as white skin, whatever the light and slope") {
+TEST_CASE(
+    "fold light: a white groove is as bright as white skin, whatever the light and slope"
+    * technique("wrinkle.fold-light")) {
     std::vector<Vec4> inputs;
     for (const GrooveLight& light : groove_lights()) {
         inputs.push_back(shader_input(light, 1));
@@ -160,7 +168,8 @@ TEST_CASE("fold light: a white groove is as bright as white skin, whatever the l
 }
 
 TEST_CASE_FIXTURE(
-    FoldLightScene, "fold light: the wall that faces away is lit by the other one, and redder") {
+    FoldLightScene, "fold light: the wall that faces away is lit by the other one, and redder"
+                        * technique("wrinkle.fold-light")) {
     const Vec3 flat = center_pixel({.method = WrinkleMethod::None});
     // Along the plane, nearly: the slope faces down, away from it.
     turn_light(Vec3{0, 0.8f, 0.6f});
@@ -184,7 +193,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(FoldLightScene, "fold light: skin without folds is as without, to the bit") {
+TEST_CASE_FIXTURE(
+    FoldLightScene,
+    "fold light: skin without folds is as without, to the bit" * technique("wrinkle.fold-light")) {
     CHECK(center_pixel(kFolds, 0) == center_pixel(kSingleSlopes, 0));
     CHECK(center_pixel(kFolds, 0) == center_pixel({.method = WrinkleMethod::None}, 0));
     turn_light(glm::normalize(Vec3{0.8f, -0.3f, 0.2f}));
@@ -196,7 +207,9 @@ TEST_CASE_FIXTURE(FoldLightScene, "fold light: skin without folds is as without,
     CHECK(center_pixel(bump) == center_pixel(without));
 }
 
-TEST_CASE_FIXTURE(FoldLightScene, "fold light: every way to add lights up draws the same folds") {
+TEST_CASE_FIXTURE(
+    FoldLightScene, "fold light: every way to add lights up draws the same folds"
+                        * technique("wrinkle.fold-light")) {
     turn_light(glm::normalize(Vec3{0, -0.7f, 0.5f}));
     const Vec3 clustered = center_pixel(kFolds);
     CHECK(clustered.x > 0.01f);
@@ -211,7 +224,8 @@ TEST_CASE_FIXTURE(FoldLightScene, "fold light: every way to add lights up draws 
 }
 
 TEST_CASE_FIXTURE(
-    FoldLightScene, "fold light: no light shines through the wall of a fold, which has no back") {
+    FoldLightScene, "fold light: no light shines through the wall of a fold, which has no back"
+                        * technique("wrinkle.fold-light")) {
     // In its shadow map, the skin never blocks light from itself, as if it were thin.
     world.add(light, Shadow{});
     material.shading = ShadingModel::Subsurface;
@@ -227,7 +241,9 @@ TEST_CASE_FIXTURE(
     CHECK(center_pixel(kSingleSlopes).x > 1.5f * translucent.x);
 }
 
-TEST_CASE_FIXTURE(FoldLightScene, "fold light: skin that emits light keeps it") {
+TEST_CASE_FIXTURE(
+    FoldLightScene,
+    "fold light: skin that emits light keeps it" * technique("wrinkle.fold-light")) {
     material.emission = {0.2f, 0.3f, 0.4f};
     turn_light({0, 0, -1});
     const Vec3 folded = center_pixel(kFolds);

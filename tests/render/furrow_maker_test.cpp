@@ -10,6 +10,7 @@
 #include "render/material/furrow_maker.h"
 #include "tests/content/furrow_shapes.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -67,7 +68,8 @@ Difference compare_makers(gpu::Device& device, FurrowSurface surface, const Furr
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "repeatable math: shaders give the same bits") {
+TEST_CASE_FIXTURE(
+    RenderTest, "repeatable math: shaders give the same bits" * technique("wrinkle.furrow.trace")) {
     std::vector<Vec4> inputs;
     Random random(1, 2, 3, 4);
     for (int i = 0; i < 4096; ++i) {
@@ -95,7 +97,9 @@ TEST_CASE_FIXTURE(RenderTest, "repeatable math: shaders give the same bits") {
     CHECK(different == 0);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "furrow maker: the GPU grows the furrows of the CPU, bit for bit") {
+TEST_CASE_FIXTURE(
+    RenderTest, "furrow maker: the GPU grows the furrows of the CPU, bit for bit"
+                    * technique("wrinkle.furrow.trace")) {
     FurrowRecipe recipe = {.size = 128, .tiles = true};
     recipe.arrows = {
         {.at = {-0.3f, 0.2f, 0}, .first = {0.3f, 0.9f, 0}, .second = {1.3f, -0.2f, 0}},
@@ -111,7 +115,9 @@ TEST_CASE_FIXTURE(RenderTest, "furrow maker: the GPU grows the furrows of the CP
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "furrow maker: it agrees on other projections and styles") {
+TEST_CASE_FIXTURE(
+    RenderTest, "furrow maker: it agrees on other projections and styles"
+                    * technique("wrinkle.furrow.normal-perturb")) {
     FurrowRecipe planar = {.projection = FurrowProjection::Planar, .size = 100};
     planar.style.bump = 1;
     const Difference pad = compare_makers(device(), FurrowSurface::Pad, planar);
@@ -126,14 +132,17 @@ TEST_CASE_FIXTURE(RenderTest, "furrow maker: it agrees on other projections and 
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "furrow maker: it agrees where segments pass through corners of pixels") {
+    RenderTest, "furrow maker: it agrees where segments pass through corners of pixels"
+                    * technique("wrinkle.furrow.trace")) {
     FurrowStyle style;
     style.functions.angle = {0, 0};
     const FurrowMap map = make_flat_furrow_map({90, 90}, {0.5f, 0.5f}, {-0.7f, 0.7f});
     CHECK(compare_makers(device(), map, style).height == 0.0f);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "furrow maker: it agrees on long segments with wide bands") {
+TEST_CASE_FIXTURE(
+    RenderTest, "furrow maker: it agrees on long segments with wide bands"
+                    * technique("wrinkle.furrow.trace")) {
     FurrowStyle style = {.scale = 2};
     style.functions.length = {30, 10};
     style.functions.density = {30, 0};

@@ -5,6 +5,7 @@
 #include "render/material/furrow_pass.h"
 #include "render/material/image_pool.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -82,7 +83,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(FurrowScene, "furrow view: what grows anew is seen in the next frame") {
+TEST_CASE_FIXTURE(
+    FurrowScene, "furrow view: what grows anew is seen in the next frame"
+                     * technique("wrinkle.furrow.view-modes")) {
     const gpu::ByteImage furrowed = shot();
     world.get<Furrows>(square).style.seed = 5;
     CHECK(shot().pixels != furrowed.pixels);
@@ -107,7 +110,9 @@ TEST_CASE_FIXTURE(FurrowScene, "furrow view: what grows anew is seen in the next
     CHECK(spread(shot()) <= 12);  // lighting is slightly uneven
 }
 
-TEST_CASE("furrow view: two lines for each vertex, or for each edited one alone") {
+TEST_CASE(
+    "furrow view: two lines for each vertex, or for each edited one alone"
+    * technique("wrinkle.furrow.view-modes")) {
     FurrowScene scene({{{0.2f, 0.1f, 0}}, {{-0.3f, 0, 0}}, {{0, 0.4f, 0}}});
     scene.world.run(update_furrow_skins);
     const auto lines = [&](const FurrowView& view) {
@@ -125,7 +130,8 @@ TEST_CASE("furrow view: two lines for each vertex, or for each edited one alone"
 
 TEST_CASE_FIXTURE(
     FurrowScene,
-    "furrow view: vertices are blue, the first field red, the second green, faces white") {
+    "furrow view: vertices are blue, the first field red, the second green, faces white"
+        * technique("wrinkle.furrow.view-modes")) {
     show({.length = 0.01f});
     constexpr int kPixels = 1024;
     const gpu::ByteImage image = shot(kPixels);
@@ -147,7 +153,9 @@ TEST_CASE_FIXTURE(
     CHECK(wrong == 0);
 }
 
-TEST_CASE_FIXTURE(FurrowScene, "furrow view: the height field is as bright as it is high") {
+TEST_CASE_FIXTURE(
+    FurrowScene, "furrow view: the height field is as bright as it is high"
+                     * technique("wrinkle.furrow.view-modes")) {
     show({.mode = FurrowMode::Height});
     const gpu::ByteImage image = shot(kSize);
     int off = 0;
@@ -165,7 +173,9 @@ TEST_CASE_FIXTURE(FurrowScene, "furrow view: the height field is as bright as it
     CHECK(dark > 200);
 }
 
-TEST_CASE_FIXTURE(FurrowScene, "furrow view: what stands before the mesh hides its view") {
+TEST_CASE_FIXTURE(
+    FurrowScene, "furrow view: what stands before the mesh hides its view"
+                     * technique("wrinkle.furrow.view-modes")) {
     show({.mode = FurrowMode::Vectors});
     Material gray = {.shading = ShadingModel::Unlit, .base_color = {0.2f, 0.2f, 0.2f, 1}};
     place(add(make_square()), add(gray), affine_from({-0.5f, 0, 0.2f}, {1, 0, 0, 0}, {0.5f, 1, 1}));
@@ -183,8 +193,8 @@ TEST_CASE_FIXTURE(FurrowScene, "furrow view: what stands before the mesh hides i
 }
 
 TEST_CASE_FIXTURE(
-    FurrowScene,
-    "furrow view: of a dense mesh in a small image faces stay in sight between marks") {
+    FurrowScene, "furrow view: of a dense mesh in a small image faces stay in sight between marks"
+                     * technique("wrinkle.furrow.view-modes")) {
     show({.mode = FurrowMode::Vectors});
     for (const int size : {512, 40, 20}) {  // the last has less than one pixel per vertex
         CAPTURE(size);

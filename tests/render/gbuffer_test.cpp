@@ -2,6 +2,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -125,7 +126,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "gbuffer: depth is reversed and gives the distance back") {
+TEST_CASE_FIXTURE(
+    Scene,
+    "gbuffer: depth is reversed and gives the distance back" * technique("deferred.gbuffer")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     for (const float distance : {0.06f, 1.0f, 30.0f, 1000.0f}) {
         const RenderView view = look({0, 0, distance}, {0, 0, 0}, 9, 9);
@@ -158,7 +161,8 @@ TEST_CASE_FIXTURE(
     CHECK(rgb_at(radiance(view), 4, 4) == kRed);
 }
 
-TEST_CASE_FIXTURE(Scene, "gbuffer: attributes come back as they were written") {
+TEST_CASE_FIXTURE(
+    Scene, "gbuffer: attributes come back as they were written" * technique("deferred.gbuffer")) {
     Material material = {
         .base_color = {0.8f, 0.2f, 0.05f, 1}, .metalness = 0.3f, .roughness = 0.7f};
     material.emission = {0.001f, 3.5f, 900};
@@ -183,7 +187,8 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: attributes come back as they were written") {
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "gbuffer: each field keeps its precision beside any of 15 shading models") {
+    RenderTest, "gbuffer: each field keeps its precision beside any of 15 shading models"
+                    * technique("deferred.gbuffer")) {
     // Inputs: model; albedo, of which red is the first number and the others lie elsewhere; the
     // three factors, shifted likewise.
     std::vector<Vec4> inputs;
@@ -230,7 +235,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "gbuffer: wrinkled skin keeps its smooth normal in place of emission") {
+    RenderTest, "gbuffer: wrinkled skin keeps its smooth normal in place of emission"
+                    * technique("wrinkle.compression.bump-blend")) {
     std::vector<Vec4> inputs;
     for (int i = 0; i <= 64; ++i) {
         const float angle = 0.37f * static_cast<float>(i);
@@ -282,7 +288,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "gbuffer: the number of draws does not depend on lights") {
+TEST_CASE_FIXTURE(
+    Scene,
+    "gbuffer: the number of draws does not depend on lights" * technique("deferred.gbuffer")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 9, 9);
     const int dark = draw(view).statistics.draws;
@@ -404,7 +412,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "derivatives: a normal map widens the lobe by how much it varies between pixels") {
+    Scene, "derivatives: a normal map widens the lobe by how much it varies between pixels"
+               * technique("shade.derivatives")) {
     constexpr int kTexels = 16;  // and pixels
     constexpr float kRoughness = 0.3f;
     const MeshId square = add(make_square());

@@ -2,6 +2,7 @@
 #include "render/lens/glare_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,13 +47,16 @@ constexpr double kLuminance = 0.67;  // of green
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "glare: below the threshold there is none") {
+TEST_CASE_FIXTURE(
+    RenderTest, "glare: below the threshold there is none" * technique("post.glare-heat-haze")) {
     const Glare glare = {.strength = 1, .threshold = 2};
     CHECK(added(glare_of(static_cast<float>(1.99 / kLuminance), glare)) == 0);
     CHECK(added(glare_of(static_cast<float>(2.5 / kLuminance), glare)) > 0);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glare: the light added grows with what is above the threshold") {
+TEST_CASE_FIXTURE(
+    RenderTest, "glare: the light added grows with what is above the threshold"
+                    * technique("post.glare-heat-haze")) {
     const Glare glare = {.strength = 0.5f, .threshold = 1, .length = 0.4f};
     for (const double luminance : {2.0, 3.0, 9.0}) {
         const gpu::FloatImage made = glare_of(static_cast<float>(luminance / kLuminance), glare);
@@ -60,7 +64,9 @@ TEST_CASE_FIXTURE(RenderTest, "glare: the light added grows with what is above t
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glare: six blades make six streaks, five make ten") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "glare: six blades make six streaks, five make ten" * technique("post.glare-heat-haze")) {
     for (const IVec2& expected : {IVec2(4, 4), IVec2(6, 6), IVec2(5, 10)}) {
         const int blades = expected.x;
         const int streaks = expected.y;

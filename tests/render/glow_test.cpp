@@ -4,6 +4,7 @@
 #include "render/lens/glow_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <cmath>
 #include <limits>
@@ -133,7 +134,9 @@ TEST_CASE("glow: the weights of the levels sum to 1, and the last one comes in g
     CHECK(glow_weights({.radius = 1}, 16384, 9216).size() <= 14);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: no light is made or lost, at any size, in corners neither") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "glow: no light is made or lost, at any size, in corners neither" * technique("post.glow")) {
     for (const IVec2& size :
          {IVec2(64, 48), IVec2(61, 48), IVec2(33, 47), IVec2(1, 1), IVec2(2, 5), IVec2(1, 40)}) {
         for (const glm::dvec2& share :
@@ -180,7 +183,9 @@ TEST_CASE_FIXTURE(RenderTest, "glow: steps between sizes of 2 : 1 are those betw
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: a point becomes round, within 5 % at any radius and place") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "glow: a point becomes round, within 5 % at any radius and place" * technique("post.glow")) {
     constexpr int kHeight = 240;
     const Glow glow = {.strength = 1, .radius = 0.1f, .firefly = 0};
     for (const glm::dvec2& place :
@@ -204,7 +209,9 @@ TEST_CASE_FIXTURE(RenderTest, "glow: light falls with the power of the distance 
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: a pixel's light that moves by eighths does not flicker") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "glow: a pixel's light that moves by eighths does not flicker" * technique("post.glow")) {
     for (const double light : {1.0, 30.0, 5000.0}) {
         double sum = 0;
         double squares = 0;
@@ -240,7 +247,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a firefly's light stays in its pixel instea
         > 0.85 * glowing(sun, {.strength = 0.5f, .firefly = 0}).at(40, 60).y);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: NaN and infinity never spread") {
+TEST_CASE_FIXTURE(RenderTest, "glow: NaN and infinity never spread" * technique("post.glow")) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const IVec2& size : {IVec2(64, 48), IVec2(63, 47)}) {
@@ -260,7 +267,9 @@ TEST_CASE_FIXTURE(RenderTest, "glow: NaN and infinity never spread") {
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: it is the oracle's convolution, within 2 % of the brightest") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "glow: it is the oracle's convolution, within 2 % of the brightest" * technique("post.glow")) {
     LightImage picture = dot_at(160, 96, {50.5, 40.5}, 40);
     for (int y = 60; y < 80; ++y) {
         for (int x = 100; x < 150; ++x) {
@@ -282,7 +291,9 @@ TEST_CASE_FIXTURE(RenderTest, "glow: it is the oracle's convolution, within 2 % 
 
 // ---- the emissive mask
 
-TEST_CASE_FIXTURE(Scene, "glow: a mask without lamps is black, and changes no bit of the image") {
+TEST_CASE_FIXTURE(
+    Scene, "glow: a mask without lamps is black, and changes no bit of the image"
+               * technique("post.effect-pipeline, post.glow")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     shine(PointLight{.intensity = 5}, at({0, 0, 1}));
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 40, 32);
@@ -292,7 +303,9 @@ TEST_CASE_FIXTURE(Scene, "glow: a mask without lamps is black, and changes no bi
     CHECK(frame_graph(shared_renderer()).was_run("glow mask"));
 }
 
-TEST_CASE_FIXTURE(Scene, "glow: a lamp behind a black wall adds nothing, by any light method") {
+TEST_CASE_FIXTURE(
+    Scene,
+    "glow: a lamp behind a black wall adds nothing, by any light method" * technique("post.glow")) {
     place_objects(*this, {9, 4, 2}, -1);
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 40, 32);
     const gpu::FloatImage bare = radiance(view);
@@ -309,7 +322,9 @@ TEST_CASE_FIXTURE(Scene, "glow: a lamp behind a black wall adds nothing, by any 
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "glow: a mask adds the lamp's light once more, twice as much for twice") {
+TEST_CASE_FIXTURE(
+    Scene, "glow: a mask adds the lamp's light once more, twice as much for twice"
+               * technique("post.glow")) {
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 80, 64);
     const auto added = [&](const Vec3& emission, float strength) {
         Scene scene;

@@ -6,6 +6,7 @@
 #include "render/particles/particle_list.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/common.hpp>
@@ -102,7 +103,9 @@ double inverted_share(const std::vector<ParticleInstance>& drawn, const Particle
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Sorter, "gpu particle sort: back to front, equal ones in the order of births") {
+TEST_CASE_FIXTURE(
+    Sorter, "gpu particle sort: back to front, equal ones in the order of births"
+                * technique("particle.bitonic-sort")) {
     for (const std::uint32_t count : {1u, 2u, 777u, 1024u, 1025u, 4096u, 70000u}) {
         CAPTURE(count);
         std::vector<ParticleInstance> instances = cloud(0, count);
@@ -121,7 +124,9 @@ TEST_CASE_FIXTURE(Sorter, "gpu particle sort: back to front, equal ones in the o
     }
 }
 
-TEST_CASE_FIXTURE(Sorter, "gpu particle sort: places that are not numbers count as farthest") {
+TEST_CASE_FIXTURE(
+    Sorter, "gpu particle sort: places that are not numbers count as farthest"
+                * technique("particle.bitonic-sort")) {
     std::vector<ParticleInstance> instances = cloud(0, 100);
     instances[60].position.x = std::numeric_limits<float>::quiet_NaN();
     instances[70].position = kEye + 1e30f * kForward;
@@ -130,7 +135,9 @@ TEST_CASE_FIXTURE(Sorter, "gpu particle sort: places that are not numbers count 
     CHECK(numbers_of(frame(instances, 0, 0)) == stable_order(instances));
 }
 
-TEST_CASE_FIXTURE(Sorter, "gpu particle sort: by four passes a frame, a million take 53 frames") {
+TEST_CASE_FIXTURE(
+    Sorter, "gpu particle sort: by four passes a frame, a million take 53 frames"
+                * technique("particle.sort-amortised")) {
     plan_particle_sort({0, 1 << 20}, 4, sort);
     CHECK(sort.plan.last_pass == 210);  // the first one is whole
     int frames = 0;
@@ -163,7 +170,9 @@ TEST_CASE_FIXTURE(Sorter, "gpu particle sort: by four passes a frame, a million 
     CHECK(numbers_of(frame(third, 0, 4)) == stable_order(second));
 }
 
-TEST_CASE_FIXTURE(Sorter, "gpu particle sort: while it goes on, each that lives is drawn once") {
+TEST_CASE_FIXTURE(
+    Sorter, "gpu particle sort: while it goes on, each that lives is drawn once"
+                * technique("particle.sort-amortised")) {
     std::uint32_t first = 0xfffffc00u;  // wraps
     std::uint32_t end = first + 900;
     for (int i = 0; i < 120; ++i) {
@@ -182,7 +191,9 @@ TEST_CASE_FIXTURE(Sorter, "gpu particle sort: while it goes on, each that lives 
     }
 }
 
-TEST_CASE_FIXTURE(Sorter, "gpu particle sort: behind a slow camera few pairs are out of order") {
+TEST_CASE_FIXTURE(
+    Sorter, "gpu particle sort: behind a slow camera few pairs are out of order"
+                * technique("particle.sort-amortised")) {
     // It moves 0.1 units a frame around a ball of 100, whose middle is 150 away. At four passes a
     // frame a sort takes 14 frames; at one 55, as a million particles do at four: the order shown
     // is then up to 109 frames old, 4 degrees. Keys of the view that will be in the middle of that
@@ -213,7 +224,9 @@ TEST_CASE_FIXTURE(Sorter, "gpu particle sort: behind a slow camera few pairs are
     }
 }
 
-TEST_CASE("gpu particle sort: a steady camera is where it was expected, one that jumps is not") {
+TEST_CASE(
+    "gpu particle sort: a steady camera is where it was expected, one that jumps is not"
+    * technique("particle.sort-amortised")) {
     const ParticleSortView previous = {{0, 1, 0}, {0, 0, -1}};
     const ParticleSortView now = {{0.5f, 1, 0.25f}, glm::normalize(Vec3(0.1f, 0, -1))};
     const ParticleSortView then = predict_sort_view(previous, now, 4);

@@ -16,6 +16,7 @@
 #include "systems/particles/particle_system.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -136,7 +137,9 @@ ParticleEmitter fountain() {
 
 }  // namespace
 
-TEST_CASE("gpu particles: for ten seconds they are where the CPU has them") {
+TEST_CASE(
+    "gpu particles: for ten seconds they are where the CPU has them"
+    * technique("particle.gpu-init, particle.gpu-update, particle.million")) {
     for (const EmitterShape shape :
          {EmitterShape::Point, EmitterShape::Ball, EmitterShape::Sphere, EmitterShape::Disc,
           EmitterShape::Circle, EmitterShape::Box, EmitterShape::Torus}) {
@@ -240,7 +243,9 @@ TEST_CASE("gpu particles: they stick where they hit, or die there, as on the CPU
     }
 }
 
-TEST_CASE("gpu particles: shells and velocities vary as on the CPU") {
+TEST_CASE(
+    "gpu particles: shells and velocities vary as on the CPU"
+    * technique("engine.particle-params")) {
     ParticleEmitter emitter = fountain();
     emitter.shape = EmitterShape::Sphere;
     emitter.size = {2, 2, 0};
@@ -254,7 +259,9 @@ TEST_CASE("gpu particles: shells and velocities vary as on the CPU") {
     CHECK(largest_distance(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
 }
 
-TEST_CASE("gpu particles: the window of a linear population moves down and ends") {
+TEST_CASE(
+    "gpu particles: the window of a linear population moves down and ends"
+    * technique("particle.linear-window")) {
     ParticleEmitter emitter = fountain();
     emitter.population = ParticlePopulation::Linear;
     emitter.capacity = 1000;
@@ -286,7 +293,9 @@ TEST_CASE("gpu particles: the window of a linear population moves down and ends"
     CHECK(both.read().empty());
 }
 
-TEST_CASE("gpu particles: forces, turns and integrators are those of the CPU") {
+TEST_CASE(
+    "gpu particles: forces, turns and integrators are those of the CPU"
+    * technique("particle.gpu-update, particle.gpu-update-mrt")) {
     for (const ParticleIntegrator integrator :
          {ParticleIntegrator::Average, ParticleIntegrator::ExplicitEuler,
           ParticleIntegrator::SemiImplicit}) {
@@ -315,7 +324,8 @@ TEST_CASE("gpu particles: forces, turns and integrators are those of the CPU") {
     }
 }
 
-TEST_CASE("gpu particles: force fields push them as they push the CPU's") {
+TEST_CASE(
+    "gpu particles: force fields push them as they push the CPU's" * technique("particle.forces")) {
     ParticleEmitter emitter = fountain();
     emitter.life = 3;
     emitter.shape = EmitterShape::Ball;
@@ -338,7 +348,8 @@ TEST_CASE("gpu particles: force fields push them as they push the CPU's") {
     CHECK(largest_distance(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
 }
 
-TEST_CASE("gpu particles: how often they are drawn changes nothing") {
+TEST_CASE(
+    "gpu particles: how often they are drawn changes nothing" * technique("particle.gpu-state")) {
     ParticleEmitter emitter = fountain();
     emitter.rate = 60;
     emitter.bursts = {{.time = 0.4f, .count = 500, .spread = 100, .interval = 1, .repeats = 9}};
@@ -366,7 +377,9 @@ TEST_CASE("gpu particles: how often they are drawn changes nothing") {
     }
 }
 
-TEST_CASE("gpu particles: a ring keeps order, refuses births when full and counts them") {
+TEST_CASE(
+    "gpu particles: a ring keeps order, refuses births when full and counts them"
+    * technique("particle.circular-list")) {
     ParticleEmitter emitter = fountain();
     emitter.capacity = 1000;
     emitter.rate = 6000;
@@ -394,7 +407,9 @@ TEST_CASE("gpu particles: a ring keeps order, refuses births when full and count
     CHECK(both.recorded().cohorts.size() <= 32);
 }
 
-TEST_CASE("gpu particles: across the end of the ring they go where the CPU's go") {
+TEST_CASE(
+    "gpu particles: across the end of the ring they go where the CPU's go"
+    * technique("particle.gpu-update")) {
     ParticleEmitter emitter = fountain();
     emitter.capacity = 1000;  // 800 live, 2,000 are born
     emitter.life = 2;
@@ -409,7 +424,9 @@ TEST_CASE("gpu particles: across the end of the ring they go where the CPU's go"
     }
 }
 
-TEST_CASE("gpu particles: when the GPU begins anew they are where they were") {
+TEST_CASE(
+    "gpu particles: when the GPU begins anew they are where they were"
+    * technique("particle.gpu-state")) {
     ParticleEmitter emitter = fountain();
     emitter.prewarm = 1;
     emitter.life = 2.5f;
@@ -442,7 +459,9 @@ TEST_CASE("gpu particles: when the GPU begins anew they are where they were") {
     CHECK(seen.read().size() == 10);
 }
 
-TEST_CASE("gpu particles: a closed form is its parabola, however long the steps are") {
+TEST_CASE(
+    "gpu particles: a closed form is its parabola, however long the steps are"
+    * technique("particle.stateless-script")) {
     for (const float step : {1.0f / 24, 1.0f / 60, 1.0f / 144}) {
         ParticleEmitter emitter = fountain();
         emitter.life = 1.5f;
@@ -481,7 +500,9 @@ ParticleEmitter still_ball(int count) {
     return emitter;
 }
 
-TEST_CASE("gpu particles: those that cover are drawn from back to front, as the CPU's are") {
+TEST_CASE(
+    "gpu particles: those that cover are drawn from back to front, as the CPU's are"
+    * technique("particle.distance-sort")) {
     Executors both(still_ball(3000), {.gravity = 0});
     both.step(2);
     both.shine(PointLight{.intensity = 20, .radius = 9}, at({3, 4, 3.5f}));
@@ -507,7 +528,9 @@ TEST_CASE("gpu particles: those that cover are drawn from back to front, as the 
     CHECK(largest_difference(drawn_by(both.cpu, ParticleSort::Distance), cpu) == 0);  // alone again
 }
 
-TEST_CASE("gpu particles: in water and above it they are drawn as the CPU's are") {
+TEST_CASE(
+    "gpu particles: in water and above it they are drawn as the CPU's are"
+    * technique("particle.distance-sort")) {
     Executors both(still_ball(60), {.gravity = 0});
     both.step(2);
     both.place(
@@ -535,7 +558,9 @@ TEST_CASE("gpu particles: in water and above it they are drawn as the CPU's are"
     CHECK(largest_difference(drawn_by(both.gpu), cpu) > 0.3f);
 }
 
-TEST_CASE("gpu particles: in the light of a sun or a spot their shadows are those of the CPU's") {
+TEST_CASE(
+    "gpu particles: in the light of a sun or a spot their shadows are those of the CPU's"
+    * technique("particle.gpu-shadow")) {
     for (const bool in_spot : {false, true}) {
         CAPTURE(in_spot);
         ParticleEmitter emitter = fountain();
@@ -638,7 +663,9 @@ TEST_CASE("gpu particles: a world that was loaded anew owes nothing to the one b
     CHECK(largest_distance(seen, second.pool(), 3 * 0.5f) < 1e-4f);
 }
 
-TEST_CASE("gpu particles: initial values are within their spread, their mean is the mean") {
+TEST_CASE(
+    "gpu particles: initial values are within their spread, their mean is the mean"
+    * technique("particle.gpu-init")) {
     ParticleEmitter emitter = fountain();
     emitter.rate = 0;
     emitter.bursts = {{.time = 0, .count = 1 << 20}};

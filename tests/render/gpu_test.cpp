@@ -5,6 +5,7 @@
 #include "render/gpu/shader_library.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
+#include "tests/technique.h"
 
 #include <array>
 #include <cmath>
@@ -374,7 +375,9 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: what a program expects and nobody boun
     CHECK((*fresh)->missing_bindings(*copy.program).empty());
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: a program's interface is what its shaders say") {
+TEST_CASE_FIXTURE(
+    test::RenderTest,
+    "gpu: a program's interface is what its shaders say" * technique("shade.program-lifecycle")) {
     const auto library = make_library(device());
     const gpu::Program& copy = *load(*library, "copy.frag").program;
     CHECK(copy.expect(gpu::BindingKind::UniformBlock, "Scale", 2, 16).ok());

@@ -2,6 +2,7 @@
 #include "ecs/components/light.h"
 #include "render/light/light_list.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/common.hpp>
 
@@ -27,7 +28,9 @@ std::vector<Vec3> places(int count, float reach, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("noise: a million samples stay within 0 and 1 and come close to both") {
+TEST_CASE(
+    "noise: a million samples stay within 0 and 1 and come close to both"
+    * technique("shade.noise")) {
     Vec3 least(1);
     Vec3 most(0);
     for (const Vec3& p : places(400'000, 1000, 1)) {
@@ -45,7 +48,9 @@ TEST_CASE("noise: a million samples stay within 0 and 1 and come close to both")
     }
 }
 
-TEST_CASE("noise: at lattice points it is one half, of any seed and number of octaves") {
+TEST_CASE(
+    "noise: at lattice points it is one half, of any seed and number of octaves"
+    * technique("shade.noise")) {
     for (int x = -5; x <= 5; ++x) {
         for (int y = -5; y <= 5; ++y) {
             const auto seed = static_cast<std::uint32_t>(x * 31 + y);
@@ -56,7 +61,9 @@ TEST_CASE("noise: at lattice points it is one half, of any seed and number of oc
     }
 }
 
-TEST_CASE("noise: it is continuous, over cell borders too, and other seeds are other noises") {
+TEST_CASE(
+    "noise: it is continuous, over cell borders too, and other seeds are other noises"
+    * technique("shade.noise")) {
     for (const Vec3& p : places(2000, 50, 2)) {
         const Vec3 on_border = {std::floor(p.x), p.y, p.z};
         for (const Vec3& at : {p, on_border}) {
@@ -76,7 +83,8 @@ TEST_CASE("noise: it is continuous, over cell borders too, and other seeds are o
     CHECK(same < 100);
 }
 
-TEST_CASE("noise: NaN, infinity and numbers without fraction give one half") {
+TEST_CASE(
+    "noise: NaN, infinity and numbers without fraction give one half" * technique("shade.noise")) {
     for (const float x : {NAN, INFINITY, -INFINITY, 1e30f, -1e10f, 0x1p23f}) {
         CHECK(noise(x) == 0.5f);
         CHECK(noise(Vec2(0.3f, x), 1, 2) == 0.5f);
@@ -85,7 +93,9 @@ TEST_CASE("noise: NaN, infinity and numbers without fraction give one half") {
     CHECK(noise(0x1p22f + 0.5f) != 0.5f);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "noise: CPU and GPU agree to 1e-5, and each with itself to the bit") {
+TEST_CASE_FIXTURE(
+    RenderTest, "noise: CPU and GPU agree to 1e-5, and each with itself to the bit"
+                    * technique("shade.noise, shade.stdlib")) {
     std::vector<Vec4> inputs;
     for (const float reach : {3.0f, 1000.0f, 80'000.0f}) {
         for (const Vec3& p : places(1500, reach, 4)) {
@@ -111,7 +121,9 @@ TEST_CASE_FIXTURE(RenderTest, "noise: CPU and GPU agree to 1e-5, and each with i
     CHECK(noise(0.3f) == noise(0.3f));
 }
 
-TEST_CASE("noise: a flame flickers within its amplitude, smoothly, and no two alike") {
+TEST_CASE(
+    "noise: a flame flickers within its amplitude, smoothly, and no two alike"
+    * technique("shade.noise")) {
     const LightPulse one = {
         .function = {.wave = Wave::Noise, .base = 1, .amplitude = 0.3f, .frequency = 1.91f}};
     LightPulse other = one;

@@ -4,6 +4,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -140,7 +141,8 @@ Vec3 lit_square(const Material& material, const Vec3& to_light, const MeshData& 
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: white strands give back all light, and none gives more") {
+    RenderTest, "hair lobes: white strands give back all light, and none gives more"
+                    * technique("hair.shading")) {
     for (const float roughness : {0.1f, 0.3f, 0.7f}) {
         for (const float scatter : {0.0f, 1.0f}) {
             for (const float to_viewer : {0.0f, 0.6f, -1.2f}) {
@@ -162,7 +164,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "hair lobes: scales tilt highlights by -a, a / 2 and 3 a / 2") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "hair lobes: scales tilt highlights by -a, a / 2 and 3 a / 2" * technique("hair.shading")) {
     const float tilt = radians(5.0f);
     const Material hair = hair_of(Vec3(1), 0.1f, 0.3f, 0, tilt);
     for (const float to_viewer : {0.0f, 0.3f, -0.3f}) {
@@ -177,7 +181,8 @@ TEST_CASE_FIXTURE(RenderTest, "hair lobes: scales tilt highlights by -a, a / 2 a
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: light and viewer at equal inclinations may change places") {
+    RenderTest, "hair lobes: light and viewer at equal inclinations may change places"
+                    * technique("hair.shading")) {
     const Material hair = hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, 0);
     std::vector<Vec4> inputs;
     std::vector<Vec4> swapped;
@@ -195,7 +200,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "hair lobes: black strands reflect at their surface alone") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "hair lobes: black strands reflect at their surface alone" * technique("hair.shading")) {
     std::vector<Vec4> inputs;
     for (int i = 0; i < 100; ++i) {
         const auto x = static_cast<float>(i);
@@ -213,7 +220,8 @@ TEST_CASE_FIXTURE(RenderTest, "hair lobes: black strands reflect at their surfac
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: they are those of a fiber summed over its width, to a fifth") {
+    RenderTest, "hair lobes: they are those of a fiber summed over its width, to a fifth"
+                    * technique("hair.shading")) {
     for (const Vec3& color : {Vec3(1), Vec3(0.6f, 0.3f, 0.1f), Vec3(0.05f, 0.03f, 0.02f)}) {
         for (const float across : {0.2f, 0.3f, 0.6f}) {
             const Material hair = hair_of(color, 0.3f, across, 0, radians(3.0f));
@@ -250,7 +258,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: light through a strand of a dense body has come through two more") {
+    RenderTest, "hair lobes: light through a strand of a dense body has come through two more"
+                    * technique("hair.shading")) {
     constexpr Vec3 kBrown = {0.12f, 0.06f, 0.03f};
     for (const float to_viewer : {0.0f, 0.7f}) {
         const Vec3 white = transmitted_fraction(hair_of(Vec3(1), 0.3f, 0.3f, 0), to_viewer);
@@ -286,7 +295,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("hair: strands run along v, and white highlights lie toward their roots") {
+TEST_CASE(
+    "hair: strands run along v, and white highlights lie toward their roots"
+    * technique("hair.shading")) {
     const Material black = hair_of(Vec3(0), 0.15f, 0.3f, 0, radians(4.0f));
     const MeshData square = make_square();
     // v runs down: so do strands, and inclinations to the tip are below the horizon.
@@ -307,7 +318,9 @@ TEST_CASE("hair: strands run along v, and white highlights lie toward their root
     CHECK(std::isfinite(lit(0.3f, 0, turned)));
 }
 
-TEST_CASE("hair: a lit square has the light of those strands that light reaches past others") {
+TEST_CASE(
+    "hair: a lit square has the light of those strands that light reaches past others"
+    * technique("hair.shading")) {
     constexpr float kDensity = 0.6f;
     const Material hair = hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, kDensity, radians(3.0f));
     for (const Vec2& a : {Vec2(0, 0), Vec2(0.4f, 0.7f), Vec2(0.1f, 1.4f), Vec2(-0.3f, 2.6f)}) {
@@ -321,7 +334,8 @@ TEST_CASE("hair: a lit square has the light of those strands that light reaches 
 }
 
 TEST_CASE(
-    "hair: strands of a dense body throw no shadow on each other, what is farther away does") {
+    "hair: strands of a dense body throw no shadow on each other, what is farther away does"
+    * technique("hair.shading")) {
     const auto lit = [](float density, float distance, bool shadowed) {
         Scene scene;
         scene.place(

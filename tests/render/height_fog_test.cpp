@@ -4,6 +4,7 @@
 #include "tests/near.h"
 #include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -83,7 +84,9 @@ const std::array kWays = {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(FogScene, "height fog: what is seen through it is what a ray march finds") {
+TEST_CASE_FIXTURE(
+    FogScene, "height fog: what is seen through it is what a ray march finds"
+                  * technique("light.height-fog")) {
     const HeightFog fog = {
         .density = 0.05f, .base = 1, .scale_height = 7, .ambient = {0.2f, 0.4f, 0.8f}, .sun = 0};
     for (const auto& [eye, target] : kWays) {
@@ -122,7 +125,9 @@ TEST_CASE_FIXTURE(FogScene, "height fog: the sky is seen through what is left of
     CHECK(middle({0, 5, 0}, {0, 5, -1}).x == test::near(1).epsilon(1e-3));  // the horizon is gone
 }
 
-TEST_CASE_FIXTURE(FogScene, "height fog: in a furnace of its own radiance nothing can be seen") {
+TEST_CASE_FIXTURE(
+    FogScene, "height fog: in a furnace of its own radiance nothing can be seen"
+                  * technique("light.height-fog")) {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}});
     add_particles(std::array{Vec3(0.3f, 1, -4), Vec3(-0.5f, 1.4f, -9)}, Vec3(1));
     place(
@@ -139,7 +144,9 @@ TEST_CASE_FIXTURE(FogScene, "height fog: in a furnace of its own radiance nothin
     }
 }
 
-TEST_CASE_FIXTURE(FogScene, "height fog: a particle has the fog that is in front of it") {
+TEST_CASE_FIXTURE(
+    FogScene,
+    "height fog: a particle has the fog that is in front of it" * technique("light.height-fog")) {
     const HeightFog fog = {
         .density = 0.1f, .base = 0, .scale_height = 6, .ambient = {0.5f, 0.5f, 0.5f}, .sun = 0};
     const Vec3 eye = {0, 1, 0};
@@ -153,7 +160,9 @@ TEST_CASE_FIXTURE(FogScene, "height fog: a particle has the fog that is in front
         middle(eye, there).x == test::near(clear * truth.passed + 0.5 * truth.added).epsilon(5e-3));
 }
 
-TEST_CASE_FIXTURE(FogScene, "height fog: glass adds the fog before it to what it mirrors alone") {
+TEST_CASE_FIXTURE(
+    FogScene, "height fog: glass adds the fog before it to what it mirrors alone"
+                  * technique("light.height-fog")) {
     const HeightFog fog = {
         .density = 0.06f, .base = 0, .scale_height = 1e5f, .ambient = {0.5f, 0.5f, 0.5f}, .sun = 0};
     const Vec3 eye = {0, 0, 0};

@@ -1,6 +1,7 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "tests/render/shader_eval.h"
 #include "tests/support.h"
@@ -86,7 +87,9 @@ struct InflateScene : ShadowTest {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "inflate: every vertex of a unit ball moved by 0.2 is 1.2 away") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "inflate: every vertex of a unit ball moved by 0.2 is 1.2 away" * technique("shade.inflate")) {
     const MeshData ball = make_ball(24);
     for (const float stretch : {1.0f, 0.01f, 30.0f}) {  // normals of any length
         for (const Vec3& p : inflate_vertices(ball, 0.2f, stretch)) {
@@ -98,7 +101,8 @@ TEST_CASE_FIXTURE(RenderTest, "inflate: every vertex of a unit ball moved by 0.2
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "inflate: moved by 0 every bit of a position stays") {
+TEST_CASE_FIXTURE(
+    RenderTest, "inflate: moved by 0 every bit of a position stays" * technique("shade.inflate")) {
     MeshData ball = make_ball(24);
     ball.normals[7] = {0, 0, 0};
     CHECK(inflate_vertices(ball, 0) == ball.positions);
@@ -106,7 +110,8 @@ TEST_CASE_FIXTURE(RenderTest, "inflate: moved by 0 every bit of a position stays
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "inflate: a cube's faces part by f sqrt 2, with mean normals they stay together") {
+    RenderTest, "inflate: a cube's faces part by f sqrt 2, with mean normals they stay together"
+                    * technique("shade.inflate")) {
     const MeshData split = make_cube(false);
     REQUIRE(split.positions.size() == 24);
     for (const float f : {0.1f, 0.5f, -0.2f}) {
@@ -173,7 +178,9 @@ TEST_CASE_FIXTURE(InflateScene, "inflate: what grows into the image is drawn, wh
     CHECK(draw(view).statistics.visible_instances == 0);
 }
 
-TEST_CASE_FIXTURE(InflateScene, "inflate: the shadow is that of what is drawn, and grows with it") {
+TEST_CASE_FIXTURE(
+    InflateScene, "inflate: the shadow is that of what is drawn, and grows with it"
+                      * technique("shade.inflate")) {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0, 0, 0}});
     MeshData floor = make_square();
     place(add(std::move(floor)), white, affine_from({0, 0, -3}, {1, 0, 0, 0}, {5, 5, 1}));

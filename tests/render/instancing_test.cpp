@@ -1,6 +1,7 @@
 #include "ecs/base/jobs.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <random>
 
@@ -27,7 +28,9 @@ struct CrowdScene : Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: ten thousand equal meshes are one draw") {
+TEST_CASE_FIXTURE(
+    CrowdScene,
+    "instancing: ten thousand equal meshes are one draw" * technique("shade.batching")) {
     crowd(10000, add(make_ball(4)), add(Material{}));
     const FrameOutput out = draw(view());
     CHECK(out.statistics.instances == 10000);
@@ -36,7 +39,9 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: ten thousand equal meshes are one dra
     CHECK(out.statistics.triangles == 10000 * 4 * 8 * 2);
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: meshes and materials without textures share a draw") {
+TEST_CASE_FIXTURE(
+    CrowdScene, "instancing: meshes and materials without textures share a draw"
+                    * technique("shade.batching")) {
     const MeshId ball = add(make_ball(4));
     const MeshId square = add(make_square());
     for (int i = 0; i < 20; ++i) {
@@ -53,7 +58,9 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: meshes and materials without textures
     CHECK(draw(view()).statistics.draws == 4);
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: together or each by itself, the image is the same") {
+TEST_CASE_FIXTURE(
+    CrowdScene,
+    "instancing: together or each by itself, the image is the same" * technique("shade.batching")) {
     // shade.batching: one state, then meshes and images of their own, then a state per object,
     // since images of different sizes are in different texture arrays.
     constexpr int kBalls = 36;
@@ -121,7 +128,9 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: every instance has its own place and 
     }
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: the image has the same bits for any number of threads") {
+TEST_CASE_FIXTURE(
+    CrowdScene, "instancing: the image has the same bits for any number of threads"
+                    * technique("shade.batching")) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> unit(-1, 1);
     const MeshId meshes[] = {add(make_ball(4)), add(make_square())};

@@ -55,8 +55,8 @@ TEST_CASE("step jumps: a camera that jumps is shown on the side of its time, at 
     CHECK_FALSE(seconds_since_last(clock, 1, 1.2, moved_to(2), true).has_value());
 }
 
-TEST_CASE("step jumps: an entity is shown on the side of its time, whenever motion is measured "
-          "from") {
+TEST_CASE(
+    "step jumps: an entity is shown on the side of its time, whenever motion is measured from") {
     World world;
     const Entity box = world.create();
     const Entity other = world.create();

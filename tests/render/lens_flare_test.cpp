@@ -2,6 +2,7 @@
 #include "render/lens/lens_ghosts.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -133,7 +134,9 @@ TEST_CASE("lens flare: the double Gauss has the focal length that its patent say
     }
 }
 
-TEST_CASE("lens flare: the matrices of all ghosts equal a ray trace surface by surface") {
+TEST_CASE(
+    "lens flare: the matrices of all ghosts equal a ray trace surface by surface"
+    * technique("engine.lens-flare")) {
     const std::vector<LensGhost> ghosts = make_lens_ghosts(double_gauss(), {});
     CHECK(ghosts.size() == 10 * 9 / 2);
     std::set<std::pair<int, int>> pairs;
@@ -160,7 +163,9 @@ TEST_CASE("lens flare: the matrices of all ghosts equal a ray trace surface by s
     CHECK(pairs.size() == ghosts.size());
 }
 
-TEST_CASE("lens flare: real rays converge to the matrices, with the square of the angle") {
+TEST_CASE(
+    "lens flare: real rays converge to the matrices, with the square of the angle"
+    * technique("engine.lens-flare")) {
     for (const LensGhost& ghost : make_lens_ghosts(double_gauss(), {})) {
         CAPTURE(ghost.near);
         CAPTURE(ghost.far);
@@ -263,7 +268,9 @@ double light_of(const FlareSprite& sprite, int blades) {
 
 }  // namespace
 
-TEST_CASE("lens flare: the light of a ghost is what enters the lens times the ghost's strength") {
+TEST_CASE(
+    "lens flare: the light of a ghost is what enters the lens times the ghost's strength"
+    * technique("engine.lens-flare")) {
     // From the axis, all rims are concentric and the tightest one decides what enters; at f/8 no
     // two are so alike that the corners of one are outside the other. The pupil gathers pi / (4
     // N^2) of the light, and the scene is exposed by as much, which cancels.
@@ -351,7 +358,9 @@ TEST_CASE("lens flare: the brightest ghosts are kept, the same ones wherever the
     CHECK(make_flare_sprites(ghosts_kept(0), light, kTangent, 720).empty());
 }
 
-TEST_CASE("lens flare: billboards lie on the line from the light through the center") {
+TEST_CASE(
+    "lens flare: billboards lie on the line from the light through the center"
+    * technique("engine.lens-flare")) {
     const LensFlare flare = {
         .mode = LensFlareMode::Billboards,
         .source_size = 0.02f,
@@ -431,7 +440,9 @@ glm::dvec2 center_of_light(const gpu::FloatImage& image) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(FlareScene, "lens flare: ghosts are drawn where the lens says, to a pixel") {
+TEST_CASE_FIXTURE(
+    FlareScene, "lens flare: ghosts are drawn where the lens says, to a pixel"
+                    * technique("engine.lens-flare")) {
     const Vec2 tangent = {0.35f, 0.2f};
     sun_at(tangent);
     const gpu::FloatImage none = [&] {
@@ -477,7 +488,9 @@ TEST_CASE_FIXTURE(FlareScene, "lens flare: ghosts are drawn where the lens says,
     CHECK(compared >= 4);
 }
 
-TEST_CASE_FIXTURE(FlareScene, "lens flare: none of a hidden light, half of a half hidden one") {
+TEST_CASE_FIXTURE(
+    FlareScene, "lens flare: none of a hidden light, half of a half hidden one"
+                    * technique("engine.lens-flare")) {
     const Vec2 tangent = {-0.3f, 0.25f};
     flare().source_size = 0.12f;
     flare().mode = LensFlareMode::Billboards;  // none of which is at the light itself

@@ -9,6 +9,7 @@
 #include "render/graph/frame_graph.h"
 #include "render/lens/thin_lens.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,7 +194,9 @@ void try_numbers(const std::string& name, const Setting& setting, const Use& use
 
 }  // namespace
 
-TEST_CASE("lens: whatever number any setting has, the image is finite") {
+TEST_CASE(
+    "lens: whatever number any setting has, the image is finite"
+    * technique("post.effect-pipeline")) {
     const auto resource = [](Moving& scene, RenderView&, const auto& setting) {
         scene.world.insert_resource(setting);
         return Entity{};
@@ -230,7 +233,9 @@ TEST_CASE("lens: whatever number any setting has, the image is finite") {
     }
 }
 
-TEST_CASE("lens: each effect that is turned off adds no pass and changes no bit of the display") {
+TEST_CASE(
+    "lens: each effect that is turned off adds no pass and changes no bit of the display"
+    * technique("post.effect-pipeline, post.glare-heat-haze")) {
     Moving plain;
     static_cast<void>(plain.draw(plain.seen()));  // what surrounds a scene is mirrored once
     const gpu::ByteImage without = gpu::read_bytes(*plain.draw(plain.seen()).display);
@@ -302,7 +307,9 @@ TEST_CASE("lens: whatever moves by NaN or a billion meters, the image is finite"
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "lens: what nobody asks for has neither a pass nor a target") {
+TEST_CASE_FIXTURE(
+    Scene, "lens: what nobody asks for has neither a pass nor a target"
+               * technique("post.effect-pipeline")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     static_cast<void>(draw(look({0, 0, 1}, {0, 0, 0}, 32, 24)));
     CHECK(place_of("glow") == -1);
@@ -310,7 +317,9 @@ TEST_CASE_FIXTURE(Scene, "lens: what nobody asks for has neither a pass nor a ta
     CHECK(!frame_graph(shared_renderer()).find("radiance with glow").valid());
 }
 
-TEST_CASE_FIXTURE(Scene, "lens: the shutter comes before the glow, and both before the tone map") {
+TEST_CASE_FIXTURE(
+    Scene, "lens: the shutter comes before the glow, and both before the tone map"
+               * technique("post.effect-pipeline")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     world.insert_resource(Rendering{.antialiasing = Antialiasing::Temporal});
     world.insert_resource(Glow{});

@@ -2,6 +2,7 @@
 #include "render/render_view.h"
 #include "render/shadow/light_bounds.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -36,7 +37,9 @@ class Random {
 
 }  // namespace
 
-TEST_CASE("light_bounds: the slopes of a sphere's tangents are the closed form") {
+TEST_CASE(
+    "light_bounds: the slopes of a sphere's tangents are the closed form"
+    * technique("shadow.light-scissor")) {
     const SlopeRange ahead = sphere_slopes(0, -10, 1, 0.1f);
     CHECK(ahead.high == test::near(0.1005038).epsilon(1e-5));
     CHECK(ahead.low == test::near(-0.1005038).epsilon(1e-5));
@@ -50,7 +53,8 @@ TEST_CASE("light_bounds: the slopes of a sphere's tangents are the closed form")
 }
 
 TEST_CASE(
-    "light_bounds: every point of a sphere that is seen lies in the rectangle, none is spared") {
+    "light_bounds: every point of a sphere that is seen lies in the rectangle, none is spared"
+    * technique("shadow.light-scissor")) {
     Random random;
     int seen = 0;
     for (int i = 0; i < 400; ++i) {
@@ -95,7 +99,9 @@ TEST_CASE(
     CHECK(seen > 10000);
 }
 
-TEST_CASE("light_bounds: from inside a light the rectangle is the whole image") {
+TEST_CASE(
+    "light_bounds: from inside a light the rectangle is the whole image"
+    * technique("shadow.light-scissor")) {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1});
     const LightBounds bounds = light_bounds(view, {0.5f, 0.2f, 0.4f}, 1);
     CHECK(bounds.x == 0);
@@ -106,7 +112,9 @@ TEST_CASE("light_bounds: from inside a light the rectangle is the whole image") 
     CHECK(light_bounds(view, {5, 5, 5}, INFINITY) == LightBounds{0, 0, 320, 180, 0, 1});
 }
 
-TEST_CASE("light_bounds: a light behind the camera or beside the image reaches nothing") {
+TEST_CASE(
+    "light_bounds: a light behind the camera or beside the image reaches nothing"
+    * technique("shadow.depth-bounds")) {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1});
     CHECK(is_empty(light_bounds(view, {0, 0, 3}, 1)));
     CHECK(is_empty(light_bounds(view, {0, 0, 0.95f}, 1)));  // ends before the near plane
@@ -130,7 +138,9 @@ TEST_CASE("light_bounds: grown, a rectangle holds both and touches them, whichev
     CHECK(grown(low, {}) == low);
 }
 
-TEST_CASE("light_bounds: depths are those of the nearest and the farthest point") {
+TEST_CASE(
+    "light_bounds: depths are those of the nearest and the farthest point"
+    * technique("shadow.depth-bounds")) {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1}, 1.0f);
     const LightBounds bounds = light_bounds(view, {0, 0, -10}, 1);
     // The book's window depth, 0 at near 1 and 1 at far 100, of our reversed one.
@@ -161,7 +171,9 @@ TEST_CASE(
     CHECK(reach_sphere({{1, 2, 3}, 4}).radius == 4);
 }
 
-TEST_CASE("caster_cull: a box counts if its nearest point is within the light's radius") {
+TEST_CASE(
+    "caster_cull: a box counts if its nearest point is within the light's radius"
+    * technique("shadow.caster-cull")) {
     const Bounds box = {{2, 2, 2}, {3, 3, 3}};
     CHECK_FALSE(reaches_box({{0, 0, 0}, 3.4f}, box));
     CHECK(reaches_box({{0, 0, 0}, 3.5f}, box));
@@ -169,7 +181,9 @@ TEST_CASE("caster_cull: a box counts if its nearest point is within the light's 
     CHECK(reaches_box({{0, 0, 0}, INFINITY}, box));
 }
 
-TEST_CASE("caster_cull: no box that a spot's cone touches is dropped, those behind it are") {
+TEST_CASE(
+    "caster_cull: no box that a spot's cone touches is dropped, those behind it are"
+    * technique("shadow.caster-cull")) {
     Random random;
     int dropped = 0;
     for (int i = 0; i < 300; ++i) {

@@ -5,6 +5,7 @@
 #include "render/light/light_objects.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -116,7 +117,10 @@ class Methods : public Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Methods, "light methods: all five make the same image") {
+TEST_CASE_FIXTURE(
+    Methods, "light methods: all five make the same image"
+                 * technique("deferred.light-volume, engine.depth-first, engine.light-loops, "
+                             "light.structure-object-major")) {
     place_objects();
     light(40);
     // From aside, from within the lights, with a light before the near plane.
@@ -144,7 +148,9 @@ TEST_CASE_FIXTURE(Methods, "light methods: all five make the same image") {
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "light methods: images of single lights add up to that of all") {
+TEST_CASE_FIXTURE(
+    Methods, "light methods: images of single lights add up to that of all"
+                 * technique("light.structure-light-major")) {
     place_objects();
     const RenderView view = from_aside();
     world.resource<Environment>().intensity = 0;
@@ -200,7 +206,9 @@ TEST_CASE_FIXTURE(Methods, "light methods: images of single lights add up to tha
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "light methods: shadows and projected images are the same in all five") {
+TEST_CASE_FIXTURE(
+    Methods, "light methods: shadows and projected images are the same in all five"
+                 * technique("light.structure-object-major")) {
     place_objects();
     ImageData stripes;
     stripes.width = 8;
@@ -234,7 +242,9 @@ TEST_CASE_FIXTURE(Methods, "light methods: shadows and projected images are the 
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "light methods: surfaces in one place are lit once") {
+TEST_CASE_FIXTURE(
+    Methods,
+    "light methods: surfaces in one place are lit once" * technique("engine.light-loops")) {
     // Two floors, and more lights than a stencil has numbers.
     floor();
     place(
@@ -290,7 +300,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "light methods: where a light is shadowed the others alone light") {
+TEST_CASE_FIXTURE(
+    Methods, "light methods: where a light is shadowed the others alone light"
+                 * technique("light.structure-light-major")) {
     floor();
     place(add(make_ball(12)), add(Material{}), affine_from({0, 0, 1}, {1, 0, 0, 0}, Vec3(0.5f)));
     const Entity above = shine(PointLight{.intensity = 20, .radius = 20}, at({0, 0, 3}));
@@ -313,7 +325,8 @@ TEST_CASE_FIXTURE(Methods, "light methods: where a light is shadowed the others 
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "light methods: object-major draws each object once, whatever the lights") {
+    Methods, "light methods: object-major draws each object once, whatever the lights"
+                 * technique("engine.light-loops, light.structure-object-major")) {
     place_objects();
     const RenderView view = from_aside();
     light(3);
@@ -324,7 +337,9 @@ TEST_CASE_FIXTURE(
     CHECK(few <= draws(LightMethod::Clustered, view) + 8);
 }
 
-TEST_CASE_FIXTURE(Methods, "light methods: light-major draws the objects that each light reaches") {
+TEST_CASE_FIXTURE(
+    Methods, "light methods: light-major draws the objects that each light reaches"
+                 * technique("engine.light-loops, light.structure-light-major")) {
     // A row of balls 4 m apart, each a mesh of its own: a draw each.
     for (int i = 0; i < 5; ++i) {
         place(add(make_ball(6)), add(Material{}), at({4.0f * static_cast<float>(i) - 8, 0, 0}));
@@ -340,7 +355,8 @@ TEST_CASE_FIXTURE(Methods, "light methods: light-major draws the objects that ea
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "light methods: a full-screen light costs every surface pixel, a volume its own") {
+    Methods, "light methods: a full-screen light costs every surface pixel, a volume its own"
+                 * technique("deferred.light-volume")) {
     floor();
     const RenderView view = look({0, 0, 10}, {0, 0, 0}, 64, 64);
     const std::uint64_t screen = samples(LightMethod::FullScreen, view);
@@ -362,7 +378,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "light volumes: the lit disc has the radius where ball and plane meet") {
+TEST_CASE_FIXTURE(
+    Methods, "light volumes: the lit disc has the radius where ball and plane meet"
+                 * technique("light.volume-stencil")) {
     floor();
     const RenderView view = look({0, 0, 10}, {0, 0, 0}, 200, 200);  // 10 pixels a meter
     const Entity lamp =
@@ -391,8 +409,8 @@ TEST_CASE_FIXTURE(Methods, "light volumes: the lit disc has the radius where bal
 }
 
 TEST_CASE_FIXTURE(
-    Methods,
-    "light volumes: nothing is lit where nothing is; a camera inside sees as from outside") {
+    Methods, "light volumes: nothing is lit where nothing is; a camera inside sees as from outside"
+                 * technique("deferred.light-volume, light.volume-stencil")) {
     const RenderView empty = look({0, 0, 10}, {0, 0, 0}, 64, 64);
     shine(PointLight{.radius = 5}, at({0, 0, 2}));
     const gpu::FloatImage nothing = picture(LightMethod::Volumes, empty);
@@ -408,7 +426,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "depth first: overlapping squares are lit once a pixel, in any order") {
+TEST_CASE_FIXTURE(
+    Methods, "depth first: overlapping squares are lit once a pixel, in any order"
+                 * technique("engine.depth-first, shade.z-prepass")) {
     const MeshId square = add(make_square());
     const MaterialId plain = add(Material{});
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
@@ -432,7 +452,8 @@ TEST_CASE_FIXTURE(Methods, "depth first: overlapping squares are lit once a pixe
         < 1e-3f);
 }
 
-TEST_CASE_FIXTURE(Methods, "depth first: lighting leaves the depth as it was") {
+TEST_CASE_FIXTURE(
+    Methods, "depth first: lighting leaves the depth as it was" * technique("shade.z-prepass")) {
     place_objects();
     light(12);
     const RenderView view = from_aside();
@@ -445,7 +466,8 @@ TEST_CASE_FIXTURE(Methods, "depth first: lighting leaves the depth as it was") {
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "light methods: holes, mirrored and turned surfaces are the same in all") {
+    Methods, "light methods: holes, mirrored and turned surfaces are the same in all"
+                 * technique("engine.depth-first, shade.z-prepass")) {
     ImageData image;
     image.width = 8;
     image.height = 8;
@@ -469,7 +491,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("visibility sets: a light's objects are those whose boxes meet its sphere, in order") {
+TEST_CASE(
+    "visibility sets: a light's objects are those whose boxes meet its sphere, in order"
+    * technique("engine.visibility-sets")) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> unit(-1, 1);
     std::vector<BoxBlock> blocks(2);
@@ -499,7 +523,8 @@ TEST_CASE("visibility sets: a light's objects are those whose boxes meet its sph
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "visibility sets: a light lights of what is seen what it reaches, and nothing else") {
+    Methods, "visibility sets: a light lights of what is seen what it reaches, and nothing else"
+                 * technique("engine.visibility-sets")) {
     // A row of balls 4 m apart; the camera sees the middle ones.
     const MeshId ball = add(make_ball(6));
     const MaterialId plain = add(Material{});
@@ -535,7 +560,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "visibility sets: what is not seen itself still casts its shadow") {
+TEST_CASE_FIXTURE(
+    Methods, "visibility sets: what is not seen itself still casts its shadow"
+                 * technique("engine.visibility-sets")) {
     floor();
     const RenderView view = look({0, 0, 3}, {0, 0, 0}, 32, 32);
     const Entity lamp = shine(PointLight{.intensity = 30, .radius = 30}, at({12, 0, 4}));
@@ -548,7 +575,9 @@ TEST_CASE_FIXTURE(Methods, "visibility sets: what is not seen itself still casts
     CHECK(rgb_at(radiance(view), 16, 16).x < 0.1f * rgb_at(lit, 16, 16).x);
 }
 
-TEST_CASE("visibility sets: objects' lists of lights say the same as lights' lists of objects") {
+TEST_CASE(
+    "visibility sets: objects' lists of lights say the same as lights' lists of objects"
+    * technique("engine.visibility-sets")) {
     const LightObjects found = {
         .lights = {2, 3, 7}, .begin = {0, 3, 3, 5}, .objects = {0, 2, 4, 2, 3}};
     ObjectLights lists;

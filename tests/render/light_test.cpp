@@ -6,6 +6,7 @@
 #include "render/material/shading_models.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -87,7 +88,9 @@ const DVec3 kUp = {0, 0, 1};  // the plane's normal
 // ---- formulas
 // ------------------------------------------------------------------------------------
 
-TEST_CASE("light: attenuation by a polynomial has the values of light.attenuation") {
+TEST_CASE(
+    "light: attenuation by a polynomial has the values of light.attenuation"
+    * technique("light.attenuation")) {
     const auto value = [](float c, float l, float q, double d) {
         return oracle::attenuation(polynomial(c, l, q), 0, d);
     };
@@ -105,7 +108,9 @@ TEST_CASE("light: attenuation by a polynomial has the values of light.attenuatio
     CHECK(std::isfinite(value(0, 1, 1, 0)));
 }
 
-TEST_CASE("light: the smooth fall-off has the values of engine.light-falloff") {
+TEST_CASE(
+    "light: the smooth fall-off has the values of engine.light-falloff"
+    * technique("char.skin-shade, engine.light-falloff")) {
     const auto value = [](float m, double share) {
         return oracle::attenuation(smooth(m), 8, 8 * share);
     };
@@ -124,7 +129,9 @@ TEST_CASE("light: the smooth fall-off has the values of engine.light-falloff") {
     CHECK(oracle::attenuation(smooth(1), 0, 1e6) == 1);  // radius 0: no attenuation
 }
 
-TEST_CASE("light: no fall-off ever rises with the distance, and each ends at the radius") {
+TEST_CASE(
+    "light: no fall-off ever rises with the distance, and each ends at the radius"
+    * technique("light.attenuation")) {
     for (const Attenuation& a :
          {Attenuation{}, polynomial(1, 0.7f, 1.8f), smooth(3),
           Attenuation{.falloff = Falloff::None}}) {
@@ -138,7 +145,9 @@ TEST_CASE("light: no fall-off ever rises with the distance, and each ends at the
     }
 }
 
-TEST_CASE("light: spot profiles have the values of light.spot-falloff") {
+TEST_CASE(
+    "light: spot profiles have the values of light.spot-falloff"
+    * technique("light.spot-falloff")) {
     const auto value = [](SpotProfile p, double angle) {
         return oracle::spot_factor(p, deg(20), deg(30), deg(angle));
     };
@@ -163,7 +172,7 @@ TEST_CASE("light: spot profiles have the values of light.spot-falloff") {
     }
 }
 
-TEST_CASE("light: lit gates specular where the light has set") {
+TEST_CASE("light: lit gates specular where the light has set" * technique("light.lit")) {
     CHECK(oracle::lit(0.5, 0.8, 2).diffuse == 0.5);
     CHECK(oracle::lit(0.5, 0.8, 2).specular == test::near(0.64));
     CHECK(oracle::lit(-0.1, 0.8, 2).diffuse == 0);
@@ -173,7 +182,9 @@ TEST_CASE("light: lit gates specular where the light has set") {
     CHECK(oracle::lit(0, 1, 8).specular == 0);
 }
 
-TEST_CASE("light: the local reflection model has the values of light.phong-model") {
+TEST_CASE(
+    "light: the local reflection model has the values of light.phong-model"
+    * technique("fakephong.illum-phong, light.phong-model")) {
     const oracle::ClassicMaterial m;  // ka .1, kd .6, ks .3
     const auto from = [](double angle) {
         return DVec3(std::sin(deg(angle)), 0, std::cos(deg(angle)));
@@ -199,7 +210,9 @@ TEST_CASE("light: the local reflection model has the values of light.phong-model
     }
 }
 
-TEST_CASE("light: the halfway vector has the values of light.halfway-vector") {
+TEST_CASE(
+    "light: the halfway vector has the values of light.halfway-vector"
+    * technique("fakephong.vectors, light.halfway-vector")) {
     oracle::ClassicMaterial m = {
         .ambient = DVec3(0), .diffuse = DVec3(0), .specular = DVec3(1), .shininess = 20};
     const auto from = [](double angle) {
@@ -229,7 +242,8 @@ TEST_CASE("light: the halfway vector has the values of light.halfway-vector") {
     CHECK(phong(60, 60) == 0);
 }
 
-TEST_CASE("light: what a surface makes of light names no type of light") {
+TEST_CASE(
+    "light: what a surface makes of light names no type of light" * technique("light.interface")) {
     std::vector<std::string> files = {"lib/reflector.glsl"};
     for (const ShadingModelRow& row : kShadingModels) {
         files.push_back(std::string("shade_") + row.name + ".glsl");
@@ -247,7 +261,9 @@ TEST_CASE("light: what a surface makes of light names no type of light") {
 // ---- on the GPU
 // ----------------------------------------------------------------------------------
 
-TEST_CASE("light: a matte plane under a point light is the closed form to 1e-3") {
+TEST_CASE(
+    "light: a matte plane under a point light is the closed form to 1e-3"
+    * technique("light.point")) {
     // albedo / pi * I cos / d^2, the light 0.8 m above the middle.
     PlaneScene scene(matte({0.8f, 0.5f, 0.2f}));
     scene.shine(
@@ -267,7 +283,9 @@ TEST_CASE("light: a matte plane under a point light is the closed form to 1e-3")
     }
 }
 
-TEST_CASE("light: every fall-off on the GPU equals the oracle") {
+TEST_CASE(
+    "light: every fall-off on the GPU equals the oracle"
+    * technique("engine.light-falloff, light.attenuation")) {
     for (const Attenuation& a :
          {Attenuation{}, polynomial(1, 0.7f, 1.8f), polynomial(0, 1, 0), smooth(1), smooth(2.5f),
           Attenuation{.falloff = Falloff::None}}) {
@@ -293,7 +311,8 @@ TEST_CASE("light: every fall-off on the GPU equals the oracle") {
     }
 }
 
-TEST_CASE("light: every spot profile on the GPU equals the oracle") {
+TEST_CASE(
+    "light: every spot profile on the GPU equals the oracle" * technique("light.spot-falloff")) {
     for (const SpotProfile profile :
          {SpotProfile::LinearCosine, SpotProfile::Smoothstep, SpotProfile::LinearAngle}) {
         PlaneScene scene;
@@ -322,7 +341,9 @@ TEST_CASE("light: every spot profile on the GPU equals the oracle") {
     }
 }
 
-TEST_CASE("light: a hard spot lights a disc of radius h tan(theta), and nothing behind it") {
+TEST_CASE(
+    "light: a hard spot lights a disc of radius h tan(theta), and nothing behind it"
+    * technique("light.spot-cone")) {
     PlaneScene scene;
     scene.shine(
         SpotLight{
@@ -346,7 +367,10 @@ TEST_CASE("light: a hard spot lights a disc of radius h tan(theta), and nothing 
     CHECK(largest_difference(turned.picture(), PlaneScene().picture()) == 0);
 }
 
-TEST_CASE("light: Phong and Blinn highlights on the GPU equal the oracle") {
+TEST_CASE(
+    "light: Phong and Blinn highlights on the GPU equal the oracle"
+    * technique(
+        "fakephong.illum-blinn, fakephong.illum-phong, light.halfway-vector, light.phong-model")) {
     for (const ShadingModel model : {ShadingModel::Phong, ShadingModel::Blinn}) {
         for (const float shininess : {1.0f, 12.0f, 80.0f}) {
             Material material = {
@@ -418,7 +442,7 @@ TEST_CASE("light: a light behind a shiny plane adds nothing, seen however flat")
     }
 }
 
-TEST_CASE("light: twice the light is twice the radiance") {
+TEST_CASE("light: twice the light is twice the radiance" * technique("light.multi")) {
     PlaneScene scene({.base_color = {0.7f, 0.5f, 0.3f, 1}, .roughness = 0.3f});
     const Entity lamp = scene.shine(PointLight{.intensity = 4}, at({0.3f, 0.1f, 0.6f}));
     const gpu::FloatImage once = scene.picture();
@@ -431,7 +455,9 @@ TEST_CASE("light: twice the light is twice the radiance") {
     }
 }
 
-TEST_CASE("light: lights of all types add up, in any order") {
+TEST_CASE(
+    "light: lights of all types add up, in any order"
+    * technique("deferred.light-pass, light.interface, light.multi")) {
     const Material material = {.base_color = {0.7f, 0.5f, 0.3f, 1}, .roughness = 0.4f};
     const PointLight lamp = {.color = {1, 0.2f, 0.2f}, .intensity = 3};
     const SpotLight spot = {.color = {0.2f, 1, 0.2f}, .intensity = 6};
@@ -476,7 +502,9 @@ TEST_CASE("light: lights of all types add up, in any order") {
     }
 }
 
-TEST_CASE("light: off and on again restores every bit; off leaves the other light's image") {
+TEST_CASE(
+    "light: off and on again restores every bit; off leaves the other light's image"
+    * technique("engine.light-object, light.unified")) {
     PlaneScene scene;
     const Entity one = scene.shine(PointLight{}, at({0.3f, 0.1f, 0.6f}));
     const gpu::FloatImage alone = scene.picture();
@@ -495,7 +523,7 @@ TEST_CASE("light: off and on again restores every bit; off leaves the other ligh
     CHECK(largest_difference(scene.picture(), PlaneScene().picture()) == 0);
 }
 
-TEST_CASE("light: without lights only the surroundings light") {
+TEST_CASE("light: without lights only the surroundings light" * technique("light.multi")) {
     PlaneScene scene(matte({0.5f, 0.5f, 0.5f}));
     CHECK(scene.picture().at(5, 5, 0) == 0);
     scene.world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0.4f, 0.6f, 0.8f}});
@@ -505,7 +533,9 @@ TEST_CASE("light: without lights only the surroundings light") {
     CHECK(image.at(5, 5, 2) == test::near(0.4).epsilon(2e-3));
 }
 
-TEST_CASE("light: a directional light is the same everywhere, and the limit of a far point light") {
+TEST_CASE(
+    "light: a directional light is the same everywhere, and the limit of a far point light"
+    * technique("light.directional")) {
     PlaneScene scene;
     const Vec3 from = glm::normalize(Vec3(1, 2, 3));
     const Entity sun = scene.shine(DirectionalLight{.illuminance = 2}, look_at(from, {0, 0, 0}));
@@ -521,7 +551,7 @@ TEST_CASE("light: a directional light is the same everywhere, and the limit of a
     CHECK(largest_difference(scene.picture(), near) <= 1e-3f);
 }
 
-TEST_CASE("light: moving light and plane together changes nothing") {
+TEST_CASE("light: moving light and plane together changes nothing" * technique("light.point")) {
     const auto picture = [](const Vec3& offset) {
         Scene scene;
         scene.place(scene.add(make_square()), scene.add(matte({1, 1, 1})), at(offset));
@@ -539,7 +569,7 @@ TEST_CASE("light: moving light and plane together changes nothing") {
     CHECK(image.at(16, 16, 0) == test::near(0.7071).epsilon(2e-3));
 }
 
-TEST_CASE("light: nothing is lit beyond the radius") {
+TEST_CASE("light: nothing is lit beyond the radius" * technique("engine.light-object")) {
     PlaneScene scene;
     scene.shine(PointLight{.intensity = 100, .radius = 0.8f}, at({0, 0, 0.5f}));
     const gpu::FloatImage image = scene.picture();
@@ -555,7 +585,9 @@ TEST_CASE("light: nothing is lit beyond the radius") {
     }
 }
 
-TEST_CASE("light: a pulse modulates the intensity and never makes it negative") {
+TEST_CASE(
+    "light: a pulse modulates the intensity and never makes it negative"
+    * technique("engine.light-object")) {
     const auto pulsing = [](const PeriodicFunction& function) {
         return LightPulse{.function = function};
     };
@@ -574,7 +606,9 @@ TEST_CASE("light: a pulse modulates the intensity and never makes it negative") 
     CHECK(scene.picture().at(9, 9, 0) == test::near(2 * steady).epsilon(1e-3));
 }
 
-TEST_CASE("light: a pulse leads the color to another one, no farther than all the way") {
+TEST_CASE(
+    "light: a pulse leads the color to another one, no farther than all the way"
+    * technique("engine.periodic")) {
     PlaneScene scene;
     scene.world.insert_resource(FrameTime{.time = 0});
     const Entity lamp = scene.shine(PointLight{.color = {1, 0, 0}}, at({0, 0, 0.6f}));
@@ -591,7 +625,7 @@ TEST_CASE("light: a pulse leads the color to another one, no farther than all th
     CHECK(scene.picture().at(9, 9, 2) == test::near(red).epsilon(1e-3));
 }
 
-TEST_CASE("light: broken lights are left out") {
+TEST_CASE("light: broken lights are left out" * technique("light.directional")) {
     PlaneScene scene;
     const gpu::FloatImage dark = scene.picture();
     scene.shine(PointLight{.color = {NAN, 1, 1}}, at({0, 0, 1}));
@@ -612,7 +646,9 @@ TEST_CASE("light: broken lights are left out") {
     CHECK(spot.at(0, 0, 0) == 0);
 }
 
-TEST_CASE("light: a light in the plane itself adds nothing and breaks nothing") {
+TEST_CASE(
+    "light: a light in the plane itself adds nothing and breaks nothing"
+    * technique("light.point")) {
     PlaneScene scene;
     scene.shine(PointLight{}, at(plane_point(7, 9, kSide)));
     for (const float value : scene.picture().pixels) {

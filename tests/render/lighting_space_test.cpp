@@ -1,6 +1,7 @@
 #include "bench/oracles/light_oracle.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -83,7 +84,8 @@ std::vector<double> shade_in_view(Moved& m, std::span<const Vertex> vertices) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Scene, "lighting space: object, world and view give what is drawn, by as many products") {
+    Scene, "lighting space: object, world and view give what is drawn, by as many products"
+               * technique("shade.lighting-space")) {
     // A square, turned and moved; the pixel in the middle shows its middle.
     const Quat turn = glm::angleAxis(0.6f, glm::normalize(Vec3(1, 2, 0.5f)));
     const Vec3 place_ws = {0.4f, -0.3f, 0.2f};
@@ -128,7 +130,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "lighting space: where a plane is stretched its normal goes by the inverse transpose") {
+    Scene, "lighting space: where a plane is stretched its normal goes by the inverse transpose"
+               * technique("shade.lighting-space")) {
     // The plane x + y = 0, its normal (1, 1, 0) / sqrt 2, twice as long along x.
     MeshData plane = make_square();
     const float r = std::sqrt(0.5f);
@@ -149,7 +152,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "lighting space: distances to lights are meters, however an object is scaled") {
+    Scene, "lighting space: distances to lights are meters, however an object is scaled"
+               * technique("shade.lighting-space")) {
     // Polynomial (1, 0.7, 1.8) at 2 m: 0.1042 of the light; at 1 m, as an object of scale 2 would
     // have it, 0.2857.
     const MaterialId matte = add(Material{

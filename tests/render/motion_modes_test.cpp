@@ -4,6 +4,7 @@
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
 #include "tests/render/shutter_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,8 @@ class OldShutter : public Shutter {
 // ---- the mean of the last images
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: the mean of equal images is that image, to the bit") {
+    OldShutter, "motion accumulation: the mean of equal images is that image, to the bit"
+                    * technique("post.motion-blur-accumulation")) {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 0);
     set_mode(MotionBlurMode::Accumulate);
@@ -73,7 +75,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: a flash of one frame is a fifth of it in five frames") {
+    OldShutter, "motion accumulation: a flash of one frame is a fifth of it in five frames"
+                    * technique("post.motion-blur-accumulation")) {
     flash(true);
     const float full = middle();
     CHECK(full == test::near(1));
@@ -92,7 +95,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: at first it is the mean of the frames that there are") {
+    OldShutter, "motion accumulation: at first it is the mean of the frames that there are"
+                    * technique("post.motion-blur-accumulation")) {
     set_mode(MotionBlurMode::Accumulate);
     flash(true);
     CHECK(middle() == test::near(1));
@@ -102,7 +106,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: nothing is left of what was bright a thousand times over") {
+    OldShutter, "motion accumulation: nothing is left of what was bright a thousand times over"
+                    * technique("post.motion-blur-accumulation")) {
     // A sum that images are added to and taken from again would keep what it rounds off.
     set_mode(MotionBlurMode::Accumulate);
     const MaterialId dim = unlit({0.3f, 0.7f, 0.1f});
@@ -145,7 +150,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: n moments of an edge that moves give steps of 1 / n") {
+    OldShutter, "motion accumulation: n moments of an edge that moves give steps of 1 / n"
+                    * technique("post.motion-blur-accumulation")) {
     const Entity edge = bar(unlit({1, 1, 1}), 8, 24, 0);
     const Affine pose = world.get<WorldTransform>(edge).world;
     set_mode(MotionBlurMode::Accumulate);
@@ -187,7 +193,9 @@ RenderView stepped(float way) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(OldShutter, "motion camera: a camera that stands changes no bit") {
+TEST_CASE_FIXTURE(
+    OldShutter, "motion camera: a camera that stands changes no bit"
+                    * technique("post.motion-blur-camera-psf")) {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 12);
     bar(unlit({0.9f, 0.2f, 0.1f}), 0, 50, 0, -3.7f);
@@ -196,7 +204,8 @@ TEST_CASE_FIXTURE(OldShutter, "motion camera: a camera that stands changes no bi
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion camera: a point becomes a line as long as its way, of the same light") {
+    OldShutter, "motion camera: a point becomes a line as long as its way, of the same light"
+                    * technique("post.motion-blur-camera-psf")) {
     bar(unlit({0, 0, 0}), -200, 300, 0, -0.001f);
     bar(unlit({1, 1, 1}), 32, 33, 0);
     set_mode(MotionBlurMode::Camera);
@@ -215,13 +224,17 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(OldShutter, "motion camera: an image of one color keeps it") {
+TEST_CASE_FIXTURE(
+    OldShutter,
+    "motion camera: an image of one color keeps it" * technique("post.motion-blur-camera-psf")) {
     bar(unlit({0.4f, 0.5f, 0.6f}), -500, 600, 0);
     set_mode(MotionBlurMode::Camera);
     CHECK(largest_difference(radiance(stepped(23)), sharp()) < 1e-6f);
 }
 
-TEST_CASE_FIXTURE(OldShutter, "motion camera: a roll about the view axis leaves the middle alone") {
+TEST_CASE_FIXTURE(
+    OldShutter, "motion camera: a roll about the view axis leaves the middle alone"
+                    * technique("post.motion-blur-camera-psf")) {
     constexpr int kOdd = 65;
     for (int i = 0; i < 16; ++i) {
         const float begin = 4.0f * static_cast<float>(i);
@@ -241,7 +254,9 @@ TEST_CASE_FIXTURE(OldShutter, "motion camera: a roll about the view axis leaves 
 
 // ---- along an optic flow
 
-TEST_CASE("motion flow: the offset is the share of the motion that goes ahead of the surface") {
+TEST_CASE(
+    "motion flow: the offset is the share of the motion that goes ahead of the surface"
+    * technique("post.motion-blur-optic-flow")) {
     // y = flow_offset(x.xyz, (0, 0, -2)), then with a motion of 0.
     const std::vector<Vec4> normals = {
         {0, 0, -1, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0.6f, 0, -0.8f, 0}, {0, 1, 0, 1}};
@@ -279,7 +294,9 @@ void tilted_bar(OldShutter& scene, float way) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(OldShutter, "motion flow: what stands keeps its bits, one color keeps itself") {
+TEST_CASE_FIXTURE(
+    OldShutter, "motion flow: what stands keeps its bits, one color keeps itself"
+                    * technique("post.motion-blur-optic-flow")) {
     world.insert_resource(Environment{});
     tilted_bar(*this, 0);
     set_mode(MotionBlurMode::Flow);
@@ -290,7 +307,8 @@ TEST_CASE_FIXTURE(OldShutter, "motion flow: what stands keeps its bits, one colo
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion flow: the trailing edge smears farther than the leading one") {
+    OldShutter, "motion flow: the trailing edge smears farther than the leading one"
+                    * technique("post.motion-blur-optic-flow")) {
     tilted_bar(*this, 10);
     set_mode(MotionBlurMode::Flow);
     const std::vector<double> plain = row_of(sharp(), 32, 0);
@@ -314,7 +332,9 @@ TEST_CASE_FIXTURE(
 
 // ---- stretched geometry
 
-TEST_CASE_FIXTURE(OldShutter, "motion stretch: two frames of a box make the ramp of the bar") {
+TEST_CASE_FIXTURE(
+    OldShutter, "motion stretch: two frames of a box make the ramp of the bar"
+                    * technique("post.motion-blur-stretch")) {
     const MeshId box = add(make_block());
     const float way = 16;
     const auto pose = [](float x) {
@@ -339,7 +359,8 @@ TEST_CASE_FIXTURE(OldShutter, "motion stretch: two frames of a box make the ramp
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: what stands keeps its bits, first frames are sharp") {
+    OldShutter, "motion stretch: what stands keeps its bits, first frames are sharp"
+                    * technique("post.motion-blur-stretch")) {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 0);
     set_mode(MotionBlurMode::Stretch);
@@ -348,7 +369,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: where the way is none, a pixel is the mean of both frames") {
+    OldShutter, "motion stretch: where the way is none, a pixel is the mean of both frames"
+                    * technique("post.motion-blur-stretch")) {
     const auto pose = [](float z) { return affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(0.5f)); };
     const Entity entity = place(add(make_ball(16)), unlit({1, 0.5f, 0}), pose(-1));
     set_mode(MotionBlurMode::Stretch);
@@ -378,7 +400,9 @@ TEST_CASE_FIXTURE(
     CHECK(partly(moved) > partly(still) + 8);
 }
 
-TEST_CASE_FIXTURE(OldShutter, "motion stretch: a ball becomes the hull of its two places") {
+TEST_CASE_FIXTURE(
+    OldShutter, "motion stretch: a ball becomes the hull of its two places"
+                    * technique("post.motion-blur-stretch")) {
     const MeshId ball = add(make_ball(32));
     const auto pose = [](float x) { return affine_from({x, 0, 0}, {1, 0, 0, 0}, Vec3(0.3f)); };
     const Entity entity = place(ball, unlit({1, 1, 1}), pose(-0.2f));
@@ -408,7 +432,9 @@ TEST_CASE_FIXTURE(OldShutter, "motion stretch: a ball becomes the hull of its tw
     }
 }
 
-TEST_CASE_FIXTURE(OldShutter, "motion stretch: what stands before the layer stays as it is") {
+TEST_CASE_FIXTURE(
+    OldShutter, "motion stretch: what stands before the layer stays as it is"
+                    * technique("post.motion-blur-stretch")) {
     const MeshId ball = add(make_ball(16));
     const auto pose = [](float x) { return affine_from({x, 0, -1}, {1, 0, 0, 0}, Vec3(0.6f)); };
     const Entity entity = place(ball, unlit({1, 1, 1}), pose(-0.5f));

@@ -2,6 +2,7 @@
 #include "render/water/ocean_fft.h"
 #include "systems/water/ocean_system.h"
 #include "tests/render/render_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,8 @@ double relative_error(const gpu::FloatImage& image, int channel, const std::vect
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "ocean_fft: the GPU's fields are the simulation's, to 1e-4 of the largest") {
+    test::RenderTest, "ocean_fft: the GPU's fields are the simulation's, to 1e-4 of the largest"
+                          * technique("water.fft-synthesis")) {
     for (const int size : {16, 32, 64, 128}) {
         const OceanState state = ocean_of(size, size == 64 ? 3 : 1);
         const OceanFft fft = run_fft(device(), state);

@@ -1,6 +1,7 @@
 #include "ecs/base/optics.h"
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <cmath>
 #include <random>
@@ -42,12 +43,16 @@ double fresnel_of_book(double angle, double index) {
 
 }  // namespace
 
-TEST_CASE("optics: light from straight above goes straight down and straight back") {
+TEST_CASE(
+    "optics: light from straight above goes straight down and straight back"
+    * technique("water.snell-vectors")) {
     CHECK(reflect_ray(kUp, kUp) == kUp);
     CHECK(glm::distance(refract_ray(kUp, kUp, kIntoWater), -kUp) < 1e-6f);
 }
 
-TEST_CASE("optics: into water light bends toward the normal as Snell says") {
+TEST_CASE(
+    "optics: into water light bends toward the normal as Snell says"
+    * technique("water.snell-vectors")) {
     const float pairs[][2] = {{30, 22.0824f}, {45, 32.1176f}, {60, 40.6281f}};
     for (const auto& pair : pairs) {
         const Vec3 t = refract_ray(kUp, light_at(pair[0]), kIntoWater);
@@ -57,14 +62,17 @@ TEST_CASE("optics: into water light bends toward the normal as Snell says") {
     }
 }
 
-TEST_CASE("optics: out of water nothing comes beyond 48.75 degrees") {
+TEST_CASE(
+    "optics: out of water nothing comes beyond 48.75 degrees" * technique("water.snell-vectors")) {
     CHECK(glm::length(refract_ray(kUp, light_at(48.74f), kWater)) == test::near(1));
     CHECK(refract_ray(kUp, light_at(48.77f), kWater) == Vec3(0));
     CHECK(fresnel_at(48.77f, 1 / kWater) == 1.0f);
     CHECK(fresnel_at(48.5f, 1 / kWater) < 0.7f);
 }
 
-TEST_CASE("optics: rays are unit, in one plane, and go back the way they came") {
+TEST_CASE(
+    "optics: rays are unit, in one plane, and go back the way they came"
+    * technique("water.snell-vectors")) {
     std::mt19937 random(3);
     for (int i = 0; i < 500; ++i) {
         const Vec3 normal = random_direction(random);
@@ -85,7 +93,9 @@ TEST_CASE("optics: rays are unit, in one plane, and go back the way they came") 
     }
 }
 
-TEST_CASE("optics: where there is no boundary light goes on and nothing is mirrored") {
+TEST_CASE(
+    "optics: where there is no boundary light goes on and nothing is mirrored"
+    * technique("water.snell-vectors")) {
     for (const float angle : {0.0f, 30.0f, 80.0f, 89.9f}) {
         CHECK(glm::distance(refract_ray(kUp, light_at(angle), 1), -light_at(angle)) < 1e-6f);
         CHECK(fresnel_at(angle, 1) < 1e-6f);
@@ -93,7 +103,7 @@ TEST_CASE("optics: where there is no boundary light goes on and nothing is mirro
     CHECK(fresnel(0, 1) == 0.0f);
 }
 
-TEST_CASE("optics: water mirrors as much as Fresnel says") {
+TEST_CASE("optics: water mirrors as much as Fresnel says" * technique("water.fresnel")) {
     CHECK(fresnel(1, kWater) == test::near(0.0200593).epsilon(1e-5));
     CHECK(fresnel(1, 1.3f) == test::near(0.0170132).epsilon(1e-5));
     const double pairs[][2] = {{30, 0.0211125}, {45, 0.0275214}, {53.06123, 0.0385538},
@@ -106,7 +116,9 @@ TEST_CASE("optics: water mirrors as much as Fresnel says") {
     CHECK(fresnel(1.1f, kWater) == fresnel(1, kWater));
 }
 
-TEST_CASE("optics: the form with cosines is the one with angles, and rises all the way") {
+TEST_CASE(
+    "optics: the form with cosines is the one with angles, and rises all the way"
+    * technique("water.fresnel")) {
     float last = fresnel(1, kWater);
     for (int i = 1; i <= 890; ++i) {
         const float angle = 0.1f * static_cast<float>(i);
@@ -119,14 +131,18 @@ TEST_CASE("optics: the form with cosines is the one with angles, and rises all t
     }
 }
 
-TEST_CASE("optics: both sides of a boundary mirror alike along the same ray") {
+TEST_CASE(
+    "optics: both sides of a boundary mirror alike along the same ray"
+    * technique("water.fresnel")) {
     for (const float angle : {0.0f, 20.0f, 50.0f, 80.0f}) {
         const Vec3 t = refract_ray(kUp, light_at(angle), kIntoWater);
         CHECK(fresnel(-t.y, 1 / kWater) == test::near(fresnel_at(angle)).epsilon(1e-4));
     }
 }
 
-TEST_CASE("optics: the book's cheap form has its numbers, its bend and its error") {
+TEST_CASE(
+    "optics: the book's cheap form has its numbers, its bend and its error"
+    * technique("water.fresnel-approx")) {
     CHECK(tso_barsky_at(44.9f) == 0.02f);
     CHECK(tso_barsky_at(45) == test::near(0.02));
     CHECK(tso_barsky_at(60) == test::near(0.128889).epsilon(1e-5));
@@ -170,7 +186,9 @@ TEST_CASE("optics: Schlick's form is exact at both ends and nearer than the book
     CHECK(most == test::near(0.0599).epsilon(1e-3));
 }
 
-TEST_CASE_FIXTURE(RenderTest, "optics: shaders have the same functions") {
+TEST_CASE_FIXTURE(
+    RenderTest, "optics: shaders have the same functions"
+                    * technique("water.fresnel, water.fresnel-approx, water.snell-vectors")) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> uniform;
     std::vector<Vec4> inputs;

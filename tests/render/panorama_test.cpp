@@ -1,6 +1,7 @@
 #include "render/environment/panorama.h"
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -17,7 +18,9 @@ bool near(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
-TEST_CASE("panorama: an angular map has straight up in the middle and the horizon halfway out") {
+TEST_CASE(
+    "panorama: an angular map has straight up in the middle and the horizon halfway out"
+    * technique("env.angular-map")) {
     CHECK(near(angular_uv({0, 1, 0}), {0.5f, 0.5f}));
     CHECK(near(angular_uv({1, 0, 0}), {0.75f, 0.5f}));
     CHECK(near(angular_uv({0, 0, 1}), {0.5f, 0.75f}));
@@ -27,7 +30,9 @@ TEST_CASE("panorama: an angular map has straight up in the middle and the horizo
     CHECK(near(angular_uv(glm::normalize(Vec3(1, 1, 1))), {0.60751f, 0.60751f}));
 }
 
-TEST_CASE("panorama: in an angular map the way from the middle is the angle from straight up") {
+TEST_CASE(
+    "panorama: in an angular map the way from the middle is the angle from straight up"
+    * technique("env.angular-map")) {
     std::mt19937 random(3);
     std::normal_distribution<float> normal;
     for (int i = 0; i < 100; ++i) {
@@ -40,8 +45,9 @@ TEST_CASE("panorama: in an angular map the way from the middle is the angle from
     CHECK(std::isfinite(angular_uv({0, -1, 0}).x));
 }
 
-TEST_CASE("panorama: a cylinder shows -z in the middle, its half angle at the edge, and closes "
-          "behind") {
+TEST_CASE(
+    "panorama: a cylinder shows -z in the middle, its half angle at the edge, and closes behind"
+    * technique("env.panorama")) {
     CHECK(near(cylindrical_uv({0, 0, -1}, kHalfAngle), {0.5f, 0.5f}));
     CHECK(near(cylindrical_uv({1, 0, 0}, kHalfAngle), {0.75f, 0.5f}));
     CHECK(cylindrical_uv({0, 1, -1}, kHalfAngle).y == test::near(1));
@@ -61,7 +67,8 @@ TEST_CASE("panorama: longitude and latitude are shares of the image") {
     CHECK(equirectangular_uv({0, -3, 0}).y == test::near(0).scale(1));
 }
 
-TEST_CASE_FIXTURE(RenderTest, "panorama: the GPU's mappings are the CPU's") {
+TEST_CASE_FIXTURE(
+    RenderTest, "panorama: the GPU's mappings are the CPU's" * technique("env.angular-map")) {
     std::mt19937 random(4);
     std::normal_distribution<float> normal;
     std::vector<Vec4> inputs = {

@@ -13,6 +13,7 @@
 #include "systems/particles/particle_obstacles.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -151,7 +152,8 @@ ParticleEmitter handful() {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    SeenScene, "particle depth: off a plane that was seen they bounce as ten plain lines say") {
+    SeenScene, "particle depth: off a plane that was seen they bounce as ten plain lines say"
+                   * technique("particle.depth-collision")) {
     for (const float radius : {0.0f, 0.04f}) {
         CAPTURE(radius);
         const SeenWall wall = {glm::normalize(Vec3(0.15f, 1, 0.2f)), 0.1f};
@@ -187,7 +189,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SeenScene, "particle depth: what the camera did not see, or is thinner, does not hold them") {
+    SeenScene, "particle depth: what the camera did not see, or is thinner, does not hold them"
+                   * technique("particle.depth-collision")) {
     const SeenWall wall = {{0, 1, 0}, 0};
     const ParticleCollision collision = {
         .action = CollisionAction::Stick, .radius = 0, .collide_depth = 0.1f};
@@ -241,7 +244,9 @@ TEST_CASE_FIXTURE(SeenScene, "particle depth: balls deeper than the thickness fa
     }
 }
 
-TEST_CASE_FIXTURE(SeenScene, "particle depth: at 60 m/s none gets through what was seen") {
+TEST_CASE_FIXTURE(
+    SeenScene, "particle depth: at 60 m/s none gets through what was seen"
+                   * technique("particle.depth-collision")) {
     const SeenWall wall = {glm::normalize(Vec3(0, 0.5f, 1)), -1};
     see(wall);
     ParticleEmitter settings = handful();
@@ -266,7 +271,9 @@ TEST_CASE_FIXTURE(SeenScene, "particle depth: at 60 m/s none gets through what w
     CHECK(held == 200);
 }
 
-TEST_CASE_FIXTURE(SeenScene, "particle depth: no depth makes a NaN or a hang") {
+TEST_CASE_FIXTURE(
+    SeenScene,
+    "particle depth: no depth makes a NaN or a hang" * technique("particle.depth-collision")) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float value : {nan, 0.0f, -1.0f, 1e30f, 1e-30f}) {
         CAPTURE(value);

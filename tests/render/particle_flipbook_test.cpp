@@ -4,6 +4,7 @@
 #include "tests/near.h"
 #include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -95,7 +96,8 @@ struct FlipbookScene : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FlipbookScene, "particle flipbook: between frames a flying disc is one disc on its way") {
+    FlipbookScene, "particle flipbook: between frames a flying disc is one disc on its way"
+                       * technique("particle.motion-vectors")) {
     for (const float shown : {0.25f, 0.5f, 0.9f, 1.0f, 1.5f, 2.3f}) {
         CAPTURE(shown);
         CHECK(worst(shown) < 0.03f);
@@ -144,8 +146,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FlipbookScene,
-    "particle flipbook: a motion map that is missing, or of a disc, changes nothing") {
+    FlipbookScene, "particle flipbook: a motion map that is missing, or of a disc, changes nothing"
+                       * technique("particle.motion-vectors")) {
     look_.motion_strength = 0;
     const float still = worst(1.5f);
     look_.motion_strength = kStrength;

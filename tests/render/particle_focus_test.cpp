@@ -4,6 +4,7 @@
 #include "render/lens/thin_lens.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,8 +122,9 @@ double decibels(const gpu::FloatImage& a, const gpu::FloatImage& b) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FocusScene, "particle focus: wherever they are, they are as sharp as views from all over the "
-                "lens show them") {
+    FocusScene,
+    "particle focus: anywhere they are as sharp as views from all over the lens show them"
+        * technique("particle.depth-of-field")) {
     struct Case {
         float wall, particle;  // z [m]
     };
@@ -143,7 +145,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FocusScene, "particle focus: behind or before a pane they are as sharp, and covered by it") {
+    FocusScene, "particle focus: behind or before a pane they are as sharp, and covered by it"
+                    * technique("particle.depth-of-field")) {
     add_wall(-20);
     add_pane(0.5f);
     for (const float z : {0.0f, -1.5f, 1.0f}) {
@@ -155,7 +158,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FocusScene, "particle focus: light alone is focused on, too, where its opacity is enough") {
+    FocusScene, "particle focus: light alone is focused on, too, where its opacity is enough"
+                    * technique("particle.depth-of-field")) {
     emit({0, 0, 0}, 0.8f, 0);
     const gpu::FloatImage sharp = radiance(with_lens_sample(camera(), Vec2(0)));
     CHECK(decibels(photograph(), sharp) > 40);
@@ -163,7 +167,9 @@ TEST_CASE_FIXTURE(
     CHECK(decibels(photograph(), sharp) < 30);
 }
 
-TEST_CASE_FIXTURE(FocusScene, "particle focus: what a surface hides changes no bit") {
+TEST_CASE_FIXTURE(
+    FocusScene,
+    "particle focus: what a surface hides changes no bit" * technique("particle.depth-of-field")) {
     place(
         add(make_square()),
         add(Material{.base_color = {0, 0, 0, 1}, .emission = {0.3f, 0.2f, 0.1f}}),

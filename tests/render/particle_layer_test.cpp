@@ -4,6 +4,7 @@
 #include "render/graph/frame_graph.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,7 +91,9 @@ double decibels(const gpu::FloatImage& a, const gpu::FloatImage& b) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(LayerScene, "particle layer: smoke behind bars is that of all pixels, to 36 dB") {
+TEST_CASE_FIXTURE(
+    LayerScene, "particle layer: smoke behind bars is that of all pixels, to 36 dB"
+                    * technique("particle.half-resolution")) {
     add_bars();
     add_smoke();
     const gpu::FloatImage full = drawn(ParticleResolution::Full);
@@ -134,8 +137,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    LayerScene,
-    "particle layer: a puff anywhere in the image is drawn whole, and when it is gone") {
+    LayerScene, "particle layer: a puff anywhere in the image is drawn whole, and when it is gone"
+                    * technique("particle.half-resolution")) {
     for (const Vec3& place : {Vec3(0.6f, 0.4f, 0), Vec3(-0.9f, -0.7f, 0), Vec3(0, 0.9f, -3)}) {
         const Entity smoke = emit({place}, puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f));
         const gpu::FloatImage full = drawn(ParticleResolution::Full);
@@ -155,7 +158,9 @@ TEST_CASE_FIXTURE(LayerScene, "particle layer: puffs far apart in the image are 
     CHECK(decibels(drawn(ParticleResolution::Half), full) >= 40);
 }
 
-TEST_CASE_FIXTURE(LayerScene, "particle layer: points are as large as in the whole resolution") {
+TEST_CASE_FIXTURE(
+    LayerScene, "particle layer: points are as large as in the whole resolution"
+                    * technique("particle.half-resolution")) {
     for (const auto facing : {ParticleFacing::Point, ParticleFacing::Pixels}) {
         ParticleLook point = puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f);
         point.facing = facing;
@@ -167,7 +172,9 @@ TEST_CASE_FIXTURE(LayerScene, "particle layer: points are as large as in the who
     }
 }
 
-TEST_CASE_FIXTURE(LayerScene, "particle layer: smoke does not spill over what stands before it") {
+TEST_CASE_FIXTURE(
+    LayerScene, "particle layer: smoke does not spill over what stands before it"
+                    * technique("particle.half-resolution")) {
     add_bars();
     const gpu::FloatImage bare = drawn(ParticleResolution::Full);
     add_smoke();
@@ -212,7 +219,9 @@ TEST_CASE_FIXTURE(
     CHECK(decibels(half, full) >= 40);
 }
 
-TEST_CASE_FIXTURE(LayerScene, "particle layer: it lies in the order where its middle one does") {
+TEST_CASE_FIXTURE(
+    LayerScene, "particle layer: it lies in the order where its middle one does"
+                    * technique("particle.half-resolution")) {
     ParticleLook half = puff({1, 0, 0}, 0.9f, 4);
     half.resolution = ParticleResolution::Half;
     emit({{0, 0, 0}}, half);
@@ -229,7 +238,8 @@ TEST_CASE_FIXTURE(LayerScene, "particle layer: it lies in the order where its mi
 }
 
 TEST_CASE_FIXTURE(
-    LayerScene, "particle layer: its depths are the nearest and the farthest of four, in turn") {
+    LayerScene, "particle layer: its depths are the nearest and the farthest of four, in turn"
+                    * technique("particle.half-resolution")) {
     add_bars();
     add_smoke();
     FrameGraph& graph = frame_graph(shared_renderer());
@@ -260,7 +270,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    LayerScene, "particle layer: without looks of half the resolution there is none") {
+    LayerScene, "particle layer: without looks of half the resolution there is none"
+                    * technique("particle.half-resolution")) {
     add_smoke();
     (void)drawn(ParticleResolution::Full);
     CHECK_FALSE(frame_graph(shared_renderer()).was_run("particles.enlarge"));

@@ -4,6 +4,7 @@
 #include "tests/near.h"
 #include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -91,7 +92,9 @@ double mean_over_ball(double radius, double away) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(LitScene, "particle light: in the middle it is the mean of the corners") {
+TEST_CASE_FIXTURE(
+    LitScene, "particle light: in the middle it is the mean of the corners"
+                  * technique("particle.lit-in-middle")) {
     const Entity one = emit({{0, 0, 0}}, lit_disc(1, 0));
     for (const float forward : {0.0f, 0.6f, -0.4f}) {
         world.get<ParticleLook>(one).forward = forward;
@@ -112,7 +115,8 @@ TEST_CASE_FIXTURE(LitScene, "particle light: in the middle it is the mean of the
 }
 
 TEST_CASE_FIXTURE(
-    LitScene, "particle light: in the middle and at the corners, small ones give the same light") {
+    LitScene, "particle light: in the middle and at the corners, small ones give the same light"
+                  * technique("particle.lit-in-middle")) {
     world.insert_resource(Environment{.intensity = 0.2f});
     shine(DirectionalLight{.illuminance = 0.3f}, look_at(Vec3(0), {1, -2, -1}));
     shine(PointLight{.color = {1, 0.5f, 0.2f}, .intensity = 20}, at({2, 3, 1}));
@@ -138,7 +142,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    LitScene, "particle light: a lamp within a puff lights it as the mean of its ball") {
+    LitScene, "particle light: a lamp within a puff lights it as the mean of its ball"
+                  * technique("particle.lit-in-middle")) {
     const float radius = 0.5f;
     emit({{0, 0, 0}}, lit_disc(2 * radius, 0));
     const Entity lamp = shine(PointLight{.intensity = 1.5f, .radius = 0}, at({0, 0, 1}));
@@ -156,7 +161,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(LitScene, "particle light: lit in the middle or not, each in its place") {
+TEST_CASE_FIXTURE(
+    LitScene, "particle light: lit in the middle or not, each in its place"
+                  * technique("particle.lit-in-middle")) {
     // From the camera: the corners of each are lit alike. The middle of a quad is on the diagonal
     // of its two triangles, where light is the mean of two corners, not of four.
     shine(PointLight{.intensity = 2, .radius = 0}, at({0, 0, 1}));

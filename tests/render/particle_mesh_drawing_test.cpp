@@ -3,6 +3,7 @@
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/shadow.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/gtc/quaternion.hpp>
@@ -53,7 +54,9 @@ struct Debris : Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Debris, "particle meshes: drawn as entities are, in one draw") {
+TEST_CASE_FIXTURE(
+    Debris, "particle meshes: drawn as entities are, in one draw"
+                * technique("engine.projectile-instances, particle.velocity")) {
     const FrameOutput bare = draw(view());
     const gpu::FloatImage empty = gpu::read_floats(*bare.radiance);
     const std::uint64_t floor_draws = bare.statistics.draws;
@@ -88,7 +91,9 @@ TEST_CASE_FIXTURE(Debris, "particle meshes: drawn as entities are, in one draw")
     CHECK(none.statistics.draws == floor_draws);
 }
 
-TEST_CASE_FIXTURE(Debris, "particle meshes: thousands, and shadows only where they are wanted") {
+TEST_CASE_FIXTURE(
+    Debris, "particle meshes: thousands, and shadows only where they are wanted"
+                * technique("engine.projectile-instances")) {
     std::vector<MeshParticle> many;
     for (int i = 0; i < 2500; ++i) {
         many.push_back(pieces[static_cast<std::size_t>(i) % pieces.size()]);

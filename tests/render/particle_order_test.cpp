@@ -5,6 +5,7 @@
 #include "ecs/components/water_look.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,8 +64,8 @@ struct OrderScene : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    OrderScene,
-    "particle order: behind a pane a sprite is seen through it, before it it hides it") {
+    OrderScene, "particle order: behind a pane a sprite is seen through it, before it it hides it"
+                    * technique("particle.distance-sort")) {
     add_pane(0, {0, 0, 1}, 0.25f);
     const Entity behind = emit({0, 0, -1}, {1, 0, 0});
     Vec3 seen = middle();
@@ -78,7 +79,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene, "particle order: sprites before and behind a pane mix as sorted layers do") {
+    OrderScene, "particle order: sprites before and behind a pane mix as sorted layers do"
+                    * technique("particle.distance-sort")) {
     add_pane(0, {0, 0, 1}, 0.5f);
     emit({0, 0, -1}, {1, 0, 0}, 0.8f);
     emit({0, 0, 0.3f}, {0, 1, 0}, 0.5f);
@@ -89,8 +91,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene,
-    "particle order: at half the resolution and weighted, panes are as for all others") {
+    OrderScene, "particle order: at half the resolution and weighted, panes are as for all others"
+                    * technique("particle.distance-sort")) {
     add_pane(0, {0, 0, 1}, 0.5f);
     for (const bool is_half : {true, false}) {
         CAPTURE(is_half);
@@ -107,7 +109,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(OrderScene, "particle order: a mirror shows them behind a pane and before it") {
+TEST_CASE_FIXTURE(
+    OrderScene, "particle order: a mirror shows them behind a pane and before it"
+                    * technique("particle.distance-sort")) {
     world.add(
         world.create(
             Water{.size = {40, 40}, .absorption = {100, 100, 100}, .scattering = Vec3(0)},
@@ -133,7 +137,8 @@ TEST_CASE_FIXTURE(OrderScene, "particle order: a mirror shows them behind a pane
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene, "particle order: a sprite that a pane cuts is behind it in part of its pixels") {
+    OrderScene, "particle order: a sprite that a pane cuts is behind it in part of its pixels"
+                    * technique("particle.distance-sort")) {
     // From the lower left of the image away to the upper right.
     add_pane(
         affine_from({0, 0, 0}, Quat(std::cos(0.4f), 0, std::sin(0.4f), 0), Vec3(3)), {0, 0, 1},
@@ -150,8 +155,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene,
-    "particle order: behind clear glass a sprite is seen, before it it hides the glass") {
+    OrderScene, "particle order: behind clear glass a sprite is seen, before it it hides the glass"
+                    * technique("particle.distance-sort")) {
     const Material glass = {
         .base_color = {1, 1, 1, 1}, .roughness = 0, .transmission = 1, .thickness = 0.1f};
     place(add(make_square()), add(glass), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(3)));
@@ -167,7 +172,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene, "particle order: above water a sprite hides it, below black water it is not seen") {
+    OrderScene, "particle order: above water a sprite hides it, below black water it is not seen"
+                    * technique("particle.distance-sort")) {
     world.create(
         Water{.absorption = {100, 100, 100}, .scattering = Vec3(0)}, WorldTransform{at({0, 0, 0})});
     const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
@@ -180,7 +186,9 @@ TEST_CASE_FIXTURE(
     CHECK(red() == test::near(bare).epsilon(0.01));
 }
 
-TEST_CASE_FIXTURE(OrderScene, "particle order: below clear water they are seen from above") {
+TEST_CASE_FIXTURE(
+    OrderScene, "particle order: below clear water they are seen from above"
+                    * technique("particle.distance-sort")) {
     // A floor in the way of the light that comes back, so that only what is before it is seen.
     add_floor();
     world.create(
@@ -260,8 +268,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene,
-    "particle order: water absorbs a sprite's light as far as the sprite, not the floor") {
+    OrderScene, "particle order: water absorbs a sprite's light as far as the sprite, not the floor"
+                    * technique("particle.distance-sort")) {
     add_floor();
     constexpr Vec3 kAbsorption = {0.5f, 0.2f, 0.1f};
     world.create(

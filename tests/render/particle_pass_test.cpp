@@ -6,6 +6,7 @@
 #include "tests/near.h"
 #include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -56,7 +57,8 @@ ParticleLook add_point_sprite(Scene& scene) {
 }  // namespace
 
 TEST_CASE(
-    "particle pass: curves are straight between their keys, in any order and where keys meet") {
+    "particle pass: curves are straight between their keys, in any order and where keys meet"
+    * technique("particle.gpu-draw")) {
     CHECK(sample_curve({}, 0.3f) == 1.0f);
     CHECK(sample_curve({{0.5f, 3}}, 0.1f) == 3.0f);
     const std::vector<CurveKey> keys = {{0.75f, 6}, {0.25f, 2}};
@@ -122,7 +124,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "particle pass: they are ordered from back to front, equal ones as they were, NaN first") {
+    "particle pass: they are ordered from back to front, equal ones as they were, NaN first"
+    * technique("particle.distance-sort")) {
     std::vector<ParticleInstance> instances(100);
     for (std::size_t i = 0; i < instances.size(); ++i) {
         instances[i].position = {0, 0, -static_cast<float>((i * 37) % 50)};
@@ -146,7 +149,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("particle pass: whoever counts as one thing is ordered by its place") {
+TEST_CASE(
+    "particle pass: whoever counts as one thing is ordered by its place"
+    * technique("particle.distance-sort")) {
     std::vector<ParticleInstance> instances(6);
     for (std::uint32_t i = 0; i < 6; ++i) {
         instances[i].position = {0, 0, -static_cast<float>(i)};
@@ -161,7 +166,8 @@ TEST_CASE("particle pass: whoever counts as one thing is ordered by its place") 
 }
 
 TEST_CASE_FIXTURE(
-    ParticleScene, "particle pass: point sprites have the sizes of the book's table") {
+    ParticleScene, "particle pass: point sprites have the sizes of the book's table"
+                       * technique("particle.gpu-draw")) {
     // psize (1, 0, 0.01, 16)
     ParticleLook point = add_point_sprite(*this);
     point.attenuation = {1, 0, 0.01f};
@@ -183,7 +189,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ParticleScene,
-    "particle pass: a point sprite is as large in a corner of the image as in the middle") {
+    "particle pass: a point sprite is as large in a corner of the image as in the middle"
+        * technique("particle.gpu-draw")) {
     ParticleLook point = add_point_sprite(*this);
     for (const float shift : {0.0f, 1.0f, 1.9f}) {  // of 2.31 m from the middle to the edge
         CAPTURE(shift);
@@ -200,7 +207,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ParticleScene,
-    "particle pass: a chessboard is gray where it is small, alone and behind a large one") {
+    "particle pass: a chessboard is gray where it is small, alone and behind a large one"
+        * technique("particle.gpu-draw")) {
     ParticleLook board = disc({1, 1, 1}, 1, 1);
     ImageData image;
     image.width = image.height = 64;
@@ -271,7 +279,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ParticleScene, "particle pass: a disc has its profile in every pixel, small or large") {
+    ParticleScene, "particle pass: a disc has its profile in every pixel, small or large"
+                       * technique("particle.gpu-draw")) {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
     for (const int diameter : {2, 4, 8, 10, 12, 40}) {  // [px]; small ones are points
         CAPTURE(diameter);
@@ -292,7 +301,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ParticleScene, "particle pass: a small disc gives the light of its solid angle, to 2 %") {
+    ParticleScene, "particle pass: a small disc gives the light of its solid angle, to 2 %"
+                       * technique("particle.gpu-draw")) {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
     constexpr int kShifts = 8;                         // in a pixel, each way
     for (const float diameter : {0.5f, 1.5f, 3.0f}) {  // [px], of 30 a meter in the middle
@@ -377,7 +387,9 @@ TEST_CASE_FIXTURE(
     CHECK(middle().y < 0.02f);
 }
 
-TEST_CASE_FIXTURE(ParticleScene, "particle pass: the last seconds of a life fade out") {
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: the last seconds of a life fade out"
+                       * technique("engine.particle-params, particle.gpu-draw")) {
     // Half a second of the life of one is left.
     ParticleLook look = disc({1, 1, 1}, 1, 1);
     const float whole = (emit({{0, 0, 0}}, look), middle().x);
@@ -392,7 +404,8 @@ TEST_CASE_FIXTURE(ParticleScene, "particle pass: the last seconds of a life fade
 }
 
 TEST_CASE_FIXTURE(
-    ParticleScene, "particle pass: the color at half the life is the mean of first and last") {
+    ParticleScene, "particle pass: the color at half the life is the mean of first and last"
+                       * technique("engine.particle-params")) {
     ParticleLook look = disc({1, 0, 0}, 1, 1);
     look.colors.push_back({.at = 1, .color = {0, 0, 0.5f}});
     emit({{0, 0, 0}}, look);
@@ -401,7 +414,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ParticleScene, "particle pass: a periodic function of the age chooses the color") {
+    ParticleScene, "particle pass: a periodic function of the age chooses the color"
+                       * technique("engine.particle-cpu")) {
     ParticleLook look = disc({1, 0, 0}, 1, 1);
     look.colors.push_back({.at = 1, .color = {0, 0, 1}});
     emit({{0, 0, 0}}, look);
@@ -424,7 +438,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ParticleScene,
-    "particle pass: colors vary within their spread, each channel by itself, never below 0") {
+    "particle pass: colors vary within their spread, each channel by itself, never below 0"
+        * technique("engine.particle-cpu")) {
     ParticleLook look = disc({0.5f, 0.5f, 0.1f}, 1, 1);
     look.color_spread = {0.2f, 0, 0.4f};
     emit({{0, 0, 0}}, look);
@@ -448,7 +463,9 @@ TEST_CASE_FIXTURE(
     CHECK(high.z > 0.4f);
 }
 
-TEST_CASE("particle pass: between steps they are back on their way, and not there before birth") {
+TEST_CASE(
+    "particle pass: between steps they are back on their way, and not there before birth"
+    * technique("particle.gpu-draw")) {
     ParticlePool pool;
     for (const float age : {0.5f, 0.01f}) {
         pool.x.push_back(3);
@@ -470,7 +487,8 @@ TEST_CASE("particle pass: between steps they are back on their way, and not ther
 }
 
 TEST_CASE(
-    "particle pass: streaks show velocities relative to the camera, which has none after a cut") {
+    "particle pass: streaks show velocities relative to the camera, which has none after a cut"
+    * technique("engine.space-dust")) {
     World world;
     const Affine from = affine_from({1, 2, 3}, Quat(1, 0, 0, 0), Vec3(1));
     const Affine to = affine_from({1, 2, 2}, Quat(1, 0, 0, 0), Vec3(1));
@@ -515,8 +533,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ParticleScene,
-    "particle pass: light adds up, in any order; black and what is hidden add none") {
+    ParticleScene, "particle pass: light adds up, in any order; black and what is hidden add none"
+                       * technique("particle.light-source-render")) {
     const std::vector<Vec3> places = {{0, 0, -0.3f}, {0, 0, 0}, {0, 0, -0.1f}, {0, 0, 0.2f}};
     emit(places, disc({0.25f, 0.5f, 1}, 0.5f, 0));
     const Vec3 four = middle();

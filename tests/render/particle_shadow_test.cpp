@@ -9,6 +9,7 @@
 #include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -70,7 +71,9 @@ std::vector<Vec3> cloud() {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "particle shadow: behind all slabs the series is exact") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "particle shadow: behind all slabs the series is exact" * technique("particle.shadow")) {
     std::vector<Vec4> inputs;
     for (const float depth : {0.2f, 0.5f, 0.83f}) {
         for (const float thickness : {0.0f, 0.1f, 0.3f}) {
@@ -90,7 +93,8 @@ TEST_CASE_FIXTURE(RenderTest, "particle shadow: behind all slabs the series is e
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "particle shadow: the series of a slab is that of its density, term by term") {
+    RenderTest, "particle shadow: the series of a slab is that of its density, term by term"
+                    * technique("particle.shadow")) {
     // By sums over the depth in double precision.
     const double depth = 0.4;
     const double thickness = 0.2;
@@ -142,7 +146,8 @@ TEST_CASE("particle shadow: the map of a sun holds what casts, whole and in dept
 }
 
 TEST_CASE_FIXTURE(
-    ShadowScene, "particle shadow: a surface behind a puff gets the light that it leaves") {
+    ShadowScene, "particle shadow: a surface behind a puff gets the light that it leaves"
+                     * technique("particle.shadow")) {
     add_sun();
     const float open = middle().x;
     const float edge = wall_image().at(4, 4, 0);
@@ -172,7 +177,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowScene, "particle shadow: within a cloud it is the sum over all particles, to 0.03") {
+    ShadowScene, "particle shadow: within a cloud it is the sum over all particles, to 0.03"
+                     * technique("particle.shadow")) {
     const std::vector<Vec3> places = cloud();
     std::vector<oracle::ShadowDisc> discs;
     for (const Vec3& place : places) {
@@ -212,7 +218,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(ShadowScene, "particle shadow: a particle is dimmed by those before it alone") {
+TEST_CASE_FIXTURE(
+    ShadowScene, "particle shadow: a particle is dimmed by those before it alone"
+                     * technique("particle.shadow")) {
     world.destroy(wall);
     add_sun();
     ParticleLook seen = caster(0.5f, 0.9f);
@@ -229,7 +237,9 @@ TEST_CASE_FIXTURE(ShadowScene, "particle shadow: a particle is dimmed by those b
     CHECK(middle().x / open == near(1).epsilon(0.02));
 }
 
-TEST_CASE_FIXTURE(ShadowScene, "particle shadow: without a sun they are in the light of a spot") {
+TEST_CASE_FIXTURE(
+    ShadowScene, "particle shadow: without a sun they are in the light of a spot"
+                     * technique("particle.shadow")) {
     world.create(
         SpotLight{.intensity = 40, .radius = 20, .inner_angle = 0.5f, .outer_angle = 0.6f},
         Shadow{}, WorldTransform{at({0, 0, 4})});

@@ -12,6 +12,7 @@
 #include "systems/particles/particle_obstacles.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -105,7 +106,9 @@ ParticleLook rasterized(ParticleLook look) {
 
 }  // namespace
 
-TEST_CASE("particle splats: a point is a disc of (1 - r^2)^2 of its light, of any size") {
+TEST_CASE(
+    "particle splats: a point is a disc of (1 - r^2)^2 of its light, of any size"
+    * technique("particle.gpu-draw")) {
     for (const float pixels : {0.5f, 1.0f, 3.0f, 7.9f, 8.1f, 21.0f}) {
         CAPTURE(pixels);
         Points scene;
@@ -128,7 +131,8 @@ TEST_CASE("particle splats: a point is a disc of (1 - r^2)^2 of its light, of an
     }
 }
 
-TEST_CASE("particle splats: the image is that of rasterized points") {
+TEST_CASE(
+    "particle splats: the image is that of rasterized points" * technique("particle.gpu-draw")) {
     const auto picture = [](bool rasterize) {
         Points scene;
         ParticleLook dots = Points::look_of(1.7f, {0.2f, 0.3f, 0.4f});

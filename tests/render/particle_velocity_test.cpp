@@ -5,6 +5,7 @@
 #include "ecs/components/time.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -92,7 +93,8 @@ struct MovingParticle : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    MovingParticle, "particle velocity: a particle moves as its projection does, to 0.05 px") {
+    MovingParticle, "particle velocity: a particle moves as its projection does, to 0.05 px"
+                        * technique("particle.velocity")) {
     for (const auto& frame :
          {std::pair(1.0f, 0.0f), std::pair(0.7f, 0.3f), std::pair(0.2f, -0.6f)}) {
         const float alpha = frame.first;
@@ -106,8 +108,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    MovingParticle,
-    "particle velocity: falling and braking ones too, between steps as within one") {
+    MovingParticle, "particle velocity: falling and braking ones too, between steps as within one"
+                        * technique("particle.velocity")) {
     motion.gravity = 1;
     motion.drag = 2;
     motion.wind = {3, 0, 0};
@@ -134,7 +136,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    MovingParticle, "particle velocity: none in the first frame, at its birth, or after a cut") {
+    MovingParticle, "particle velocity: none in the first frame, at its birth, or after a cut"
+                        * technique("particle.velocity")) {
     previous_eye = eye;
     CHECK(fastest(view(1, 0)) > 1);
     age = 0;
@@ -153,7 +156,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    MovingParticle, "particle velocity: only where it covers more than its look states") {
+    MovingParticle, "particle velocity: only where it covers more than its look states"
+                        * technique("particle.velocity")) {
     previous_eye = eye;
     look_.colors = {{.at = 0, .opacity = 0.4f}};
     CHECK(fastest(view(1, 0)) == 0);

@@ -4,6 +4,7 @@
 #include "render/particles/particle_weighted.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -62,7 +63,9 @@ float largest_difference(const gpu::FloatImage& a, const gpu::FloatImage& b) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(WeightedScene, "particle weighted: a single layer is what it is when sorted") {
+TEST_CASE_FIXTURE(
+    WeightedScene, "particle weighted: a single layer is what it is when sorted"
+                       * technique("particle.weighted-blended")) {
     for (const float cover : {0.3f, 1.0f}) {
         CAPTURE(cover);
         emit(0, {4, 2, 1}, 0.7f, ParticleSort::Distance, cover);
@@ -77,8 +80,9 @@ TEST_CASE_FIXTURE(WeightedScene, "particle weighted: a single layer is what it i
 }
 
 TEST_CASE_FIXTURE(
-    WeightedScene, "particle weighted: layers hide what is behind by the product of their "
-                   "transmittances, at any distances") {
+    WeightedScene,
+    "particle weighted: layers hide what is behind by the product of their transmittances"
+        * technique("particle.weighted-blended")) {
     const Vec3 open = middle();
     emit(-3, {9, 9, 9}, 1, ParticleSort::Distance);  // a white card behind
     const Vec3 card = middle();
@@ -91,7 +95,9 @@ TEST_CASE_FIXTURE(
     CHECK(middle().x == near(kept * card.x).epsilon(2e-3));
 }
 
-TEST_CASE_FIXTURE(WeightedScene, "particle weighted: the picture does not depend on the order") {
+TEST_CASE_FIXTURE(
+    WeightedScene, "particle weighted: the picture does not depend on the order"
+                       * technique("particle.weighted-blended")) {
     const auto drawn = [&](bool reversed) {
         for (int i = 0; i < 12; ++i) {
             const int n = reversed ? 11 - i : i;
@@ -108,7 +114,8 @@ TEST_CASE_FIXTURE(WeightedScene, "particle weighted: the picture does not depend
 }
 
 TEST_CASE_FIXTURE(
-    WeightedScene, "particle weighted: the nearer of two colors wins, as when they are sorted") {
+    WeightedScene, "particle weighted: the nearer of two colors wins, as when they are sorted"
+                       * technique("particle.weighted-blended")) {
     for (const float side : {-1.0f, 1.0f}) {
         emit(side, {1, 0, 0}, 0.6f, ParticleSort::Weighted);
         emit(-side, {0, 0, 1}, 0.6f, ParticleSort::Weighted);
@@ -131,7 +138,9 @@ TEST_CASE_FIXTURE(
     CHECK(both.x - none.x == near(0.5 + 1.0).epsilon(0.02));
 }
 
-TEST_CASE_FIXTURE(WeightedScene, "particle weighted: no place and no color makes a NaN") {
+TEST_CASE_FIXTURE(
+    WeightedScene, "particle weighted: no place and no color makes a NaN"
+                       * technique("particle.weighted-blended")) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     emit(kInfinity, {1, 1, 1}, 0.5f, ParticleSort::Weighted);
     emit(std::numeric_limits<float>::quiet_NaN(), {1, 1, 1}, 0.5f, ParticleSort::Weighted);

@@ -2,6 +2,7 @@
 #include "render/shadow/shadow_list.h"
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/matrix.hpp>
 
@@ -49,7 +50,9 @@ const std::vector<Vec4>& lights_about() {
 
 }  // namespace
 
-TEST_CASE("perspective map: under a sun above, what is ten times nearer has ten times the texels") {
+TEST_CASE(
+    "perspective map: under a sun above, what is ten times nearer has ten times the texels"
+    * technique("shadow.perspective-map")) {
     const RenderView camera = straight_view();
     const auto corners = slice_corners(camera, {.near = 1, .far = 100});
     const dvec4 sun = {0, 1, 0, 0};
@@ -70,7 +73,9 @@ TEST_CASE("perspective map: under a sun above, what is ten times nearer has ten 
     CHECK(length_at(*tempered, 2) / length_at(*tempered, 20) == test::near(28.0 / 10));
 }
 
-TEST_CASE("perspective map: a sun is a place at depth 1.020202, beside the camera a direction") {
+TEST_CASE(
+    "perspective map: a sun is a place at depth 1.020202, beside the camera a direction"
+    * technique("shadow.perspective-map")) {
     const dmat4 camera = virtual_camera(straight_view(), 1, 100, 0);
     for (const DVec3& toward : {DVec3(0.3, 0.5, -0.6), DVec3(0, 0, -1), DVec3(-1, 2, 0.7)}) {
         const dvec4 light = camera * dvec4(toward, 0);
@@ -83,7 +88,9 @@ TEST_CASE("perspective map: a sun is a place at depth 1.020202, beside the camer
     CHECK(project(camera, {0, 0, -100}).z == test::near(1));
 }
 
-TEST_CASE("perspective map: of a camera without perspective it is an ordinary shadow map") {
+TEST_CASE(
+    "perspective map: of a camera without perspective it is an ordinary shadow map"
+    * technique("shadow.perspective-map")) {
     const RenderView camera = straight_view();
     const auto corners = slice_corners(camera, {.near = 1, .far = 20});
     dmat4 orthographic(1);
@@ -112,7 +119,9 @@ TEST_CASE("perspective map: of a camera without perspective it is an ordinary sh
     }
 }
 
-TEST_CASE("perspective map: a ray of the light is one texel, and depth grows along all of it") {
+TEST_CASE(
+    "perspective map: a ray of the light is one texel, and depth grows along all of it"
+    * technique("shadow.perspective-map")) {
     const RenderView camera = straight_view();
     std::mt19937 random(2);
     std::uniform_real_distribution<double> share(0, 1);
@@ -158,7 +167,9 @@ TEST_CASE("perspective map: a light among what the camera sees, or a slice of no
     CHECK_FALSE(make_perspective_view(camera, {nan, 9, 0, 1}, slice, 512, 2));
 }
 
-TEST_CASE("perspective map: near the camera it has more texels than a uniform map as large") {
+TEST_CASE(
+    "perspective map: near the camera it has more texels than a uniform map as large"
+    * technique("shadow.map-aliasing")) {
     const Affine pose = look_at({0, 1.7f, 0}, {0, 1.2f, -5});
     const RenderView camera =
         make_render_view({.fov_y = radians(60.0f)}, pose, pose, {.width = 640, .height = 360});
@@ -204,7 +215,9 @@ constexpr Shadow kPerspective = {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(PostScene, "perspective map: suns from all sides shade as rays say, in one map") {
+TEST_CASE_FIXTURE(
+    PostScene, "perspective map: suns from all sides shade as rays say, in one map"
+                   * technique("shadow.perspective-map")) {
     const oracle::ShadowScene rays(world);
     for (const Vec3& toward :
          {Vec3(0.1f, 1, 0.05f), Vec3(0.7f, 0.9f, 0.4f), Vec3(0.2f, 0.5f, -0.8f),  // into the camera
@@ -230,7 +243,8 @@ TEST_CASE_FIXTURE(PostScene, "perspective map: suns from all sides shade as rays
 }
 
 TEST_CASE_FIXTURE(
-    PostScene, "perspective map: away from edges it decides as the uniform map does") {
+    PostScene, "perspective map: away from edges it decides as the uniform map does"
+                   * technique("shadow.perspective-map")) {
     const Entity sun = shine(DirectionalLight{}, look_at({0.7f, 0.9f, 0.4f}, {0, 0, 0}));
     world.add(sun, kPerspective);
     const auto distorted = receivers(sun, view());

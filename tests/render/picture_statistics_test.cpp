@@ -5,6 +5,7 @@
 #include "render/shaders/tone_gpu.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +98,8 @@ TEST_CASE("picture statistics: metered for surfaces, the background hardly count
 }
 
 TEST_CASE_FIXTURE(
-    Statistics, "hdr: statistics on the GPU are those of the oracle to a thousandth") {
+    Statistics, "hdr: statistics on the GPU are those of the oracle to a thousandth"
+                    * technique("hdr.log-average")) {
     for (const IVec2 size : {IVec2(1, 1), IVec2(64, 64), IVec2(65, 63), IVec2(317, 181)}) {
         const std::vector<Vec3> pixels = make_noise(size.x * size.y);
         const oracle::ImageStatistics want = expected_statistics(pixels);
@@ -116,7 +118,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Statistics, "hdr: the log-average of one color is its luminance, of black delta") {
+    Statistics, "hdr: the log-average of one color is its luminance, of black delta"
+                    * technique("hdr.log-average, hdr.luminance")) {
     CHECK(even({1, 0.5f, 0.25f}).luminance.x == test::near(0.62 + 1e-4).epsilon(1e-5));
     CHECK(even(Vec3(0)).luminance.x == test::near(1e-4).epsilon(1e-4));
     const std::vector<Vec3> two = {Vec3(1), Vec3(100), Vec3(1), Vec3(100)};
@@ -124,7 +127,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Statistics, "hdr: the range of 0.01 and 1000 is 1e5, in any unit, and 1 in the dark") {
+    Statistics, "hdr: the range of 0.01 and 1000 is 1e5, in any unit, and 1 in the dark"
+                    * technique("hdr.dynamic-range")) {
     for (const float unit : {1.0f, 0.125f, 37.0f}) {
         const std::vector<Vec3> two = {Vec3(0.01f * unit), Vec3(1000 * unit)};
         const layout::ImageStatistics got = measure(two, 2, {.histogram = true});
@@ -139,7 +143,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Statistics, "hdr: the clipped range is the oracle's to the width of a bin, twice too") {
+    Statistics, "hdr: the clipped range is the oracle's to the width of a bin, twice too"
+                    * technique("hdr.dynamic-range")) {
     const std::vector<Vec3> pixels = make_noise(300 * 100);
     const oracle::ImageStatistics want = expected_statistics(pixels);
     const double bin = std::exp2(1.1 / layout::kBinsPerStop);
@@ -158,7 +163,9 @@ TEST_CASE_FIXTURE(
     CHECK(ratio(got.clipped.y, got.clipped.x) <= bin);
 }
 
-TEST_CASE_FIXTURE(Statistics, "hdr: NaN and infinity are counted and change nothing else") {
+TEST_CASE_FIXTURE(
+    Statistics,
+    "hdr: NaN and infinity are counted and change nothing else" * technique("hdr.dynamic-range")) {
     const std::vector<Vec3> good = make_noise(90);
     std::vector<Vec3> bad = good;
     bad.insert(bad.begin() + 30, {Vec3(kNan, 1, 1), Vec3(1, kInfinity, 1), Vec3(1, 1, -kInfinity)});
@@ -183,7 +190,9 @@ TEST_CASE_FIXTURE(Statistics, "hdr: light below 0 counts as none, above the larg
     CHECK(even({-5, 0.5f, -2}).mean_scale.x == 0);
 }
 
-TEST_CASE_FIXTURE(Statistics, "hdr: equal images have equal statistics, to the last bit") {
+TEST_CASE_FIXTURE(
+    Statistics,
+    "hdr: equal images have equal statistics, to the last bit" * technique("hdr.log-average")) {
     const std::vector<Vec3> pixels = make_noise(640 * 90);
     const layout::ImageStatistics first = measure(pixels, 640);
     for (int i = 0; i < 3; ++i) {
@@ -193,7 +202,8 @@ TEST_CASE_FIXTURE(Statistics, "hdr: equal images have equal statistics, to the l
 }
 
 TEST_CASE_FIXTURE(
-    Statistics, "hdr: metering brings the log-average to the key in any unit of light") {
+    Statistics, "hdr: metering brings the log-average to the key in any unit of light"
+                    * technique("hdr.key-scale")) {
     for (const float unit : {1.0f, 1000.0f}) {
         const std::vector<Vec3> pixels = make_noise(64 * 64, unit);
         const layout::ImageStatistics got = measure(pixels, 64, {.key = 0.18f});

@@ -4,6 +4,7 @@
 #include "render/light/projector_list.h"
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
+#include "tests/technique.h"
 
 namespace limn::test::projector_test {
 namespace {
@@ -50,7 +51,9 @@ struct WallScene : ShadowTest {
 
 }  // namespace
 
-TEST_CASE("projector: ten frames at 5 a second show frame 0 at 2 s and frame 9 at 1.9 s") {
+TEST_CASE(
+    "projector: ten frames at 5 a second show frame 0 at 2 s and frame 9 at 1.9 s"
+    * technique("shadow.projector")) {
     const Projector film = {.columns = 5, .rows = 2, .frames = 10, .fps = 5};
     CHECK(projector_frame(film, 2.0) == 0);
     CHECK(projector_frame(film, 1.9) == 9);
@@ -69,7 +72,8 @@ TEST_CASE("projector: ten frames at 5 a second show frame 0 at 2 s and frame 9 a
 
 TEST_CASE_FIXTURE(
     WallScene,
-    "projector: at distance d the image is 2 d tan(fov / 2) wide, upright, and dark beyond") {
+    "projector: at distance d the image is 2 d tan(fov / 2) wide, upright, and dark beyond"
+        * technique("shadow.projector")) {
     const float fov = radians(40.0f);
     world.add(lamp, Projector{.image = add(four_colors()), .width = fov});
     const gpu::FloatImage image = wall();
@@ -94,7 +98,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "projector: a point behind it gets nothing, and one on its axis the middle of the image") {
+    "projector: a point behind it gets nothing, and one on its axis the middle of the image"
+    * technique("shadow.projective-matrix")) {
     const Affine pose = look_at({1, 2, 3}, {1, 0, 3});
     const auto record = make_projector_record({}, LightKind::Spot, pose, 0, 0);
     for (const float distance : {0.5f, 3.0f, 40.0f}) {
@@ -107,7 +112,9 @@ TEST_CASE(
     CHECK(glm::dot(record.row_q, Vec4(1, 4, 3, 1)) < 0);
 }
 
-TEST_CASE_FIXTURE(WallScene, "projector: what stands before the wall keeps the image from it") {
+TEST_CASE_FIXTURE(
+    WallScene, "projector: what stands before the wall keeps the image from it"
+                   * technique("shadow.projector")) {
     world.add(lamp, Projector{.image = add(four_colors()), .width = radians(60.0f)});
     world.add(lamp, Shadow{.resolution = 256});
     const gpu::FloatImage open = wall();
@@ -119,7 +126,9 @@ TEST_CASE_FIXTURE(WallScene, "projector: what stands before the wall keeps the i
     CHECK(at_wall(shaded, {0.6f, 0.6f}).y > 0.5f);
 }
 
-TEST_CASE_FIXTURE(WallScene, "projector: a film goes from frame to frame with the time") {
+TEST_CASE_FIXTURE(
+    WallScene,
+    "projector: a film goes from frame to frame with the time" * technique("shadow.projector")) {
     world.add(
         lamp, Projector{
                   .image = add(four_colors()),
@@ -141,7 +150,8 @@ TEST_CASE_FIXTURE(WallScene, "projector: a film goes from frame to frame with th
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: where a pixel covers many of its texels it shows their mean") {
+    WallScene, "projector: where a pixel covers many of its texels it shows their mean"
+                   * technique("shadow.projector")) {
     ImageData fine;
     fine.width = fine.height = 512;
     fine.srgb = false;

@@ -2,6 +2,7 @@
 #include "render/graph/frame_graph.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -185,7 +186,8 @@ TEST_CASE("render view: a scaled or sheared camera sees what a rigid one does") 
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "render frame: through a pinhole, in no time, any number of samples is the image") {
+    Scene, "render frame: through a pinhole, in no time, any number of samples is the image"
+               * technique("post.distributed-sampling")) {
     place(add(make_ball(12)), add(Material{}), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.7f)));
     shine(PointLight{.intensity = 7}, at({1, 1, 1}));
     world.insert_resource(Environment{});

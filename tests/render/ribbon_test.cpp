@@ -6,6 +6,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -159,7 +160,9 @@ TEST_CASE_FIXTURE(RenderTest, "ribbon: a join's corners are those of the pieces,
     }
 }
 
-TEST_CASE("ribbon: a trail ends exactly at its length, or its life, whichever comes first") {
+TEST_CASE(
+    "ribbon: a trail ends exactly at its length, or its life, whichever comes first"
+    * technique("engine.trail")) {
     const TrailState state = straight_strand(41);
     for (const float length : {0.3f, 1.0f, 4.13f}) {
         for (const float life : {0.5f, 2.2f, 100.0f}) {
@@ -319,7 +322,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RibbonScene, "ribbon: pieces meet without a seam, and bends glow no more than the rest") {
+    RibbonScene, "ribbon: pieces meet without a seam, and bends glow no more than the rest"
+                     * technique("engine.trail")) {
     std::vector<Vec3> places;
     for (int i = 0; i <= 40; ++i) {
         const float angle = kPi * static_cast<float>(i) / 40;

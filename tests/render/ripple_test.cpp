@@ -4,6 +4,7 @@
 #include "render/graph/frame_graph.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -89,7 +90,9 @@ RippleRing ring_at(float age) {
 
 // ---- the spec's formula
 
-TEST_CASE("ripple: the wave of the screen has the printed zeros, values and extremes") {
+TEST_CASE(
+    "ripple: the wave of the screen has the printed zeros, values and extremes"
+    * technique("post.scene-ripple")) {
     const auto wave = [](double w0) { return oracle::screen_wave(1 - w0, 1, 1); };
     for (const double zero : {0.0, 0.2, 0.6, 1.0}) {
         CHECK(std::abs(wave(zero)) < 1e-9);
@@ -110,7 +113,9 @@ TEST_CASE("ripple: the wave of the screen has the printed zeros, values and extr
     CHECK(low == test::near(wave(0.43616)).epsilon(1e-6));
 }
 
-TEST_CASE("ripple: the screen folds over itself exactly when amplitude / radius is 0.196074") {
+TEST_CASE(
+    "ripple: the screen folds over itself exactly when amplitude / radius is 0.196074"
+    * technique("post.scene-ripple")) {
     const auto folds = [](double amplitude) {
         double before = 0;
         for (int i = 1; i <= 100000; ++i) {
@@ -130,7 +135,8 @@ TEST_CASE("ripple: the screen folds over itself exactly when amplitude / radius 
 // ---- the field
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: the screen's field is the formula, with the center to the left below") {
+    Rippled, "ripple: the screen's field is the formula, with the center to the left below"
+                 * technique("post.scene-ripple")) {
     place_objects({1, 0, 0});
     const ScreenRipple ripple = {
         .center = {0.3f, 0.4f}, .age = 0.2f, .duration = 0.5f, .amplitude = 0.05f, .radius = 0.1f};
@@ -148,7 +154,9 @@ TEST_CASE_FIXTURE(
     CHECK(largest > 2);
 }
 
-TEST_CASE_FIXTURE(Rippled, "ripple: a round one is round in pixels, several add up") {
+TEST_CASE_FIXTURE(
+    Rippled,
+    "ripple: a round one is round in pixels, several add up" * technique("post.scene-ripple")) {
     place_objects({1, 0, 0});
     const ScreenRipple one = {
         .center = {0.5f, 0.5f}, .age = 0.25f, .radius = 0.3f, .radius_speed = 0, .round = true};
@@ -171,7 +179,8 @@ TEST_CASE_FIXTURE(Rippled, "ripple: a round one is round in pixels, several add 
 }
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: at the points of a grid it comes closer, 3 times for twice as many") {
+    Rippled, "ripple: at the points of a grid it comes closer, 3 times for twice as many"
+                 * technique("post.scene-ripple")) {
     const auto error_of = [&](int points) {
         const Entity e = world.create(ScreenRipple{
             .age = 0.25f, .amplitude = 0.05f, .radius = 0.9f, .radius_speed = 0, .grid = points});
@@ -207,7 +216,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: hot air shifts as the oracle says, never by more than its strength") {
+    Rippled, "ripple: hot air shifts as the oracle says, never by more than its strength"
+                 * technique("post.glare-heat-haze")) {
     place_objects({1, 0, 0});
     for (const HazeShape shape : {HazeShape::Box, HazeShape::Ball}) {
         const Affine pose =
@@ -237,7 +247,9 @@ TEST_CASE_FIXTURE(
 
 // ---- the image
 
-TEST_CASE_FIXTURE(Rippled, "ripple: of no strength or outside of its time, there is no pass") {
+TEST_CASE_FIXTURE(
+    Rippled, "ripple: of no strength or outside of its time, there is no pass"
+                 * technique("post.scene-ripple")) {
     place_objects({1, 0, 0});
     static_cast<void>(draw(seen()));
     const gpu::FloatImage still = radiance(seen());
@@ -259,7 +271,9 @@ TEST_CASE_FIXTURE(Rippled, "ripple: of no strength or outside of its time, there
     CHECK(frame_graph(shared_renderer()).was_run("ripple"));
 }
 
-TEST_CASE("ripple: what stands in front neither ripples nor leaks, to the bit") {
+TEST_CASE(
+    "ripple: what stands in front neither ripples nor leaks, to the bit"
+    * technique("post.glare-heat-haze, post.scene-ripple")) {
     const auto pictures = [](const Vec3& post) {
         std::vector<gpu::FloatImage> made;
         for (int kind = 0; kind < 3; ++kind) {
@@ -310,7 +324,8 @@ TEST_CASE("ripple: what stands in front neither ripples nor leaks, to the bit") 
     }
 }
 
-TEST_CASE_FIXTURE(Rippled, "ripple: places outside of the image show its edge") {
+TEST_CASE_FIXTURE(
+    Rippled, "ripple: places outside of the image show its edge" * technique("post.scene-ripple")) {
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {0.25f, 0.5f, 1, 1}}),

@@ -1,4 +1,5 @@
 #include "tests/render/laboratory_fixture.h"
+#include "tests/technique.h"
 
 #include <cstdint>
 
@@ -31,14 +32,24 @@ MeshData subdivide(const MeshData& mesh) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Laboratory, "shading rates: a triangle is as the laboratory draws it, to within 1/255") {
+    Laboratory,
+    "shading rates: a triangle is as the laboratory draws it, to within 1/255"
+        * technique("fakephong.blinn-map, fakephong.cubic, fakephong.envmap, fakephong.gouraud, "
+                    "fakephong.gouraud-subdivided, fakephong.hw-blinn, fakephong.hw-quadratic, "
+                    "fakephong.normal-interp-variants, fakephong.phong, fakephong.phong-map, "
+                    "fakephong.quadratic, fakephong.quadratic-blinn, fakephong.taylor")) {
     show(make_spread_triangle());
     point_light({0.3f, 0.2f, 2});
     compare_all();
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "shading rates: a coarse ball under three lights is as the laboratory has it") {
+    Laboratory,
+    "shading rates: a coarse ball under three lights is as the laboratory has it"
+        * technique("fakephong.blinn-map, fakephong.cubic, fakephong.envmap, fakephong.gouraud, "
+                    "fakephong.gouraud-subdivided, fakephong.hw-blinn, fakephong.hw-quadratic, "
+                    "fakephong.normal-interp-variants, fakephong.phong, fakephong.phong-map, "
+                    "fakephong.quadratic, fakephong.quadratic-blinn, fakephong.taylor")) {
     show(make_ball(8));
     directional_light({0.2f, 0.4f, 1});  // the first: the renderer sorts lights by kind
     point_light({0.6f, 1.5f, 3});
@@ -47,7 +58,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "shading rates: subdivided is per vertex on a mesh of four times the triangles") {
+    Laboratory, "shading rates: subdivided is per vertex on a mesh of four times the triangles"
+                    * technique("fakephong.barycentric, fakephong.gouraud-subdivided")) {
     const MeshData ball = make_ball(6);
     show(ball);
     point_light({0.6f, 0.9f, 2.5f});
@@ -60,7 +72,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "shading rates: normals that cancel at a midpoint give way to that of the face") {
+    Laboratory, "shading rates: normals that cancel at a midpoint give way to that of the face"
+                    * technique("fakephong.quadratic")) {
     MeshData mesh = make_square();
     mesh.normals = {{1, 0, 0}, {-1, 0, 0}, {0, 0.6f, 0.8f}, {0, 0, 1}};
     mesh.indices = {0, 1, 2};

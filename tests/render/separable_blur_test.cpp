@@ -4,6 +4,7 @@
 #include "render/lens/separable_blur.h"
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <numeric>
@@ -78,7 +79,9 @@ std::array<double, 7> exact(const BlurKernel& kernel) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "separable blur: a point becomes the outer product of the weights") {
+TEST_CASE_FIXTURE(
+    RenderTest, "separable blur: a point becomes the outer product of the weights"
+                    * technique("post.separable-blur")) {
     CHECK(std::accumulate(kBinomialKernel.begin(), kBinomialKernel.end(), 0.0) == 1.0);
     LightImage point = oracle::make_black_image(kSide, kSide);
     point.pixels[12 * kSide + 11] = glm::dvec3(1);
@@ -89,7 +92,9 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: a point becomes the outer product
     CHECK(blurred(point, kBox).at(11, 12).y == test::near(1.0 / 49).epsilon(1e-6));
 }
 
-TEST_CASE_FIXTURE(RenderTest, "separable blur: two passes of 7 are the 49 weights at once") {
+TEST_CASE_FIXTURE(
+    RenderTest, "separable blur: two passes of 7 are the 49 weights at once"
+                    * technique("post.separable-blur")) {
     const LightImage picture = noise();
     for (const BlurKernel& kernel : {kBinomialKernel, kBox, kAskew}) {
         // A GPU has its rows from the bottom up: there an image's weights are turned over.
@@ -116,7 +121,9 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: two passes of 7 are the 49 weight
         < 1e-6);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "separable blur: the order of the axes makes no difference") {
+TEST_CASE_FIXTURE(
+    RenderTest, "separable blur: the order of the axes makes no difference"
+                    * technique("post.separable-blur")) {
     const LightImage picture = noise();
     CHECK(
         largest_difference(
@@ -124,7 +131,9 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: the order of the axes makes no di
         < 1e-6);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "separable blur: a uniform image stays so, at its edges too") {
+TEST_CASE_FIXTURE(
+    RenderTest, "separable blur: a uniform image stays so, at its edges too"
+                    * technique("post.separable-blur")) {
     LightImage even = oracle::make_black_image(5, 3);
     for (glm::dvec3& pixel : even.pixels) {
         pixel = glm::dvec3(0.7);

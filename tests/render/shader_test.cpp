@@ -3,6 +3,7 @@
 #include "render/gpu/shader_source.h"
 #include "tests/render/render_fixture.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <cstring>
 #include <filesystem>
@@ -153,7 +154,9 @@ TEST_CASE("shader: compilers' places become files and lines") {
     CHECK(named("0:99999999999999999999: x") == "0:99999999999999999999: x");
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "shader: a compile error names the real file and line") {
+TEST_CASE_FIXTURE(
+    test::RenderTest,
+    "shader: a compile error names the real file and line" * technique("shade.program-lifecycle")) {
     ShaderFiles files = with_fragment("#version 450\n#include \"lib/ok.glsl\"\nlayout(location = "
                                       "0) out vec4 c;\nvoid main() { c = vec4(oops); }\n");
     files.put("lib/ok.glsl", "float two() { return 2.0; }\n\n\n");
@@ -248,7 +251,9 @@ TEST_CASE("shader: no definition gives a unit two types of texture") {
     }
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "shader: stages that do not fit together do not link") {
+TEST_CASE_FIXTURE(
+    test::RenderTest,
+    "shader: stages that do not fit together do not link" * technique("shade.profile")) {
     ShaderFiles files =
         with_fragment("#version 450\nlayout(location = 0) in vec3 normal;\nlayout(location = 0) "
                       "out vec4 c;\nvoid main() { c = vec4(normal, 1); }\n");

@@ -3,6 +3,7 @@
 #include "ecs/components/shading_comparison.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/common.hpp>
@@ -121,7 +122,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ComparisonScene,
-    "shading comparison: a difference is that of 8-bit images to the power 1/10, times the gain") {
+    "shading comparison: a difference is that of 8-bit images to the power 1/10, times the gain"
+        * technique("fakephong.metric-diffimage")) {
     const auto rounded = [](ColorImage image) {
         for (Vec3& c : image.pixels) {
             c = glm::round(255.0f * c) / 255.0f;
@@ -148,8 +150,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ComparisonScene,
-    "shading comparison: a method does not differ from itself, lit a second time") {
+    ComparisonScene, "shading comparison: a method does not differ from itself, lit a second time"
+                         * technique("fakephong.metric-diffimage")) {
     for (int i = 0; i < kShadingRates; ++i) {
         const auto rate = static_cast<ShadingRate>(i);
         const gpu::FloatImage found =
@@ -199,7 +201,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ComparisonScene, "scanline plot: each column has its curve at the brightness of its pixel") {
+    ComparisonScene, "scanline plot: each column has its curve at the brightness of its pixel"
+                         * technique("fakephong.metric-scanline")) {
     const gpu::FloatImage plain = by(ShadingRate::Pixel);
     const ScanlinePlot plot = {.row = 0.75f, .height = 0.5f};
     world.insert_resource(plot);

@@ -1,4 +1,5 @@
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,9 @@
 
 namespace limn::test::shading_language_test {
 
-TEST_CASE_FIXTURE(RenderTest, "vector_ops: matrices of the CPU move points as they do on the GPU") {
+TEST_CASE_FIXTURE(
+    RenderTest, "vector_ops: matrices of the CPU move points as they do on the GPU"
+                    * technique("shade.vector-ops")) {
     const Vec3 position = {3, -1, 2};
     const Vec3 axis = glm::normalize(Vec3(1, -2, 0.5f));
     const Vec3 scale = {1, 2, 0.3f};
@@ -34,7 +37,9 @@ TEST_CASE_FIXTURE(RenderTest, "vector_ops: matrices of the CPU move points as th
     CHECK(glm::distance(transform_point(a, p), want) < 1e-5f);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "stdlib: lit is the cosine and its power, both 0 below the horizon") {
+TEST_CASE_FIXTURE(
+    RenderTest, "stdlib: lit is the cosine and its power, both 0 below the horizon"
+                    * technique("shade.stdlib")) {
     const std::vector<Vec4> inputs = {{0.5f, 0.8f, 2, 0},  {0.5f, 0.8f, 0, 0},  {0.9f, 1, 30, 0},
                                       {0.5f, 0, 2, 0},     {0.5f, -0.8f, 2, 0}, {0, 0.8f, 2, 0},
                                       {-0.5f, 0.8f, 2, 0}, {-0.5f, -0.8f, 2, 0}};

@@ -5,6 +5,7 @@
 #include "render/variant.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -115,7 +116,9 @@ TEST_CASE("shading models: a program has those of the level's materials, and no 
         == std::set<std::string>{"MATERIAL_RECORDS", "SHADE_SKIN"});
 }
 
-TEST_CASE("shading models: those with the same lobe are lit together, all others apart") {
+TEST_CASE(
+    "shading models: those with the same lobe are lit together, all others apart"
+    * technique("deferred.light-pass")) {
     ShadingModelSet all = 0;
     ShadingModelSet lobes = 0;
     for (const ShadingModelRow& a : kShadingModels) {
@@ -229,7 +232,9 @@ TEST_CASE("shading models: none changes the others") {
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "shading models: only those that read records store the material") {
+TEST_CASE_FIXTURE(
+    Scene, "shading models: only those that read records store the material"
+               * technique("deferred.gbuffer")) {
     const MeshId square = add(make_square());
     place(square, add(Material{}), at({0, 0, 0}));
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 9, 9);

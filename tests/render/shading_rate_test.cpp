@@ -2,6 +2,7 @@
 #include "ecs/components/rendering.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -76,7 +77,8 @@ Vec3 largest(const gpu::FloatImage& image) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ShadingRates, "gouraud: the middle of a large quad shows kd / 3 where a pixel shows kd + ks") {
+    ShadingRates, "gouraud: the middle of a large quad shows kd / 3 where a pixel shows kd + ks"
+                      * technique("light.gouraud, light.phong-pixel")) {
     place(add(make_square()), shiny, at({0, 0, 0}));
     lamp({0, 0, 0.5f});
     const gpu::FloatImage vertex = picture(ShadingRate::Vertex, above());
@@ -88,7 +90,9 @@ TEST_CASE_FIXTURE(
     CHECK(glm::distance(largest(vertex), kDiffuse / 3.0f) < 1e-4f);
 }
 
-TEST_CASE_FIXTURE(ShadingRates, "gouraud: finer quads come ever nearer to lighting every pixel") {
+TEST_CASE_FIXTURE(
+    ShadingRates,
+    "gouraud: finer quads come ever nearer to lighting every pixel" * technique("light.gouraud")) {
     lamp({0, 0, 0.5f});
     lamp({0.6f, 0.5f, 0.4f});
     std::vector<MeshId> grids;
@@ -109,7 +113,9 @@ TEST_CASE_FIXTURE(ShadingRates, "gouraud: finer quads come ever nearer to lighti
     CHECK(errors.back() < 0.02f);
 }
 
-TEST_CASE_FIXTURE(ShadingRates, "gouraud: no pixel is brighter than the brightest vertex") {
+TEST_CASE_FIXTURE(
+    ShadingRates,
+    "gouraud: no pixel is brighter than the brightest vertex" * technique("light.gouraud")) {
     place(add(make_grid(4)), shiny, at({0, 0, 0}));
     const Vec3 lamps[] = {{0.3f, 0.2f, 0.5f}, {-0.7f, 0.4f, 0.3f}};
     for (const Vec3& position : lamps) {
@@ -146,7 +152,8 @@ TEST_CASE_FIXTURE(ShadingRates, "gouraud: no pixel is brighter than the brightes
 }
 
 TEST_CASE_FIXTURE(
-    ShadingRates, "phong pixel: where light, viewer and normals are constant it is Gouraud's") {
+    ShadingRates, "phong pixel: where light, viewer and normals are constant it is Gouraud's"
+                      * technique("light.phong-pixel")) {
     place(add(make_grid(3)), shiny, at({0, 0, 0}));
     shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 0}, {0.3f, 0.2f, -1}));
     const gpu::FloatImage pixel = picture(ShadingRate::Pixel, above(), true);
@@ -155,7 +162,9 @@ TEST_CASE_FIXTURE(
     CHECK(largest_difference(pixel, vertex) < 2e-3f);
 }
 
-TEST_CASE_FIXTURE(ShadingRates, "phong pixel: in between, normals are as long as at the vertices") {
+TEST_CASE_FIXTURE(
+    ShadingRates, "phong pixel: in between, normals are as long as at the vertices"
+                      * technique("light.phong-pixel")) {
     // Normals 60 degrees apart: their mean has length 0.866 and, as it is, would reflect 13.4 %
     // less.
     MeshData roof = make_square();
@@ -178,7 +187,8 @@ TEST_CASE_FIXTURE(ShadingRates, "phong pixel: in between, normals are as long as
 }
 
 TEST_CASE_FIXTURE(
-    ShadingRates, "infinite viewer: on a plane under a directional light all pixels are the same") {
+    ShadingRates, "infinite viewer: on a plane under a directional light all pixels are the same"
+                      * technique("light.infinite-approx")) {
     place(add(make_square()), shiny, at({0, 0, 0}));
     shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 0}, {0.1f, 0.05f, -1}));
     const gpu::FloatImage infinite = picture(ShadingRate::Pixel, above(), true);
@@ -196,7 +206,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadingRates, "infinite viewer: lamp and eye a thousand scenes away are infinitely far") {
+    ShadingRates, "infinite viewer: lamp and eye a thousand scenes away are infinitely far"
+                      * technique("light.infinite-approx")) {
     place(add(make_square()), shiny, at({0, 0, 0}));
     const Vec3 toward = glm::normalize(Vec3(0.15f, 0.1f, 1));
     float last = 1;

@@ -2,6 +2,7 @@
 #include "render/gpu/shader_library.h"
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
+#include "tests/technique.h"
 
 #include <array>
 
@@ -76,7 +77,8 @@ std::array<float, 64> edge_at(int first) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FilterTest, "shadow filter: the four comparisons of the book's figure make 0.75") {
+    FilterTest, "shadow filter: the four comparisons of the book's figure make 0.75"
+                    * technique("shadow.pcf")) {
     std::array<float, 64> map{};
     const char* rows[] = {"1110", "1110", "1100", "1100"};  // from the top
     for (int y = 0; y < 4; ++y) {
@@ -87,7 +89,9 @@ TEST_CASE_FIXTURE(
     CHECK(lit(map, {4, 4}, false) == test::near(0.75));
 }
 
-TEST_CASE_FIXTURE(FilterTest, "shadow filter: 2x2 comparisons are weighted by how near they are") {
+TEST_CASE_FIXTURE(
+    FilterTest,
+    "shadow filter: 2x2 comparisons are weighted by how near they are" * technique("shadow.pcf")) {
     std::array<float, 64> map{};
     map[3 * 8 + 3] = 1;  // one lit texel, its middle at (3.5, 3.5)
     for (const float x : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f}) {
@@ -109,7 +113,9 @@ TEST_CASE_FIXTURE(FilterTest, "shadow filter: the hard one takes the nearest tex
     CHECK(lit(map, {3.5f, 2.99f}, false, true) == 0);
 }
 
-TEST_CASE_FIXTURE(FilterTest, "shadow filter: all lit is 1 and none lit is 0, to the bit") {
+TEST_CASE_FIXTURE(
+    FilterTest,
+    "shadow filter: all lit is 1 and none lit is 0, to the bit" * technique("shadow.pcf")) {
     for (const bool soft : {false, true}) {
         for (const Vec2 st : {Vec2(4, 4), Vec2(3.3f, 4.9f), Vec2(4.5f, 2.25f)}) {
             CHECK(lit(edge_at(0), st, soft) == test::near(1).epsilon(1e-6));
@@ -119,7 +125,8 @@ TEST_CASE_FIXTURE(FilterTest, "shadow filter: all lit is 1 and none lit is 0, to
 }
 
 TEST_CASE_FIXTURE(
-    FilterTest, "shadow filter: sixteen 2x2 filters rise over an edge as 1 3 5 7 eighths") {
+    FilterTest, "shadow filter: sixteen 2x2 filters rise over an edge as 1 3 5 7 eighths"
+                    * technique("shadow.soft-pcf")) {
     // At texel middles the weights along an axis are (1, 2, 2, 2, 1) / 8.
     const float want[] = {0, 0.125f, 0.375f, 0.625f, 0.875f, 1};
     for (int i = 0; i < 6; ++i) {
@@ -136,7 +143,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FilterTest, "shadow filter: one dark texel takes at most a sixteenth of the soft one") {
+    FilterTest, "shadow filter: one dark texel takes at most a sixteenth of the soft one"
+                    * technique("shadow.soft-pcf")) {
     // Weights of 64ths: corners 1, edges 2, inside 4.
     const int want[5] = {1, 2, 2, 2, 1};
     for (int y = 0; y < 5; ++y) {
@@ -151,7 +159,9 @@ TEST_CASE_FIXTURE(
 // ---- contact hardening
 // -------------------------------------------------------------------------------
 
-TEST_CASE("shadow filter: the penumbra's width is similar triangles (shadow.penumbra)") {
+TEST_CASE(
+    "shadow filter: the penumbra's width is similar triangles (shadow.penumbra)"
+    * technique("shadow.penumbra")) {
     CHECK(oracle::penumbra_width(1, 2, 3) == test::near(0.5));
     CHECK(oracle::penumbra_width(0, 2, 3) == 0);
     CHECK(oracle::penumbra_width(1, 3, 3) == 0);
@@ -163,7 +173,8 @@ TEST_CASE("shadow filter: the penumbra's width is similar triangles (shadow.penu
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow filter: contact hardening makes penumbras as wide as the law, to 15 %") {
+    ShadowTest, "shadow filter: contact hardening makes penumbras as wide as the law, to 15 %"
+                    * technique("shadow.penumbra")) {
     // A half plane above a floor, its edge at x = 0, under a lamp straight above the edge.
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     for (const auto& setup :
@@ -255,8 +266,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest,
-    "shadow filter: a source without a size has a hard edge, and no blocker is all lit") {
+    ShadowTest, "shadow filter: a source without a size has a hard edge, and no blocker is all lit"
+                    * technique("shadow.penumbra")) {
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     const Entity lamp = shine(
         SpotLight{.radius = 0, .inner_angle = radians(30.0f), .outer_angle = radians(30.0f)},

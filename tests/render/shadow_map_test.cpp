@@ -4,6 +4,7 @@
 #include "render/skinning/deformed_list.h"
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
+#include "tests/technique.h"
 
 #include <array>
 #include <random>
@@ -56,8 +57,8 @@ struct BallScene : ShadowTest {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ShadowTest,
-    "shadow map: a square before the light shades twice its size at twice its distance") {
+    ShadowTest, "shadow map: a square before the light shades twice its size at twice its distance"
+                    * technique("shadow.map")) {
     put(make_plane({.size = {0.5f, 0.5f}}), {0, -1, 0});
     put(make_plane({.size = {6, 6}}), {0, -2, 0});
     const Shadow shadow = {.filter = ShadowFilter::Hard, .resolution = 256};
@@ -80,8 +81,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest,
-    "shadow map: a lone plane has no acne up to 60 degrees; without a bias it has at 45") {
+    ShadowTest, "shadow map: a lone plane has no acne up to 60 degrees; without a bias it has at 45"
+                    * technique("shadow.map")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     const RenderView view = look({0, 2, 0.01f}, {0, 0, 0}, 96, 96);
     const auto dark_pixels = [&](float slope, const Shadow& shadow) {
@@ -109,8 +110,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BallScene,
-    "shadow map: over 64 directions neither acne nor a shadow off its caster by 2 texels") {
+    BallScene, "shadow map: over 64 directions neither acne nor a shadow off its caster by 2 texels"
+                   * technique("shadow.map")) {
     WrongPixels all;
     const oracle::ShadowScene rays(world);
     for (const Vec3& toward : light_directions(64)) {
@@ -132,7 +133,9 @@ TEST_CASE_FIXTURE(
     CHECK(all.count > 100000);
 }
 
-TEST_CASE_FIXTURE(BallScene, "shadow map: what a spot does not reach is not in its shadow") {
+TEST_CASE_FIXTURE(
+    BallScene,
+    "shadow map: what a spot does not reach is not in its shadow" * technique("shadow.map")) {
     const Affine pose = look_at({0, 3, 0}, {0, 0, 0});
     const Entity lamp = shine(even_spot(radians(8.0f)), pose);
     world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 64});
@@ -147,7 +150,8 @@ TEST_CASE_FIXTURE(BallScene, "shadow map: what a spot does not reach is not in i
     }
 }
 
-TEST_CASE_FIXTURE(ShadowTest, "shadow map: moving all of it together changes nothing") {
+TEST_CASE_FIXTURE(
+    ShadowTest, "shadow map: moving all of it together changes nothing" * technique("shadow.map")) {
     const MeshId floor = add(make_plane({.size = {6, 6}}));
     const MeshId box = add(make_box({.size = {0.5f, 0.8f, 0.5f}}));
     const auto picture = [&](const Vec3& by) {
@@ -172,7 +176,8 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: moving all of it together changes not
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: an edge is where the geometry says, to a texel's diagonal") {
+    ShadowTest, "shadow map: an edge is where the geometry says, to a texel's diagonal"
+                    * technique("shadow.map-aliasing")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     put(make_box({.size = {1, 1, 1}}), {0, 0.5f, 0});
     const Affine pose = look_at({3, 4, 2}, {0, 0, 0});
@@ -219,7 +224,9 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: blended surfaces receive shadows and 
     world.destroy(pane);
 }
 
-TEST_CASE_FIXTURE(BallScene, "shadow map: a light sees no caster that was told to cast none") {
+TEST_CASE_FIXTURE(
+    BallScene, "shadow map: a light sees no caster that was told to cast none"
+                   * technique("shadow.selection")) {
     const Entity lamp = shine(even_spot(radians(30.0f)), look_at({1, 4, 1}, {0, 0, 0}));
     world.add(lamp, Shadow{});
     const auto dark = [&] {
@@ -240,7 +247,8 @@ TEST_CASE_FIXTURE(BallScene, "shadow map: a light sees no caster that was told t
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: the layer of its texels is what the geometry says they are") {
+    ShadowTest, "shadow map: the layer of its texels is what the geometry says they are"
+                    * technique("shadow.map-aliasing")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     const RenderView view = look({0.3f, 2.5f, 1.5f}, {0, 0, 0}, 64, 64);
     const auto texels = [&] { return aov(view, "shadow_texels"); };
@@ -277,7 +285,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ShadowTest,
-    "shadow map: a ring of casters around a point light has no gap at the seams of the faces") {
+    "shadow map: a ring of casters around a point light has no gap at the seams of the faces"
+        * technique("shadow.map-omni")) {
     // A tube around the light: its shadow on the wall behind it must close.
     put(make_cylinder({.radius = 0.5f, .height = 0.4f, .caps = false}), {0, 0, 0});
     put(make_cylinder({.radius = 2, .height = 3, .segments = 128, .caps = false}), {0, 0, 0});
@@ -305,7 +314,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(ShadowTest, "shadow map: six faces agree with rays on 98 % of the pixels") {
+TEST_CASE_FIXTURE(
+    ShadowTest,
+    "shadow map: six faces agree with rays on 98 % of the pixels" * technique("shadow.map-omni")) {
     put(make_plane({.size = {6, 6}}), {0, 0, 0});
     for (const Vec3& place : {Vec3(1, 0.4f, 0.3f), Vec3(-0.8f, 0.5f, 0.9f), Vec3(0.1f, 0.3f, -1)}) {
         put(make_box({.size = {0.3f, 0.8f, 0.3f}}), place);
@@ -317,7 +328,9 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: six faces agree with rays on 98 % of 
     CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, {0, 1, 0}); }) >= 0.98);
 }
 
-TEST_CASE_FIXTURE(ShadowTest, "shadow map: turned by 90 degrees six faces give the same image") {
+TEST_CASE_FIXTURE(
+    ShadowTest, "shadow map: turned by 90 degrees six faces give the same image"
+                    * technique("shadow.map-omni")) {
     const MeshId floor = add(make_box({.size = {6, 0.2f, 6}}));
     const MeshId post = add(make_box({.size = {0.3f, 0.8f, 0.5f}}));
     const auto picture = [&](const Quat& turn) {
@@ -412,7 +425,8 @@ TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades agree with rays on 98 % of 
 
 TEST_CASE_FIXTURE(
     ColumnScene,
-    "shadow map: no shimmer, texels of the edges keep their value when the camera moves") {
+    "shadow map: no shimmer, texels of the edges keep their value when the camera moves"
+        * technique("shadow.map")) {
     // From straight above, moved by whole pixels of the floor: a quarter of a texel each.
     constexpr int kSize = 128;
     const auto from = [&](int pixels) {
@@ -480,7 +494,8 @@ ImageData checkerboard(int cells) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: a grid of holes shades half of its footprint, as rays say") {
+    ShadowTest, "shadow map: a grid of holes shades half of its footprint, as rays say"
+                    * technique("shadow.map-alpha")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     const MaterialId grid = add(Material{
         .shading = ShadingModel::Blinn,
@@ -511,7 +526,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: a fan's shadow turns with it, and repeats with its blades") {
+    ShadowTest, "shadow map: a fan's shadow turns with it, and repeats with its blades"
+                    * technique("shadow.map-alpha")) {
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     const MeshId blade = add(make_box({.size = {0.8f, 0.02f, 0.2f}}));
     std::vector<Entity> blades;
@@ -557,7 +573,9 @@ TEST_CASE_FIXTURE(
 // ---- what is drawn again
 // ------------------------------------------------------------------------------------
 
-TEST_CASE_FIXTURE(ShadowTest, "shadow map: only views in which something moved are drawn again") {
+TEST_CASE_FIXTURE(
+    ShadowTest,
+    "shadow map: only views in which something moved are drawn again" * technique("shadow.map")) {
     put(make_plane({.size = {20, 4}}), {0, 0, 0});
     const MeshId box = add(make_box({.size = {0.4f, 0.4f, 0.4f}}));
     std::vector<Entity> boxes;

@@ -6,6 +6,7 @@
 #include "render/shaders/shadow_volume_gpu.h"
 #include "render/shadow/shadow_mesh.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -99,7 +100,9 @@ bool inside_cube(const DVec3& p, double half = 0.5) {
 
 }  // namespace
 
-TEST_CASE("shadow_mesh: the cube is closed and has 18 edges, a triangle less opens 3") {
+TEST_CASE(
+    "shadow_mesh: the cube is closed and has 18 edges, a triangle less opens 3"
+    * technique("shadow.closed-mesh")) {
     MeshData cube = make_cube();
     const ShadowMesh whole = make_shadow_mesh(cube);
     CHECK(is_closed(whole.report));
@@ -166,7 +169,7 @@ TEST_CASE("shadow_mesh: broken meshes are open, never a crash") {
     CHECK(make_shadow_mesh(cube).report.open_edges == 3);
 }
 
-TEST_CASE("shadow_mesh: the teapot of separate patches is open") {
+TEST_CASE("shadow_mesh: the teapot of separate patches is open" * technique("shadow.closed-mesh")) {
     const ShadowMesh teapot = make_shadow_mesh(make_teapot({}));
     CHECK(teapot.report.open_edges > 0);
 }
@@ -184,7 +187,9 @@ TEST_CASE("shadow_mesh: in an edge's quad the way of the first triangle is again
     }
 }
 
-TEST_CASE("shadow_mesh: the volume of an edge mesh closes, looks outward and is 8/2 n triangles") {
+TEST_CASE(
+    "shadow_mesh: the volume of an edge mesh closes, looks outward and is 8/2 n triangles"
+    * technique("shadow.vol-per-edge")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     const VolumeGeometry geometry = make_edge_volume(cube);
     CHECK(geometry.indices.size() == 3 * 4 * 12);
@@ -199,7 +204,8 @@ TEST_CASE("shadow_mesh: the volume of an edge mesh closes, looks outward and is 
 }
 
 TEST_CASE(
-    "shadow_mesh: a cube lit from above opens 4 edges to 20 triangles, from a corner 6 to 24") {
+    "shadow_mesh: a cube lit from above opens 4 edges to 20 triangles, from a corner 6 to 24"
+    * technique("shadow.vol-per-edge")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     const VolumeGeometry geometry = make_edge_volume(cube);
     const auto triangles = [&](const DVec3& light) {
@@ -212,7 +218,9 @@ TEST_CASE(
     CHECK(find_silhouette(cube, {10, 10, 0, 1}).size() == 6);
 }
 
-TEST_CASE("shadow_mesh: quads of edges within the lit or the dark part have no area") {
+TEST_CASE(
+    "shadow_mesh: quads of edges within the lit or the dark part have no area"
+    * technique("shadow.vol-per-edge")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     VolumeGeometry geometry = make_edge_volume(cube);
     geometry.indices.erase(
@@ -228,7 +236,9 @@ TEST_CASE("shadow_mesh: quads of edges within the lit or the dark part have no a
     }
 }
 
-TEST_CASE("shadow_mesh: the sign the book prints turns the volume inside out") {
+TEST_CASE(
+    "shadow_mesh: the sign the book prints turns the volume inside out"
+    * technique("shadow.vol-per-edge")) {
     const VolumeGeometry geometry = make_edge_volume(make_shadow_mesh(make_cube()));
     const DVec3 light = {3, 10, 2};
     CHECK(
@@ -237,7 +247,9 @@ TEST_CASE("shadow_mesh: the sign the book prints turns the volume inside out") {
     CHECK(oracle::signed_volume(extruded(geometry, Extrude::ByFace, light, 40, 0)) > 0);
 }
 
-TEST_CASE("shadow_mesh: with its normals exchanged an edge's quad leaves the surface unclosed") {
+TEST_CASE(
+    "shadow_mesh: with its normals exchanged an edge's quad leaves the surface unclosed"
+    * technique("shadow.vol-per-edge")) {
     ShadowMesh cube = make_shadow_mesh(make_cube());
     for (ShadowEdge& edge : cube.edges) {
         std::swap(edge.along, edge.against);
@@ -246,7 +258,9 @@ TEST_CASE("shadow_mesh: with its normals exchanged an edge's quad leaves the sur
     CHECK(oracle::open_directed_edges(volume) > 0);
 }
 
-TEST_CASE("shadow_mesh: a prism has 2 caps and 3 quads on 6 vertices and 12 edges, and closes") {
+TEST_CASE(
+    "shadow_mesh: a prism has 2 caps and 3 quads on 6 vertices and 12 edges, and closes"
+    * technique("shadow.vol-per-triangle, shadow.volume-count")) {
     MeshData mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.indices = {0, 1, 2};
@@ -273,7 +287,9 @@ TEST_CASE("shadow_mesh: a prism has 2 caps and 3 quads on 6 vertices and 12 edge
         > 0);
 }
 
-TEST_CASE("shadow_mesh: a cube's prisms are 16 triangles lit from above, 48 from a corner") {
+TEST_CASE(
+    "shadow_mesh: a cube's prisms are 16 triangles lit from above, 48 from a corner"
+    * technique("shadow.vol-per-triangle")) {
     const VolumeGeometry geometry = make_triangle_volume(make_shadow_mesh(make_cube()));
     CHECK(geometry.indices.size() == 12 * 24);
     const auto triangles = [&](const DVec3& light) {
@@ -283,7 +299,9 @@ TEST_CASE("shadow_mesh: a cube's prisms are 16 triangles lit from above, 48 from
     CHECK(triangles({10, 10, 10}) == 48);
 }
 
-TEST_CASE("shadow_mesh: prisms of an open mesh close where its edges would leak") {
+TEST_CASE(
+    "shadow_mesh: prisms of an open mesh close where its edges would leak"
+    * technique("shadow.closed-mesh")) {
     MeshData cube = make_cube();
     cube.indices.resize(cube.indices.size() - 3);
     ShadowMesh open = make_shadow_mesh(cube);
@@ -306,7 +324,9 @@ TEST_CASE("shadow_mesh: prisms of an open mesh close where its edges would leak"
         > 0);
 }
 
-TEST_CASE("shadow_volume: counting agrees with rays at 4000 points about a cube") {
+TEST_CASE(
+    "shadow_volume: counting agrees with rays at 4000 points about a cube"
+    * technique("shadow.volume-count")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     const DVec3 light = {3, 10, 2};
     const std::vector<DTriangle> mesh = triangles_of(cube);
@@ -327,7 +347,9 @@ TEST_CASE("shadow_volume: counting agrees with rays at 4000 points about a cube"
     CHECK(shadowed > 10);
 }
 
-TEST_CASE("shadow_volume: z-fail counts z-pass and the volumes about the eye, exactly") {
+TEST_CASE(
+    "shadow_volume: z-fail counts z-pass and the volumes about the eye, exactly"
+    * technique("shadow.volume-count")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     std::vector<DTriangle> volumes;
     for (const DVec3& light : {DVec3(3, 10, 2), DVec3(-4, 9, 1), DVec3(0.4, 8, -3)}) {
@@ -349,7 +371,9 @@ TEST_CASE("shadow_volume: z-fail counts z-pass and the volumes about the eye, ex
     CHECK(within > 100);
 }
 
-TEST_CASE("shadow_volume: within k nested volumes the count is k, outside of all 0") {
+TEST_CASE(
+    "shadow_volume: within k nested volumes the count is k, outside of all 0"
+    * technique("shadow.volume-count")) {
     std::vector<DTriangle> volumes;
     const DVec3 light = {0, 10, 0};
     for (const float half : {0.2f, 0.4f, 0.6f, 0.8f}) {
@@ -366,7 +390,9 @@ TEST_CASE("shadow_volume: within k nested volumes the count is k, outside of all
     }
 }
 
-TEST_CASE("silhouette: on closed meshes it is made of loops, on convex ones of one") {
+TEST_CASE(
+    "silhouette: on closed meshes it is made of loops, on convex ones of one"
+    * technique("shadow.silhouette")) {
     Points points;
     const MeshData torus = make_torus({});
     for (const MeshData& mesh : {make_cube(), make_sphere({.radius = 1}), torus}) {
@@ -401,7 +427,9 @@ TEST_CASE("silhouette: on closed meshes it is made of loops, on convex ones of o
     }
 }
 
-TEST_CASE("silhouette: it runs counter-clockwise about the lit part, seen from the light") {
+TEST_CASE(
+    "silhouette: it runs counter-clockwise about the lit part, seen from the light"
+    * technique("shadow.silhouette")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     float area = 0;  // of its projection to the ground, seen from above
     for (const SilhouetteEdge& edge : find_silhouette(cube, {0, 10, 0, 1})) {
@@ -412,12 +440,16 @@ TEST_CASE("silhouette: it runs counter-clockwise about the lit part, seen from t
     CHECK(area == test::near(1));
 }
 
-TEST_CASE("silhouette: a light inside a closed mesh sees no edge of it") {
+TEST_CASE(
+    "silhouette: a light inside a closed mesh sees no edge of it"
+    * technique("shadow.silhouette")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     CHECK(find_silhouette(cube, {0.1f, 0.2f, -0.1f, 1}).empty());
 }
 
-TEST_CASE("extrusion: corners move away from the light by the distance, near ones by the bias") {
+TEST_CASE(
+    "extrusion: corners move away from the light by the distance, near ones by the bias"
+    * technique("shadow.vol-extrude")) {
     using layout::shift_from_light;
     const Vec4 light = {0, 10, 0, 1};
     const auto check = [](const Vec3& found, const Vec3& expected) {
@@ -440,14 +472,18 @@ TEST_CASE("extrusion: corners move away from the light by the distance, near one
     CHECK(std::isfinite(shift_from_light({0, 10, 0}, light, 7).y));
 }
 
-TEST_CASE("extrusion: to the end of the world a corner is the direction away from the light") {
+TEST_CASE(
+    "extrusion: to the end of the world a corner is the direction away from the light"
+    * technique("shadow.vol-extrude")) {
     using namespace layout;
     const Vec4 infinite = {kExtrudeInfinite, 0, 0, 0};
     CHECK(extrude_corner({3, 6, 0}, {0, 10, 0, 1}, infinite, 1) == Vec4(3, -4, 0, 0));
     CHECK(extrude_corner({3, 6, 0}, {0, 1, 0, 0}, infinite, 1) == Vec4(0, -1, 0, 0));
 }
 
-TEST_CASE("extrusion: by radius the cap cuts into the light's sphere, by plane it touches it") {
+TEST_CASE(
+    "extrusion: by radius the cap cuts into the light's sphere, by plane it touches it"
+    * technique("shadow.extrusion-distance")) {
     using namespace layout;
     const Vec4 light = {0, 0, 0, 1};
     const Vec3 a = {-1, -1, 0};

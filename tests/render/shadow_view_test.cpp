@@ -1,6 +1,7 @@
 #include "render/geometry/culling.h"
 #include "render/shadow/shadow_view.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -34,7 +35,9 @@ Vec3 random_point(std::mt19937& random, float reach) {
 
 }  // namespace
 
-TEST_CASE("shadow view: clip space goes to the view's square of the atlas, corner by corner") {
+TEST_CASE(
+    "shadow view: clip space goes to the view's square of the atlas, corner by corner"
+    * technique("shadow.projective-matrix")) {
     ShadowView view;
     view.resolution = 128;
     const layout::ShadowViewRecord record = record_of(view);  // clip_from_world is the identity
@@ -43,7 +46,9 @@ TEST_CASE("shadow view: clip space goes to the view's square of the atlas, corne
     CHECK(project(record, {0, 0, 0.5f}) == Vec4(320, 576, 0.5f, 1));
 }
 
-TEST_CASE("shadow view: a point on the light's axis is in the middle, at near / distance") {
+TEST_CASE(
+    "shadow view: a point on the light's axis is in the middle, at near / distance"
+    * technique("shadow.projective-matrix")) {
     const Vec3 eye = {1, 2, 3};
     const Vec3 axis = glm::normalize(Vec3(0.3f, -0.8f, 0.2f));
     const auto record = record_of(make_spot_view(eye, axis, radians(30.0f), 0.1f, 128, 2));
@@ -86,7 +91,8 @@ TEST_CASE("shadow view: a spot's rows run as it is turned, across its axis") {
     }
 }
 
-TEST_CASE("shadow view: the map is linear before the division") {
+TEST_CASE(
+    "shadow view: the map is linear before the division" * technique("shadow.projective-matrix")) {
     std::mt19937 random(1);
     const auto record =
         record_of(make_spot_view({1, 0, 2}, {0, -1, 0}, radians(40.0f), 0.05f, 128, 2));
@@ -132,7 +138,9 @@ TEST_CASE("shadow view: a plane's slope is that between its points") {
     }
 }
 
-TEST_CASE("shadow view: six faces see every direction, with a border each") {
+TEST_CASE(
+    "shadow view: six faces see every direction, with a border each"
+    * technique("shadow.map-omni")) {
     std::mt19937 random(3);
     std::array<layout::ShadowViewRecord, 6> faces;
     for (int face = 0; face < 6; ++face) {
@@ -157,7 +165,9 @@ TEST_CASE("shadow view: six faces see every direction, with a border each") {
     }
 }
 
-TEST_CASE("shadow view: a face's depth tells the book's, with a far plane, along the major axis") {
+TEST_CASE(
+    "shadow view: a face's depth tells the book's, with a far plane, along the major axis"
+    * technique("shadow.map-omni")) {
     // z_w = f / (f - n) (1 - n / m), of which ours is n / m: no far plane, and finest where far.
     const double near = 0.1;
     const double far = 100;
@@ -173,7 +183,9 @@ TEST_CASE("shadow view: a face's depth tells the book's, with a far plane, along
     CHECK(book(100) == test::near(1).epsilon(1e-5));
 }
 
-TEST_CASE("shadow view: cascades cover the distance without a gap, the near ones shorter") {
+TEST_CASE(
+    "shadow view: cascades cover the distance without a gap, the near ones shorter"
+    * technique("shadow.map-aliasing")) {
     for (int count = 1; count <= kMaxCascades; ++count) {
         const auto ends = split_cascades(0.5f, 60, count);
         float begin = 0.5f;
@@ -299,7 +311,9 @@ TEST_CASE("shadow view: texels of a cascade stay where they are when the camera 
     }
 }
 
-TEST_CASE("shadow view: twice the resolution is four times the texels a pixel") {
+TEST_CASE(
+    "shadow view: twice the resolution is four times the texels a pixel"
+    * technique("shadow.map-aliasing")) {
     // Lamp and camera at one place, with one field of view: a texel a pixel, and what the ratio of
     // the sizes makes of it.
     const Affine pose = look_at({1, 2, 3}, {1, 2, 0});

@@ -8,6 +8,7 @@
 #include "render/shadow/volume_list.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -158,7 +159,9 @@ double disagreement(
 
 }  // namespace
 
-TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: a point light's volumes agree with rays") {
+TEST_CASE_FIXTURE(
+    VolumeScene, "shadow_volume: a point light's volumes agree with rays"
+                     * technique("shadow.stencil-pass, shadow.vol-per-triangle")) {
     add_floor();
     add_casters();
     const Vec3 place = {1.5f, 4, 2};
@@ -178,7 +181,9 @@ TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: a point light's volumes agree wit
     }
 }
 
-TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: a sun's and a spot's volumes agree with rays") {
+TEST_CASE_FIXTURE(
+    VolumeScene, "shadow_volume: a sun's and a spot's volumes agree with rays"
+                     * technique("shadow.stencil-pass")) {
     add_floor();
     add_casters();
     const RenderView view = from({-2, 2.5f, 4});
@@ -204,7 +209,8 @@ TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: a sun's and a spot's volumes agre
 
 TEST_CASE_FIXTURE(
     VolumeScene,
-    "shadow_volume: lights of small radius lose no shadow to scissor, depth bounds and culling") {
+    "shadow_volume: lights of small radius lose no shadow to scissor, depth bounds and culling"
+        * technique("shadow.caster-cull, shadow.depth-bounds")) {
     add_floor();
     add_boxes();  // no smooth shading, where it is a matter of taste what the light grazes
     // Between the light and the floor, so that the smallest light has shadows too.
@@ -228,9 +234,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene,
-    "shadow_volume: within volumes z-pass is off by one at every pixel, z-fail and auto are "
-    "right") {
+    VolumeScene, "shadow_volume: within volumes z-pass is off by one at every pixel, z-fail and "
+                 "auto are right") {
     add_floor();
     add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
     const Vec3 place = {0, 6, 0};
@@ -284,7 +289,8 @@ TEST_CASE_FIXTURE(
         <= kWidth * kHeight / 1000);
 }
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: where the near plane cuts a volume the image stays right") {
+    VolumeScene, "shadow_volume: where the near plane cuts a volume the image stays right"
+                     * technique("shadow.stencil-pass")) {
     add_floor();
     add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
     const Vec3 place = {0, 6, 0};
@@ -300,7 +306,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: nested volumes count up to 255; 256 of them are none") {
+    VolumeScene, "shadow_volume: nested volumes count up to 255; 256 of them are none"
+                     * technique("shadow.stencil-pass")) {
     add_floor();
     const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at({0, 6, 0}));
     world.add(light, kVolumes);
@@ -327,7 +334,9 @@ TEST_CASE_FIXTURE(
     CHECK(lit_below());
 }
 
-TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: the order of casters and lights changes nothing") {
+TEST_CASE_FIXTURE(
+    VolumeScene, "shadow_volume: the order of casters and lights changes nothing"
+                     * technique("shadow.stencil-frame, shadow.stencil-pass")) {
     add_floor();
     const MeshId torus = add(make_shadow_torus());
     const auto draw_in_order = [&](bool backward) {
@@ -368,7 +377,8 @@ TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: the order of casters and lights c
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: lit is ambient and direct light, shadowed is ambient exactly") {
+    VolumeScene, "shadow_volume: lit is ambient and direct light, shadowed is ambient exactly"
+                     * technique("shadow.stencil-frame")) {
     add_floor();
     add_casters();
     world.insert_resource(Environment{
@@ -430,8 +440,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene,
-    "shadow_volume: an open mesh is reported once by name and its light has no volume") {
+    VolumeScene, "shadow_volume: an open mesh is reported once by name and its light has no volume"
+                     * technique("shadow.closed-mesh, shadow.selection")) {
     add_floor();
     MeshData lid = test::make_square();
     lid.name = "lid of the box";
@@ -465,7 +475,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: a material with holes is reported; prisms cast the full shape") {
+    VolumeScene, "shadow_volume: a material with holes is reported; prisms cast the full shape"
+                     * technique("shadow.map-alpha, shadow.selection")) {
     add_floor();
     const MaterialId holes =
         add(Material{.name = "lattice", .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f});
@@ -508,7 +519,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     VolumeScene,
-    "shadow_volume: by radius light leaks behind the cap, by plane and endless none does") {
+    "shadow_volume: by radius light leaks behind the cap, by plane and endless none does"
+        * technique("shadow.extrusion-distance")) {
     // A long bar close to the light: the middle of the far cap is much nearer than its ends.
     MeshData floor = test::make_square();
     world.add(
@@ -549,7 +561,8 @@ TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: moved casters and swapped assets 
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "hybrid: the image is that of volumes, which count at a few pixels alone") {
+    VolumeScene, "hybrid: the image is that of volumes, which count at a few pixels alone"
+                     * technique("shadow.hybrid-edge")) {
     add_floor();
     add_boxes();
     const RenderView view = from({0.3f, 3.2f, 4.1f});
@@ -579,7 +592,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "hybrid: where light grazes round casters the image is that of volumes") {
+    VolumeScene, "hybrid: where light grazes round casters the image is that of volumes"
+                     * technique("shadow.hybrid-edge")) {
     add_floor();
     add_caster(
         add(make_torus({.radius = 0.7f, .tube = 0.3f, .segments = 32, .sides = 16})),
@@ -597,7 +611,9 @@ TEST_CASE_FIXTURE(
     CHECK(differ <= exact.counted / 1000);
 }
 
-TEST_CASE_FIXTURE(VolumeScene, "hybrid: away from the map's edges no volume is counted") {
+TEST_CASE_FIXTURE(
+    VolumeScene,
+    "hybrid: away from the map's edges no volume is counted" * technique("shadow.hybrid-edge")) {
     add_floor();
     add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
     const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at({0, 6, 0}));
@@ -633,7 +649,9 @@ TEST_CASE_FIXTURE(VolumeScene, "hybrid: away from the map's edges no volume is c
     CHECK(farthest <= 2);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "hybrid: seven bits wrap beneath the mark of an edge") {
+TEST_CASE_FIXTURE(
+    test::RenderTest,
+    "hybrid: seven bits wrap beneath the mark of an edge" * technique("shadow.hybrid-edge")) {
     const gpu::Texture depth("depth", {.format = GL_DEPTH32F_STENCIL8, .width = 4, .height = 4});
     const gpu::Framebuffer target("target", {}, {&depth});
     const Result<const gpu::Program*> program =
@@ -663,7 +681,8 @@ TEST_CASE_FIXTURE(test::RenderTest, "hybrid: seven bits wrap beneath the mark of
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "volume_layers: a ball's volume is two layers, prisms are many more") {
+    VolumeScene, "volume_layers: a ball's volume is two layers, prisms are many more"
+                     * technique("shadow.density-view")) {
     add_floor();
     add_caster(add(make_sphere({.radius = 0.5f, .segments = 24, .rings = 12})), at({0, 2, 0}));
     const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at({0.1f, 5, 0.2f}));
@@ -719,7 +738,9 @@ TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is
     CHECK(shadow_is_outside(behind, {0, 0, -1, 0}, frustum));
 }
 
-TEST_CASE("shadow selection: only auto is decided, by whether the light has a ShadowVolume") {
+TEST_CASE(
+    "shadow selection: only auto is decided, by whether the light has a ShadowVolume"
+    * technique("shadow.selection")) {
     using enum ShadowMethod;
     CHECK(choose_shadow_method(Auto, false) == Map);
     CHECK(choose_shadow_method(Auto, true) == Volume);
@@ -730,7 +751,8 @@ TEST_CASE("shadow selection: only auto is decided, by whether the light has a Sh
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow selection: a light left to choose has a map, with ShadowVolume volumes") {
+    VolumeScene, "shadow selection: a light left to choose has a map, with ShadowVolume volumes"
+                     * technique("shadow.selection")) {
     add_floor();
     add_caster(cube, at({0, 1, 0}));
     const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({0.2f, 4, 0.3f}));

@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/skin_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "ecs/components/env_probe.h"
 #include "ecs/components/rendering.h"
@@ -84,7 +85,8 @@ struct SkinPicture : SkinScene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: what is deformed looks as the mesh that the oracle makes of it") {
+    SkinPicture, "skin_draw: what is deformed looks as the mesh that the oracle makes of it"
+                     * technique("char.skin-gpu")) {
     for (const AlphaMode mode : {AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend}) {
         for (const LightMethod method :
              {LightMethod::Clustered, LightMethod::ObjectMajor, LightMethod::LightMajor}) {

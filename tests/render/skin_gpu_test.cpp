@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/skin_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "render/skinning/deformed_list.h"
 #include "systems/animation/deformer_kernels.h"
@@ -66,7 +67,8 @@ float axis_distance(const Vec3& p) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: vertices are those of double precision within 1e-4 of the box") {
+    SkinTest, "skin_gpu: vertices are those of double precision within 1e-4 of the box"
+                  * technique("char.skin-gpu")) {
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         for (const int joints : {2, 11, 300}) {  // 300: more than a byte counts
             const Entity entity = snake(skinning, joints, 6, static_cast<std::uint64_t>(joints));
@@ -120,7 +122,9 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: the kernels of the CPU give the same") {
     }
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: where joints are as they were bound, vertices stay") {
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: where joints are as they were bound, vertices stay"
+                  * technique("char.skin-bone-offset")) {
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         const Entity entity = snake(skinning, 7, 5, 3);
         Pose& pose = world.get<Pose>(entity);
@@ -137,7 +141,8 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: where joints are as they were bound, vert
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: a rigid motion of all joints is that motion of all vertices") {
+    SkinTest, "skin_gpu: a rigid motion of all joints is that motion of all vertices"
+                  * technique("char.skin-bone-offset")) {
     const Affine motion = affine_from({1, 2, 3}, rotation_about({1, 2, 0}, 1.1f), Vec3(1));
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         const Entity entity = snake(skinning, 7, 5, 4);
@@ -155,8 +160,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest,
-    "skin_gpu: one joint of weight 1 carries a vertex, and joints without weight nothing") {
+    SkinTest, "skin_gpu: one joint of weight 1 carries a vertex, and joints without weight nothing"
+                  * technique("char.skin-bone-offset")) {
     MeshData tube = make_tube(4, 8, 1);
     tube.skin.first.push_back(0);
     for (std::size_t i = 0; i < tube.positions.size(); ++i) {
@@ -285,9 +290,8 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: 300 morph targets add up as in double pre
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest,
-    "skin_gpu: a morph target moves its vertices and not a bit of the others, then joints turn "
-    "all") {
+    SkinTest, "skin_gpu: a morph target moves its vertices and not a bit of the others, then "
+              "joints turn all") {
     Random random(8, 0, 0, 0);
     Bend bend = make_bend({1, 0, 0}, 0.8f, 1.0f);
     add_morphs(bend.mesh, 1, 2, 0.1f, random);
@@ -310,7 +314,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: positions before are those that the last frame had") {
+TEST_CASE_FIXTURE(
+    SkinTest,
+    "skin_gpu: positions before are those that the last frame had" * technique("char.skin-gpu")) {
     const Entity entity = snake(Skinning::Linear, 11, 4, 9);
     Random random(9, 1, 0, 0);
     std::vector<Vec3> last = read(entity).positions;
@@ -412,7 +418,9 @@ TEST_CASE_FIXTURE(
     CHECK(computed(both, 0.5f) == 1);
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a thousand instances are one dispatch, and each is itself") {
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: a thousand instances are one dispatch, and each is itself"
+                  * technique("char.skin-gpu")) {
     Random random(14, 0, 0, 0);
     MeshData tube = make_tube(8, 6, 1);
     add_weights(tube, 5, 4, random);
@@ -480,7 +488,9 @@ TEST_CASE_FIXTURE(
     CHECK(gpu.shapes().vertices().slots().used() == 0);
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: deformers move vertices and normals as on the CPU") {
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: deformers move vertices and normals as on the CPU"
+                  * technique("face.ffd, face.pull, face.waters-muscle")) {
     const Entity entity = world.create(
         Transform{}, WorldTransform{}, MeshInstance{add(make_tube(24, 24, 1)), gray},
         Deformers{

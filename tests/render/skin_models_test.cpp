@@ -5,6 +5,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -74,7 +75,9 @@ double off(const Vec3& found, const DVec3& exact) {
 
 }  // namespace
 
-TEST_CASE("skin tone: melanin and blood take away the colors of the table") {
+TEST_CASE(
+    "skin tone: melanin and blood take away the colors of the table"
+    * technique("skin.melanin-blood")) {
     const double amounts[][2] = {{0, 0}, {0.2, 0.5}, {0.05, 0.2}, {0.5, 0.6}, {1, 0}, {1, 1}};
     for (const auto& [melanin, blood] : amounts) {
         const Vec3 tone = skin_tone(
@@ -86,7 +89,9 @@ TEST_CASE("skin tone: melanin and blood take away the colors of the table") {
     CHECK(skin_tone(pigmented(Pigments::None, 1, 1)) == Vec3(1));
 }
 
-TEST_CASE("skin tone: densities meet the albedo of each skin type within a fifth") {
+TEST_CASE(
+    "skin tone: densities meet the albedo of each skin type within a fifth"
+    * technique("skin.melanin-blood")) {
     const Vec3 types[] = {
         {0.55f, 0.34f, 0.26f},
         {0.46f, 0.27f, 0.19f},
@@ -113,7 +118,9 @@ TEST_CASE("skin tone: densities meet the albedo of each skin type within a fifth
     }
 }
 
-TEST_CASE("skin tone: blood reddens, and at both ends nothing is negative or brighter than white") {
+TEST_CASE(
+    "skin tone: blood reddens, and at both ends nothing is negative or brighter than white"
+    * technique("skin.melanin-blood")) {
     for (const Pigments pigments : {Pigments::Plane, Pigments::Density}) {
         const Vec3 pale = skin_tone(pigmented(pigments, 0.1f, 0));
         const Vec3 blushing = skin_tone(pigmented(pigments, 0.1f, 1));
@@ -128,20 +135,24 @@ TEST_CASE("skin tone: blood reddens, and at both ends nothing is negative or bri
     }
 }
 
-TEST_CASE("skin blinn: the preset of the hand, seen and lit head on, has the printed color") {
+TEST_CASE(
+    "skin blinn: the preset of the hand, seen and lit head on, has the printed color"
+    * technique("skin.blinn")) {
     CHECK(
         off(shaded(pigmented(Pigments::Plane, 0.2f, 0.5f), {0, 0, 1}), DVec3(0.972, 0.748, 0.510))
         < 2e-3);
 }
 
-TEST_CASE("skin blinn: a light below the horizon leaves the light from around") {
+TEST_CASE(
+    "skin blinn: a light below the horizon leaves the light from around"
+    * technique("skin.blinn")) {
     CHECK(
         off(shaded(pigmented(Pigments::Plane, 0.2f, 0.5f), glm::normalize(Vec3(1, 0, -0.2f))),
             0.3 * DVec3(0.832, 0.608, 0.370))
         < 1e-3);
 }
 
-TEST_CASE("skin blinn: without gloss it looks alike from everywhere") {
+TEST_CASE("skin blinn: without gloss it looks alike from everywhere" * technique("skin.blinn")) {
     Scene scene;
     Material matte = pigmented(Pigments::Plane, 0.2f, 0.5f);
     matte.specular = Vec3(0);
@@ -154,7 +165,9 @@ TEST_CASE("skin blinn: without gloss it looks alike from everywhere") {
     CHECK(first.x > 0.1f);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "skin brdf: lobes are those of double precision, and reciprocal") {
+TEST_CASE_FIXTURE(
+    RenderTest, "skin brdf: lobes are those of double precision, and reciprocal"
+                    * technique("skin.brdf-lafortune")) {
     std::vector<Vec4> inputs;
     std::vector<double> expected;
     const LobeSet& set = kSets[0];
@@ -192,13 +205,17 @@ TEST_CASE_FIXTURE(RenderTest, "skin brdf: lobes are those of double precision, a
     }
 }
 
-TEST_CASE("skin brdf: head on, the first set adds 0.399492 to its base color") {
+TEST_CASE(
+    "skin brdf: head on, the first set adds 0.399492 to its base color"
+    * technique("skin.brdf-lafortune")) {
     const Vec3 color = shaded(measured_skin(kSets[0]), {0, 0, 1});
     const DVec3 expected = 0.3 * kSets[0].diffuse + 0.7 * (kSets[0].diffuse + 0.399492);
     CHECK(off(color, expected) < 3e-3);
 }
 
-TEST_CASE("skin brdf: any direction of light gives what the oracle says") {
+TEST_CASE(
+    "skin brdf: any direction of light gives what the oracle says"
+    * technique("skin.brdf-lafortune")) {
     for (const LobeSet& set : kSets) {
         for (const DVec3 to_light : {DVec3(0.3, 0.2, 0.9), DVec3(0.8, 0, 0.3), DVec3(1, 0, -0.3)}) {
             const DVec3 u = glm::normalize(to_light);
@@ -212,7 +229,9 @@ TEST_CASE("skin brdf: any direction of light gives what the oracle says") {
     }
 }
 
-TEST_CASE("skin brdf: without lobes it is Lambert's, by the base color") {
+TEST_CASE(
+    "skin brdf: without lobes it is Lambert's, by the base color"
+    * technique("skin.brdf-lafortune")) {
     Material bare = measured_skin(kSets[0]);
     bare.lobes.clear();
     const Vec3 to_light = glm::normalize(Vec3(0.4f, 0.1f, 0.5f));
@@ -230,7 +249,9 @@ TEST_CASE("skin brdf: neither set reflects more light than it receives, from any
     }
 }
 
-TEST_CASE("subsurface gloss: highlights are the two lobes of GGX, each by its share") {
+TEST_CASE(
+    "subsurface gloss: highlights are the two lobes of GGX, each by its share"
+    * technique("skin.gloss")) {
     Material black = {
         .shading = ShadingModel::Subsurface,
         .base_color = {0, 0, 0, 1},
@@ -253,7 +274,9 @@ TEST_CASE("subsurface gloss: highlights are the two lobes of GGX, each by its sh
     }
 }
 
-TEST_CASE("subsurface gloss: white skin in white light is white, and none is brighter") {
+TEST_CASE(
+    "subsurface gloss: white skin in white light is white, and none is brighter"
+    * technique("skin.gloss")) {
     for (const float gloss : {0.0f, 0.5f, 1.0f}) {
         for (const Vec3& eye : {Vec3(0, 0, 1), Vec3(1, 0, 0.3f)}) {
             Scene scene;
@@ -273,7 +296,7 @@ TEST_CASE("subsurface gloss: white skin in white light is white, and none is bri
     }
 }
 
-TEST_CASE("detail: its slopes add to those of the normal map") {
+TEST_CASE("detail: its slopes add to those of the normal map" * technique("skin.detail")) {
     // Normals of slope 1/4 along u and 1/3 along v.
     const auto map = [](const char* name, const Vec3& normal) {
         ImageData image{.name = name, .width = 1, .height = 1, .srgb = false, .pixels = {}};

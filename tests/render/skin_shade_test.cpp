@@ -2,6 +2,7 @@
 #include "ecs/components/rendering.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -33,7 +34,9 @@ float green(const gpu::FloatImage& image, int x, int y) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "skin shade: the rim has the values of both printed forms") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "skin shade: the rim has the values of both printed forms" * technique("char.skin-shade")) {
     const std::vector<Vec4> found = evaluate_shader(
         "#include \"lib/reflector.glsl\"\n",
         "y.x = skin_rim(x.x, true); y.y = skin_rim(x.x, false);",
@@ -46,7 +49,7 @@ TEST_CASE_FIXTURE(RenderTest, "skin shade: the rim has the values of both printe
     }
 }
 
-TEST_CASE("skin shade: of a black rim it is Blinn, to the bit") {
+TEST_CASE("skin shade: of a black rim it is Blinn, to the bit" * technique("char.skin-shade")) {
     const auto picture = [](ShadingModel model) {
         Face face;
         face.skin.shading = model;
@@ -59,7 +62,9 @@ TEST_CASE("skin shade: of a black rim it is Blinn, to the bit") {
     CHECK(green(skin, 32, 32) > 0.1f);
 }
 
-TEST_CASE("skin shade: lit from behind, nothing but the rim is bright, and the wide one is wider") {
+TEST_CASE(
+    "skin shade: lit from behind, nothing but the rim is bright, and the wide one is wider"
+    * technique("char.skin-shade")) {
     gpu::FloatImage rims[2];
     for (const bool wide : {false, true}) {
         Face face;
@@ -80,7 +85,9 @@ TEST_CASE("skin shade: lit from behind, nothing but the rim is bright, and the w
     }
 }
 
-TEST_CASE("skin shade: each point of a ball is as the oracle says, by any light method") {
+TEST_CASE(
+    "skin shade: each point of a ball is as the oracle says, by any light method"
+    * technique("char.skin-shade")) {
     for (const bool wide : {false, true}) {
         Face face;
         face.skin.wide_rim = wide;

@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "bench/oracles/environment_oracle.h"
 #include "render/environment/environment_light.h"
@@ -136,7 +137,8 @@ Vec3 octahedral_direction(int x, int y, int size) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    PanoramaScene, "sky_panorama: the background is the panorama's color, whatever its mapping") {
+    PanoramaScene, "sky_panorama: the background is the panorama's color, whatever its mapping"
+                       * technique("env.angular-map, env.panorama")) {
     const auto smooth = [](const glm::dvec3& d) {
         return glm::dvec3(1.5, 1, 2) + glm::dvec3(d.x * d.y, d.z, d.y);
     };
@@ -158,7 +160,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(PanoramaScene, "sky_panorama: it turns with its rotation and closes behind") {
+TEST_CASE_FIXTURE(
+    PanoramaScene,
+    "sky_panorama: it turns with its rotation and closes behind" * technique("env.panorama")) {
     const auto quarters = [](const glm::dvec3& d) {
         return glm::dvec3(d.x > 0 ? 1 : 0, d.z > 0 ? 1 : 0, d.y > 0 ? 1 : 0);
     };
@@ -269,8 +273,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PanoramaScene, "sky_panorama: another level's image in its place is noticed, a "
-                   "missing one is magenta") {
+    PanoramaScene,
+    "sky_panorama: another level's image in its place is noticed, a missing one is magenta") {
     const auto red = [](const glm::dvec3&) { return glm::dvec3(1, 0, 0); };
     const auto green = [](const glm::dvec3&) { return glm::dvec3(0, 1, 0); };
     surround(picture_of(red, PanoramaMapping::Equirectangular, 32, 16));

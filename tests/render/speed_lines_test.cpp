@@ -3,6 +3,7 @@
 #include "render/graph/frame_graph.h"
 #include "render/lens/speed_line_pass.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -24,7 +25,9 @@ lines_of(const Vec3& step, float seconds, const SpeedLines& settings = kLines) {
 
 }  // namespace
 
-TEST_CASE("speed lines: there are none below the least speed, and none without motion") {
+TEST_CASE(
+    "speed lines: there are none below the least speed, and none without motion"
+    * technique("post.speed-lines")) {
     CHECK(lines_of({0.19f, 0, 0}, 0.1f).empty());
     CHECK_FALSE(lines_of({0.21f, 0, 0}, 0.1f).empty());
     CHECK(lines_of({0, 0, 0}, 0.1f).empty());
@@ -36,7 +39,8 @@ TEST_CASE("speed lines: there are none below the least speed, and none without m
 }
 
 TEST_CASE(
-    "speed lines: each goes straight back along the motion, as far as it goes in their time") {
+    "speed lines: each goes straight back along the motion, as far as it goes in their time"
+    * technique("post.speed-lines")) {
     const Vec3 velocity = Vec3(0.5f, -0.2f, 0.3f) / 0.1f;
     const std::vector<SpeedLine> lines = lines_of(0.1f * velocity, 0.1f);
     REQUIRE(lines.size() > 100);
@@ -45,7 +49,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("speed lines: they begin only where the surface faces away from its motion") {
+TEST_CASE(
+    "speed lines: they begin only where the surface faces away from its motion"
+    * technique("post.speed-lines")) {
     const Vec3 step = {0.5f, 0, 0};
     for (const SpeedLine& line : lines_of(step, 0.1f)) {
         CHECK(glm::dot(line.head - Vec3(1, 2, 3), step) < 1e-5f);  // of a ball: the normal
@@ -70,7 +76,9 @@ TEST_CASE("speed lines: there are no more than asked for, nor than the mesh has 
     CHECK(lines_of({0.5f, 0, 0}, 0.1f, few).size() <= make_ball(24).positions.size());
 }
 
-TEST_CASE_FIXTURE(Scene, "speed lines: they trail in the image, behind what stands before them") {
+TEST_CASE_FIXTURE(
+    Scene, "speed lines: they trail in the image, behind what stands before them"
+               * technique("post.speed-lines")) {
     world.insert_resource(FrameTime{.step = 0.1f});
     const MaterialId black =
         add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}});

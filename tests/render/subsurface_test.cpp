@@ -7,6 +7,7 @@
 #include "tests/near.h"
 #include "tests/render/profile_renderer.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -143,7 +144,9 @@ RenderView turned(const Vec3& eye, float roll) {
 
 }  // namespace
 
-TEST_CASE("diffusion profile: every channel's rings hold all of its light, from the inside out") {
+TEST_CASE(
+    "diffusion profile: every channel's rings hold all of its light, from the inside out"
+    * technique("skin.diffusion")) {
     for (const Vec3& d : {Vec3(0.98f, 0.39f, 0.19f), Vec3(1, 1, 1), Vec3(1, 0, 0.5f)}) {
         for (const DiffusionDensity& density : {kDensityNear, kDensityFar, kDensityFarther}) {
             std::array<Vec4, 48> rings;
@@ -158,7 +161,9 @@ TEST_CASE("diffusion profile: every channel's rings hold all of its light, from 
     }
 }
 
-TEST_CASE("diffusion profile: the first of rings seen from far away stands for many") {
+TEST_CASE(
+    "diffusion profile: the first of rings seen from far away stands for many"
+    * technique("skin.diffusion")) {
     const Vec3 d = {0.98f, 0.39f, 0.19f};
     std::array<Vec4, 20> many;
     std::array<Vec4, 20> one;
@@ -176,7 +181,9 @@ TEST_CASE("diffusion profile: the first of rings seen from far away stands for m
     CHECK(one[19].x > many[19].x);
 }
 
-TEST_CASE("diffusion profile: a ring's share is the integral of the profile over it") {
+TEST_CASE(
+    "diffusion profile: a ring's share is the integral of the profile over it"
+    * technique("skin.diffusion")) {
     const double d = 0.39;
     double sum = 0;
     constexpr int kSteps = 100000;
@@ -191,7 +198,9 @@ TEST_CASE("diffusion profile: a ring's share is the integral of the profile over
     CHECK(scale.z == near(oracle::diffusion_scale(0.9, 0.68)));
 }
 
-TEST_CASE("subsurface: light spreads over an edge as the profile says, at any distance and tilt") {
+TEST_CASE(
+    "subsurface: light spreads over an edge as the profile says, at any distance and tilt"
+    * technique("skin.diffusion")) {
     LitPlane scene(wax());
     scene.darken(-30, 0);
     scene.shine_past();
@@ -207,7 +216,7 @@ TEST_CASE("subsurface: light spreads over an edge as the profile says, at any di
     }
 }
 
-TEST_CASE("subsurface: a thin line of light becomes the profile") {
+TEST_CASE("subsurface: a thin line of light becomes the profile" * technique("skin.diffusion")) {
     LitPlane scene(wax());
     constexpr float kWidth = 8.0f / kSide;  // four pixels
     scene.darken(-30, -0.5f * kWidth);
@@ -220,7 +229,9 @@ TEST_CASE("subsurface: a thin line of light becomes the profile") {
     CHECK(std::max({errors.x, errors.y, errors.z}) < 0.01);
 }
 
-TEST_CASE("subsurface: an evenly lit plane is as bright as without diffusion") {
+TEST_CASE(
+    "subsurface: an evenly lit plane is as bright as without diffusion"
+    * technique("skin.diffusion")) {
     for (const Vec3& eye : {Vec3(0, 0, 1), Vec3(0.9f, 0.3f, 0.5f), Vec3(0, 0, 3)}) {
         for (const gpu::Profile profile : kProfiles) {
             ProfileRenderer& renderer = renderer_of(profile);
@@ -237,7 +248,9 @@ TEST_CASE("subsurface: an evenly lit plane is as bright as without diffusion") {
     }
 }
 
-TEST_CASE("subsurface: no light comes from what does not scatter, nor leaves for it") {
+TEST_CASE(
+    "subsurface: no light comes from what does not scatter, nor leaves for it"
+    * technique("skin.diffusion")) {
     LitPlane scene(wax());
     scene.darken(-30, 0);
     scene.shine_past();
@@ -302,7 +315,9 @@ int dispatches(ProfileRenderer& renderer, const Scene& scene, const RenderView& 
 
 }  // namespace
 
-TEST_CASE("subsurface: what a GPU computes is what a software OpenGL draws") {
+TEST_CASE(
+    "subsurface: what a GPU computes is what a software OpenGL draws"
+    * technique("skin.diffusion")) {
     const WaxBalls scene;
     const RenderView view = scene.full_view();
     const gpu::FloatImage drawn = renderer_of(gpu::Profile::Software).radiance(scene.world, view);
@@ -320,7 +335,7 @@ TEST_CASE("subsurface: what a GPU computes is what a software OpenGL draws") {
     CHECK(largest < 3.0f / 1024);
 }
 
-TEST_CASE("subsurface: pixels of other surfaces keep every bit") {
+TEST_CASE("subsurface: pixels of other surfaces keep every bit" * technique("skin.diffusion")) {
     WaxBalls scene;
     const WaxBalls dull(Vec3(0));
     const RenderView view = scene.full_view();
@@ -342,7 +357,9 @@ TEST_CASE("subsurface: pixels of other surfaces keep every bit") {
     }
 }
 
-TEST_CASE("subsurface: a GPU computes it, and dispatches nothing where no skin is in view") {
+TEST_CASE(
+    "subsurface: a GPU computes it, and dispatches nothing where no skin is in view"
+    * technique("skin.diffusion")) {
     const WaxBalls scene;
     const WaxBalls dull(Vec3(0));
     const RenderView behind = scene.look({0, 0, 3}, {0, 0, 9});
@@ -362,7 +379,7 @@ TEST_CASE("subsurface: a GPU computes it, and dispatches nothing where no skin i
     }
 }
 
-TEST_CASE("subsurface: highlights are not spread") {
+TEST_CASE("subsurface: highlights are not spread" * technique("skin.diffusion")) {
     gpu::FloatImage images[2];
     for (const bool spread : {false, true}) {
         Material black = wax(spread ? kFreePath : Vec3(0));
@@ -382,7 +399,8 @@ TEST_CASE("subsurface: highlights are not spread") {
     CHECK(brightest > 0.05f);
 }
 
-TEST_CASE("subsurface: dark skin behind a bright edge of skin stays dark") {
+TEST_CASE(
+    "subsurface: dark skin behind a bright edge of skin stays dark" * technique("skin.diffusion")) {
     Scene scene;
     const MeshId square = scene.add(make_square());
     const MaterialId skin = scene.add(wax());
@@ -428,7 +446,9 @@ void check_slab(const Vec3& found, double irradiance, double path) {
 
 }  // namespace
 
-TEST_CASE("subsurface: a slab lit from behind lets through what the profile holds beyond it") {
+TEST_CASE(
+    "subsurface: a slab lit from behind lets through what the profile holds beyond it"
+    * technique("skin.transmission")) {
     const DirectionalLight sun = {.illuminance = 3};
     for (const float thickness : {0.01f, 0.03f, 0.08f}) {
         const auto path = static_cast<double>(thickness);
@@ -440,7 +460,9 @@ TEST_CASE("subsurface: a slab lit from behind lets through what the profile hold
     }
 }
 
-TEST_CASE("subsurface: lamps and spots shine through a slab as the sun does") {
+TEST_CASE(
+    "subsurface: lamps and spots shine through a slab as the sun does"
+    * technique("skin.transmission")) {
     constexpr float kThickness = 0.03f;
     const double falloff = 5 / square(2.0);
     const Affine from = look_at({0, 0, -2}, {0, 0, 0});
@@ -454,7 +476,9 @@ TEST_CASE("subsurface: lamps and spots shine through a slab as the sun does") {
         falloff, static_cast<double>(kThickness));
 }
 
-TEST_CASE("subsurface: nothing passes a body far thicker than its mean free path, or without one") {
+TEST_CASE(
+    "subsurface: nothing passes a body far thicker than its mean free path, or without one"
+    * technique("skin.transmission")) {
     const DirectionalLight sun = {.illuminance = 3};
     const Affine from = look_at({0, 0, 0}, {0, 0, 1});
     CHECK(behind_slab(1.5f, sun, from).x < 1e-3f * behind_slab(0.03f, sun, from).x);

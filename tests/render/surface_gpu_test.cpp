@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/skin_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "ecs/components/surface_binding.h"
 #include "render/skinning/deformed_list.h"
@@ -67,7 +68,9 @@ struct SurfaceTest : SkinScene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(SurfaceTest, "surface_gpu: a mesh on patches is where it is on the CPU") {
+TEST_CASE_FIXTURE(
+    SurfaceTest,
+    "surface_gpu: a mesh on patches is where it is on the CPU" * technique("face.bids-rebuild")) {
     make(SurfaceMethod::Patches);
     step({0.5f, 0.1f, 0.4f});
     step({0.9f, 0.5f, -0.3f});
@@ -103,7 +106,8 @@ TEST_CASE_FIXTURE(SurfaceTest, "surface_gpu: a mesh on patches is where it is on
 }
 
 TEST_CASE_FIXTURE(
-    SurfaceTest, "surface_gpu: a mesh that goes with faces is where it is on the CPU") {
+    SurfaceTest, "surface_gpu: a mesh that goes with faces is where it is on the CPU"
+                     * technique("face.soffd")) {
     make(SurfaceMethod::Faces);
     step({0.5f, 0.1f, 0.4f});
     step({0.9f, 0.5f, -0.3f});

@@ -1,6 +1,7 @@
 #include "ecs/components/texture_combine.h"
 #include "ecs/components/time.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +73,9 @@ class Grating : public Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Grating, "texture combine: two copies of water through the holes of a grating") {
+TEST_CASE_FIXTURE(
+    Grating, "texture combine: two copies of water through the holes of a grating"
+                 * technique("tex.combine")) {
     world.create(combine);
     // After three seconds one has moved by 6 texels along u, the other by 3 along v.
     for (const int seconds : {0, 3}) {
@@ -91,7 +94,9 @@ TEST_CASE_FIXTURE(Grating, "texture combine: two copies of water through the hol
     }
 }
 
-TEST_CASE_FIXTURE(Grating, "texture combine: by half, the sum of two is no more than one") {
+TEST_CASE_FIXTURE(
+    Grating,
+    "texture combine: by half, the sum of two is no more than one" * technique("tex.combine")) {
     combine.gain = 0.5f;
     world.create(combine);
     const gpu::FloatImage seen = at_time(0);
@@ -100,7 +105,9 @@ TEST_CASE_FIXTURE(Grating, "texture combine: by half, the sum of two is no more 
     }
 }
 
-TEST_CASE_FIXTURE(Grating, "texture combine: whole copies later it is the same, to the bit") {
+TEST_CASE_FIXTURE(
+    Grating,
+    "texture combine: whole copies later it is the same, to the bit" * technique("tex.combine")) {
     world.create(combine);
     const gpu::FloatImage start = at_time(0);
     CHECK(at_time(16).pixels == start.pixels);
@@ -109,7 +116,8 @@ TEST_CASE_FIXTURE(Grating, "texture combine: whole copies later it is the same, 
 }
 
 TEST_CASE_FIXTURE(
-    Grating, "texture combine: a time looks the same however many images come before") {
+    Grating, "texture combine: a time looks the same however many images come before"
+                 * technique("tex.combine")) {
     combine.speed = {0.37f, 0.21f};
     world.create(combine);
     for (int i = 0; i < 8; ++i) {
@@ -125,7 +133,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grating, "texture combine: without an image, or into what it reads, nothing is drawn") {
+    Grating, "texture combine: without an image, or into what it reads, nothing is drawn"
+                 * technique("tex.combine")) {
     const Entity bad = world.create(combine);
     for (const int missing : {0, 1, 2, 3}) {
         TextureCombine& broken = world.get<TextureCombine>(bad);

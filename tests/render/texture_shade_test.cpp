@@ -1,6 +1,7 @@
 #include "ecs/components/texture_shade.h"
 #include "ecs/components/time.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,24 +105,32 @@ std::vector<Vec3> expected_texels(const TextureShade& shade, Normal&& normal) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Shaded, "texture shade: every texel is lit as a pixel there would be") {
+TEST_CASE_FIXTURE(
+    Shaded, "texture shade: every texel is lit as a pixel there would be"
+                * technique("wrinkle.furrow.texture-space-shading")) {
     CHECK(largest_difference_of(texels(), expected_texels(shade, normal_of)) < 0.01f);
     shade.to_light = {0.9f, 0, -0.2f};  // below the horizon of most
     shade.shininess = 2;
     CHECK(largest_difference_of(texels(), expected_texels(shade, normal_of)) < 0.01f);
 }
 
-TEST_CASE_FIXTURE(Shaded, "texture shade: the size of the screen does not change a texel") {
+TEST_CASE_FIXTURE(
+    Shaded, "texture shade: the size of the screen does not change a texel"
+                * technique("wrinkle.furrow.texture-space-shading")) {
     CHECK(largest_difference_of(texels({1, 0, 0, 0}, 4), texels({1, 0, 0, 0}, 9)) == 0.0f);
 }
 
-TEST_CASE_FIXTURE(Shaded, "texture shade: normals turn with the entity, light and view do not") {
+TEST_CASE_FIXTURE(
+    Shaded, "texture shade: normals turn with the entity, light and view do not"
+                * technique("wrinkle.furrow.texture-space-shading")) {
     const Quat turn = glm::angleAxis(0.5f, glm::normalize(Vec3(0.2f, 1, 0.1f)));
     const auto turned = [&](int x, int y) { return turn * normal_of(x, y); };
     CHECK(largest_difference_of(texels(turn), expected_texels(shade, turned)) < 0.01f);
 }
 
-TEST_CASE_FIXTURE(Shaded, "texture shade: turning normals and light together changes nothing") {
+TEST_CASE_FIXTURE(
+    Shaded, "texture shade: turning normals and light together changes nothing"
+                * technique("wrinkle.furrow.texture-space-shading")) {
     const std::vector<Vec3> before = texels();
     const Quat around = glm::angleAxis(1.1f, Vec3(0, 0, 1));  // the view stays the same
     shade.to_light = around * shade.to_light;
@@ -134,7 +143,9 @@ TEST_CASE_FIXTURE(Shaded, "texture shade: turning normals and light together cha
     CHECK(largest_difference_of(texels(any), dull) < 0.01f);
 }
 
-TEST_CASE_FIXTURE(Shaded, "texture shade: normals of an unrolled cylinder are rolled up") {
+TEST_CASE_FIXTURE(
+    Shaded, "texture shade: normals of an unrolled cylinder are rolled up"
+                * technique("wrinkle.furrow.texture-space-shading")) {
     shade.unrolled = true;
     const auto rolled = [](int x, int y) {
         const float s = 2 * kPi * (static_cast<float>(x) + 0.5f) / kSide;

@@ -4,6 +4,7 @@
 #include "render/lens/thin_lens.h"
 #include "render/render_view.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -64,7 +65,7 @@ float cross(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
-TEST_CASE("thin_lens: circles of the spec's lens") {
+TEST_CASE("thin_lens: circles of the spec's lens" * technique("post.circle-of-confusion")) {
     CHECK(circle_at(2) == 0);
     CHECK(circle_at(1) == test::near(6.410256e-4).epsilon(1e-6));
     CHECK(circle_at(4) == test::near(3.205128e-4).epsilon(1e-6));
@@ -73,7 +74,9 @@ TEST_CASE("thin_lens: circles of the spec's lens") {
     CHECK(circle_at(1e9) == test::near(circle_at(kInfinity)).epsilon(1e-6));
 }
 
-TEST_CASE("thin_lens: the circle is the cone of light cut by the film") {
+TEST_CASE(
+    "thin_lens: the circle is the cone of light cut by the film"
+    * technique("post.circle-of-confusion")) {
     const double film = 1 / (1 / 0.05 - 1 / 2.0);
     for (const double z : {0.3, 0.9, 1.5, 2.5, 7.0, 100.0}) {
         const double image = 1 / (1 / 0.05 - 1 / z);
@@ -82,7 +85,9 @@ TEST_CASE("thin_lens: the circle is the cone of light cut by the film") {
     }
 }
 
-TEST_CASE("thin_lens: half the f-number doubles the circle, and it grows away from the focus") {
+TEST_CASE(
+    "thin_lens: half the f-number doubles the circle, and it grows away from the focus"
+    * technique("post.circle-of-confusion")) {
     CHECK(circle_of_confusion(0.05, 1, 2, 5) == test::near(2 * circle_at(5)));
     double before = 0;
     for (double z = 1.99; z > 0.1; z -= 0.01) {
@@ -96,7 +101,9 @@ TEST_CASE("thin_lens: half the f-number doubles the circle, and it grows away fr
     }
 }
 
-TEST_CASE("thin_lens: the circle is linear in 1 / z, not in the distance from the focus") {
+TEST_CASE(
+    "thin_lens: the circle is linear in 1 / z, not in the distance from the focus"
+    * technique("post.circle-of-confusion")) {
     const auto by_inverse = [](double inverse) { return circle_at(1 / inverse); };
     CHECK(by_inverse(0.1) - by_inverse(0.2) == test::near(by_inverse(0.2) - by_inverse(0.3)));
     CHECK(circle_at(8) - circle_at(6) < 0.5 * (circle_at(4) - circle_at(2)));

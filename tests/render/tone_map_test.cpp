@@ -3,6 +3,7 @@
 #include "render/graph/frame_graph.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 
@@ -136,7 +137,9 @@ double half_a_code() {
     return shared_device().caps().software ? 0.52 : 0.62;
 }
 
-TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's to half a code") {
+TEST_CASE_FIXTURE(
+    ToneScene, "hdr: global curve, knee and gamma are the oracle's to half a code"
+                   * technique("hdr.compress, hdr.gamma, hdr.tonemap-shader")) {
     for (const Vec3& color : kColors) {
         const double l = oracle::luminance(color);
         for (const float white : {0.0f, 4.0f}) {
@@ -173,7 +176,9 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's
     }
 }
 
-TEST_CASE_FIXTURE(ToneScene, "hdr: every curve shows black as black and more light never as less") {
+TEST_CASE_FIXTURE(
+    ToneScene, "hdr: every curve shows black as black and more light never as less"
+                   * technique("hdr.compress")) {
     for (const ToneCurve curve : {ToneCurve::Reinhard, ToneCurve::Local, ToneCurve::Knee}) {
         CHECK(shown(Vec3(0), {.curve = curve, .dither = false}) == Vec3(0));
         float last = -1;
@@ -188,7 +193,8 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: every curve shows black as black and more lig
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: light above 1 survives in the image, and is added before it is mapped") {
+    ToneScene, "hdr: light above 1 survives in the image, and is added before it is mapped"
+                   * technique("hdr.pipeline")) {
     static_cast<void>(shown(Vec3(5), {}));
     CHECK(radiance(look({0, 0, 1}, {0, 0, 0})).at(9, 9, 0) == 5.0f);
 
@@ -216,7 +222,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: the tone map is the last pass, behind all that needs linear light") {
+    ToneScene, "hdr: the tone map is the last pass, behind all that needs linear light"
+                   * technique("hdr.pipeline")) {
     static_cast<void>(shown(Vec3(1), {.curve = ToneCurve::Local, .metering = Metering::Auto}));
     FrameGraph& graph = frame_graph(shared_renderer());
     CHECK(graph.timings().back().name == "tone map");
@@ -228,7 +235,8 @@ TEST_CASE_FIXTURE(
     CHECK_FALSE(graph.was_run("local.coarse"));
 }
 
-TEST_CASE_FIXTURE(ToneScene, "hdr: defog takes a share of the mean off, in any curve") {
+TEST_CASE_FIXTURE(
+    ToneScene, "hdr: defog takes a share of the mean off, in any curve" * technique("hdr.defog")) {
     // Uniform: c becomes (1 - f) c.
     for (const float share : {0.0f, 0.01f, 0.25f}) {
         const float got = shown_light(Vec3(0.8f), {.defog = share});
@@ -243,7 +251,9 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: defog takes a share of the mean off, in any c
     CHECK(shown_light(Vec3(0.8f), {.defog = 1}) == 0);
 }
 
-TEST_CASE_FIXTURE(ToneScene, "hdr: metering shows a scene alike in any unit of light") {
+TEST_CASE_FIXTURE(
+    ToneScene,
+    "hdr: metering shows a scene alike in any unit of light" * technique("hdr.key-scale")) {
     const Exposure metered = {.metering = Metering::Key};
     CHECK(
         shown_light(Vec3(7), {.metering = Metering::Key, .manual_ev = -12})
@@ -263,8 +273,8 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: metering shows a scene alike in any unit of l
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene,
-    "hdr: the eye adapts with simulated time, at home in its first frame and after a cut") {
+    ToneScene, "hdr: the eye adapts with simulated time, at home in its first frame and after a cut"
+                   * technique("hdr.pipeline")) {
     const Exposure eye = {.metering = Metering::Auto, .adaptation = 0.5f};
     CHECK(std::abs(shown_light(Vec3(4), eye) - 0.18f) <= 0.51f / 255);
     // The light falls to an eighth; the eye, used to 4, sees it dark, then gets used to it.
@@ -286,7 +296,9 @@ TEST_CASE_FIXTURE(
     CHECK(std::abs(shown_light(Vec3(0.1f), eye) - 0.18f) <= 0.51f / 255);
 }
 
-TEST_CASE_FIXTURE(ToneScene, "hdr: an accumulated image is metered once, as what is shown") {
+TEST_CASE_FIXTURE(
+    ToneScene,
+    "hdr: an accumulated image is metered once, as what is shown" * technique("hdr.pipeline")) {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(2)});
     world.insert_resource(Exposure{
         .curve = ToneCurve::Linear,

@@ -1,6 +1,7 @@
 #include "bench/oracles/tone_oracle.h"
 #include "render/lens/statistics_pass.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -30,7 +31,9 @@ std::vector<double> times(std::vector<double> values, double factor) {
 
 }  // namespace
 
-TEST_CASE("hdr: luminance weighs red 0.27, green 0.67 and blue 0.06, which is white 1") {
+TEST_CASE(
+    "hdr: luminance weighs red 0.27, green 0.67 and blue 0.06, which is white 1"
+    * technique("hdr.luminance")) {
     CHECK(luminance({1, 1, 1}) == test::near(1).epsilon(1e-15));
     CHECK(luminance({1, 0, 0}) == 0.27);
     CHECK(luminance({0, 1, 0}) == 0.67);
@@ -39,7 +42,9 @@ TEST_CASE("hdr: luminance weighs red 0.27, green 0.67 and blue 0.06, which is wh
     CHECK(luminance({8, 4, 2}) == test::near(8 * luminance({1, 0.5, 0.25})).epsilon(1e-15));
 }
 
-TEST_CASE("hdr: the log-average is that of the formula, and below the mean") {
+TEST_CASE(
+    "hdr: the log-average is that of the formula, and below the mean"
+    * technique("hdr.log-average")) {
     CHECK(log_average(std::vector<double>(10, 0.5), 1e-4) == test::near(0.5 + 1e-4).epsilon(1e-12));
     CHECK(log_average(std::vector<double>{1, 100}, 0) == test::near(10).epsilon(1e-12));
     CHECK(log_average(std::vector<double>(4, 0.0), 1e-4) == test::near(1e-4).epsilon(1e-12));
@@ -52,7 +57,9 @@ TEST_CASE("hdr: the log-average is that of the formula, and below the mean") {
     CHECK(log_average(times(ramp, 7), 0) == test::near(7 * log_average(ramp, 0)).epsilon(1e-12));
 }
 
-TEST_CASE("hdr: the dynamic range is a ratio, without unit and 1 in the dark") {
+TEST_CASE(
+    "hdr: the dynamic range is a ratio, without unit and 1 in the dark"
+    * technique("hdr.dynamic-range")) {
     const std::vector<double> two = {0.01, 1000};
     CHECK(dynamic_range(two) == test::near(1e5).epsilon(1e-12));
     CHECK(dynamic_range(times(two, 123)) == test::near(1e5).epsilon(1e-12));
@@ -70,7 +77,9 @@ TEST_CASE("hdr: the dynamic range is a ratio, without unit and 1 in the dark") {
     CHECK(dynamic_range(spike) == 1e4);
 }
 
-TEST_CASE("hdr: scaled by the key, the log-average is the key in any unit of light") {
+TEST_CASE(
+    "hdr: scaled by the key, the log-average is the key in any unit of light"
+    * technique("hdr.key-scale")) {
     const std::vector<double> ramp = log_ramp(0.02, 10, 64);
     const double scale = 0.18 / log_average(ramp, 0);
     CHECK(log_average(times(ramp, scale), 0) == test::near(0.18).epsilon(1e-12));
@@ -81,7 +90,9 @@ TEST_CASE("hdr: scaled by the key, the log-average is the key in any unit of lig
     CHECK(factor * 100 == test::near(1.8).epsilon(1e-12));
 }
 
-TEST_CASE("hdr: compression has its printed values, rises and stays below 1") {
+TEST_CASE(
+    "hdr: compression has its printed values, rises and stays below 1"
+    * technique("hdr.compress")) {
     const double known[][2] = {{0, 0},   {0.18, 0.152542}, {1, 0.5},          {3, 0.75},
                                {9, 0.9}, {99, 0.99},       {0.018, 0.017682}, {1.8, 0.642857}};
     for (const auto& [l, shown] : known) {
@@ -100,7 +111,9 @@ TEST_CASE("hdr: compression has its printed values, rises and stays below 1") {
     CHECK(compress(5, 1e9) == test::near(compress(5)).epsilon(1e-12));
 }
 
-TEST_CASE("hdr: gamma and the monitor undo each other and bend what lies between 0 and 1") {
+TEST_CASE(
+    "hdr: gamma and the monitor undo each other and bend what lies between 0 and 1"
+    * technique("hdr.gamma")) {
     for (const double gamma : {2.2, 2.8}) {
         for (double x = 0; x <= 1; x += 0.125) {
             CHECK(gamma_display(gamma_encode(x, gamma), gamma) == test::near(x).epsilon(1e-12));
@@ -115,7 +128,9 @@ TEST_CASE("hdr: gamma and the monitor undo each other and bend what lies between
     CHECK(gamma_encode(-1) == 0);
 }
 
-TEST_CASE("hdr: the knee has its printed values, rises with light and falls with contrast") {
+TEST_CASE(
+    "hdr: the knee has its printed values, rises with light and falls with contrast"
+    * technique("hdr.tonemap-shader")) {
     const double known[][4] = {
         {0, 0, 0, 0},
         {0.01, 0.041099, 0.041090, 0.041006},
@@ -143,7 +158,9 @@ TEST_CASE("hdr: the knee has its printed values, rises with light and falls with
     }
 }
 
-TEST_CASE("hdr: defog takes a share of the mean color off, and never more than there is") {
+TEST_CASE(
+    "hdr: defog takes a share of the mean color off, and never more than there is"
+    * technique("hdr.defog")) {
     CHECK(knee_map(0.5, 0, {}) == test::near(0.243230).epsilon(5e-5));
     CHECK(knee_map(0.5, 0.01 * 0.3, {}) == test::near(0.242566));
     CHECK(knee_map(0.001, 0.01 * 0.3, {}) == 0);

@@ -5,6 +5,7 @@
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -103,7 +104,8 @@ TEST_CASE_FIXTURE(Pool, "water shafts: flat water has none, and without steps al
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "water shafts: light of the veil comes and goes with the waves, its mean stays") {
+    Pool, "water shafts: light of the veil comes and goes with the waves, its mean stays"
+              * technique("caustic.projected-vertices")) {
     sun(glm::normalize(Vec3(0.1f, 1, -1.5f)));
     wave();
     double with = 0;
@@ -125,7 +127,9 @@ TEST_CASE_FIXTURE(
     CHECK(contrast / 5 > 0.01);
 }
 
-TEST_CASE_FIXTURE(Pool, "water shafts: what stands in the water throws a dark one") {
+TEST_CASE_FIXTURE(
+    Pool, "water shafts: what stands in the water throws a dark one"
+              * technique("caustic.projected-vertices")) {
     sun({0, 1, 0});
     caustics().shaft_steps = 16;
     const RenderView view = level({0, -2, 4});
@@ -138,7 +142,9 @@ TEST_CASE_FIXTURE(Pool, "water shafts: what stands in the water throws a dark on
     CHECK(before / open == test::near(1).epsilon(0.01));
 }
 
-TEST_CASE_FIXTURE(Pool, "under water: lamps lose light on their way, and where they go in") {
+TEST_CASE_FIXTURE(
+    Pool, "under water: lamps lose light on their way, and where they go in"
+              * technique("caustic.projected-vertices")) {
     const float extinction = 0.15f;
     const Vec3 eye(0, -kDepth + 0.5f, 0);
     const Affine pose = affine_from(eye, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), {1, 1, 1});

@@ -6,6 +6,7 @@
 #include "render/water/water_details.h"
 #include "systems/water/water_wave_table.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -95,7 +96,8 @@ WaveLine line_of(float length, float amplitude = 0.01f) {
 }  // namespace
 
 TEST_CASE(
-    "water detail: four waves move vertices, sixteen more are drawn, the others are neither") {
+    "water detail: four waves move vertices, sixteen more are drawn, the others are neither"
+    * technique("water.geometric-texture-split")) {
     std::vector<WaveLine> lines;
     for (int i = 0; i < 30; ++i) {
         lines.push_back(line_of(20.0f - 0.5f * static_cast<float>(i)));
@@ -107,7 +109,9 @@ TEST_CASE(
     CHECK(split.left_out.size() == 10);
 }
 
-TEST_CASE("water detail: only waves of two cells and more move vertices, whatever the split says") {
+TEST_CASE(
+    "water detail: only waves of two cells and more move vertices, whatever the split says"
+    * technique("water.geometric-texture-split")) {
     const std::vector<WaveLine> lines = {line_of(9), line_of(3), line_of(1), line_of(0.5f)};
     CHECK(split_waves(lines, {.split = 0.1f}, 0.1f).geometric == 4);
     CHECK(split_waves(lines, {.split = 2}, 0.1f).geometric == 2);
@@ -118,7 +122,9 @@ TEST_CASE("water detail: only waves of two cells and more move vertices, whateve
     CHECK(split_waves(lines, {.split = 10, .tile = 100}, 0.1f).left_out.size() == 2);
 }
 
-TEST_CASE("water detail: the waves of a texture fit into its tile, as fast as before") {
+TEST_CASE(
+    "water detail: the waves of a texture fit into its tile, as fast as before"
+    * technique("water.geometric-texture-split")) {
     const WaterDetail detail = {.split = 3, .tile = 5};
     const WaveTable before = some_waves();
     WaveTable table = before;
@@ -137,7 +143,9 @@ TEST_CASE("water detail: the waves of a texture fit into its tile, as fast as be
     }
 }
 
-TEST_CASE_FIXTURE(Tile, "water detail: wherever waves are split, slopes are the same to 1e-4") {
+TEST_CASE_FIXTURE(
+    Tile, "water detail: wherever waves are split, slopes are the same to 1e-4"
+              * technique("water.geometric-texture-split")) {
     for (const float split : {0.5f, 2.0f, 4.0f, 100.0f}) {
         CAPTURE(split);
         const WaterDetail detail = {.split = split, .tile = 12};
@@ -169,7 +177,8 @@ TEST_CASE_FIXTURE(Tile, "water detail: wherever waves are split, slopes are the 
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: what a smaller level loses of slopes it keeps as their variance") {
+    Tile, "water detail: what a smaller level loses of slopes it keeps as their variance"
+              * technique("water.geometric-texture-split")) {
     const WaterDetail detail = {.split = 100, .tile = 12};
     WaveTable table = some_waves();
     snap_waves(detail, table);
@@ -186,7 +195,9 @@ TEST_CASE_FIXTURE(
     CHECK(std::abs(last.at(0, 0, 2) - expected) < 0.01 * expected);
 }
 
-TEST_CASE_FIXTURE(Tile, "water detail: waves that are drawn look like waves that move vertices") {
+TEST_CASE_FIXTURE(
+    Tile, "water detail: waves that are drawn look like waves that move vertices"
+              * technique("water.geometric-texture-split")) {
     const WaterDetail detail = {.split = 100, .tile = 12};
     WaveTable table = some_waves();
     snap_waves(detail, table);
@@ -210,7 +221,8 @@ TEST_CASE_FIXTURE(Tile, "water detail: waves that are drawn look like waves that
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: flat layers, or layers of no strength, leave the water as it is") {
+    Tile, "water detail: flat layers, or layers of no strength, leave the water as it is"
+              * technique("water.scrolling-normal-map")) {
     const gpu::FloatImage plain = radiance(view);
     const ImageId map = add(normal_map(bumps));
     const ImageId even = add(normal_map([](int, int) { return Vec2(0); }));
@@ -222,7 +234,9 @@ TEST_CASE_FIXTURE(
     CHECK(largest_difference(with({.normal_map = map, .layers = {{}}}), plain) > 0.01f);
 }
 
-TEST_CASE_FIXTURE(Tile, "water detail: a layer moves as its map would, and is back after a copy") {
+TEST_CASE_FIXTURE(
+    Tile, "water detail: a layer moves as its map would, and is back after a copy"
+              * technique("water.scrolling-normal-map")) {
     const ImageId map = add(normal_map(bumps));
     const WaterDetail moving = {
         .normal_map = map, .layers = {{.tile = 2, .direction = 0, .speed = 0.5f}}};
@@ -247,7 +261,9 @@ TEST_CASE_FIXTURE(Tile, "water detail: a layer moves as its map would, and is ba
     }
 }
 
-TEST_CASE_FIXTURE(Tile, "water detail: layers add up as their normals, by strength") {
+TEST_CASE_FIXTURE(
+    Tile, "water detail: layers add up as their normals, by strength"
+              * technique("water.scrolling-normal-map")) {
     // Maps of one slope: the water is tilted as a whole.
     const auto tilted = [](int, int) { return Vec2(0.1f, -0.15f); };
     const ImageId map = add(normal_map(tilted));
@@ -269,7 +285,9 @@ TEST_CASE_FIXTURE(Tile, "water detail: layers add up as their normals, by streng
     }
 }
 
-TEST_CASE_FIXTURE(Tile, "water detail: who asks for none has no pass, and its map is not missed") {
+TEST_CASE_FIXTURE(
+    Tile, "water detail: who asks for none has no pass, and its map is not missed"
+              * technique("water.scrolling-normal-map")) {
     with({});
     CHECK_FALSE(frame_graph(shared_renderer()).was_run("texture waves"));
     const gpu::FloatImage plain = radiance(view);

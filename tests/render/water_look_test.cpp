@@ -8,6 +8,7 @@
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -87,7 +88,9 @@ TEST_CASE_FIXTURE(Look, "water look: one that asks for nothing is no look, to th
     CHECK(out.statistics.water_reflections == 0);
 }
 
-TEST_CASE_FIXTURE(Look, "water look: from above it mirrors by the form that is chosen") {
+TEST_CASE_FIXTURE(
+    Look, "water look: from above it mirrors by the form that is chosen"
+              * technique("water.fresnel-approx")) {
     world.resource<Environment>() = {
         .sky = SkyKind::Uniform, .zenith = Vec3(1), .horizon = Vec3(1), .ground = Vec3(1)};
     const Entity pond = pour(kMirror);
@@ -126,7 +129,9 @@ TEST_CASE_FIXTURE(
     CHECK(blue_share() == test::near(1).epsilon(0.01));
 }
 
-TEST_CASE("water reflection: its camera is the image's, mirrored, and mirrored again the same") {
+TEST_CASE(
+    "water reflection: its camera is the image's, mirrored, and mirrored again the same"
+    * technique("water.reflection-refraction-maps")) {
     const RenderView view = with_jitter(
         make_render_view(
             {.fov_y = 1.0f, .near = 0.1f}, look_at({1, 2, 3}, {-2, 0.5f, -4}),
@@ -161,7 +166,9 @@ TEST_CASE("water reflection: its camera is the image's, mirrored, and mirrored a
     }
 }
 
-TEST_CASE_FIXTURE(Look, "water reflection: in flat water it is what a mirrored camera sees") {
+TEST_CASE_FIXTURE(
+    Look, "water reflection: in flat water it is what a mirrored camera sees"
+              * technique("water.reflection-refraction-maps")) {
     things_above();
     const Vec3 eye = {0, 1.6f, 2};
     const Vec3 target = {0, 0.3f, -2};
@@ -255,7 +262,9 @@ TEST_CASE_FIXTURE(
     CHECK(wrong < 0.05 * objects);
 }
 
-TEST_CASE_FIXTURE(Look, "water reflection: waves shift it to what they mirror, or not at all") {
+TEST_CASE_FIXTURE(
+    Look, "water reflection: waves shift it to what they mirror, or not at all"
+              * technique("water.reflection-refraction-maps")) {
     // A wall whose color tells where it is.
     MeshData wall = make_square();
     wall.colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {1, 1, 0, 1}, {0, 1, 0, 1}};
@@ -306,7 +315,8 @@ TEST_CASE_FIXTURE(Look, "water reflection: waves shift it to what they mirror, o
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water reflection: the nearest that asks and is seen has it, once per frame") {
+    Look, "water reflection: the nearest that asks and is seen has it, once per frame"
+              * technique("water.reflection-refraction-maps")) {
     things_above();
     const RenderView view = look({0, 1.6f, 2}, {0, 0.3f, -2});
     Water pool = kMirror;
@@ -326,7 +336,9 @@ TEST_CASE_FIXTURE(
     CHECK(draw(turned_away).statistics.water_reflections == 0);
 }
 
-TEST_CASE_FIXTURE(Look, "water refraction: a map of the floor is where bent rays meet it") {
+TEST_CASE_FIXTURE(
+    Look, "water refraction: a map of the floor is where bent rays meet it"
+              * technique("water.refraction-map")) {
     constexpr float kTile = 16;
     constexpr float kIndex = 1.33f;
     world.resource<Environment>() = {
@@ -435,7 +447,9 @@ TEST_CASE_FIXTURE(Look, "water refraction: a map of the floor is where bent rays
     }
 }
 
-TEST_CASE_FIXTURE(Look, "water refraction: shifted, flat water shows the image as it is") {
+TEST_CASE_FIXTURE(
+    Look, "water refraction: shifted, flat water shows the image as it is"
+              * technique("water.reflection-refraction-maps")) {
     things_above();
     ball({0, -1, -2}, 0.6f, {0.9f, 0.5f, 0.1f});
     const RenderView view = look({0, 2, 1}, {0, 0, -2});
@@ -516,7 +530,8 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves as far as no
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water refraction: however waves shift it, what is above is not seen in the water") {
+    Look, "water refraction: however waves shift it, what is above is not seen in the water"
+              * technique("water.reflection-refraction-maps")) {
     ball({0, 1.2f, -2}, 0.7f, {0, 90, 0});
     const Water water = {.size = {20, 20}, .absorption = Vec3(0), .scattering = Vec3(0)};
     const Entity pond = pour(water);

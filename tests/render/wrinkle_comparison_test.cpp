@@ -1,5 +1,6 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/wrinkle_fixture.h"
+#include "tests/technique.h"
 // clang-format on
 #include "ecs/components/wrinkle_comparison.h"
 
@@ -59,7 +60,9 @@ float largest_difference(const gpu::FloatImage& a, const gpu::FloatImage& b, int
 
 }  // namespace
 
-TEST_CASE_FIXTURE(ColumnScene, "wrinkle comparison: each column is the image of its method alone") {
+TEST_CASE_FIXTURE(
+    ColumnScene, "wrinkle comparison: each column is the image of its method alone"
+                     * technique("wrinkle.comparison")) {
     const gpu::FloatImage all = columns({.methods = kAll});
     const int width = kWide / static_cast<int>(kAll.size());
     const gpu::FloatImage smooth = by(WrinkleMethod::None);
@@ -76,7 +79,8 @@ TEST_CASE_FIXTURE(ColumnScene, "wrinkle comparison: each column is the image of 
 }
 
 TEST_CASE_FIXTURE(
-    ColumnScene, "wrinkle comparison: hidden, of no method or of another map it changes nothing") {
+    ColumnScene, "wrinkle comparison: hidden, of no method or of another map it changes nothing"
+                     * technique("wrinkle.comparison")) {
     const gpu::FloatImage bump = by(WrinkleMethod::Bump);
     CHECK(columns({.shown = false, .methods = kAll}).pixels == bump.pixels);
     CHECK(columns({.methods = {}}).pixels == bump.pixels);
@@ -94,7 +98,9 @@ TEST_CASE_FIXTURE(
     CHECK(wrinkle_columns(&too_many).size() == kMaxWrinkleColumns);
 }
 
-TEST_CASE_FIXTURE(ColumnScene, "wrinkle comparison: the name of each method is in its column") {
+TEST_CASE_FIXTURE(
+    ColumnScene, "wrinkle comparison: the name of each method is in its column"
+                     * technique("wrinkle.comparison")) {
     struct Dots {
         int count = 0, first = kWide, last = -1;
     };

@@ -3,6 +3,7 @@
 #include "tests/near.h"
 #include "tests/render/shader_eval.h"
 #include "tests/render/wrinkle_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -57,7 +58,8 @@ float largest_distance(const std::vector<float>& a, const std::vector<float>& b)
 
 TEST_CASE_FIXTURE(
     WrinkleLightScene,
-    "wrinkle light: blended light is that of both normals, weighted by the intensity") {
+    "wrinkle light: blended light is that of both normals, weighted by the intensity"
+        * technique("wrinkle.compression.bump-blend")) {
     material.specular = {0.3f, 0.3f, 0.3f};
     for (const ShadingModel model : {ShadingModel::Pbr, ShadingModel::Blinn, ShadingModel::Skin}) {
         material.shading = model;
@@ -76,7 +78,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleLightScene, "wrinkle light: blended light is exact at both ends, by any method") {
+    WrinkleLightScene, "wrinkle light: blended light is exact at both ends, by any method"
+                           * technique("face.wrinkle-options, wrinkle.compression.bump-blend")) {
     for (const LightMethod method :
          {LightMethod::Clustered, LightMethod::FullScreen, LightMethod::ObjectMajor,
           LightMethod::LightMajor}) {
@@ -92,7 +95,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("wrinkle light: the factor that fades grazing light is that of Equation 9") {
+TEST_CASE(
+    "wrinkle light: the factor that fades grazing light is that of Equation 9"
+    * technique("wrinkle.compression.lighting")) {
     const std::vector<Vec4> found = evaluate_shader(
         "#define SMOOTH_NORMALS\n#include \"lib/reflector.glsl\"", "y.x = grazing_fade(x.x);",
         {{-0.1f, 0, 0, 0}, {0, 0, 0, 0}, {0.0625f, 0, 0, 0}, {0.125f, 0, 0, 0}, {0.5f, 0, 0, 0}});
@@ -104,7 +109,8 @@ TEST_CASE("wrinkle light: the factor that fades grazing light is that of Equatio
 
 TEST_CASE_FIXTURE(
     WrinkleLightScene,
-    "wrinkle light: light behind the smooth skin lights no slope of its wrinkles") {
+    "wrinkle light: light behind the smooth skin lights no slope of its wrinkles"
+        * technique("wrinkle.compression.lighting, wrinkle.compression.tangent-frame")) {
     WrinkleSurface bump = in_full(WrinkleMethod::Bump);
     // The slope faces up and to the viewer: light from above the plane's edge reaches it.
     turn_light(glm::normalize(Vec3{0, 1, -0.05f}));
@@ -127,8 +133,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleLightScene,
-    "wrinkle light: with a shininess of 4 it is the Blinn model of the wrinkles") {
+    WrinkleLightScene, "wrinkle light: with a shininess of 4 it is the Blinn model of the wrinkles"
+                           * technique("wrinkle.compression.lighting")) {
     material.shading = ShadingModel::Blinn;
     material.shininess = 4;
     material.specular = {1, 1, 1};
@@ -149,7 +155,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleLightScene, "wrinkle light: skin without interpolation has one strength per triangle") {
+    WrinkleLightScene, "wrinkle light: skin without interpolation has one strength per triangle"
+                           * technique("wrinkle.compression.interpolation")) {
     // Wide at the top: its triangles are compressed differently.
     const auto strengths = [&](bool interpolate) {
         MeshData mesh = make_square();

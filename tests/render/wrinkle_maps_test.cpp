@@ -3,6 +3,7 @@
 #include "ecs/components/wrinkle_response.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
+#include "tests/technique.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -156,7 +157,10 @@ WrinkleWeights scaled(const WrinkleWeights& weights, float factor) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RenderTest, "wrinkle maps: composites are those of double precision to 1e-6") {
+TEST_CASE_FIXTURE(
+    RenderTest,
+    "wrinkle maps: composites are those of double precision to 1e-6"
+        * technique("wrinkle.maps.composite, wrinkle.maps.influence, wrinkle.maps.normal-add")) {
     const auto halves = [](const WrinkleWeights& weights, std::size_t first) {
         Vec4 four;
         for (std::size_t i = 0; i < 4; ++i) {
@@ -199,7 +203,9 @@ TEST_CASE_FIXTURE(RenderTest, "wrinkle maps: composites are those of double prec
     }
 }
 
-TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: what is drawn is the composite of every texel") {
+TEST_CASE_FIXTURE(
+    WrinkledFace, "wrinkle maps: what is drawn is the composite of every texel"
+                      * technique("wrinkle.maps.composite")) {
     for (const WrinkleBlend blend : {WrinkleBlend::Lerp, WrinkleBlend::Slopes}) {
         world.get<WrinkleMaps>(face).blend = blend;
         for (const float factor : {1.0f, -1.0f, 0.05f}) {
@@ -212,8 +218,8 @@ TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: what is drawn is the composite of
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace,
-    "skin pipeline: measured weights draw what the animator's would, pixel for pixel") {
+    WrinkledFace, "skin pipeline: measured weights draw what the animator's would, pixel for pixel"
+                      * technique("skin.pipeline")) {
     const gpu::FloatImage animated = rendered(kGrimace);
     const gpu::FloatImage rest = rendered({});
     world.add(face, WrinkleResponse{.share = 1});
@@ -230,7 +236,9 @@ TEST_CASE_FIXTURE(
     CHECK(half.pixels == rendered({.left_brow = 0.5f}).pixels);
 }
 
-TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: without weights normals are those of the skin") {
+TEST_CASE_FIXTURE(
+    WrinkledFace, "wrinkle maps: without weights normals are those of the skin"
+                      * technique("wrinkle.maps.composite, wrinkle.maps.weights")) {
     const auto skin = [](int x, int y) { return decoded(normal_texel(0, x, y)); };
     CHECK(largest_error(rendered({}), skin) <= kRounding);
     CHECK(largest_error(rendered({.left_brow = kNaN, .lips = kNaN}), skin) <= kRounding);
@@ -238,7 +246,9 @@ TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: without weights normals are those
     CHECK(largest_error(rendered(), skin) <= kRounding);
 }
 
-TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: weights beyond -1 and 1 count as those") {
+TEST_CASE_FIXTURE(
+    WrinkledFace,
+    "wrinkle maps: weights beyond -1 and 1 count as those" * technique("wrinkle.maps.weights")) {
     const gpu::FloatImage full = rendered(scaled(kGrimace, 0));
     const gpu::FloatImage beyond = rendered({.left_brow = 10, .right_brow = -10});
     const gpu::FloatImage most = rendered({.left_brow = 1, .right_brow = -1});
@@ -246,7 +256,9 @@ TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: weights beyond -1 and 1 count as 
     CHECK(beyond.pixels != full.pixels);
 }
 
-TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: regions that overlap act as one in full at most") {
+TEST_CASE_FIXTURE(
+    WrinkledFace, "wrinkle maps: regions that overlap act as one in full at most"
+                      * technique("wrinkle.maps.influence")) {
     // First masks are s and 1 - s: together 1 everywhere, with the lips' 0.5 beyond.
     const gpu::FloatImage one = rendered({.left_brow = 1, .right_brow = 1});
     const gpu::FloatImage more = rendered({.left_brow = 1, .right_brow = 1, .lips = 1});
@@ -257,7 +269,9 @@ TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: regions that overlap act as one i
     CHECK(largest_error(one, added) <= kRounding);
 }
 
-TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: opposite weights swap both maps") {
+TEST_CASE_FIXTURE(
+    WrinkledFace,
+    "wrinkle maps: opposite weights swap both maps" * technique("wrinkle.maps.influence")) {
     maps = world.get<WrinkleMaps>(face);
     const WrinkleWeights surprised = {.left_brow = -0.7f, .lips = -0.2f, .left_cheek = -0.5f};
     const gpu::FloatImage stretched = rendered(surprised);
@@ -267,8 +281,8 @@ TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: opposite weights swap both maps")
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace,
-    "wrinkle maps: a compressed map in full covers the stretched one, slopes add up") {
+    WrinkledFace, "wrinkle maps: a compressed map in full covers the stretched one, slopes add up"
+                      * technique("wrinkle.maps.composite")) {
     // The cheeks' masks are below 1: only brows act in full.
     WrinkleWeights both = {.left_brow = 1, .right_brow = 1, .left_cheek = -1};
     const WrinkleWeights compressed = {.left_brow = 1, .right_brow = 1};
@@ -277,13 +291,16 @@ TEST_CASE_FIXTURE(
     CHECK(largest_difference(rendered(both), rendered(compressed)) > 0.01f);
 }
 
-TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: without second masks the lower regions are silent") {
+TEST_CASE_FIXTURE(
+    WrinkledFace, "wrinkle maps: without second masks the lower regions are silent"
+                      * technique("wrinkle.maps.masks")) {
     world.get<WrinkleMaps>(face).second_masks = {};
     CHECK(rendered({.lips = 0.4f, .left_cheek = 1}).pixels == rendered({.lips = 0.4f}).pixels);
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: without an image, or into what they read, nothing is drawn") {
+    WrinkledFace, "wrinkle maps: without an image, or into what they read, nothing is drawn"
+                      * technique("wrinkle.maps.texture-set")) {
     const WrinkleMaps good = maps;
     ImageId WrinkleMaps::*const needed[] = {
         &WrinkleMaps::base, &WrinkleMaps::stretched, &WrinkleMaps::compressed,
@@ -302,8 +319,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace,
-    "wrinkle maps: an image of another aspect ratio is refused, of another size not") {
+    WrinkledFace, "wrinkle maps: an image of another aspect ratio is refused, of another size not"
+                      * technique("wrinkle.maps.texture-set")) {
     const WrinkleMaps good = maps;
     const auto flat = [&](int width, int height) {
         const auto texels = static_cast<std::size_t>(width * height);
@@ -331,7 +348,9 @@ TEST_CASE_FIXTURE(
     CHECK(rgb_at(rendered(kGrimace), 5, 5) != Vec3(0));
 }
 
-TEST_CASE_FIXTURE(WrinkledFace, "wrinkle maps: examples of normals that are added") {
+TEST_CASE_FIXTURE(
+    WrinkledFace, "wrinkle maps: examples of normals that are added"
+                      * technique("wrinkle.maps.composite, wrinkle.maps.normal-add")) {
     // A face whose normals are the same everywhere.
     const auto flat = [&](const Vec3& n) {
         return add(painted([n](int, int) { return Vec4(0.5f + 0.5f * n, 1); }));

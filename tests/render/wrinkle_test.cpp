@@ -3,6 +3,7 @@
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
 #include "tests/render/wrinkle_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -21,7 +22,11 @@ float drawn_factor(const gpu::FloatImage& normal) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") {
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle pass: strengths are those of the CPU"
+        * technique("face.strain, wrinkle.compression.factor, wrinkle.compression.intensity, "
+                    "wrinkle.natural-width, wrinkle.smoothing")) {
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
     REQUIRE(readback);
     Random random(5, 0, 0, 0);
@@ -86,7 +91,9 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") 
     }
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: skin that folds at rest is as if compressed so") {
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle pass: skin that folds at rest is as if compressed so" * technique("wrinkle.resting")) {
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
     REQUIRE(readback);
     const auto strength = [&](const WrinkleSurface& surface, float shortening, float age) {
@@ -118,7 +125,9 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: skin that folds at rest is as if 
     }
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strains in the tangent frame are those of the CPU") {
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle pass: strains in the tangent frame are those of the CPU" * technique("face.strain")) {
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
     REQUIRE(readback);
     Random random(6, 0, 0, 0);
@@ -154,8 +163,8 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strains in the tangent frame are 
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene,
-    "wrinkle pass: compressed skin is shown red, stretched skin blue, any other gray") {
+    WrinkleScene, "wrinkle pass: compressed skin is shown red, stretched skin blue, any other gray"
+                      * technique("face.strain")) {
     material.wrinkle_texture = {};  // not needed
     const auto color = [&](float weight) {
         const Entity entity = square({.method = WrinkleMethod::StrainView}, weight);
@@ -172,7 +181,10 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene, "wrinkle pass: slopes are scaled, lifted, or keep the length of skin") {
+    WrinkleScene,
+    "wrinkle pass: slopes are scaled, lifted, or keep the length of skin"
+        * technique("wrinkle.compression.interp-bump, wrinkle.compression.normal-fit, "
+                    "wrinkle.compression.skin-model")) {
     const float ratio = 0.8f * 0.8f;
     const float intensity = wrinkle_intensity(ratio, 1, 4);
     CHECK(intensity == near(0.712663));
@@ -196,7 +208,10 @@ TEST_CASE_FIXTURE(
     CHECK(std::sqrt(1 + slope * slope) == near(1 / 0.8).epsilon(3e-3));
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: shading darkens slopes, whatever the light") {
+TEST_CASE_FIXTURE(
+    WrinkleScene,
+    "wrinkle pass: shading darkens slopes, whatever the light"
+        * technique("wrinkle.compression.alpha-directional, wrinkle.compression.alpha-shading")) {
     const float intensity = wrinkle_intensity(0.64f, 1, 4);
     const auto darkening = [&](WrinkleMethod method, bool upside_down) {
         material.wrinkle_texture.image = upside_down ? add(ImageData{
@@ -218,7 +233,10 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: shading darkens slopes, whatever 
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene, "wrinkle pass: at rest, stretched, or without a method skin is as without") {
+    WrinkleScene,
+    "wrinkle pass: at rest, stretched, or without a method skin is as without"
+        * technique("face.wrinkle-options, wrinkle.compression.alpha-shading, "
+                    "wrinkle.compression.integration, wrinkle.compression.interp-bump")) {
     shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0}));
     const auto pixels = [&](const WrinkleSurface& surface, float weight, bool with) {
         const Entity entity = square(surface, weight);
@@ -242,8 +260,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene,
-    "wrinkle pass: a model's slopes are its polynomial of the strain, of any degree") {
+    WrinkleScene, "wrinkle pass: a model's slopes are its polynomial of the strain, of any degree"
+                      * technique("face.wrinkle-model")) {
     // The square becomes 0.8 as high; the map's bitangent points up.
     const Vec3 strain = {0, -0.2f, 0};
     Random random(4, 0, 0, 0);
@@ -275,7 +293,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: a flat map raises nothing, however compressed") {
+TEST_CASE_FIXTURE(
+    WrinkleScene, "wrinkle pass: a flat map raises nothing, however compressed"
+                      * technique("wrinkle.compression.map")) {
     shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0}));
     material.wrinkle_texture.image =
         add(ImageData{.name = "flat", .width = 1, .height = 1, .pixels = {128, 128, 255, 255}});
@@ -300,7 +320,8 @@ ImageData layered_map() {
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene, "wrinkle overlap: slopes of both layers add up, each by its own strength") {
+    WrinkleScene, "wrinkle overlap: slopes of both layers add up, each by its own strength"
+                      * technique("wrinkle.compression.overlap")) {
     MeshData mesh = make_square();
     MorphTarget& smaller = mesh.morphs.emplace_back();
     for (std::uint32_t v = 0; v < 4; ++v) {
@@ -337,8 +358,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene,
-    "wrinkle overlap: one layer is as without a second one, and two halves as a whole") {
+    WrinkleScene, "wrinkle overlap: one layer is as without a second one, and two halves as a whole"
+                      * technique("wrinkle.compression.overlap")) {
     // Only across the first layer's wrinkles: the second one stays flat.
     material.wrinkle_texture.image = add(layered_map());
     const auto drawn = [&](const WrinkleSurface& surface) {
@@ -362,7 +383,9 @@ TEST_CASE_FIXTURE(
     CHECK(halves.y == near(single.y).epsilon(3e-3));
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle overlap: alpha darkens by one layer and then the other") {
+TEST_CASE_FIXTURE(
+    WrinkleScene, "wrinkle overlap: alpha darkens by one layer and then the other"
+                      * technique("wrinkle.compression.overlap")) {
     MeshData mesh = make_square();
     MorphTarget& smaller = mesh.morphs.emplace_back();
     for (std::uint32_t v = 0; v < 4; ++v) {
@@ -377,7 +400,8 @@ TEST_CASE_FIXTURE(WrinkleScene, "wrinkle overlap: alpha darkens by one layer and
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene, "wrinkle options: a photograph keeps its light, a normal map follows the lamp") {
+    WrinkleScene, "wrinkle options: a photograph keeps its light, a normal map follows the lamp"
+                      * technique("face.wrinkle-options")) {
     const auto brightness = [&](WrinkleMethod method, const Vec3& light) {
         const Entity lamp = shine(DirectionalLight{}, look_at(light, {0, 0, 0}));
         const Entity entity = square({.method = method, .lambda = 1}, 0.2f);
@@ -405,7 +429,9 @@ TEST_CASE_FIXTURE(
     CHECK(photo_up == near(1 + strength * (painted - 1)).epsilon(1e-2));
 }
 
-TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: across the fold only; along it nothing happens") {
+TEST_CASE_FIXTURE(
+    WrinkleScene, "wrinkle pass: across the fold only; along it nothing happens"
+                      * technique("wrinkle.compression.direction")) {
     MeshData mesh = make_square();
     MorphTarget& narrow = mesh.morphs.emplace_back();
     narrow.name = "narrow";

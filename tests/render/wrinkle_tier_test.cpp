@@ -1,6 +1,7 @@
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
 #include "tests/render/wrinkle_fixture.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -47,7 +48,9 @@ struct TierScene : WrinkleScene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(TierScene, "wrinkle tiers: without tangents every method with slopes is alpha") {
+TEST_CASE_FIXTURE(
+    TierScene, "wrinkle tiers: without tangents every method with slopes is alpha"
+                   * technique("wrinkle.compression.fallback")) {
     const std::vector<float> alpha = pixels({.method = WrinkleMethod::Alpha});
     const std::vector<float> none = pixels({.method = WrinkleMethod::None});
     CHECK(alpha != none);
@@ -59,7 +62,9 @@ TEST_CASE_FIXTURE(TierScene, "wrinkle tiers: without tangents every method with 
     CHECK(pixels({.method = WrinkleMethod::Isometric}, false) != none);
 }
 
-TEST_CASE_FIXTURE(TierScene, "wrinkle tiers: with distance bump becomes alpha, and then nothing") {
+TEST_CASE_FIXTURE(
+    TierScene, "wrinkle tiers: with distance bump becomes alpha, and then nothing"
+                   * technique("wrinkle.compression.fallback")) {
     // The square is at 1 m.
     WrinkleSurface surface = {.method = WrinkleMethod::Bump};
     const std::vector<float> bump = pixels(surface);
@@ -76,7 +81,9 @@ TEST_CASE_FIXTURE(TierScene, "wrinkle tiers: with distance bump becomes alpha, a
     }
 }
 
-TEST_CASE_FIXTURE(TierScene, "wrinkle tiers: between two distances both are drawn in part") {
+TEST_CASE_FIXTURE(
+    TierScene, "wrinkle tiers: between two distances both are drawn in part"
+                   * technique("wrinkle.compression.fallback")) {
     const WrinkleSurface surface = {
         .method = WrinkleMethod::Bump, .lambda = 1, .shade_from = 1 / 0.9f};  // halfway
     const float intensity = wrinkle_intensity(0.64f, 1, 4);
@@ -89,8 +96,8 @@ TEST_CASE_FIXTURE(TierScene, "wrinkle tiers: between two distances both are draw
 }
 
 TEST_CASE_FIXTURE(
-    TierScene,
-    "wrinkle frame: slopes turn and flip with the tangent, which is made perpendicular") {
+    TierScene, "wrinkle frame: slopes turn and flip with the tangent, which is made perpendicular"
+                   * technique("wrinkle.compression.tangent-frame")) {
     // Up the map the skin rises towards -y of texture space: the normal leans to the bitangent.
     const Vec3 upright = normal_with({1, 0, 0, 1});
     CHECK(upright.x == near(0).scale(1));

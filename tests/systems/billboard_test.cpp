@@ -5,6 +5,7 @@
 #include "ecs/world.h"
 #include "systems/particles/billboard_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +13,9 @@
 
 namespace limn::test::billboard_test {
 
-TEST_CASE("billboard: one that does not loop dies after its last image, with its children") {
+TEST_CASE(
+    "billboard: one that does not loop dies after its last image, with its children"
+    * technique("engine.billboard")) {
     register_all_components();
     World world;
     world.insert_resource(FrameTime{});
@@ -37,7 +40,9 @@ TEST_CASE("billboard: one that does not loop dies after its last image, with its
     CHECK(world.get<const Billboard>(loops).time == near(0.4));
 }
 
-TEST_CASE("billboard: thirty frames a second show image 15 after half a second, then begin again") {
+TEST_CASE(
+    "billboard: thirty frames a second show image 15 after half a second, then begin again"
+    * technique("engine.billboard")) {
     CHECK(billboard_frame(30, 64, 0.5) == 15);
     CHECK(billboard_frame(30, 64, 0.4999) == 14);
     CHECK(billboard_frame(30, 12, 0.5) == 3);

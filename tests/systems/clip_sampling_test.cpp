@@ -3,6 +3,7 @@
 #include "systems/animation/pose_kernels.h"
 #include "tests/near.h"
 #include "tests/systems/clip_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -44,7 +45,9 @@ Quat any_rotation(Random& random) {
 
 }  // namespace
 
-TEST_CASE("clip: keys are found before, between, at and after their times, and for no time") {
+TEST_CASE(
+    "clip: keys are found before, between, at and after their times, and for no time"
+    * technique("anim.key-lookup")) {
     const std::vector<float> times = {0, 1, 4};
     const auto is_at = [&](float t, std::size_t first, float u) {
         const KeyPlace place = find_keys(times, t);
@@ -75,7 +78,7 @@ TEST_CASE("clip: keys are found before, between, at and after their times, and f
     }
 }
 
-TEST_CASE("clip: time begins anew after the end, or stays there") {
+TEST_CASE("clip: time begins anew after the end, or stays there" * technique("char.pose-eval")) {
     CHECK(clip_time(2, 5, true) == 1);
     CHECK(clip_time(2, -0.5f, true) == 1.5f);
     CHECK(clip_time(2, 5, false) == 2);
@@ -86,7 +89,9 @@ TEST_CASE("clip: time begins anew after the end, or stays there") {
     CHECK(clip_time(2, -1e-30f, true) <= 2);
 }
 
-TEST_CASE("clip: at a key the pose is the key, between keys it turns with constant speed") {
+TEST_CASE(
+    "clip: at a key the pose is the key, between keys it turns with constant speed"
+    * technique("char.pose-eval")) {
     const ClipData clip = make_turn({0, 1, 3}, {0, 90, 100}, 1);
     REQUIRE(check_clip(clip, 2, 0).ok());
     for (std::size_t i = 0; i < 3; ++i) {
@@ -104,7 +109,9 @@ TEST_CASE("clip: at a key the pose is the key, between keys it turns with consta
     CHECK(angle_at(clip, 99) == test::near(100).epsilon(1e-5));
 }
 
-TEST_CASE("clip: samples taken 30 times a second are shown 100 times, none lost and none rushed") {
+TEST_CASE(
+    "clip: samples taken 30 times a second are shown 100 times, none lost and none rushed"
+    * technique("anim.mocap-keys")) {
     std::vector<float> times;
     std::vector<float> angles;
     for (int i = 0; i <= 30; ++i) {
@@ -142,7 +149,9 @@ TEST_CASE("clip: samples taken 30 times a second are shown 100 times, none lost 
     }
 }
 
-TEST_CASE("clip: the sign of a key does not matter, and all joints turn as each alone would") {
+TEST_CASE(
+    "clip: the sign of a key does not matter, and all joints turn as each alone would"
+    * technique("anim.mocap-keys, char.pose-eval")) {
     Random random(5, 0, 0, 0);
     for (const std::size_t count : {1u, 2u, 7u, 8u, 23u, 64u, 65u, 200u}) {
         ClipSheet sheet;
@@ -173,7 +182,8 @@ TEST_CASE("clip: the sign of a key does not matter, and all joints turn as each 
     }
 }
 
-TEST_CASE("clip: vectors of the machine and plain C++ give the same bits") {
+TEST_CASE(
+    "clip: vectors of the machine and plain C++ give the same bits" * technique("char.pose-eval")) {
     Random random(6, 0, 0, 0);
     std::vector<Quat> from;
     std::vector<Quat> to;
@@ -259,7 +269,8 @@ TEST_CASE("clip: steps hold, lines are straight, cubics keep their slopes") {
 }
 
 TEST_CASE(
-    "clip: straight lines meet their keys exactly, read alike from both ends, and break there") {
+    "clip: straight lines meet their keys exactly, read alike from both ends, and break there"
+    * technique("anim.lerp")) {
     const auto line = [](const std::vector<float>& keys) {
         ClipSheet sheet;
         sheet.morphing = {0};
@@ -308,7 +319,7 @@ TEST_CASE("clip: a cubic rotation passes through its keys with length 1") {
     CHECK(glm::length(sampled(clip, make_chain(2), 0.4f).rotations[1]) == test::near(1));
 }
 
-TEST_CASE("clip: no clip rests, one key holds") {
+TEST_CASE("clip: no clip rests, one key holds" * technique("char.clip-layout")) {
     const SkeletonData skeleton = make_chain(3);
     const LocalPose rest = sampled({}, skeleton, 1);
     CHECK(rest.rotations == skeleton.rest.rotations);
@@ -319,7 +330,7 @@ TEST_CASE("clip: no clip rests, one key holds") {
     }
 }
 
-TEST_CASE("clip: m keys of n joints are m (1 + 7 n) numbers") {
+TEST_CASE("clip: m keys of n joints are m (1 + 7 n) numbers" * technique("char.clip-layout")) {
     const auto size_of = [](std::size_t joints, std::size_t keys) {
         ClipSheet sheet;
         sheet.times.resize(keys);
@@ -333,7 +344,9 @@ TEST_CASE("clip: m keys of n joints are m (1 + 7 n) numbers") {
     CHECK(size_of(98, 1) == 687);
 }
 
-TEST_CASE("joints: a matrix is the product from the root on, in the order T R S") {
+TEST_CASE(
+    "joints: a matrix is the product from the root on, in the order T R S"
+    * technique("char.local-global")) {
     SkeletonData skeleton = make_chain(4);
     std::vector<Affine> matrices(4);
     compute_joint_matrices(skeleton, skeleton.rest, matrices);
@@ -349,7 +362,9 @@ TEST_CASE("joints: a matrix is the product from the root on, in the order T R S"
     CHECK(apart(transform_point(matrices[3], Vec3(0)), Vec3(1, 1, 0)) < 1e-6f);
 }
 
-TEST_CASE("joints: turning one moves its descendants and no other, and no bone changes length") {
+TEST_CASE(
+    "joints: turning one moves its descendants and no other, and no bone changes length"
+    * technique("char.local-global")) {
     SkeletonData skeleton = make_chain(9);
     skeleton.parents = {-1, 0, 1, 2, 1, 4, 0, 6, 7};
     REQUIRE(check_skeleton(skeleton).ok());
@@ -377,7 +392,9 @@ TEST_CASE("joints: turning one moves its descendants and no other, and no bone c
     }
 }
 
-TEST_CASE("joints: angles are applied in the order of the channels of a file") {
+TEST_CASE(
+    "joints: angles are applied in the order of the channels of a file"
+    * technique("char.local-global")) {
     // Z 90, X 90, Y 0 as R = Rz Rx Ry; the schematic Rx Ry Rz of the book would give (-1, 0, 0).
     SkeletonData skeleton = make_chain(1);
     LocalPose pose = skeleton.rest;

@@ -3,6 +3,7 @@
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/constant_angular_velocity.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -24,7 +25,9 @@ Quat rotation_at(const TimedRotations& turns, float time) {
 
 }  // namespace
 
-TEST_CASE("even turns: keys at 0, 10, 40 and 90 degrees are reached after 1, 4 and 9 seconds") {
+TEST_CASE(
+    "even turns: keys at 0, 10, 40 and 90 degrees are reached after 1, 4 and 9 seconds"
+    * technique("anim.constant-angular-velocity")) {
     const std::vector<Quat> keys = {about_z(0), about_z(10), -about_z(40), about_z(90)};
     const TimedRotations turns = make_constant_speed(keys, 9);
     REQUIRE(turns.times.size() == 4);
@@ -40,7 +43,9 @@ TEST_CASE("even turns: keys at 0, 10, 40 and 90 degrees are reached after 1, 4 a
     }
 }
 
-TEST_CASE("even turns: between any keys the angular speed is the same") {
+TEST_CASE(
+    "even turns: between any keys the angular speed is the same"
+    * technique("anim.constant-angular-velocity")) {
     Random random(3, 0, 0, 0);
     std::vector<Quat> keys;
     for (int i = 0; i < 12; ++i) {
@@ -58,7 +63,9 @@ TEST_CASE("even turns: between any keys the angular speed is the same") {
     }
 }
 
-TEST_CASE("even turns: whole images sum to what there is, shared as fairly as can be") {
+TEST_CASE(
+    "even turns: whole images sum to what there is, shared as fairly as can be"
+    * technique("anim.constant-angular-velocity")) {
     const std::vector<Quat> keys = {about_z(0), about_z(10), about_z(40), about_z(90)};
     CHECK(distribute_frames(keys, 9) == std::vector<int>{1, 3, 5});
     CHECK(distribute_frames(keys, 10) == std::vector<int>{1, 3, 6});  // of 1.1, 3.3 and 5.6
@@ -71,7 +78,9 @@ TEST_CASE("even turns: whole images sum to what there is, shared as fairly as ca
     }
 }
 
-TEST_CASE("even turns: keys that turn nothing are left out, a single one stays, none are none") {
+TEST_CASE(
+    "even turns: keys that turn nothing are left out, a single one stays, none are none"
+    * technique("anim.constant-angular-velocity")) {
     const TimedRotations turns =
         make_constant_speed(std::vector<Quat>{about_z(5), about_z(5), -about_z(5), about_z(65)}, 2);
     CHECK(turns.times == std::vector<float>{0, 2});

@@ -6,6 +6,7 @@
 #include "systems/animation/deformer_system.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -88,7 +89,9 @@ const std::vector<Vec3> kPlaces{
 
 }  // namespace
 
-TEST_CASE("muscle: at rest nothing moves, and what lies beyond its reach or cone never does") {
+TEST_CASE(
+    "muscle: at rest nothing moves, and what lies beyond its reach or cone never does"
+    * technique("face.waters-muscle")) {
     LinearMuscle muscle = kMuscleUp;
     muscle.contraction = 0.0f;
     for (float x = -0.1f; x <= 0.1f; x += 0.01f) {
@@ -103,7 +106,9 @@ TEST_CASE("muscle: at rest nothing moves, and what lies beyond its reach or cone
     }
 }
 
-TEST_CASE("muscle: it pulls to the bone, by nothing there, most at full, by nothing at its reach") {
+TEST_CASE(
+    "muscle: it pulls to the bone, by nothing there, most at full, by nothing at its reach"
+    * technique("face.waters-muscle")) {
     const auto pull = [](float distance) {
         const Vec3 p(0, distance, 0);
         const Vec3 moved = through(with(kMuscleUp), p) - p;
@@ -131,7 +136,7 @@ TEST_CASE("muscle: it pulls to the bone, by nothing there, most at full, by noth
     CHECK(glm::distance(through(with(kMuscleUp), border), border) < 1e-8f);  // no crease
 }
 
-TEST_CASE("muscle: pulls add, but never beyond the bone") {
+TEST_CASE("muscle: pulls add, but never beyond the bone" * technique("face.waters-muscle")) {
     Deformers twice = with(kMuscleUp);
     twice.muscles.push_back(kMuscleUp);
     const Vec3 p(0, 0.04f, 0);
@@ -142,7 +147,9 @@ TEST_CASE("muscle: pulls add, but never beyond the bone") {
     CHECK(std::abs(through(twice, p).y) < 1e-8f);
 }
 
-TEST_CASE("sphincter: strongest at the center, nothing on the ellipse, and flat in its depth") {
+TEST_CASE(
+    "sphincter: strongest at the center, nothing on the ellipse, and flat in its depth"
+    * technique("face.waters-muscle")) {
     const SphincterMuscle ring{
         .center = {1, 2, 3},
         .right = {0.03f, 0, 0},
@@ -169,7 +176,8 @@ TEST_CASE("sphincter: strongest at the center, nothing on the ellipse, and flat 
 }
 
 TEST_CASE(
-    "lattice: points at rest change nothing, and points moved as one move all that is inside") {
+    "lattice: points at rest change nothing, and points moved as one move all that is inside"
+    * technique("face.ffd")) {
     const Lattice rest = make_lattice([](const Vec3&, int, int, int) { return Vec3(0); });
     const Vec3 by(0.3f, -0.7f, 0.2f);
     const Lattice moved = make_lattice([&](const Vec3&, int, int, int) { return by; });
@@ -183,7 +191,9 @@ TEST_CASE(
     CHECK(through(with(moved), outside) == outside);
 }
 
-TEST_CASE("lattice: an affine map of its points is the same map of what is inside") {
+TEST_CASE(
+    "lattice: an affine map of its points is the same map of what is inside"
+    * technique("face.ffd")) {
     const Mat3 turn(Vec3(0.9f, 0.1f, 0), Vec3(-0.3f, 1.1f, 0.2f), Vec3(0, 0.4f, 0.7f));
     const Vec3 shift(0.1f, 0.2f, -0.3f);
     const Lattice lattice =
@@ -195,7 +205,9 @@ TEST_CASE("lattice: an affine map of its points is the same map of what is insid
     }
 }
 
-TEST_CASE("lattice: an inner point moves the middle by 0.375^3 of its way, a corner its vertex") {
+TEST_CASE(
+    "lattice: an inner point moves the middle by 0.375^3 of its way, a corner its vertex"
+    * technique("face.ffd")) {
     const Vec3 by(0.5f, 0.25f, -1.0f);
     const Lattice inner = make_lattice([&](const Vec3&, int i, int j, int k) {
         return i == 1 && j == 2 && k == 1 ? by : Vec3(0);
@@ -211,7 +223,9 @@ TEST_CASE("lattice: an inner point moves the middle by 0.375^3 of its way, a cor
     CHECK(glm::distance(through(with(corner), other), other) < 1e-6f);
 }
 
-TEST_CASE("lattice: with two layers at rest the surface is continuous and smooth at the side") {
+TEST_CASE(
+    "lattice: with two layers at rest the surface is continuous and smooth at the side"
+    * technique("face.ffd")) {
     const Lattice lattice = make_lattice(
         [](const Vec3&, int i, int, int) { return i < 2 ? Vec3(0) : Vec3(0, 0.5f, 0); });
     const auto offset = [&](float u) {
@@ -227,7 +241,9 @@ TEST_CASE("lattice: with two layers at rest the surface is continuous and smooth
     CHECK((through(with(one_layer), p).y - p.y) / 0.001f > 1.0f);
 }
 
-TEST_CASE("tug: without offset nothing changes to the bit, and the place moves by all of it") {
+TEST_CASE(
+    "tug: without offset nothing changes to the bit, and the place moves by all of it"
+    * technique("face.pull")) {
     const Tug tug{.at = {0.1f, -0.2f, 0.3f}, .offset = {0.02f, 0.01f, -0.005f}, .radius = 0.07f};
     CHECK(pack_deformers({.tugs = {{.at = tug.at, .radius = tug.radius}}}).empty());
     CHECK(through({.tugs = {tug}}, tug.at) == tug.at + tug.offset);
@@ -239,7 +255,9 @@ TEST_CASE("tug: without offset nothing changes to the bit, and the place moves b
     }
 }
 
-TEST_CASE("tug: every point moves as double precision says, with no edge at the border") {
+TEST_CASE(
+    "tug: every point moves as double precision says, with no edge at the border"
+    * technique("face.pull")) {
     using glm::dvec3;
     const Tug tug{.at = {0.1f, -0.2f, 0.3f}, .offset = {0.02f, 0.01f, -0.005f}, .radius = 0.07f};
     Random random(1, 2, 3, 5);
@@ -254,7 +272,7 @@ TEST_CASE("tug: every point moves as double precision says, with no edge at the 
     CHECK(glm::distance(through({.tugs = {tug}}, inside), inside) < 1e-7f);
 }
 
-TEST_CASE("deformers: normals are perpendicular to the deformed surface") {
+TEST_CASE("deformers: normals are perpendicular to the deformed surface" * technique("face.ffd")) {
     const Lattice lattice = make_lattice([](const Vec3& at, int i, int j, int) {
         return Vec3(
             0.1f * at.y, 0.2f * std::sin(3.0f * static_cast<float>(i)),
@@ -313,7 +331,9 @@ TEST_CASE("deformers: no vertex moves farther than the bound, which is not idle"
     CHECK(max_displacement({}) == 0.0f);
 }
 
-TEST_CASE("deformers: vectors of the machine and plain C++ give the same bits") {
+TEST_CASE(
+    "deformers: vectors of the machine and plain C++ give the same bits"
+    * technique("face.ffd, face.pull, face.waters-muscle")) {
     Deformers deformers = with(make_lattice([](const Vec3&, int i, int j, int k) {
         return (i + j + k) % 2 == 0 ? Vec3(0.03f, 0, 0) : Vec3(0);
     }));

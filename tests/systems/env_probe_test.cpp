@@ -1,6 +1,7 @@
 #include "ecs/world.h"
 #include "systems/env_probe_system.h"
 #include "systems/update_world.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -28,15 +29,17 @@ int count_updates(const std::vector<int>& due) {
 
 }  // namespace
 
-TEST_CASE("env_probe: one that stands still looks around once") {
+TEST_CASE("env_probe: one that stands still looks around once" * technique("env.update-policy")) {
     const auto due = due_faces({.update = ProbeUpdate::Movement, .threshold = 0}, 0, 500);
     CHECK(due[0] == 6);
     CHECK(count_updates(due) == 1);
     CHECK(count_updates(due_faces({.update = ProbeUpdate::Once}, 5, 500)) == 1);
 }
 
-TEST_CASE("env_probe: at 1 m/s a threshold of 0.25 m is passed every 16th of 60 frames a second, "
-          "37 times in 10 s") {
+TEST_CASE(
+    "env_probe: at 1 m/s a threshold of 0.25 m is passed every 16th of 60 frames a second, "
+    "37 times in 10 s"
+    * technique("env.update-policy")) {
     const auto due = due_faces({.update = ProbeUpdate::Movement, .threshold = 0.25f}, 1.0f, 600);
     for (int i = 0; i < 600; ++i) {
         CAPTURE(i);
@@ -45,7 +48,9 @@ TEST_CASE("env_probe: at 1 m/s a threshold of 0.25 m is passed every 16th of 60 
     CHECK(count_updates(due) == 1 + 37);  // the first is no movement
 }
 
-TEST_CASE("env_probe: a period of 4 frames is a quarter of them, the first among them") {
+TEST_CASE(
+    "env_probe: a period of 4 frames is a quarter of them, the first among them"
+    * technique("env.update-policy")) {
     const auto due = due_faces({.update = ProbeUpdate::Period, .period = 4}, 100, 400);
     CHECK(due[0] == 6);
     CHECK(count_updates(due) == 100);
@@ -58,7 +63,9 @@ TEST_CASE("env_probe: of either, what comes first counts") {
     CHECK(count_updates(due_faces(probe, 3, 96)) == 16);  // every 6th
 }
 
-TEST_CASE("env_probe: face by face a round takes six frames, the first time one") {
+TEST_CASE(
+    "env_probe: face by face a round takes six frames, the first time one"
+    * technique("env.update-policy")) {
     const auto due =
         due_faces({.update = ProbeUpdate::Period, .period = 10, .face_by_face = true}, 0, 30);
     for (int i = 0; i < 30; ++i) {

@@ -3,6 +3,7 @@
 #include "ecs/base/rng.h"
 #include "systems/water/fft_kernels.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <kissfft/kiss_fftnd.h>
@@ -87,7 +88,8 @@ constexpr std::size_t kSizes[] = {16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
 
 }  // namespace
 
-TEST_CASE("fft: it is the sum of all waves, to 1e-6 of the largest") {
+TEST_CASE(
+    "fft: it is the sum of all waves, to 1e-6 of the largest" * technique("water.fft-synthesis")) {
     for (const std::size_t size : {16, 32, 64, 128}) {
         CAPTURE(size);
         const Planes spectrum = noise(size * size);
@@ -97,7 +99,8 @@ TEST_CASE("fft: it is the sum of all waves, to 1e-6 of the largest") {
     }
 }
 
-TEST_CASE("fft: KissFFT finds the same, to 1e-6 of the largest") {
+TEST_CASE(
+    "fft: KissFFT finds the same, to 1e-6 of the largest" * technique("water.fft-synthesis")) {
     for (const std::size_t size : {256, 512, 1024}) {
         CAPTURE(size);
         const Planes spectrum = noise(size * size);
@@ -138,7 +141,8 @@ TEST_CASE("fft: columns of every size are transformed each by itself") {
     }
 }
 
-TEST_CASE("fft: there and back again is size times what it was") {
+TEST_CASE(
+    "fft: there and back again is size times what it was" * technique("water.fft-synthesis")) {
     for (const std::size_t size : kSizes) {
         CAPTURE(size);
         const Planes from = noise(kFftColumns * size);
@@ -148,7 +152,9 @@ TEST_CASE("fft: there and back again is size times what it was") {
     }
 }
 
-TEST_CASE("fft: a column has the energy of its waves times size (Parseval)") {
+TEST_CASE(
+    "fft: a column has the energy of its waves times size (Parseval)"
+    * technique("water.fft-synthesis")) {
     for (const std::size_t size : kSizes) {
         CAPTURE(size);
         const Planes from = noise(kFftColumns * size);
@@ -163,7 +169,9 @@ TEST_CASE("fft: a column has the energy of its waves times size (Parseval)") {
     }
 }
 
-TEST_CASE("fft: one wave alone at number 0 is the same everywhere, to the bit") {
+TEST_CASE(
+    "fft: one wave alone at number 0 is the same everywhere, to the bit"
+    * technique("water.fft-synthesis")) {
     for (const std::size_t size : {16, 32, 64}) {
         Planes spectrum(size * size);
         spectrum.re[0] = 1.7f;
@@ -174,7 +182,9 @@ TEST_CASE("fft: one wave alone at number 0 is the same everywhere, to the bit") 
     }
 }
 
-TEST_CASE("fft: a wave and its mirror image are a cosine of twice the height") {
+TEST_CASE(
+    "fft: a wave and its mirror image are a cosine of twice the height"
+    * technique("water.fft-synthesis")) {
     constexpr std::size_t kSize = 32;
     constexpr std::size_t kN = 3;
     constexpr std::size_t kM = 5;

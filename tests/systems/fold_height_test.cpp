@@ -1,5 +1,6 @@
 #include "systems/faces/fold_height.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -90,7 +91,9 @@ float highest(const std::vector<Vec2>& heights) {
 
 }  // namespace
 
-TEST_CASE("fold height: folds of a sine are as high as its integral says, to 3 %") {
+TEST_CASE(
+    "fold height: folds of a sine are as high as its integral says, to 3 %"
+    * technique("wrinkle.displacement")) {
     const MeshData sheet = make_sheet(96);  // 12 edges a fold
     CHECK(worst_height(sheet, fold_heights(sheet, sine_map(), {}, false)) <= 0.03f * kHigh);
 }
@@ -108,7 +111,9 @@ TEST_CASE("fold height: twice the size of the sheet, folds are twice as high") {
     }
 }
 
-TEST_CASE("fold height: where the map lies on the mesh does not matter, and no seam opens") {
+TEST_CASE(
+    "fold height: where the map lies on the mesh does not matter, and no seam opens"
+    * technique("wrinkle.displacement")) {
     MeshData sheet = make_sheet(96);
     const std::vector<Vec2> whole = fold_heights(sheet, sine_map(), {}, false);
     // The upper half has vertices of its own, a copy of the map beyond its edge, mirrored.

@@ -4,6 +4,7 @@
 #include "systems/particles/force_fields.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -38,7 +39,7 @@ struct Field : Emitters {
 
 }  // namespace
 
-TEST_CASE("force fields: each kind accelerates as it says") {
+TEST_CASE("force fields: each kind accelerates as it says" * technique("particle.forces")) {
     Force force;
     force.strength = 3;
     force.origin = {1, 2, 3};
@@ -64,7 +65,9 @@ TEST_CASE("force fields: each kind accelerates as it says") {
     CHECK(acceleration(force, at, {}) == Vec3(0));
 }
 
-TEST_CASE("force fields: equal and opposite ones cancel; their order does not matter") {
+TEST_CASE(
+    "force fields: equal and opposite ones cancel; their order does not matter"
+    * technique("particle.forces")) {
     Field still;
     still.place({.strength = 7});
     still.place({.strength = -7});
@@ -95,7 +98,9 @@ TEST_CASE("force fields: equal and opposite ones cancel; their order does not ma
     CHECK(glm::distance(pushed(), forward) < 1e-5f * 40 * 5);
 }
 
-TEST_CASE("force fields: one that swings as a sine gives a velocity of 1 - cos t") {
+TEST_CASE(
+    "force fields: one that swings as a sine gives a velocity of 1 - cos t"
+    * technique("particle.forces")) {
     Field swing(0.001f);
     swing.place({.strength = 1, .frequency = 1 / (2 * kPi)});
     for (int i = 0; i < 6000; ++i) {
@@ -106,7 +111,9 @@ TEST_CASE("force fields: one that swings as a sine gives a velocity of 1 - cos t
     }
 }
 
-TEST_CASE("force fields: particles in a wind take its speed, on a spring they swing") {
+TEST_CASE(
+    "force fields: particles in a wind take its speed, on a spring they swing"
+    * technique("particle.forces")) {
     Field wind;
     wind.place({.kind = ForceKind::Wind, .strength = 4, .speed = 3});
     wind.run(60);

@@ -1,12 +1,15 @@
 #include "ecs/world.h"
 #include "systems/mesh_level_system.h"
 #include "systems/update_world.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
 namespace limn::mesh_level_test {
 
-TEST_CASE("mesh_levels: they grow with size on screen, and do not flicker") {
+TEST_CASE(
+    "mesh_levels: they grow with size on screen, and do not flicker"
+    * technique("anim.bezier-patch-lod")) {
     int last = 0;
     for (float pixels = 1; pixels < 4096; pixels *= 1.05f) {
         const int level = choose_mesh_level(pixels, 6, last);
@@ -21,7 +24,9 @@ TEST_CASE("mesh_levels: they grow with size on screen, and do not flicker") {
     CHECK(choose_mesh_level(0, 6, 3) == 0);
 }
 
-TEST_CASE("mesh_levels: an entity has a finer mesh near the camera, at any size of it") {
+TEST_CASE(
+    "mesh_levels: an entity has a finer mesh near the camera, at any size of it"
+    * technique("anim.bezier-patch-lod")) {
     World world;
     const std::vector<MeshId> meshes = {{4}, {5}, {6}, {7}};
     const MeshLevels levels{.meshes = meshes, .span = 0.5f, .pixels_per_quad = 54};

@@ -1,6 +1,7 @@
 #include "systems/water/ocean_spectrum.h"
 #include "systems/water/water_dispersion.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -68,7 +69,9 @@ double sum_of_grid(const OceanEnergy& sea, int size, double patch) {
 
 }  // namespace
 
-TEST_CASE("ocean_spectrum: the wind sea has the values of its formula and one maximum, at f_p") {
+TEST_CASE(
+    "ocean_spectrum: the wind sea has the values of its formula and one maximum, at f_p"
+    * technique("water.ocean-spectrum")) {
     CHECK(wind_sea_energy(0.1, 0.1) == test::near(14.329646).epsilon(1e-6).scale(0));
     CHECK(wind_sea_energy(0.2, 0.1) == test::near(1.445521).epsilon(1e-6).scale(0));
     CHECK(ratio(wind_sea_energy(0.05, 0.1), 3.29886e-6) < 2e-6);
@@ -87,7 +90,9 @@ TEST_CASE("ocean_spectrum: the wind sea has the values of its formula and one ma
     CHECK(wind_sea_energy(-1, 0.1) == 0);
 }
 
-TEST_CASE("ocean_spectrum: the wind sea's integral is alpha g^2 / (5 (2 pi)^4 f_p^4)") {
+TEST_CASE(
+    "ocean_spectrum: the wind sea's integral is alpha g^2 / (5 (2 pi)^4 f_p^4)"
+    * technique("water.ocean-spectrum")) {
     for (const double f_p : {0.1, 0.2, 0.5}) {
         const double closed = kPhillipsConstant * square(kGravity) / (5 * std::pow(kTurn * f_p, 4));
         const double sum =
@@ -103,7 +108,9 @@ TEST_CASE("ocean_spectrum: the wind sea's integral is alpha g^2 / (5 (2 pi)^4 f_
     CHECK(height(0.2) == test::near(1.000154).epsilon(1e-6).scale(0));
 }
 
-TEST_CASE("ocean_spectrum: waves at the peak run with the wind, longer and shorter ones less so") {
+TEST_CASE(
+    "ocean_spectrum: waves at the peak run with the wind, longer and shorter ones less so"
+    * technique("water.ocean-spectrum")) {
     CHECK(cosine_power_integral(0) == test::near(kTurn));
     CHECK(cosine_power_integral(1) == test::near(0.5 * kTurn));
     CHECK(cosine_power_integral(2) == test::near(2.356194).epsilon(1e-6).scale(0));
@@ -127,7 +134,9 @@ TEST_CASE("ocean_spectrum: waves at the peak run with the wind, longer and short
         == test::near(0.5 * at_peak).epsilon(1e-5).scale(0));
 }
 
-TEST_CASE("ocean_spectrum: all shares of a frequency make 1, whatever spreads them") {
+TEST_CASE(
+    "ocean_spectrum: all shares of a frequency make 1, whatever spreads them"
+    * technique("water.ocean-spectrum")) {
     for (const OceanSpreading spreading : kSpreadings) {
         for (const float swell : {0.0f, 0.4f, 1.0f}) {
             const OceanEnergy sea = make_ocean_energy({.spreading = spreading, .swell = swell});
@@ -143,7 +152,9 @@ TEST_CASE("ocean_spectrum: all shares of a frequency make 1, whatever spreads th
     }
 }
 
-TEST_CASE("ocean_spectrum: shares are even about the wind, and most where it blows to") {
+TEST_CASE(
+    "ocean_spectrum: shares are even about the wind, and most where it blows to"
+    * technique("water.ocean-spectrum")) {
     for (const OceanSpreading spreading : kSpreadings) {
         CAPTURE(static_cast<int>(spreading));
         const OceanEnergy sea = make_ocean_energy({.spreading = spreading, .swell = 0.3f});
@@ -291,7 +302,9 @@ TEST_CASE("ocean_spectrum: a floor takes energy from long waves (TMA)") {
         == test::near(frequency_energy(deep_sea, omega) * depth_factor(omega, 8)));
 }
 
-TEST_CASE("ocean_spectrum: over wave numbers there is as much energy as over frequencies") {
+TEST_CASE(
+    "ocean_spectrum: over wave numbers there is as much energy as over frequencies"
+    * technique("water.ocean-spectrum")) {
     for (const OceanSpectrum spectrum : kSpectra) {
         for (const float depth : {3.0f, 5000.0f}) {
             const OceanEnergy sea = make_ocean_energy(
@@ -320,14 +333,18 @@ TEST_CASE("ocean_spectrum: over wave numbers there is as much energy as over fre
     }
 }
 
-TEST_CASE("ocean_spectrum: summed over the grid of a patch it is m0, but for what does not fit") {
+TEST_CASE(
+    "ocean_spectrum: summed over the grid of a patch it is m0, but for what does not fit"
+    * technique("water.fft-synthesis")) {
     const OceanEnergy sea = wind_sea_of_peak(0.2);
     CHECK(ratio(sum_of_grid(sea, 256, 200), 0.062462) < 1e-5);
     CHECK(ratio(sum_of_grid(sea, 128, 200), 0.062155) < 1e-5);
     CHECK(ratio(sum_of_grid(sea, 64, 100), 0.061618) < 1e-5);
 }
 
-TEST_CASE("ocean_spectrum: without wind there is no energy, and nowhere NaN") {
+TEST_CASE(
+    "ocean_spectrum: without wind there is no energy, and nowhere NaN"
+    * technique("water.ocean-spectrum")) {
     for (const OceanSpectrum spectrum : kSpectra) {
         for (const OceanSpreading spreading : kSpreadings) {
             for (const float wind : {0.0f, 1e-6f, 0.1f, 60.0f, 1e6f}) {

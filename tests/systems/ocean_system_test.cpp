@@ -10,6 +10,7 @@
 #include "systems/water/ocean_system.h"
 #include "systems/water/water_dispersion.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -125,7 +126,9 @@ double phase_of(const OceanCascade& cascade, int n, int m) {
 
 }  // namespace
 
-TEST_CASE("ocean: every field is the sum of its travelling waves, to 1e-5 of the largest") {
+TEST_CASE(
+    "ocean: every field is the sum of its travelling waves, to 1e-5 of the largest"
+    * technique("water.fft-synthesis")) {
     for (const double time : {0.0, 12.34, 3600.0}) {
         const OceanState state = ocean_at_time(kSmall, time);
         REQUIRE(state.cascades.size() == 3);
@@ -153,7 +156,9 @@ TEST_CASE("ocean: every field is the sum of its travelling waves, to 1e-5 of the
     }
 }
 
-TEST_CASE("ocean: heights are real, what is left over is below 1e-6 of the largest") {
+TEST_CASE(
+    "ocean: heights are real, what is left over is below 1e-6 of the largest"
+    * technique("water.fft-synthesis")) {
     Ocean ocean = kSmall;
     ocean.choppiness = 0;  // then shift_x is the imaginary part of the height's transform
     const OceanState state = ocean_at_time(ocean, 5.0);
@@ -163,7 +168,9 @@ TEST_CASE("ocean: heights are real, what is left over is below 1e-6 of the large
     }
 }
 
-TEST_CASE("ocean: a lone wave is a cosine that shifts by the sine, toward its crests") {
+TEST_CASE(
+    "ocean: a lone wave is a cosine that shifts by the sine, toward its crests"
+    * technique("water.fft-synthesis")) {
     OceanCascade cascade = lone_wave(32, 40, 3, 0, 1000);
     synthesize_waves(cascade, 0.8f, 0.0);
     const double k = kTurn * 3 / 40;
@@ -178,7 +185,9 @@ TEST_CASE("ocean: a lone wave is a cosine that shifts by the sine, toward its cr
     }
 }
 
-TEST_CASE("ocean: waves run along their wave numbers as fast as the dispersion says, to 0.1 %") {
+TEST_CASE(
+    "ocean: waves run along their wave numbers as fast as the dispersion says, to 0.1 %"
+    * technique("water.fft-synthesis")) {
     struct Case {
         int n, m;
         float depth;
@@ -200,7 +209,9 @@ TEST_CASE("ocean: waves run along their wave numbers as fast as the dispersion s
     }
 }
 
-TEST_CASE("ocean: the variance of its heights is the spectrum's, to 5 % over 32 seeds") {
+TEST_CASE(
+    "ocean: the variance of its heights is the spectrum's, to 5 % over 32 seeds"
+    * technique("water.fft-synthesis")) {
     Ocean ocean = {.cascades = 1, .patch = 100, .resolution = 64};
     ocean.wind_speed = static_cast<float>(0.13 * kGravity / 0.2);  // peak at 0.2 Hz
     double sum = 0;
@@ -264,7 +275,9 @@ TEST_CASE("ocean: each wave number is in one cascade, and no band is left out") 
     }
 }
 
-TEST_CASE("ocean: a patch repeats, and a wave fits into it a whole number of times") {
+TEST_CASE(
+    "ocean: a patch repeats, and a wave fits into it a whole number of times"
+    * technique("water.fft-synthesis")) {
     const std::vector<OceanCascade> cascades = make_ocean_cascades(kSmall);
     for (const OceanCascade& cascade : cascades) {
         for (const float number : cascade.axis) {
@@ -283,7 +296,9 @@ TEST_CASE("ocean: a patch repeats, and a wave fits into it a whole number of tim
     }
 }
 
-TEST_CASE("ocean: under wind at 45 degrees waves gather on the diagonal and run along it") {
+TEST_CASE(
+    "ocean: under wind at 45 degrees waves gather on the diagonal and run along it"
+    * technique("water.fft-synthesis")) {
     Ocean ocean = {.swell = 1, .cascades = 1, .patch = 100, .resolution = 64};
     ocean.wind_speed = 6;
     ocean.wind_direction = 0.125f * static_cast<float>(kTurn);
@@ -311,7 +326,9 @@ TEST_CASE("ocean: under wind at 45 degrees waves gather on the diagonal and run 
     CHECK(ahead / all > 0.7);
 }
 
-TEST_CASE("ocean: with a loop period all is as it was when it has passed, and not before") {
+TEST_CASE(
+    "ocean: with a loop period all is as it was when it has passed, and not before"
+    * technique("water.fft-synthesis")) {
     Ocean ocean = kSmall;
     ocean.loop_period = 20;
     const OceanState start = ocean_at_time(ocean, 1.0);
@@ -331,7 +348,9 @@ TEST_CASE("ocean: with a loop period all is as it was when it has passed, and no
     CHECK(difference(ocean_at_time(ocean, 21.0)) > 0.1);
 }
 
-TEST_CASE("ocean: a seed gives its sea, to the bit; another seed another; finer grids add waves") {
+TEST_CASE(
+    "ocean: a seed gives its sea, to the bit; another seed another; finer grids add waves"
+    * technique("water.fft-synthesis")) {
     const OceanState once = ocean_at_time(kSmall, 3.0);
     CHECK(same_fields(once, ocean_at_time(kSmall, 3.0)));
     Ocean other = kSmall;

@@ -2,6 +2,7 @@
 #include "systems/orbit_camera_system.h"
 #include "systems/transform_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -42,7 +43,9 @@ struct Scene {
 
 }  // namespace
 
-TEST_CASE("orbit_camera: the book's five positions about a target at rest") {
+TEST_CASE(
+    "orbit_camera: the book's five positions about a target at rest"
+    * technique("engine.camera-orbit")) {
     const Affine identity;
     CHECK(near(orbit_position_z_up(identity, 0, 0, 10), {0, 10, 0}));
     CHECK(near(orbit_position_z_up(identity, radians(90), 0, 10), {10, 0, 0}));
@@ -53,7 +56,7 @@ TEST_CASE("orbit_camera: the book's five positions about a target at rest") {
         {3.535534f, 6.123724f, 7.071068f}));
 }
 
-TEST_CASE("orbit_camera: ours is the book's with y up") {
+TEST_CASE("orbit_camera: ours is the book's with y up" * technique("engine.camera-orbit")) {
     const Affine identity;
     CHECK(near(orbit_position(identity, 0, 0, 10), {0, 0, 10}));
     CHECK(near(orbit_position(identity, radians(90), 0, 10), {10, 0, 0}));
@@ -63,7 +66,8 @@ TEST_CASE("orbit_camera: ours is the book's with y up") {
 }
 
 TEST_CASE(
-    "orbit_camera: its distance is what was asked for, whatever the target's pose and scale") {
+    "orbit_camera: its distance is what was asked for, whatever the target's pose and scale"
+    * technique("engine.camera-orbit")) {
     const Affine target =
         affine_from({1, -2, 3}, glm::normalize(Quat(0.4f, 0.1f, -0.7f, 0.2f)), {2, 0.1f, 7});
     for (const float azimuth : {0.0f, 1.0f, 4.0f}) {
@@ -74,7 +78,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("camera_lag: 1 is rigid; 0.9 leaves a tenth after one frame and a hundredth after two") {
+TEST_CASE(
+    "camera_lag: 1 is rigid; 0.9 leaves a tenth after one frame and a hundredth after two"
+    * technique("engine.camera-lag")) {
     const float dt = 1.0f / 60.0f;
     CHECK(lag_position({5, 0, 0}, {1, 2, 3}, 1, dt) == Vec3(1, 2, 3));
     const Vec3 one = lag_position({1, 0, 0}, {0, 0, 0}, 0.9f, dt);
@@ -83,7 +89,9 @@ TEST_CASE("camera_lag: 1 is rigid; 0.9 leaves a tenth after one frame and a hund
     CHECK(lag_position({1, 0, 0}, {0, 0, 0}, 0, dt).x == test::near(1.0f));
 }
 
-TEST_CASE("camera_lag: the way does not depend on the frame rate, and never overshoots") {
+TEST_CASE(
+    "camera_lag: the way does not depend on the frame rate, and never overshoots"
+    * technique("engine.camera-lag")) {
     const Vec3 start = {1, -4, 2};
     const Vec3 wanted = {0, 3, 7};
     const Vec3 long_step = lag_position(start, wanted, 0.3f, 1.0f / 30.0f);
@@ -98,12 +106,16 @@ TEST_CASE("camera_lag: the way does not depend on the frame rate, and never over
     }
 }
 
-TEST_CASE("camera_lag: the code as printed moves a sixtieth of the gap where it says rigid") {
+TEST_CASE(
+    "camera_lag: the code as printed moves a sixtieth of the gap where it says rigid"
+    * technique("engine.camera-lag")) {
     CHECK(near(lag_position_legacy({0, 0, 0}, {60, 0, 0}, 1, 1.0f / 60.0f), {1, 0, 0}));
     CHECK(lag_position_legacy({0, 0, 0}, {1, 0, 0}, 1, 3).x > 1);  // overshoots
 }
 
-TEST_CASE("look_at: the frame is orthonormal, faces z and leans toward up") {
+TEST_CASE(
+    "look_at: the frame is orthonormal, faces z and leans toward up"
+    * technique("engine.look-at")) {
     CHECK(look_at_frame({0, 0, 1}, {0, 1, 0}) == Mat3(1.0f));
     for (int i = 0; i < 200; ++i) {
         const float a = 0.37f * static_cast<float>(i);
@@ -120,7 +132,9 @@ TEST_CASE("look_at: the frame is orthonormal, faces z and leans toward up") {
     }
 }
 
-TEST_CASE("look_at: a direction along up, or none at all, still has a frame") {
+TEST_CASE(
+    "look_at: a direction along up, or none at all, still has a frame"
+    * technique("engine.look-at")) {
     for (const Vec3 z : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 0)}) {
         const Mat3 frame = look_at_frame(z, {0, 1, 0});
         CHECK(glm::determinant(frame) == test::near(1.0f));

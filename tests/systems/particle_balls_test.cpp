@@ -6,6 +6,7 @@
 #include "systems/particles/particle_balls_system.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -97,7 +98,9 @@ Motion motion_of(const ParticlePool& pool) {
 
 }  // namespace
 
-TEST_CASE("particle balls: the pairs are those of all against all") {
+TEST_CASE(
+    "particle balls: the pairs are those of all against all"
+    * technique("particle.interparticle")) {
     for (const float radius : {0.03f, 0.1f, 0.2f}) {
         for (const Vec3& about : {Vec3(0), Vec3(-300, 77, 1000)}) {
             CAPTURE(radius);
@@ -116,7 +119,9 @@ TEST_CASE("particle balls: the pairs are those of all against all") {
     CHECK(found_pairs(flat, 0.01f) == all_pairs(flat, 0.01f));
 }
 
-TEST_CASE("particle balls: two of them head-on exchange their velocities") {
+TEST_CASE(
+    "particle balls: two of them head-on exchange their velocities"
+    * technique("particle.interparticle")) {
     ParticlePool pool;
     add_ball(pool, {-0.09f, 1, 0}, {3, 0, 0});
     add_ball(pool, {0.09f, 1, 0}, {-1, 0, 0});
@@ -128,7 +133,9 @@ TEST_CASE("particle balls: two of them head-on exchange their velocities") {
     CHECK(pool.x[1] == near(0.1));
 }
 
-TEST_CASE("particle balls: across the line between them velocities stay") {
+TEST_CASE(
+    "particle balls: across the line between them velocities stay"
+    * technique("particle.interparticle")) {
     ParticlePool pool;
     add_ball(pool, {0, 0, 0}, {2, 5, -3});
     add_ball(pool, {0.15f, 0, 0}, {-2, 1, 4});
@@ -143,7 +150,9 @@ TEST_CASE("particle balls: across the line between them velocities stay") {
     CHECK(same_bits(pool, before));
 }
 
-TEST_CASE("particle balls: beyond the sum of the radii nothing happens") {
+TEST_CASE(
+    "particle balls: beyond the sum of the radii nothing happens"
+    * technique("particle.interparticle")) {
     ParticlePool pool;
     add_ball(pool, {0, 0, 0}, {5, 0, 0});
     add_ball(pool, {0.2001f, 0, 0}, {-5, 0, 0});
@@ -152,7 +161,9 @@ TEST_CASE("particle balls: beyond the sum of the radii nothing happens") {
     CHECK(same_bits(pool, before));
 }
 
-TEST_CASE("particle balls: momentum stays, and energy falls in a crowd, the more the less bounce") {
+TEST_CASE(
+    "particle balls: momentum stays, and energy falls in a crowd, the more the less bounce"
+    * technique("particle.interparticle")) {
     const ParticlePool begin = crowd(2000, 1);
     const Motion before = motion_of(begin);
     double last = before.energy;
@@ -168,7 +179,9 @@ TEST_CASE("particle balls: momentum stays, and energy falls in a crowd, the more
     }
 }
 
-TEST_CASE("particle balls: of pairs that meet, each by itself, a bounce of 1 keeps the energy") {
+TEST_CASE(
+    "particle balls: of pairs that meet, each by itself, a bounce of 1 keeps the energy"
+    * technique("particle.interparticle")) {
     ParticlePool pool;
     Random random(1, 2, 3, 4);
     for (int i = 0; i < 500; ++i) {
@@ -188,7 +201,9 @@ TEST_CASE("particle balls: of pairs that meet, each by itself, a bounce of 1 kee
     CHECK(motion_of(half).energy < 0.7 * before.energy);
 }
 
-TEST_CASE("particle balls: of two at one place each goes its way, the same in each run") {
+TEST_CASE(
+    "particle balls: of two at one place each goes its way, the same in each run"
+    * technique("particle.interparticle")) {
     const auto run = [] {
         ParticlePool pool;
         add_ball(pool, {1, 2, 3});
@@ -201,7 +216,9 @@ TEST_CASE("particle balls: of two at one place each goes its way, the same in ea
     CHECK(same_bits(pool, run()));
 }
 
-TEST_CASE("particle balls: what sticks to a surface stays, and whoever meets it goes back") {
+TEST_CASE(
+    "particle balls: what sticks to a surface stays, and whoever meets it goes back"
+    * technique("particle.interparticle")) {
     ParticlePool pool;
     add_ball(pool, {0, 0, 0});
     add_ball(pool, {0.15f, 0, 0}, {-4, 0, 0});
@@ -213,7 +230,9 @@ TEST_CASE("particle balls: what sticks to a surface stays, and whoever meets it 
     CHECK(velocity(pool, 1).x == near(4));
 }
 
-TEST_CASE("particle balls: a hundred thousand at one place end, and no place is NaN") {
+TEST_CASE(
+    "particle balls: a hundred thousand at one place end, and no place is NaN"
+    * technique("particle.interparticle")) {
     ParticlePool pool;
     for (int i = 0; i < 100000; ++i) {
         add_ball(pool, {1, 1, 1});
@@ -233,7 +252,9 @@ TEST_CASE("particle balls: a hundred thousand at one place end, and no place is 
     CHECK(none.size() == 0);
 }
 
-TEST_CASE("particle balls: poured into a bowl they come to rest in a heap, and hardly overlap") {
+TEST_CASE(
+    "particle balls: poured into a bowl they come to rest in a heap, and hardly overlap"
+    * technique("particle.interparticle")) {
     constexpr float kRadius = 0.05f;
     Emitters scene;
     ParticleEmitter emitter = steady(100);

@@ -8,6 +8,7 @@
 #include "systems/particles/particle_births.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -23,7 +24,8 @@ namespace limn::particle_births_test {
 using namespace limn::test;
 
 TEST_CASE(
-    "particles: ten a step are ten, 2.5 a step are 250 in a hundred, none for a negative rate") {
+    "particles: ten a step are ten, 2.5 a step are 250 in a hundred, none for a negative rate"
+    * technique("particle.emission-rate")) {
     Emitters scene;
     scene.add(steady(10 / kStep));
     scene.add(steady(2.5f / kStep));
@@ -36,7 +38,9 @@ TEST_CASE(
     CHECK(scene.pool(2).size() == 0);
 }
 
-TEST_CASE("particles: births that vary by half have the mean rate, whatever the step") {
+TEST_CASE(
+    "particles: births that vary by half have the mean rate, whatever the step"
+    * technique("particle.emission-rate")) {
     for (const float step : {1.0f / 200, 1.0f / 30}) {
         CAPTURE(step);
         Emitters scene(step);
@@ -50,7 +54,8 @@ TEST_CASE("particles: births that vary by half have the mean rate, whatever the 
     }
 }
 
-TEST_CASE("particles: a rate along a curve gives its integral") {
+TEST_CASE(
+    "particles: a rate along a curve gives its integral" * technique("particle.emission-rate")) {
     Emitters scene;
     ParticleEmitter emitter = steady(600);
     emitter.duration = 4;
@@ -74,7 +79,9 @@ TEST_CASE("particles: a rate along a curve gives its integral") {
     }
 }
 
-TEST_CASE("particles: by screen area, half the area are half the births") {
+TEST_CASE(
+    "particles: by screen area, half the area are half the births"
+    * technique("particle.emission-rate")) {
     Emitters scene;
     const Entity eye =
         scene.world.create(Camera{.fov_y = 1}, WorldTransform{}, PreviousWorldTransform{Affine{}});
@@ -151,7 +158,9 @@ TEST_CASE("particles: bursts come at their time and again, and with the duration
     CHECK(ended.back() == 5);
 }
 
-TEST_CASE("particles: attributes are within their spread, and reach its ends") {
+TEST_CASE(
+    "particles: attributes are within their spread, and reach its ends"
+    * technique("particle.system")) {
     Emitters scene;
     ParticleEmitter emitter = burst(5000);
     emitter.speed = 3;
@@ -172,7 +181,7 @@ TEST_CASE("particles: attributes are within their spread, and reach its ends") {
     CHECK(*late - *early > 0.99f);
 }
 
-TEST_CASE("particles: shapes are filled evenly") {
+TEST_CASE("particles: shapes are filled evenly" * technique("particle.generation-shape")) {
     Random random(1, 2, 3, 4);
     constexpr int kCount = 100000;
     struct Case {
@@ -209,7 +218,9 @@ TEST_CASE("particles: shapes are filled evenly") {
     CHECK(sample_shape(EmitterShape::Point, {1, 2, 3}, random) == Vec3(0));
 }
 
-TEST_CASE("particles: the torus of the book is a ring without a hole in its tube") {
+TEST_CASE(
+    "particles: the torus of the book is a ring without a hole in its tube"
+    * technique("particle.million")) {
     Random random(1, 2, 3, 4);
     Vec3 sum(0);
     int inner = 0;
@@ -225,7 +236,9 @@ TEST_CASE("particles: the torus of the book is a ring without a hole in its tube
     CHECK(glm::length(sum) / kCount < 0.1f);
 }
 
-TEST_CASE("particles: a shell's radii vary by axis, and an axis of 0 leaves a ring") {
+TEST_CASE(
+    "particles: a shell's radii vary by axis, and an axis of 0 leaves a ring"
+    * technique("engine.particle-params")) {
     Emitters scene;
     ParticleEmitter emitter = burst(20000);
     emitter.shape = EmitterShape::Sphere;
@@ -254,7 +267,9 @@ TEST_CASE("particles: a shell's radii vary by axis, and an axis of 0 leaves a ri
     CHECK(thick > 0.99f);
 }
 
-TEST_CASE("particles: velocities vary by axis, each by itself, and a small shell is a point") {
+TEST_CASE(
+    "particles: velocities vary by axis, each by itself, and a small shell is a point"
+    * technique("engine.particle-params")) {
     Emitters scene;
     ParticleEmitter emitter = burst(20000);
     emitter.shape = EmitterShape::Sphere;
@@ -284,7 +299,9 @@ TEST_CASE("particles: velocities vary by axis, each by itself, and a small shell
     CHECK(std::abs(product / 20000) < 0.02);
 }
 
-TEST_CASE("particles: directions are unit, within the cone, even over its cap") {
+TEST_CASE(
+    "particles: directions are unit, within the cone, even over its cap"
+    * technique("particle.generation-shape")) {
     Random random(1, 2, 3, 4);
     constexpr int kCount = 50000;
     const float cone = 0.7f;
@@ -317,7 +334,9 @@ TEST_CASE("particles: a prewarmed emitter starts as another is after that time")
     CHECK(scene.pool(1).clock.born == test::near(60 * 7).epsilon(0.02));
 }
 
-TEST_CASE("particles: drops that waves throw up fly on from where they are, up to the capacity") {
+TEST_CASE(
+    "particles: drops that waves throw up fly on from where they are, up to the capacity"
+    * technique("water.crest-spray, water.impact-spray")) {
     Emitters scene;
     ParticleEmitter emitter = steady(0);
     emitter.capacity = 30;
@@ -432,7 +451,9 @@ void check_births(const BirthDraw& draw, const BirthRun& run, std::uint64_t numb
 
 }  // namespace
 
-TEST_CASE("particles: births in vectors have the bits of those drawn one by one") {
+TEST_CASE(
+    "particles: births in vectors have the bits of those drawn one by one"
+    * technique("particle.generation-shape")) {
     const EmitterPlace still = {
         affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f}),
         affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f})};

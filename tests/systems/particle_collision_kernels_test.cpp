@@ -1,6 +1,7 @@
 #include "ecs/base/rng.h"
 #include "systems/particles/particle_collision_kernels.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -112,7 +113,9 @@ TEST_CASE("particle collision: kernels give the same bits on every vector width"
     }
 }
 
-TEST_CASE("particle collision: kernels push out and respond as one particle at a time does") {
+TEST_CASE(
+    "particle collision: kernels push out and respond as one particle at a time does"
+    * technique("particle.constraints")) {
     for (const Case& each : make_cases()) {
         CAPTURE(each.name);
         Arrays found(2000);

@@ -1,6 +1,7 @@
 #include "ecs/base/rng.h"
 #include "systems/particles/collider.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -156,7 +157,9 @@ TEST_CASE("particle collision: the first contact is where dense samples of the w
     }
 }
 
-TEST_CASE("particle collision: pushed out is outside, at once, by the shortest way") {
+TEST_CASE(
+    "particle collision: pushed out is outside, at once, by the shortest way"
+    * technique("particle.constraints")) {
     Random random(3, 3, 3, 3);
     for (const Shape& shape : make_shapes()) {
         CAPTURE(shape.name);
@@ -178,7 +181,9 @@ TEST_CASE("particle collision: pushed out is outside, at once, by the shortest w
     }
 }
 
-TEST_CASE("particle collision: the examples of sphere, floor and terrain constraints") {
+TEST_CASE(
+    "particle collision: the examples of sphere, floor and terrain constraints"
+    * technique("particle.constraints")) {
     const Collider sphere = SphereCollider{.radius = 2};
     CHECK(push_out(sphere, {0.5f, 0, 0}) == Vec3(2, 0, 0));
     CHECK(push_out(sphere, Vec3(0)) == Vec3(0, 2, 0));  // up from the center
@@ -192,7 +197,9 @@ TEST_CASE("particle collision: the examples of sphere, floor and terrain constra
     CHECK(push_out(terrain, {-0.3f, -7, 0.6f}) == Vec3(-0.3f, -7, 0.6f));  // beyond its edge
 }
 
-TEST_CASE("particle collision: a sphere pushes along the ray from its center") {
+TEST_CASE(
+    "particle collision: a sphere pushes along the ray from its center"
+    * technique("particle.constraints")) {
     Random random(4, 4, 4, 4);
     const Vec3 center(1, 2, 3);
     for (int i = 0; i < 1000; ++i) {
@@ -222,7 +229,9 @@ TEST_CASE(
     CHECK(double{tilted->point.y} == near(0.4));
 }
 
-TEST_CASE("particle collision: the normal of a height field is that of its central differences") {
+TEST_CASE(
+    "particle collision: the normal of a height field is that of its central differences"
+    * technique("particle.heightfield-collision")) {
     Random random(5, 5, 5, 5);
     for (int n = 0; n < 2000; ++n) {
         const Vec3 from(random.uniform(-1.9f, 1.9f), 2, random.uniform(-1.9f, 1.9f));

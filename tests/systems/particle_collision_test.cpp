@@ -1,6 +1,7 @@
 #include "ecs/base/rng.h"
 #include "systems/particles/particle_collision.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -46,7 +47,8 @@ CollisionResult fall(const CollisionResult& now, const Collider& floor, float bo
 // ---- particle.plane-response
 // -----------------------------------------------------------------------------
 
-TEST_CASE("particle collision: the table of bump and friction") {
+TEST_CASE(
+    "particle collision: the table of bump and friction" * technique("particle.plane-response")) {
     const Vec3 v(3, -4, 0);
     const Vec3 up(0, 1, 0);
     CHECK(respond(v, up, {0, 1}) == Vec3(3, 0, 0));
@@ -56,19 +58,25 @@ TEST_CASE("particle collision: the table of bump and friction") {
     CHECK(respond(v, up, {0.5f, 0.5f}) == Vec3(1.5f, 2, 0));
 }
 
-TEST_CASE("particle collision: velocities along or away from a surface stay") {
+TEST_CASE(
+    "particle collision: velocities along or away from a surface stay"
+    * technique("particle.plane-response")) {
     CHECK(respond({3, 4, 1}, {0, 1, 0}, {0, 0}) == Vec3(3, 4, 1));
     CHECK(respond({3, 0, 1}, {0, 1, 0}, {0, 0}) == Vec3(3, 0, 1));
     CHECK(respond({3, -4, 1}, Vec3(0), {0, 0}) == Vec3(3, -4, 1));  // no direction
 }
 
-TEST_CASE("particle collision: long normals are normalized, shares beyond 0 .. 1 are clamped") {
+TEST_CASE(
+    "particle collision: long normals are normalized, shares beyond 0 .. 1 are clamped"
+    * technique("particle.plane-response")) {
     CHECK(respond({3, -4, 0}, {0, 10, 0}, {0.5f, 0.5f}) == Vec3(1.5f, 2, 0));
     CHECK(respond({3, -4, 0}, {0, 1, 0}, {7, 7}) == Vec3(3, 4, 0));
     CHECK(respond({3, -4, 0}, {0, 1, 0}, {-1, -1}) == Vec3(0));
 }
 
-TEST_CASE("particle collision: no response adds speed, only the mirror keeps it") {
+TEST_CASE(
+    "particle collision: no response adds speed, only the mirror keeps it"
+    * technique("particle.plane-response")) {
     Random random(1, 2, 3, 4);
     for (int i = 0; i < 10000; ++i) {
         const Vec3 v = random_vector(random, 10);
@@ -84,7 +92,9 @@ TEST_CASE("particle collision: no response adds speed, only the mirror keeps it"
     }
 }
 
-TEST_CASE("particle collision: the angle to the plane is atan(bump v_n / friction v_t)") {
+TEST_CASE(
+    "particle collision: the angle to the plane is atan(bump v_n / friction v_t)"
+    * technique("particle.plane-response")) {
     Random random(5, 6, 7, 8);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 v(random.uniform(0.1f, 5.0f), -random.uniform(0.1f, 5.0f), 0);
@@ -99,7 +109,9 @@ TEST_CASE("particle collision: the angle to the plane is atan(bump v_n / frictio
 // ---- particle.collision-loop
 // -----------------------------------------------------------------------------
 
-TEST_CASE("particle collision: a contact costs no time, or no length as in the book") {
+TEST_CASE(
+    "particle collision: a contact costs no time, or no length as in the book"
+    * technique("particle.collision-loop")) {
     const Vec3 from(0, 1, 0);
     const Vec3 v(1, -2, 0);
     const SurfaceResponse slide = {.bounce = 0, .friction = 1};
@@ -141,7 +153,8 @@ TEST_CASE("particle collision: a surface that takes all speed is where the way e
     }
 }
 
-TEST_CASE("particle collision: a corner takes two contacts") {
+TEST_CASE(
+    "particle collision: a corner takes two contacts" * technique("particle.collision-loop")) {
     const Collider walls[] = {PlaneCollider{}, PlaneCollider{.normal = {-1, 0, 0}, .offset = -1}};
     const CollisionResult end =
         move_with_collisions({0, 0.5f, 0}, {2, -1, 0}, 1, walls, kMirror, {.skin = 1e-6f});
@@ -150,7 +163,9 @@ TEST_CASE("particle collision: a corner takes two contacts") {
     check_near(end.velocity, {-2, 1, 0});
 }
 
-TEST_CASE("particle collision: in an acute corner it stops after the largest number of bounces") {
+TEST_CASE(
+    "particle collision: in an acute corner it stops after the largest number of bounces"
+    * technique("particle.collision-loop")) {
     const float angle = 0.01f;
     const Collider walls[] = {
         PlaneCollider{}, PlaneCollider{.normal = {std::sin(angle), -std::cos(angle), 0}}};
@@ -162,7 +177,9 @@ TEST_CASE("particle collision: in an acute corner it stops after the largest num
     CHECK(end.position.y <= end.position.x * std::tan(angle) + 1e-4f);
 }
 
-TEST_CASE("particle collision: a box of mirrors unfolds to straight flight") {
+TEST_CASE(
+    "particle collision: a box of mirrors unfolds to straight flight"
+    * technique("particle.collision-loop")) {
     // Oracle: in a room of planes the path is a triangle wave of the straight one along each axis.
     std::vector<Collider> room;
     for (int axis = 0; axis < 3; ++axis) {
@@ -208,7 +225,9 @@ TEST_CASE("particle collision: nothing that is not finite moves") {
 // ---- particle.penetration-guard
 // -----------------------------------------------------------------------------
 
-TEST_CASE("particle collision: outside or inside before and after decides the response") {
+TEST_CASE(
+    "particle collision: outside or inside before and after decides the response"
+    * technique("particle.penetration-guard")) {
     struct Case {
         const char* name;
         float from, speed;  // height and upward speed
@@ -232,7 +251,9 @@ TEST_CASE("particle collision: outside or inside before and after decides the re
     }
 }
 
-TEST_CASE("particle collision: a particle at rest stays at rest") {
+TEST_CASE(
+    "particle collision: a particle at rest stays at rest"
+    * technique("particle.penetration-guard")) {
     for (const float bounce : {0.0f, 0.5f, 1.0f}) {
         CollisionResult now = {.position = {0.25f, 0, 0}};
         for (int i = 0; i < 1000; ++i) {
@@ -245,7 +266,9 @@ TEST_CASE("particle collision: a particle at rest stays at rest") {
     }
 }
 
-TEST_CASE("particle collision: who starts inside does not bounce in the next step either") {
+TEST_CASE(
+    "particle collision: who starts inside does not bounce in the next step either"
+    * technique("particle.penetration-guard")) {
     CollisionResult now = {.position = {0, -0.1f, 0}, .velocity = {0, -5, 0}};
     for (int i = 0; i < 3; ++i) {
         now = fall(now, kFloor, 1, kStep);
@@ -266,7 +289,9 @@ TEST_CASE("particle collision: a bouncing particle does not rise higher than it 
 // ---- particle.heightfield-collision
 // -----------------------------------------------------------------------------
 
-TEST_CASE("particle collision: a drop from z0 rebounds to b^2 z0") {
+TEST_CASE(
+    "particle collision: a drop from z0 rebounds to b^2 z0"
+    * technique("particle.heightfield-collision")) {
     const std::vector<float> flat(16, 0.5f);
     const Collider floors[] = {
         PlaneCollider{.offset = 0.5f},
@@ -289,7 +314,9 @@ TEST_CASE("particle collision: a drop from z0 rebounds to b^2 z0") {
     }
 }
 
-TEST_CASE("particle collision: a linear height field acts as the plane that it is") {
+TEST_CASE(
+    "particle collision: a linear height field acts as the plane that it is"
+    * technique("particle.heightfield-collision")) {
     // y = 0.5 x - 0.25 z
     std::vector<float> heights;
     for (int j = 0; j < 9; ++j) {
@@ -316,7 +343,9 @@ TEST_CASE("particle collision: a linear height field acts as the plane that it i
     }
 }
 
-TEST_CASE("particle collision: a mirror keeps the speed on a height field, never below it") {
+TEST_CASE(
+    "particle collision: a mirror keeps the speed on a height field, never below it"
+    * technique("particle.heightfield-collision")) {
     Random random(9, 9, 8, 7);
     std::vector<float> heights(32 * 32);
     for (float& height : heights) {
@@ -408,7 +437,9 @@ TEST_CASE("particle collision: of 100,000 ways at 60 m/s none passes a box 1 mm 
     CHECK(count_escaped(room, 0.8f, room.boxes, 0.01f) == 0);
 }
 
-TEST_CASE("particle collision: of 100,000 ways at 60 m/s none passes a mesh 1 mm thick") {
+TEST_CASE(
+    "particle collision: of 100,000 ways at 60 m/s none passes a mesh 1 mm thick"
+    * technique("particle.collision-loop")) {
     const Room room(0.8f);
     const MeshBvh bvh = build_mesh_bvh(room.positions, room.indices);
     const Collider mesh = MeshCollider{.bvh = &bvh};

@@ -2,6 +2,7 @@
 #include "ecs/snapshot.h"
 #include "systems/particles/particle_deaths.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -77,7 +78,9 @@ TEST_CASE("particle deaths: in order, the others keep their order") {
     CHECK_FALSE(pool.mixed);
 }
 
-TEST_CASE("particle deaths: out of order, all that live stay and only the last ones move") {
+TEST_CASE(
+    "particle deaths: out of order, all that live stay and only the last ones move"
+    * technique("particle.system")) {
     for (const std::size_t count : {500u, 40001u}) {
         ParticlePool pool = random_pool(count);
         const ParticlePool before = pool;
@@ -118,7 +121,9 @@ TEST_CASE("particle deaths: a mixed pool comes back into the order of ages, rows
     CHECK(after == before);
 }
 
-TEST_CASE("particle deaths: whoever is told by its order keeps it, and nobody else") {
+TEST_CASE(
+    "particle deaths: whoever is told by its order keeps it, and nobody else"
+    * technique("particle.system")) {
     Emitters scene;
     const Entity plain = scene.add(restless());
     const Entity births = scene.add(restless());

@@ -1,6 +1,7 @@
 #include "systems/particles/particle_kernels.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -44,7 +45,9 @@ TEST_CASE("particles: moving a part of a pool leaves its neighbors as they are")
     }
 }
 
-TEST_CASE("particles: wrapping by vectors gives the bits of the plain loop") {
+TEST_CASE(
+    "particles: wrapping by vectors gives the bits of the plain loop"
+    * technique("engine.space-dust")) {
     for (const std::size_t count : {0u, 1u, 7u, 16u, 33u, 100u}) {
         ParticlePool plain = random_pool(count);
         ParticlePool pool = plain;

@@ -5,6 +5,7 @@
 #include "systems/particles/particle_mesh_system.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -76,7 +77,9 @@ float distortion(const Affine& pose, float scale) {
 
 }  // namespace
 
-TEST_CASE("particle meshes: as many instances as particles, each where its particle is") {
+TEST_CASE(
+    "particle meshes: as many instances as particles, each where its particle is"
+    * technique("engine.projectile-instances, particle.mesh-particles")) {
     Meshes all(spray(), three_meshes(), falling());
     std::set<std::uint32_t> used;
     for (int i = 0; i < 90; ++i) {
@@ -124,7 +127,9 @@ TEST_CASE("particle meshes: an instance was where its particle was, whoever else
     CHECK(born == 300);
 }
 
-TEST_CASE("particle meshes: turns keep lengths and angles, at a scale within its spread") {
+TEST_CASE(
+    "particle meshes: turns keep lengths and angles, at a scale within its spread"
+    * technique("particle.mesh-particles")) {
     ParticleMesh mesh = three_meshes();
     mesh.scale = 0.5f;
     mesh.scale_spread = 0.2f;

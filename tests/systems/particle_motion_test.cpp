@@ -4,6 +4,7 @@
 #include "systems/particles/particle_kernels.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -15,7 +16,9 @@ namespace limn::particle_motion_test {
 
 using namespace limn::test;
 
-TEST_CASE("particles: free fall is exact whatever the step, unlike Euler's") {
+TEST_CASE(
+    "particles: free fall is exact whatever the step, unlike Euler's"
+    * technique("particle.integrator")) {
     for (const int steps : {10, 100}) {
         CAPTURE(steps);
         const float dt = 1.0f / static_cast<float>(steps);
@@ -33,7 +36,9 @@ TEST_CASE("particles: free fall is exact whatever the step, unlike Euler's") {
     }
 }
 
-TEST_CASE("particles: a jet has no clumps, births within a step are on its parabola") {
+TEST_CASE(
+    "particles: a jet has no clumps, births within a step are on its parabola"
+    * technique("particle.stateless-script")) {
     // Forty births a step, thrown up and falling for 1.2 s.
     Emitters scene;
     ParticleEmitter emitter = steady(2400);
@@ -85,7 +90,8 @@ TEST_CASE("particles: with drag they fall as they should, whatever the step") {
     }
 }
 
-TEST_CASE("particles: Euler's integrators fall as far as their sums") {
+TEST_CASE(
+    "particles: Euler's integrators fall as far as their sums" * technique("particle.integrator")) {
     const auto fall = [](ParticleIntegrator integrator, float dt, int steps) {
         Emitters scene(dt);
         ParticleEmitter emitter = burst(1);
@@ -133,7 +139,9 @@ struct Orbiting {
 
 }  // namespace
 
-TEST_CASE("particles: orbit and brake give the numbers of the book's update, by integrator") {
+TEST_CASE(
+    "particles: orbit and brake give the numbers of the book's update, by integrator"
+    * technique("particle.gpu-update, particle.gpu-update-mrt")) {
     using enum ParticleIntegrator;
     const auto near = [](const Vec2& a, const Vec2& b) { return glm::distance(a, b) < 1e-5f; };
     Orbiting turned({3, 4}, {.orbit = 1, .integrator = SemiImplicit});
@@ -279,7 +287,9 @@ TEST_CASE("particles: gradients of the noise are those of differences, and conti
     }
 }
 
-TEST_CASE("particles: a box about the camera keeps them, evenly, wherever it goes") {
+TEST_CASE(
+    "particles: a box about the camera keeps them, evenly, wherever it goes"
+    * technique("engine.space-dust")) {
     Emitters scene;
     ParticleEmitter emitter = burst(4000);
     emitter.shape = EmitterShape::Box;

@@ -10,6 +10,7 @@
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -146,7 +147,9 @@ TEST_CASE("particle collision: killed ones give birth once where they hit, along
     }
 }
 
-TEST_CASE("particle obstacles: a mesh stops them where its entity has it, and where it moves to") {
+TEST_CASE(
+    "particle obstacles: a mesh stops them where its entity has it, and where it moves to"
+    * technique("particle.collision-loop")) {
     Obstacles scene;
     scene.drop(kStop);
     const Entity square = scene.add_square({0, 1, 0}, 3);
@@ -189,7 +192,9 @@ TEST_CASE("particle obstacles: nothing passes a sheet of triangles at 60 m/s") {
     CHECK(*std::min_element(pool.y.begin(), pool.y.end()) > 1);
 }
 
-TEST_CASE("particle obstacles: a deformed mesh stops them where it is deformed to") {
+TEST_CASE(
+    "particle obstacles: a deformed mesh stops them where it is deformed to"
+    * technique("particle.collision-loop")) {
     Obstacles scene;
     scene.drop(kStop);
     const Entity square = scene.add_square({0, 1, 0}, 2);
@@ -204,7 +209,9 @@ TEST_CASE("particle obstacles: a deformed mesh stops them where it is deformed t
     scene.check_height(1, 1);
 }
 
-TEST_CASE("particle obstacles: a height field holds them on its bilinear surface") {
+TEST_CASE(
+    "particle obstacles: a height field holds them on its bilinear surface"
+    * technique("particle.heightfield-collision")) {
     Obstacles scene;
     ParticleCollision grip = kStop;
     scene.drop(grip);
@@ -287,7 +294,9 @@ struct Pond : Obstacles {
 
 }  // namespace
 
-TEST_CASE("particle obstacles: each drop that falls into water dies there and dents it once") {
+TEST_CASE(
+    "particle obstacles: each drop that falls into water dies there and dents it once"
+    * technique("particle.collision-loop")) {
     Pond scene;
     scene.drop({.action = CollisionAction::Kill});
     scene.run(60);

@@ -8,6 +8,7 @@
 #include "systems/particles/particle_mesh_system.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -149,7 +150,9 @@ struct Surfaces : Emitters {
 
 }  // namespace
 
-TEST_CASE("particle surface: births are even by the area that a mesh has in the world") {
+TEST_CASE(
+    "particle surface: births are even by the area that a mesh has in the world"
+    * technique("particle.generation-shape")) {
     Surfaces scene;
     const Entity mesh =
         scene.add_instance(scene.add_mesh(two_rectangles()), placed({5, 6, 7}, {2, 1, 3}));
@@ -174,7 +177,9 @@ TEST_CASE("particle surface: births are even by the area that a mesh has in the 
     CHECK(chi_square < 115);
 }
 
-TEST_CASE("particle surface: births of a skinned mesh are where its pose has it in this step") {
+TEST_CASE(
+    "particle surface: births of a skinned mesh are where its pose has it in this step"
+    * technique("particle.generation-shape")) {
     Surfaces scene;
     const Entity mesh = scene.add_instance(scene.add_mesh(two_rectangles()), placed({0, 0, 10}));
     SkinData skin;
@@ -236,7 +241,9 @@ TEST_CASE("particle surface: directions are about the normal, also where a mesh 
     }
 }
 
-TEST_CASE("particle surface: births along a path are even by arc length") {
+TEST_CASE(
+    "particle surface: births along a path are even by arc length"
+    * technique("particle.generation-shape")) {
     Surfaces scene;
     PathShape shape;  // a tight bend, then far away: u runs unevenly
     shape.knots = {
@@ -360,7 +367,9 @@ TEST_CASE("particle surface: a triangle that is not finite is left out, the othe
     }
 }
 
-TEST_CASE("particle surface: births in a volume are even by volume, whatever encloses it") {
+TEST_CASE(
+    "particle surface: births in a volume are even by volume, whatever encloses it"
+    * technique("particle.mesh-volume")) {
     Surfaces scene;
     const MeshId mesh = scene.add_mesh(two_boxes());
     // Births are as even in the world as in the mesh.
@@ -392,7 +401,9 @@ TEST_CASE("particle surface: births in a volume are even by volume, whatever enc
     CHECK(chi_square < 76);
 }
 
-TEST_CASE("particle surface: births in a ball have the moments of a ball") {
+TEST_CASE(
+    "particle surface: births in a ball have the moments of a ball"
+    * technique("particle.mesh-volume")) {
     Surfaces scene;
     const MeshId mesh = scene.add_mesh(ball_mesh(2, 64));
     const Entity ball = scene.add_instance(mesh, placed({1, 0, 0}));
@@ -415,7 +426,9 @@ TEST_CASE("particle surface: births in a ball have the moments of a ball") {
     CHECK(square == near(0.6 * 4).epsilon(0.01));
 }
 
-TEST_CASE("particle surface: a mesh that is open above or below has no volume, and none is born") {
+TEST_CASE(
+    "particle surface: a mesh that is open above or below has no volume, and none is born"
+    * technique("particle.mesh-volume")) {
     MeshData pot = box_mesh({2, 1, 2});
     pot.indices.resize(30);  // without its lid
     MeshData bell = box_mesh({2, 1, 2});
@@ -430,7 +443,9 @@ TEST_CASE("particle surface: a mesh that is open above or below has no volume, a
     }
 }
 
-TEST_CASE("particle surface: bodies that overlap or have holes enclose what is in any of them") {
+TEST_CASE(
+    "particle surface: bodies that overlap or have holes enclose what is in any of them"
+    * technique("particle.mesh-volume")) {
     MeshData mesh = closed_mesh(192, 96, [](float u, float v) {
         const float tube = -2 * kPi * (v == 1 ? 0 : v);
         return on_circle(u, 1 + 0.4f * std::cos(tube), 0.4f * std::sin(tube));
@@ -453,7 +468,9 @@ TEST_CASE("particle surface: bodies that overlap or have holes enclose what is i
     CHECK(inside > 4000);
 }
 
-TEST_CASE("particle surface: every column of a closed mesh is closed, through its vertices too") {
+TEST_CASE(
+    "particle surface: every column of a closed mesh is closed, through its vertices too"
+    * technique("particle.mesh-volume")) {
     const MeshData mesh = ball_mesh(1, 32);
     MeshVolume volume;
     REQUIRE(fill_mesh_volume(mesh.positions, mesh.indices, volume));
@@ -560,7 +577,9 @@ struct Exploding : Surfaces {
 
 }  // namespace
 
-TEST_CASE("explode: each piece flies away from the blast at its speed, one at the blast anywhere") {
+TEST_CASE(
+    "explode: each piece flies away from the blast at its speed, one at the blast anywhere"
+    * technique("engine.explode")) {
     Exploding scene({}, 2, placed({10, 0, 0}));
     scene.step(12);
     REQUIRE(scene.pool().size() == 3);
@@ -580,7 +599,9 @@ TEST_CASE("explode: each piece flies away from the blast at its speed, one at th
     CHECK(glm::distance(aside.place(0), Vec3(1, way, 0)) < 1e-4f);
 }
 
-TEST_CASE("explode: at their birth the pieces lie where they lay in the whole") {
+TEST_CASE(
+    "explode: at their birth the pieces lie where they lay in the whole"
+    * technique("particle.mesh-particles")) {
     const Affine at =
         affine_from({3, 4, 5}, glm::angleAxis(0.7f, Vec3(0.6f, 0, 0.8f)), {2, 1, 0.5f});
     Exploding scene({.spin = 3, .spin_spread = 2}, 2, at);
@@ -606,7 +627,9 @@ TEST_CASE("explode: at their birth the pieces lie where they lay in the whole") 
     }
 }
 
-TEST_CASE("explode: pieces keep their size until they fade, shrink to nothing and are gone") {
+TEST_CASE(
+    "explode: pieces keep their size until they fade, shrink to nothing and are gone"
+    * technique("engine.explode")) {
     Exploding scene({.spin_spread = 4, .fade = 0.5f}, 2);
     const auto size = [&](const std::vector<MeshParticle>& pieces) {
         return glm::length(transform_vector(pieces[0].now, Vec3(1, 0, 0)));
@@ -617,7 +640,7 @@ TEST_CASE("explode: pieces keep their size until they fade, shrink to nothing an
     CHECK(scene.step(4).empty());
 }
 
-TEST_CASE("explode: a second blast releases the same pieces again") {
+TEST_CASE("explode: a second blast releases the same pieces again" * technique("engine.explode")) {
     Exploding scene({});
     scene.world.get<ParticleEmitter>(scene.emitter).bursts[0].repeats = 1;
     const std::vector<MeshParticle>& pieces = scene.step(62);

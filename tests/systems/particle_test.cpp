@@ -5,6 +5,7 @@
 #include "ecs/snapshot.h"
 #include "systems/transform_system.h"
 #include "tests/systems/particle_emitters.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -18,7 +19,9 @@ namespace limn::particle_test {
 
 using namespace limn::test;
 
-TEST_CASE("particles: as many are alive as are born in a lifetime, and go when it is over") {
+TEST_CASE(
+    "particles: as many are alive as are born in a lifetime, and go when it is over"
+    * technique("particle.system")) {
     Emitters scene;
     ParticleEmitter emitter = steady(200);
     emitter.life = 1.5f;
@@ -37,7 +40,7 @@ TEST_CASE("particles: as many are alive as are born in a lifetime, and go when i
     CHECK(scene.pool().size() == 0);
 }
 
-TEST_CASE("particles: a full pool drops births and counts them") {
+TEST_CASE("particles: a full pool drops births and counts them" * technique("particle.system")) {
     Emitters scene;
     ParticleEmitter emitter = burst(90);
     emitter.rate = 60;
@@ -49,7 +52,9 @@ TEST_CASE("particles: a full pool drops births and counts them") {
     CHECK(scene.pool().clock.dropped == 50);  // 90 + 60 - 100
 }
 
-TEST_CASE("particles: a linear population is born once, as many as the capacity") {
+TEST_CASE(
+    "particles: a linear population is born once, as many as the capacity"
+    * technique("particle.linear-window")) {
     Emitters scene;
     ParticleEmitter emitter = steady(600);
     emitter.population = ParticlePopulation::Linear;
@@ -72,7 +77,9 @@ TEST_CASE("particles: a linear population is born once, as many as the capacity"
     CHECK(scene.pool().clock.dropped == 550);
 }
 
-TEST_CASE("particles: a rate of capacity / life holds the population at the capacity") {
+TEST_CASE(
+    "particles: a rate of capacity / life holds the population at the capacity"
+    * technique("engine.particle-cpu")) {
     // The source's example: fifty in all, a life of a second.
     Emitters scene;
     ParticleEmitter emitter = steady(50);
@@ -93,7 +100,9 @@ TEST_CASE("particles: a rate of capacity / life holds the population at the capa
     CHECK(std::abs(static_cast<double>(scene.pool().clock.born - begun) - 8 * 50) <= 8);
 }
 
-TEST_CASE("particles: two emitters alike differ, unless they have the same seed") {
+TEST_CASE(
+    "particles: two emitters alike differ, unless they have the same seed"
+    * technique("engine.particle-cpu")) {
     Emitters scene;
     ParticleEmitter emitter = burst(50);
     emitter.shape = EmitterShape::Ball;
@@ -108,7 +117,9 @@ TEST_CASE("particles: two emitters alike differ, unless they have the same seed"
     CHECK(scene.pool(2).look == scene.pool(3).look);
 }
 
-TEST_CASE("particles: threads do not change the bits, nor does a snapshot in between") {
+TEST_CASE(
+    "particles: threads do not change the bits, nor does a snapshot in between"
+    * technique("particle.system")) {
     const auto build = [](Emitters& scene) {
         ParticleEmitter emitter = steady(20000);
         emitter.shape = EmitterShape::Ball;
@@ -235,7 +246,9 @@ TEST_CASE("particles: no number makes a NaN, a hang or more than fits") {
     }
 }
 
-TEST_CASE("particles: a step of ten seconds moves them by a tenth of one") {
+TEST_CASE(
+    "particles: a step of ten seconds moves them by a tenth of one"
+    * technique("particle.system")) {
     Emitters scene(10.0f);
     scene.add(steady(100), falling(0));
     scene.run();

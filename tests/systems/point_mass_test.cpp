@@ -5,6 +5,7 @@
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/point_mass_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -112,14 +113,17 @@ struct Bodies {
 
 }  // namespace
 
-TEST_CASE("projectile: without air it flies the parabola of 254.842 m in 7.20802 s") {
+TEST_CASE(
+    "projectile: without air it flies the parabola of 254.842 m in 7.20802 s"
+    * technique("particle.projectile")) {
     const Arc arc = fly(thrown(50, 45), 0, 0.001f);
     CHECK(arc.range == near(254.841998).epsilon(1e-3));
     CHECK(arc.apex == near(63.710499).epsilon(1e-3));
     CHECK(arc.time == near(7.208020).epsilon(1e-3));
 }
 
-TEST_CASE("projectile: without air it flies farthest at 45 degrees") {
+TEST_CASE(
+    "projectile: without air it flies farthest at 45 degrees" * technique("particle.projectile")) {
     const double best = fly(thrown(50, 45), 0, 0.01f).range;
     for (int angle = 5; angle < 90; angle += 5) {
         CAPTURE(angle);
@@ -127,7 +131,9 @@ TEST_CASE("projectile: without air it flies farthest at 45 degrees") {
     }
 }
 
-TEST_CASE("projectile: with air the range is smaller and the descent steeper than the ascent") {
+TEST_CASE(
+    "projectile: with air the range is smaller and the descent steeper than the ascent"
+    * technique("particle.projectile")) {
     for (const double angle : {20.0, 45.0, 70.0}) {
         CAPTURE(angle);
         const Arc free = fly(thrown(50, angle), 0, kStep);
@@ -141,7 +147,9 @@ TEST_CASE("projectile: with air the range is smaller and the descent steeper tha
     }
 }
 
-TEST_CASE("projectile: with air it is where Runge and Kutta have it, to the step's square") {
+TEST_CASE(
+    "projectile: with air it is where Runge and Kutta have it, to the step's square"
+    * technique("particle.projectile")) {
     double last_error = 0;
     for (const int steps : {30, 60, 120}) {  // of 4 s
         const float dt = 4.0f / static_cast<float>(steps);
@@ -160,7 +168,9 @@ TEST_CASE("projectile: with air it is where Runge and Kutta have it, to the step
     }
 }
 
-TEST_CASE("projectile: it ends at the terminal speed of 73.6449 m/s, whatever the step") {
+TEST_CASE(
+    "projectile: it ends at the terminal speed of 73.6449 m/s, whatever the step"
+    * technique("particle.projectile")) {
     for (const float dt : {0.001f, kStep, 0.1f}) {
         CAPTURE(dt);
         PointMass body{.velocity = {3, 200, 0}};
@@ -172,7 +182,9 @@ TEST_CASE("projectile: it ends at the terminal speed of 73.6449 m/s, whatever th
     }
 }
 
-TEST_CASE("projectile: drag is opposite to the flight, and never turns it around") {
+TEST_CASE(
+    "projectile: drag is opposite to the flight, and never turns it around"
+    * technique("particle.projectile")) {
     for (const float drag : {0.01f, 1.0f, 1e6f}) {
         for (const Vec3& velocity : {Vec3(3, -4, 12), Vec3(500, 0, 1), Vec3(0, 0.1f, 0)}) {
             const PointMass next = step_point_mass({.velocity = velocity}, {.drag = drag}, 0.1f);
@@ -190,7 +202,9 @@ TEST_CASE("projectile: drag is opposite to the flight, and never turns it around
     CHECK(step_point_mass({.velocity = {0, 0, 0}}, wind, 0.1f).velocity.x > 0.5f);
 }
 
-TEST_CASE("variable mass: in space a rocket gains u ln(m0 / m1), whatever the step") {
+TEST_CASE(
+    "variable mass: in space a rocket gains u ln(m0 / m1), whatever the step"
+    * technique("particle.variable-mass")) {
     for (const int steps : {1, 7, 1000}) {
         CAPTURE(steps);
         PointMass rocket{.mass = 2000};
@@ -205,7 +219,9 @@ TEST_CASE("variable mass: in space a rocket gains u ln(m0 / m1), whatever the st
     }
 }
 
-TEST_CASE("variable mass: as momentum m v stays, so that half the mass is twice as fast") {
+TEST_CASE(
+    "variable mass: as momentum m v stays, so that half the mass is twice as fast"
+    * technique("particle.variable-mass")) {
     PointMass body{.velocity = {3, 0, -2}, .mass = 8};
     for (int i = 0; i < 40; ++i) {
         body = step_point_mass(
@@ -216,7 +232,9 @@ TEST_CASE("variable mass: as momentum m v stays, so that half the mass is twice 
     CHECK(body.velocity.z == near(-4).epsilon(1e-4));
 }
 
-TEST_CASE("variable mass: without a burn it is the plain law, bit for bit") {
+TEST_CASE(
+    "variable mass: without a burn it is the plain law, bit for bit"
+    * technique("particle.variable-mass")) {
     for (const bool keeps : {false, true}) {
         const PointMass plain = step_point_mass(thrown(50, 30), falling_in_air(kSphereDrag), kStep);
         PointMassForces forces = falling_in_air(kSphereDrag);
@@ -228,7 +246,9 @@ TEST_CASE("variable mass: without a burn it is the plain law, bit for bit") {
     }
 }
 
-TEST_CASE("variable mass: it burns out at the dry mass and then falls as a stone does") {
+TEST_CASE(
+    "variable mass: it burns out at the dry mass and then falls as a stone does"
+    * technique("particle.variable-mass")) {
     Bodies scene;
     const Entity rocket = scene.world.create(
         Transform{}, PointMass{.mass = 3},
@@ -248,7 +268,9 @@ TEST_CASE("variable mass: it burns out at the dry mass and then falls as a stone
     CHECK(scene.mass(rocket).velocity.y - before == near(-kGravity / 2).epsilon(1e-4));
 }
 
-TEST_CASE("variable mass: exhaust turns with the body, whose -z aims along the flight") {
+TEST_CASE(
+    "variable mass: exhaust turns with the body, whose -z aims along the flight"
+    * technique("particle.variable-mass")) {
     Bodies scene;
     const Quat up = glm::angleAxis(0.5f * kPi, Vec3(1, 0, 0));  // -z becomes +y
     const Entity rocket = scene.world.create(
@@ -264,7 +286,9 @@ TEST_CASE("variable mass: exhaust turns with the body, whose -z aims along the f
     CHECK(glm::length(turn) == near(1));
 }
 
-TEST_CASE("point mass: its entity is where the mean velocity brings it; fields and wind move it") {
+TEST_CASE(
+    "point mass: its entity is where the mean velocity brings it; fields and wind move it"
+    * technique("particle.projectile")) {
     Bodies scene;
     const Entity ball =
         scene.world.create(Transform{.position = {1, 2, 3}}, PointMass{.velocity = {5, 0, 0}});
@@ -282,7 +306,9 @@ TEST_CASE("point mass: its entity is where the mean velocity brings it; fields a
     CHECK(scene.mass(ball).velocity.y == near(before).epsilon(1e-4));
 }
 
-TEST_CASE("point mass: it bounces by the share of its speed, ends by a hit, or sticks") {
+TEST_CASE(
+    "point mass: it bounces by the share of its speed, ends by a hit, or sticks"
+    * technique("particle.projectile")) {
     for (const CollisionAction action :
          {CollisionAction::Bounce, CollisionAction::Kill, CollisionAction::Stick}) {
         CAPTURE(static_cast<int>(action));
@@ -308,7 +334,9 @@ TEST_CASE("point mass: it bounces by the share of its speed, ends by a hit, or s
     }
 }
 
-TEST_CASE("point mass: without mass, or with NaN, it stays and stops") {
+TEST_CASE(
+    "point mass: without mass, or with NaN, it stays and stops"
+    * technique("particle.projectile")) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInf = std::numeric_limits<float>::infinity();
     Bodies scene;

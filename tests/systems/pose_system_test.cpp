@@ -9,6 +9,7 @@
 #include "tests/ecs/allocation_count.h"
 #include "tests/near.h"
 #include "tests/systems/clip_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -248,7 +249,7 @@ TEST_CASE("pose system: new characters get weights for the morph targets of thei
     CHECK(stage.world.get<const MorphWeights>(character).weights[1] > 0);
 }
 
-TEST_CASE("pose system: morph weights move without a skeleton too") {
+TEST_CASE("pose system: morph weights move without a skeleton too" * technique("char.morph-anim")) {
     Stage stage;
     ClipData fade;
     fade.duration = 1;
@@ -283,7 +284,9 @@ ClipData make_fade(
 
 }  // namespace
 
-TEST_CASE("morph player: curves count times the weight of their animation, tiny ones not at all") {
+TEST_CASE(
+    "morph player: curves count times the weight of their animation, tiny ones not at all"
+    * technique("char.morph-anim")) {
     std::vector<float> weights = {0, 0, 1};
     const ClipData fade = make_fade({0, 1}, {0, 1}, {0.5f, 0.00005f, 0.5f, 0.00005f});
     add_morph_weights(fade, 0.5f, 0.5f, weights);
@@ -296,7 +299,9 @@ TEST_CASE("morph player: curves count times the weight of their animation, tiny 
     CHECK(weights[1] == 0);
 }
 
-TEST_CASE("morph player: animations of different regions are the sum of each alone, step by step") {
+TEST_CASE(
+    "morph player: animations of different regions are the sum of each alone, step by step"
+    * technique("char.morph-anim")) {
     Stage stage;
     Assets& assets = stage.world.resource<Assets>();
     assets.clips.push_back(make_fade({0}, {0, 2}, {1, 1}));

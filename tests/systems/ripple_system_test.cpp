@@ -1,5 +1,6 @@
 #include "ecs/world.h"
 #include "systems/ripple_system.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -39,7 +40,9 @@ TEST_CASE("ripples: one of the screen ends after its duration") {
     CHECK(world.find<ScreenRipple>(e) == nullptr);
 }
 
-TEST_CASE("ripples: they come and go with their age, and are nothing before and after") {
+TEST_CASE(
+    "ripples: they come and go with their age, and are nothing before and after"
+    * technique("post.scene-ripple")) {
     for (const float age : {-1.0f, 0.0f, 0.5f, 2.0f}) {
         CHECK(ripple_fade(ScreenRipple{.age = age, .duration = 0.5f}) == 0);
     }

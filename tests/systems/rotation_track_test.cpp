@@ -3,6 +3,7 @@
 #include "systems/animation/rotation_track_system.h"
 #include "systems/update_world.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -31,7 +32,8 @@ float degrees_at(const RotationTrack& track, double time) {
 
 }  // namespace
 
-TEST_CASE("rotation_track: by any method it is at its keys when they are due") {
+TEST_CASE(
+    "rotation_track: by any method it is at its keys when they are due" * technique("anim.slerp")) {
     for (const RotationMethod method :
          {RotationMethod::Slerp, RotationMethod::Nlerp, RotationMethod::Squad,
           RotationMethod::Euler}) {
@@ -46,7 +48,9 @@ TEST_CASE("rotation_track: by any method it is at its keys when they are due") {
     }
 }
 
-TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squad has no corner") {
+TEST_CASE(
+    "rotation_track: slerp has an even speed between keys, nlerp lags, squad has no corner"
+    * technique("anim.quat-lerp, anim.squad")) {
     const RotationTrack turn = {.keys = {{0, yaw(0)}, {1, yaw(160)}}};
     CHECK(degrees_at(turn, 0.25) == test::near(40).epsilon(1e-5));
     RotationTrack straight = turn;
@@ -68,14 +72,18 @@ TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squ
     CHECK(std::abs(speed(smooth, 1) - speed(smooth, 0.99)) < 1.0f);
 }
 
-TEST_CASE("rotation_track: at an even speed keys are due where the turn has come to") {
+TEST_CASE(
+    "rotation_track: at an even speed keys are due where the turn has come to"
+    * technique("anim.constant-angular-velocity")) {
     const RotationTrack track = uneven_track(RotationMethod::Slerp, RotationTiming::EvenSpeed);
     for (const double time : {0.0, 0.5, 1.0, 1.7, 2.4, 3.0}) {
         CHECK(degrees_at(track, time) == test::near(30 * time).scale(1).epsilon(1e-4));
     }
 }
 
-TEST_CASE("rotation_track: Euler angles go their own way, which is no great arc") {
+TEST_CASE(
+    "rotation_track: Euler angles go their own way, which is no great arc"
+    * technique("anim.euler")) {
     // From a yaw of 90 degrees to a pitch of 90: in the middle 45 and 45 degrees.
     RotationTrack track = {
         .keys = {{0, yaw(90)}, {1, glm::angleAxis(radians(90.0f), Vec3(1, 0, 0))}},
@@ -88,7 +96,9 @@ TEST_CASE("rotation_track: Euler angles go their own way, which is no great arc"
     CHECK(std::abs(glm::dot(arc, expected)) < 0.99f);
 }
 
-TEST_CASE("rotation_track: the sign of a key does not matter, the shorter way is taken") {
+TEST_CASE(
+    "rotation_track: the sign of a key does not matter, the shorter way is taken"
+    * technique("anim.shortest-arc")) {
     RotationTrack track = {.keys = {{0, yaw(0)}, {1, -yaw(90)}, {2, yaw(200)}}};
     CHECK(degrees_at(track, 0.5) == test::near(45).epsilon(1e-5));
     CHECK(degrees_at(track, 1.5) == test::near(145).epsilon(1e-5));

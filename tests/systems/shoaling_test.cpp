@@ -3,6 +3,7 @@
 #include "systems/water/shoaling_system.h"
 #include "systems/water/water_dispersion.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -33,7 +34,9 @@ double length_at(const ShoalingState& state, int i, int j) {
 
 }  // namespace
 
-TEST_CASE("shoaling: waves are as long as the depth says, shorter over the shoal, of one period") {
+TEST_CASE(
+    "shoaling: waves are as long as the depth says, shorter over the shoal, of one period"
+    * technique("water.shallow-refraction")) {
     World world;
     const Entity tank = world.create(Transform{}, kTank);
     Schedule schedule = make_world_schedule();
@@ -59,7 +62,9 @@ TEST_CASE("shoaling: waves are as long as the depth says, shorter over the shoal
     }
 }
 
-TEST_CASE("shoaling: behind the shoal crests bend toward its axis, alike on both sides") {
+TEST_CASE(
+    "shoaling: behind the shoal crests bend toward its axis, alike on both sides"
+    * technique("water.shallow-refraction")) {
     World world;
     const Entity tank = world.create(Transform{}, kTank);
     start_world(world);
@@ -74,7 +79,9 @@ TEST_CASE("shoaling: behind the shoal crests bend toward its axis, alike on both
     }
 }
 
-TEST_CASE("shoaling: a mesh takes heights and normals of its entity, and is uploaded again") {
+TEST_CASE(
+    "shoaling: a mesh takes heights and normals of its entity, and is uploaded again"
+    * technique("water.noise-surface")) {
     World world;
     MeshData mesh;
     mesh.positions = {{-2, 0, -2}, {2, 0, -2}, {0, 0, 0}, {2, 0, 2}};

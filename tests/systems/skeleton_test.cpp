@@ -1,5 +1,6 @@
 #include "ecs/components/skeleton.h"
 #include "tests/systems/clip_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -65,8 +66,9 @@ TEST_CASE("skeleton: cycles, second roots and children before parents are refuse
     CHECK(skeleton_error([](SkeletonData& s) { s.rest.scales[1].y = INFINITY; }) != "");
 }
 
-TEST_CASE("skeleton: a clip with unsorted keys, wrong lengths or strangers is refused with its "
-          "place") {
+TEST_CASE(
+    "skeleton: a clip with unsorted keys, wrong lengths or strangers is refused with its place"
+    * technique("char.clip-layout")) {
     CHECK(clip_error([](ClipSheet&) {}) == "");
     CHECK(clip_error([](ClipSheet& s) { s.times = {}; }) == "clip turn, sheet 0: no keys");
     CHECK(

@@ -3,6 +3,7 @@
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -80,7 +81,9 @@ std::vector<WrinkleRest> strain_rests(const Sheet& sheet, float smoothing) {
     return {rests.begin(), rests.end()};
 }
 
-TEST_CASE("skin diffusion: constant strain stays as it is, by any driver, on any triangles") {
+TEST_CASE(
+    "skin diffusion: constant strain stays as it is, by any driver, on any triangles"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(8, 0.5f);
     std::vector<Vec3> now = sheet.positions;
     for (Vec3& p : now) {
@@ -99,7 +102,9 @@ TEST_CASE("skin diffusion: constant strain stays as it is, by any driver, on any
     }
 }
 
-TEST_CASE("skin diffusion: the sum over the area is kept, and no value leaves the range") {
+TEST_CASE(
+    "skin diffusion: the sum over the area is kept, and no value leaves the range"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(9, 0.6f);
     Random random(7, 0, 0, 0);
     std::vector<double> values;
@@ -125,7 +130,9 @@ TEST_CASE("skin diffusion: the sum over the area is kept, and no value leaves th
     CHECK(variance(after) < 0.1 * variance(values));
 }
 
-TEST_CASE("skin diffusion: total strain of triangles is kept if they count by area") {
+TEST_CASE(
+    "skin diffusion: total strain of triangles is kept if they count by area"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(7, 0.5f);
     Random random(11, 0, 0, 0);
     std::vector<Vec3> now = sheet.positions;
@@ -147,7 +154,9 @@ TEST_CASE("skin diffusion: total strain of triangles is kept if they count by ar
     CHECK(total == near(expected).epsilon(1e-5));
 }
 
-TEST_CASE("skin diffusion: a peak spreads as far as asked, whatever the size of the triangles") {
+TEST_CASE(
+    "skin diffusion: a peak spreads as far as asked, whatever the size of the triangles"
+    * technique("wrinkle.smoothing")) {
     for (const std::uint32_t side : {16u, 32u}) {
         for (const float edges : {0.5f, 1.0f, 2.0f}) {
             const Sheet sheet = make_sheet(side);
@@ -165,7 +174,7 @@ TEST_CASE("skin diffusion: a peak spreads as far as asked, whatever the size of 
     }
 }
 
-TEST_CASE("skin diffusion: fine meshes are left as they are") {
+TEST_CASE("skin diffusion: fine meshes are left as they are" * technique("wrinkle.smoothing")) {
     double previous = 0;
     for (const std::uint32_t side : {8u, 16u, 32u}) {
         const Sheet sheet = make_sheet(side);
@@ -190,7 +199,9 @@ TEST_CASE("skin diffusion: fine meshes are left as they are") {
     CHECK(previous < 0.03);
 }
 
-TEST_CASE("skin diffusion: a seam does not stop it, skin that takes no part does") {
+TEST_CASE(
+    "skin diffusion: a seam does not stop it, skin that takes no part does"
+    * technique("wrinkle.smoothing")) {
     Sheet sheet = make_sheet(6);
     const SkinDiffusion whole = diffusion_of(sheet, 1.5f);
     // The same with every triangle's own vertices.
@@ -226,7 +237,8 @@ TEST_CASE("skin diffusion: a seam does not stop it, skin that takes no part does
     }
 }
 
-TEST_CASE("skin diffusion: around a tube strain keeps its direction") {
+TEST_CASE(
+    "skin diffusion: around a tube strain keeps its direction" * technique("wrinkle.smoothing")) {
     Sheet tube = make_sheet(24);
     for (Vec3& p : tube.positions) {
         p = {std::sin(3 * p.x), p.y, std::cos(3 * p.x)};
@@ -243,7 +255,9 @@ TEST_CASE("skin diffusion: around a tube strain keeps its direction") {
     }
 }
 
-TEST_CASE("skin diffusion: strain that jumps between triangles becomes smooth") {
+TEST_CASE(
+    "skin diffusion: strain that jumps between triangles becomes smooth"
+    * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(12);
     std::vector<Vec3> now = sheet.positions;
     Random random(5, 0, 0, 0);

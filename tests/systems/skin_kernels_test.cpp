@@ -5,6 +5,7 @@
 #include "systems/animation/skin_kernels.h"
 #include "tests/near.h"
 #include "tests/systems/clip_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -138,7 +139,9 @@ double error_of(const Vec3& found, const glm::dvec3& exact) {
 
 }  // namespace
 
-TEST_CASE("skin: at rest every vertex stays, and the palette changes nothing") {
+TEST_CASE(
+    "skin: at rest every vertex stays, and the palette changes nothing"
+    * technique("char.skin-rigid")) {
     Puppet puppet = make_puppet(20, 200, 4);
     for (const Affine& m : puppet.palette) {
         for (int row = 0; row < 3; ++row) {
@@ -180,7 +183,9 @@ TEST_CASE("skin: a motion of the root moves all vertices as one body") {
     }
 }
 
-TEST_CASE("skin: vertices of one joint keep their distances, to it and to each other") {
+TEST_CASE(
+    "skin: vertices of one joint keep their distances, to it and to each other"
+    * technique("char.skin-rigid")) {
     Puppet puppet = make_puppet(6, 90, 1);
     puppet.pose(random_pose(puppet.skeleton, 3));
     for (const bool is_dual : {false, true}) {
@@ -203,7 +208,9 @@ TEST_CASE("skin: vertices of one joint keep their distances, to it and to each o
     }
 }
 
-TEST_CASE("skin: the mean of matrices agrees with offsets in joint space, in double precision") {
+TEST_CASE(
+    "skin: the mean of matrices agrees with offsets in joint space, in double precision"
+    * technique("char.skin-cpu")) {
     Puppet puppet = make_puppet(24, 1000, 8);
     puppet.pose(random_pose(puppet.skeleton, 0.8f));
     puppet.linear();
@@ -219,7 +226,9 @@ TEST_CASE("skin: the mean of matrices agrees with offsets in joint space, in dou
     }
 }
 
-TEST_CASE("skin: the mean of screw motions agrees with its definition in double precision") {
+TEST_CASE(
+    "skin: the mean of screw motions agrees with its definition in double precision"
+    * technique("char.skin-defects")) {
     for (const float angle : {10.0f, 80.0f, 170.0f, 260.0f}) {
         for (const float weight : {0.1f, 0.5f, 0.75f}) {
             Puppet puppet = make_tube(Vec3(0.3f, 1, 0.2f), angle, weight);
@@ -235,7 +244,9 @@ TEST_CASE("skin: the mean of screw motions agrees with its definition in double 
     }
 }
 
-TEST_CASE("skin: a vertex between two joints is the mean of where either would take it") {
+TEST_CASE(
+    "skin: a vertex between two joints is the mean of where either would take it"
+    * technique("char.skin-defects")) {
     Puppet puppet = make_tube({1, 0, 0}, 70, 0.5f);
     puppet.linear();
     for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
@@ -245,7 +256,9 @@ TEST_CASE("skin: a vertex between two joints is the mean of where either would t
     }
 }
 
-TEST_CASE("skin: matrices shrink a twisted joint by the cosine law, screw motions do not at all") {
+TEST_CASE(
+    "skin: matrices shrink a twisted joint by the cosine law, screw motions do not at all"
+    * technique("char.skin-defects")) {
     // Twist angle a, weights 1 - w and w: r sqrt(1 - 2 w (1 - w) (1 - cos a)).
     for (const float angle : {30.0f, 60.0f, 90.0f, 120.0f, 150.0f, 180.0f}) {
         for (const float w : {0.5f, 0.75f}) {
@@ -268,7 +281,9 @@ TEST_CASE("skin: matrices shrink a twisted joint by the cosine law, screw motion
     }
 }
 
-TEST_CASE("skin: where opposite turns cancel a normal, the strongest joint turns it") {
+TEST_CASE(
+    "skin: where opposite turns cancel a normal, the strongest joint turns it"
+    * technique("char.skin-cpu")) {
     Puppet puppet = make_tube({0, 1, 0}, 180, 0.5f);
     puppet.palette[1].row[0] = {-1, 0, 0, 0};  // half a turn to the last bit
     puppet.palette[1].row[2] = {0, 0, -1, 0};
@@ -298,7 +313,9 @@ TEST_CASE("skin: scaled and mirrored joints keep normals perpendicular to the su
     }
 }
 
-TEST_CASE("skin: vectors of the machine and plain C++ give the same bits, cut anywhere") {
+TEST_CASE(
+    "skin: vectors of the machine and plain C++ give the same bits, cut anywhere"
+    * technique("char.skin-cpu")) {
     for (const std::size_t count : {1, 15, 16, 17, 203}) {
         Puppet puppet = make_puppet(30, count, 5);
         puppet.pose(random_pose(puppet.skeleton, 3));
@@ -448,7 +465,9 @@ TEST_CASE("skin: opposite motions leave the first, however small its weight") {
     }
 }
 
-TEST_CASE("skin: more than 256 joints and more than 256 morph targets work") {
+TEST_CASE(
+    "skin: more than 256 joints and more than 256 morph targets work"
+    * technique("char.skin-limits")) {
     Puppet puppet = make_puppet(300, 600, 4);
     std::vector<float> weights;
     for (std::uint32_t t = 0; t < 300; ++t) {
@@ -472,7 +491,9 @@ TEST_CASE("skin: more than 256 joints and more than 256 morph targets work") {
     }
 }
 
-TEST_CASE("skin: morph targets are linear, add up in any order and leave the others alone") {
+TEST_CASE(
+    "skin: morph targets are linear, add up in any order and leave the others alone"
+    * technique("char.morph-target")) {
     MeshData mesh;
     for (int i = 0; i < 6; ++i) {
         add_vertex(mesh, Vec3(0.1f * static_cast<float>(i), 1, 1), {{0, 1.0f}});
@@ -499,7 +520,9 @@ TEST_CASE("skin: morph targets are linear, add up in any order and leave the oth
     CHECK(same_bits(shaped({0, 0, 9, 9}).positions, mesh.positions));  // no such targets
 }
 
-TEST_CASE("skin: a shape that was morphed before it is skinned turns with its joint") {
+TEST_CASE(
+    "skin: a shape that was morphed before it is skinned turns with its joint"
+    * technique("char.morph-target")) {
     Puppet puppet = make_tube({0, 1, 0}, 90, 1);
     puppet.mesh.morphs.push_back({"bump", "", {0}, {{1, 0, 0}}, {}, {}});
     add_morphs(
@@ -510,7 +533,8 @@ TEST_CASE("skin: a shape that was morphed before it is skinned turns with its jo
 }
 
 TEST_CASE(
-    "skin: a palette of three rows a joint does what 4x4 matrices do, in three quarters of it") {
+    "skin: a palette of three rows a joint does what 4x4 matrices do, in three quarters of it"
+    * technique("char.skin-limits")) {
     Puppet puppet = make_puppet(98, 200, 4);
     puppet.pose(random_pose(puppet.skeleton, 0.2f));
     CHECK(puppet.palette.size() * sizeof(Affine) == 4704);
@@ -540,7 +564,8 @@ TEST_CASE("skin: weights that sum to a half pull a vertex half way to the origin
     }
 }
 
-TEST_CASE("skin: the largest influences are kept and sum to 1 again") {
+TEST_CASE(
+    "skin: the largest influences are kept and sum to 1 again" * technique("char.skin-limits")) {
     SkinWeights skin;
     skin.first = {0, 4, 5};
     skin.joints = {1, 3, 5, 8, 2};

@@ -6,6 +6,7 @@
 #include "systems/faces/wrinkle_measure.h"
 #include "systems/update_world.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -102,7 +103,9 @@ constexpr PullableSkin kFree = {.radius = 0.03f, .reach = 100};
 
 }  // namespace
 
-TEST_CASE("skin pull: a spring is the closed form, in one step or in many of any length") {
+TEST_CASE(
+    "skin pull: a spring is the closed form, in one step or in many of any length"
+    * technique("face.pull")) {
     const SpringState start = {{0.02f, -0.01f, 0.005f}, {0.3f, 0, -0.2f}};
     const Vec3 goal(0.001f, 0.002f, 0);
     const double rate = 14;
@@ -177,7 +180,9 @@ TEST_CASE("skin pull: the nearest front face is taken, and no back") {
     CHECK_FALSE(hit_skin(mesh.positions, mesh.indices, {3, 0, 2}, {0, 0, -1}));
 }
 
-TEST_CASE("skin pull: the place under the pointer follows it, whatever its joint does") {
+TEST_CASE(
+    "skin pull: the place under the pointer follows it, whatever its joint does"
+    * technique("face.pull")) {
     const Affine turned =
         affine_from({0.01f, 0.02f, -0.03f}, glm::angleAxis(0.5f, Vec3(0, 1, 0)), Vec3(1));
     for (const Affine& joint : {Affine{}, turned}) {
@@ -199,7 +204,8 @@ TEST_CASE("skin pull: the place under the pointer follows it, whatever its joint
     }
 }
 
-TEST_CASE("skin pull: what is let go springs back, and is at rest to the bit") {
+TEST_CASE(
+    "skin pull: what is let go springs back, and is at rest to the bit" * technique("face.pull")) {
     PullScene scene(kFree);
     const std::vector<Vec3> rest = scene.drawn();
     scene.run(0.05f, {0, 0, 0}, true);
@@ -221,7 +227,9 @@ TEST_CASE("skin pull: what is let go springs back, and is at rest to the bit") {
     CHECK(scene.pulls().empty());
 }
 
-TEST_CASE("skin pull: steps of any length give the same pull, and the same input the same bits") {
+TEST_CASE(
+    "skin pull: steps of any length give the same pull, and the same input the same bits"
+    * technique("face.pull")) {
     const auto offset_at = [](float step) {
         PullScene scene({}, step);
         scene.run(0.1f, {0, 0, 0}, true);
@@ -277,7 +285,9 @@ TEST_CASE("skin pull: of more pulls than a mesh may have the oldest end, and NaN
     }
 }
 
-TEST_CASE("skin pull: skin wrinkles where it is pushed together, and nowhere else") {
+TEST_CASE(
+    "skin pull: skin wrinkles where it is pushed together, and nowhere else"
+    * technique("face.pull")) {
     constexpr double kRadius = 0.04;
     constexpr double kPull = 0.012;
     const MeshData mesh = make_skin(160, 0.05f);

@@ -1,6 +1,7 @@
 #include "systems/faces/skin_strain.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -211,7 +212,7 @@ TEST_CASE("skin_strain: a mesh at rest has none") {
     check_strain(strain_of([](Vec3 p) { return p; }), 0, 0, 0);
 }
 
-TEST_CASE("skin_strain: stretches along the axes are found exactly") {
+TEST_CASE("skin_strain: stretches along the axes are found exactly" * technique("face.strain")) {
     const SkinStrain strain = strain_of([](Vec3 p) { return p * Vec3{0.8f, 1.05f, 1}; });
     check_strain(strain, -0.2f, 0.05f, 0);
     const PrincipalStrain principal = principal_strain(strain);
@@ -220,11 +221,12 @@ TEST_CASE("skin_strain: stretches along the axes are found exactly") {
     CHECK(std::abs(std::sin(principal.angle)) < 1e-4);  // along x
 }
 
-TEST_CASE("skin_strain: uniform scaling by 0.9 is -0.1 in all directions") {
+TEST_CASE(
+    "skin_strain: uniform scaling by 0.9 is -0.1 in all directions" * technique("face.strain")) {
     check_strain(strain_of([](Vec3 p) { return 0.9f * p; }), -0.1f, -0.1f, 0);
 }
 
-TEST_CASE("skin_strain: rigid motion has none") {
+TEST_CASE("skin_strain: rigid motion has none" * technique("face.strain")) {
     const Quat turn = glm::angleAxis(radians(10), Vec3{0, 0, 1});
     check_strain(strain_of([&](Vec3 p) { return turn * p; }), 0, 0, 0);
     const Quat tumble = glm::angleAxis(2.0f, glm::normalize(Vec3{1, -2, 3}));

@@ -209,8 +209,8 @@ TEST_CASE("step jumps: a pose that is set anew has no velocity, where its entity
     CHECK(pose.joints[1].row[0].w == test::near(8.5));
 }
 
-TEST_CASE("step jumps: a camera path cuts between keys of the same time, and where a loop does "
-          "not close") {
+TEST_CASE("step jumps: a camera path cuts between keys of the same time, and where a loop does not "
+          "close") {
     CameraPath path;
     path.keys = {
         {.time = 0, .position = {0, 0, 0}},

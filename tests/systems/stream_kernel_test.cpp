@@ -5,6 +5,7 @@
 #include "systems/motion_kernels.h"
 #include "systems/transform_system.h"
 #include "tests/systems/sway_table.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -74,7 +75,9 @@ constexpr std::size_t kCount = 3001;
 
 }  // namespace
 
-TEST_CASE("stream_kernel: in pieces of any size, forward or backward, the bits are the same") {
+TEST_CASE(
+    "stream_kernel: in pieces of any size, forward or backward, the bits are the same"
+    * technique("shade.stream-kernel")) {
     Elements whole = make_elements(kCount);
     step(whole, 0, kCount);
     for (const std::size_t piece : {1u, 7u, 64u, 1000u, 4096u}) {
@@ -91,7 +94,8 @@ TEST_CASE("stream_kernel: in pieces of any size, forward or backward, the bits a
     }
 }
 
-TEST_CASE("stream_kernel: permuted inputs give permuted outputs") {
+TEST_CASE(
+    "stream_kernel: permuted inputs give permuted outputs" * technique("shade.stream-kernel")) {
     Elements whole = make_elements(kCount);
     std::vector<std::size_t> order(kCount);
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -115,7 +119,9 @@ TEST_CASE("stream_kernel: permuted inputs give permuted outputs") {
     CHECK_FALSE(same_bits(permuted.world, whole.world));
 }
 
-TEST_CASE("stream_kernel: 1 to 16 threads place 20000 entities with the same bits") {
+TEST_CASE(
+    "stream_kernel: 1 to 16 threads place 20000 entities with the same bits"
+    * technique("shade.stream-kernel")) {
     const int threads = thread_count();
     std::vector<WorldTransform> one;
     for (const int count : {1, 2, 3, 5, 8, 16}) {

@@ -8,6 +8,7 @@
 #include "systems/animation/surface_faces.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -97,7 +98,9 @@ const Affine kTurn =
 
 }  // namespace
 
-TEST_CASE("surface faces: a face weighs 1 at it, a half at 1, less beyond the more it is local") {
+TEST_CASE(
+    "surface faces: a face weighs 1 at it, a half at 1, less beyond the more it is local"
+    * technique("face.soffd")) {
     for (const float locality : {1.0f, 2.0f, 4.0f, 8.0f}) {
         CHECK(face_weight(0, locality) == 1.0f);
         CHECK(face_weight(1, locality) == 0.5f);
@@ -113,7 +116,9 @@ TEST_CASE("surface faces: a face weighs 1 at it, a half at 1, less beyond the mo
     CHECK(face_weight(7, 0) == 0.5f);
 }
 
-TEST_CASE("surface faces: weights sum to 1, of the nearest faces, as many as asked for") {
+TEST_CASE(
+    "surface faces: weights sum to 1, of the nearest faces, as many as asked for"
+    * technique("face.soffd")) {
     const Follower follower(4.0f, 5);
     const SkinWeights& weights = follower.weights;
     REQUIRE(weights.first.size() == follower.points.size() + 1);
@@ -134,7 +139,9 @@ TEST_CASE("surface faces: weights sum to 1, of the nearest faces, as many as ask
     CHECK(alike.weights == std::vector<float>(4 * follower.points.size(), 0.25f));
 }
 
-TEST_CASE("surface faces: a surface at rest moves nothing, and a rigid motion moves all rigidly") {
+TEST_CASE(
+    "surface faces: a surface at rest moves nothing, and a rigid motion moves all rigidly"
+    * technique("face.soffd")) {
     const Follower follower;
     const std::vector<Vec3> rest = follower.follow(follower.sheet.positions);
     const std::vector<Vec3> turned =
@@ -145,7 +152,9 @@ TEST_CASE("surface faces: a surface at rest moves nothing, and a rigid motion mo
     }
 }
 
-TEST_CASE("surface faces: points go by s with a surface that grows by s, away from it as well") {
+TEST_CASE(
+    "surface faces: points go by s with a surface that grows by s, away from it as well"
+    * technique("face.soffd")) {
     const Follower follower;
     for (const float s : {0.5f, 2.0f}) {
         const std::vector<Vec3> grown = follower.follow_map([s](const Vec3& p) { return s * p; });
@@ -160,7 +169,9 @@ TEST_CASE("surface faces: points go by s with a surface that grows by s, away fr
     CHECK(transform_vector(large, {0, 0, 1}).y == near(3));
 }
 
-TEST_CASE("surface faces: what one moved vertex moves shrinks as influences get more local") {
+TEST_CASE(
+    "surface faces: what one moved vertex moves shrinks as influences get more local"
+    * technique("face.soffd")) {
     float last = 10.0f;
     for (const float locality : {1.0f, 2.0f, 4.0f, 8.0f}) {
         const Follower follower(locality, 32);
@@ -180,7 +191,9 @@ TEST_CASE("surface faces: what one moved vertex moves shrinks as influences get 
     }
 }
 
-TEST_CASE("surface faces: the deformed shape has no jump where other faces become the nearest") {
+TEST_CASE(
+    "surface faces: the deformed shape has no jump where other faces become the nearest"
+    * technique("face.soffd")) {
     const MeshData sheet = make_sheet(4);
     std::vector<Vec3> line;
     for (int i = 0; i <= 4000; ++i) {
@@ -200,7 +213,9 @@ TEST_CASE("surface faces: the deformed shape has no jump where other faces becom
     CHECK(largest < 4 * 1.8f / 4000.0f);
 }
 
-TEST_CASE("surface faces: of two surfaces that touch, each carries what faces its way") {
+TEST_CASE(
+    "surface faces: of two surfaces that touch, each carries what faces its way"
+    * technique("face.soffd")) {
     // Two lips: one that faces up, and one above it, almost in touch, that faces down.
     MeshData lips = make_sheet(4);
     const auto count = static_cast<std::uint32_t>(lips.positions.size());
@@ -231,7 +246,8 @@ TEST_CASE("surface faces: of two surfaces that touch, each carries what faces it
     }
 }
 
-TEST_CASE("surface faces: faces without area have no frame and are left out") {
+TEST_CASE(
+    "surface faces: faces without area have no frame and are left out" * technique("face.soffd")) {
     MeshData sheet = make_sheet(2);
     const std::size_t all = sheet.indices.size();
     sheet.indices.insert(sheet.indices.end(), {0, 0, 1, 0, 1, 2});  // a point twice, a line
@@ -289,7 +305,9 @@ struct BoundWorld {
 
 }  // namespace
 
-TEST_CASE("surface binding: a mesh follows its surface, and velocities know the last step") {
+TEST_CASE(
+    "surface binding: a mesh follows its surface, and velocities know the last step"
+    * technique("face.soffd")) {
     BoundWorld bound;
     bound.step();
     const std::vector<Vec3> rest = bound.world.resource<Assets>().meshes[0].positions;
@@ -314,7 +332,9 @@ TEST_CASE("surface binding: a mesh follows its surface, and velocities know the 
     CHECK(second.joints[4].row[1] != first.joints[4].row[1]);
 }
 
-TEST_CASE("surface binding: a joint that moves no vertex of the surface moves none of the mesh") {
+TEST_CASE(
+    "surface binding: a joint that moves no vertex of the surface moves none of the mesh"
+    * technique("face.soffd-skin")) {
     BoundWorld bound;
     Assets& assets = bound.world.resource<Assets>();
     MeshData& coarse = assets.meshes[1];
@@ -350,7 +370,9 @@ TEST_CASE("surface binding: a joint that moves no vertex of the surface moves no
     }
 }
 
-TEST_CASE("surface binding: equal bindings share a mesh, and changed settings replace it") {
+TEST_CASE(
+    "surface binding: equal bindings share a mesh, and changed settings replace it"
+    * technique("face.soffd-skin")) {
     BoundWorld bound;
     const Entity second = bound.world.create(
         MeshInstance{{0}, {}}, SurfaceBinding(bound.world.get<SurfaceBinding>(bound.sheet)));
@@ -381,7 +403,9 @@ TEST_CASE("surface binding: equal bindings share a mesh, and changed settings re
     CHECK(bound.world.resource<Assets>().meshes[3].positions.empty());
 }
 
-TEST_CASE("surface binding: what cannot be bound is named once, and stays as it is") {
+TEST_CASE(
+    "surface binding: what cannot be bound is named once, and stays as it is"
+    * technique("face.soffd-skin")) {
     BoundWorld bound;
     const auto complaint = [&](Entity surface) {
         bound.world.get<SurfaceBinding>(bound.sheet).surface = surface;

@@ -5,6 +5,7 @@
 #include "systems/animation/pose_system.h"
 #include "systems/animation/surface_binding_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -122,7 +123,9 @@ struct Take {
 
 }  // namespace
 
-TEST_CASE("markers: the mesh passes through each marker, in a frame and half way to the next") {
+TEST_CASE(
+    "markers: the mesh passes through each marker, in a frame and half way to the next"
+    * technique("face.mocap-drive")) {
     Take take;
     const std::vector<Vec3> start = take.shape_at(0);
     const MeshData& mesh = take.world.resource<Assets>().meshes[0];
@@ -139,7 +142,9 @@ TEST_CASE("markers: the mesh passes through each marker, in a frame and half way
     }
 }
 
-TEST_CASE("markers: what is between them moves as well, without a jump from vertex to vertex") {
+TEST_CASE(
+    "markers: what is between them moves as well, without a jump from vertex to vertex"
+    * technique("face.mocap-drive")) {
     Take take;
     const std::vector<Vec3> rest = take.shape_at(0);
     const std::vector<Vec3> shape = take.shape_at(0.2f);

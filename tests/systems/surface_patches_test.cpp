@@ -2,6 +2,7 @@
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/surface_patches.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -114,7 +115,9 @@ Vec3 bend(const Vec3& p) {
 
 }  // namespace
 
-TEST_CASE("patches: over an octant the patch has the control points and radii of a PN triangle") {
+TEST_CASE(
+    "patches: over an octant the patch has the control points and radii of a PN triangle"
+    * technique("face.bids-surface")) {
     const Surface sphere = make_octahedron();
     const std::span<const Vec4> octant = sphere.patch(0);
     CHECK(glm::distance(Vec3(octant[3]), Vec3(1, 1.0f / 3, 0)) < 1e-6f);
@@ -125,7 +128,9 @@ TEST_CASE("patches: over an octant the patch has the control points and radii of
     CHECK(glm::distance(center.normal, glm::normalize(Vec3(1))) < 1e-6f);
 }
 
-TEST_CASE("patches: the surface passes through its markers, with their normals") {
+TEST_CASE(
+    "patches: the surface passes through its markers, with their normals"
+    * technique("face.bids-surface")) {
     const Surface surface = make_bumpy();
     for (std::size_t f = 0; f < surface.faces(); ++f) {
         const std::array<Vec2, 3> at = {Vec2(1, 0), Vec2(0, 1), Vec2(0, 0)};
@@ -140,7 +145,7 @@ TEST_CASE("patches: the surface passes through its markers, with their normals")
     }
 }
 
-TEST_CASE("patches: markers in a plane make a plane") {
+TEST_CASE("patches: markers in a plane make a plane" * technique("face.bids-surface")) {
     Surface flat = make_bumpy();
     for (Vec3& p : flat.positions) {
         p.y = 0.25f * p.x;
@@ -155,7 +160,9 @@ TEST_CASE("patches: markers in a plane make a plane") {
     }
 }
 
-TEST_CASE("patches: neighbors agree along their edge, in positions and normals") {
+TEST_CASE(
+    "patches: neighbors agree along their edge, in positions and normals"
+    * technique("face.bids-surface")) {
     const Surface surface = make_bumpy();
     std::size_t shared = 0;
     for (std::size_t f = 0; f < surface.faces(); ++f) {
@@ -186,7 +193,9 @@ TEST_CASE("patches: neighbors agree along their edge, in positions and normals")
     CHECK(shared == 2 * 65);  // each edge inside, from both sides
 }
 
-TEST_CASE("patches: derivatives are those of the surface and of its normals") {
+TEST_CASE(
+    "patches: derivatives are those of the surface and of its normals"
+    * technique("face.bids-surface")) {
     const Surface surface = make_bumpy();
     constexpr float kStep = 1e-2f;
     for (std::size_t f = 0; f < surface.faces(); f += 7) {
@@ -204,7 +213,9 @@ TEST_CASE("patches: derivatives are those of the surface and of its normals") {
     }
 }
 
-TEST_CASE("patches: markers at rest leave a mesh at rest") {
+TEST_CASE(
+    "patches: markers at rest leave a mesh at rest"
+    * technique("face.bids-project, face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     const Skin skin = skin_over(surface);
     const Skin moved = skin.follow(surface);
@@ -218,7 +229,9 @@ TEST_CASE("patches: markers at rest leave a mesh at rest") {
     CHECK(bound > 390);
 }
 
-TEST_CASE("patches: the offset of a vertex is its distance along the normal, outside positive") {
+TEST_CASE(
+    "patches: the offset of a vertex is its distance along the normal, outside positive"
+    * technique("face.bids-project")) {
     const Surface surface = make_bumpy();
     Skin skin;
     std::vector<float> heights;
@@ -243,7 +256,9 @@ TEST_CASE("patches: the offset of a vertex is its distance along the normal, out
     }
 }
 
-TEST_CASE("patches: no sample of the whole surface is nearer than where a vertex is bound") {
+TEST_CASE(
+    "patches: no sample of the whole surface is nearer than where a vertex is bound"
+    * technique("face.bids-project")) {
     const Surface surface = make_bumpy();
     const Skin skin = skin_over(surface);
     std::vector<Vec3> samples;
@@ -270,7 +285,9 @@ TEST_CASE("patches: no sample of the whole surface is nearer than where a vertex
     }
 }
 
-TEST_CASE("patches: a rigid motion of the markers moves the mesh rigidly") {
+TEST_CASE(
+    "patches: a rigid motion of the markers moves the mesh rigidly"
+    * technique("face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     const Skin skin = skin_over(surface);
     const Skin moved =
@@ -288,7 +305,8 @@ TEST_CASE("patches: a rigid motion of the markers moves the mesh rigidly") {
     }
 }
 
-TEST_CASE("patches: vertices on both sides of an edge stay together") {
+TEST_CASE(
+    "patches: vertices on both sides of an edge stay together" * technique("face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     Skin skin;
     for (std::size_t f = 0; f < surface.faces(); f += 2) {  // over the diagonals of the grid
@@ -311,7 +329,8 @@ TEST_CASE("patches: vertices on both sides of an edge stay together") {
     CHECK(apart > skin.positions.size() / 3);
 }
 
-TEST_CASE("patches: a vertex rises by as much as its offset grows") {
+TEST_CASE(
+    "patches: a vertex rises by as much as its offset grows" * technique("face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     const Surface bent = map_surface(surface, bend);
     Skin skin = skin_over(surface);
@@ -331,7 +350,8 @@ TEST_CASE("patches: a vertex rises by as much as its offset grows") {
     }
 }
 
-TEST_CASE("patches: normals and tangents are those of the moved mesh") {
+TEST_CASE(
+    "patches: normals and tangents are those of the moved mesh" * technique("face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     const Surface bent = map_surface(surface, bend);
     constexpr float kStep = 2e-3f;
@@ -357,7 +377,9 @@ TEST_CASE("patches: normals and tangents are those of the moved mesh") {
     }
 }
 
-TEST_CASE("patches: what is too far from the surface or beside it is not bound") {
+TEST_CASE(
+    "patches: what is too far from the surface or beside it is not bound"
+    * technique("face.bids-project")) {
     const Surface surface = make_bumpy();
     Skin skin;
     skin.positions = {{0, 0.6f, 0}, {0, 0.12f, 0}, {1.3f, 0.1f, 0}, {0.2f, 0.1f, -1.4f}};
@@ -372,7 +394,9 @@ TEST_CASE("patches: what is too far from the surface or beside it is not bound")
     CHECK(moved.positions[1] != skin.positions[1]);
 }
 
-TEST_CASE("patches: above a ridge, where no patch is straight below, the mesh is still bound") {
+TEST_CASE(
+    "patches: above a ridge, where no patch is straight below, the mesh is still bound"
+    * technique("face.bids-project")) {
     Surface sphere = make_octahedron();
     Skin skin;
     Random random(5, 5, 5, 5);
@@ -390,7 +414,9 @@ TEST_CASE("patches: above a ridge, where no patch is straight below, the mesh is
     }
 }
 
-TEST_CASE("patches: of two surfaces that touch, each carries what faces its way") {
+TEST_CASE(
+    "patches: of two surfaces that touch, each carries what faces its way"
+    * technique("face.bids-project")) {
     Surface lips = make_bumpy();
     const std::size_t lower = lips.faces();
     const auto count = static_cast<std::uint32_t>(lips.positions.size());
@@ -421,7 +447,8 @@ TEST_CASE("patches: of two surfaces that touch, each carries what faces its way"
 }
 
 TEST_CASE(
-    "patches: with a chart, what touches in space goes with its own side, whatever faces it") {
+    "patches: with a chart, what touches in space goes with its own side, whatever faces it"
+    * technique("face.bids-project")) {
     // A sheet and a copy of it that nearly touches and faces the same way: beside it in the chart.
     Surface lips = make_bumpy();
     const std::size_t lower = lips.faces();
@@ -456,7 +483,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("patches: SIMD, patch by patch, moves vertices as one by one") {
+TEST_CASE(
+    "patches: SIMD, patch by patch, moves vertices as one by one"
+    * technique("face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     Skin skin = skin_over(surface);
     skin.positions.emplace_back(0.3f, 1, 0.2f);  // is not bound
@@ -496,7 +525,7 @@ TEST_CASE("patches: SIMD, patch by patch, moves vertices as one by one") {
     }
 }
 
-TEST_CASE("patches: no vertex moves farther than the bound") {
+TEST_CASE("patches: no vertex moves farther than the bound" * technique("face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     const Surface bent = map_surface(surface, bend);
     const Skin skin = skin_over(surface);
@@ -515,7 +544,9 @@ TEST_CASE("patches: no vertex moves farther than the bound") {
     CHECK(max_motion(surface.patches, surface.patches, largest) == 0.0f);
 }
 
-TEST_CASE("patches: seams are closed, and triangulations that are no surface are refused") {
+TEST_CASE(
+    "patches: seams are closed, and triangulations that are no surface are refused"
+    * technique("face.bids-surface")) {
     Surface surface = make_bumpy(2);
     // The same with a vertex of its own for each corner.
     std::vector<Vec3> apart;
@@ -558,7 +589,9 @@ TEST_CASE("patches: seams are closed, and triangulations that are no surface are
     CHECK(make_patch_faces(surface.positions, {}).error().message == "it has no triangles");
 }
 
-TEST_CASE("patches: markers that meet, cross or leave numbers behind give finite vertices") {
+TEST_CASE(
+    "patches: markers that meet, cross or leave numbers behind give finite vertices"
+    * technique("face.bids-surface")) {
     const Surface surface = make_bumpy();
     const Skin skin = skin_over(surface);
     for (const Surface& bad :

@@ -6,6 +6,7 @@
 #include "ecs/world.h"
 #include "systems/particles/trail_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -78,7 +79,9 @@ float distance_to(const std::vector<TrailPoint>& line, const Vec3& point) {
 
 }  // namespace
 
-TEST_CASE("trail: a straight flight leaves a point at every spacing, as old as its passing") {
+TEST_CASE(
+    "trail: a straight flight leaves a point at every spacing, as old as its passing"
+    * technique("engine.trail")) {
     const Trail trail = {.spacing = 0.25f, .length = 100, .life = 100};
     for (const float step : {1.0f / 30, 1.0f / 144, 0.5f}) {
         CAPTURE(step);
@@ -95,7 +98,9 @@ TEST_CASE("trail: a straight flight leaves a point at every spacing, as old as i
     }
 }
 
-TEST_CASE("trail: on a circle points are a spacing apart and reach no farther than the length") {
+TEST_CASE(
+    "trail: on a circle points are a spacing apart and reach no farther than the length"
+    * technique("engine.trail")) {
     const Trail trail = {.spacing = 0.1f, .length = 5, .life = 100};
     Flight flight(trail, circle(0), 1.0f / 60);
     flight.fly(circle, 10);
@@ -132,7 +137,9 @@ TEST_CASE("trail: it is the same at 30, 60 and 144 steps a second") {
     }
 }
 
-TEST_CASE("trail: what stands still leaves none, and what stops loses its own in a life") {
+TEST_CASE(
+    "trail: what stands still leaves none, and what stops loses its own in a life"
+    * technique("engine.trail")) {
     const Trail trail = {.spacing = 0.1f, .length = 5, .life = 0.5f};
     Flight flight(trail, Vec3(0), 1.0f / 60);
     flight.fly([](float) { return Vec3(0); }, 1);
@@ -146,7 +153,7 @@ TEST_CASE("trail: what stands still leaves none, and what stops loses its own in
     CHECK(flight.state().strands.empty());
 }
 
-TEST_CASE("trail: a jump, a teleport and NaN break it") {
+TEST_CASE("trail: a jump, a teleport and NaN break it" * technique("engine.trail")) {
     const Trail trail = {.spacing = 0.1f, .length = 50, .life = 100, .jump = 2};
     Flight flight(trail, Vec3(0), 1.0f / 60);
     flight.fly([](float time) { return Vec3(5 * time, 0, 0); }, 1);
@@ -181,7 +188,9 @@ TEST_CASE("trail: the span turns with the entity") {
     CHECK(glm::distance(flight.points().front().span, Vec3(2, 0, 0)) < 1e-5f);
 }
 
-TEST_CASE("trail: each particle has its own, which outlives it by a life and takes no new memory") {
+TEST_CASE(
+    "trail: each particle has its own, which outlives it by a life and takes no new memory"
+    * technique("engine.trail")) {
     World world;
     register_all_components();
     const float step = 1.0f / 60;

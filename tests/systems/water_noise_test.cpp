@@ -3,6 +3,7 @@
 #include "systems/update_world.h"
 #include "systems/water/water_noise_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -13,7 +14,8 @@
 
 namespace limn::water_noise_test {
 
-TEST_CASE("water noise: it is 0 at integer points, and within 1.04") {
+TEST_CASE(
+    "water noise: it is 0 at integer points, and within 1.04" * technique("water.noise-surface")) {
     for (int i = 0; i < 1000; ++i) {
         CHECK(perlin_noise({i % 10 - 5, i / 10 % 10 - 5, i / 100}, 7) == 0);
     }
@@ -32,7 +34,9 @@ TEST_CASE("water noise: it is 0 at integer points, and within 1.04") {
     CHECK(std::abs(sum / kSamples) < 0.02);
 }
 
-TEST_CASE("water noise: it and its slope have no jumps, at the borders of its cells neither") {
+TEST_CASE(
+    "water noise: it and its slope have no jumps, at the borders of its cells neither"
+    * technique("water.noise-surface")) {
     std::mt19937 random(2);
     std::uniform_real_distribution<float> share(0, 1);
     constexpr float kH = 1e-3f;
@@ -67,7 +71,9 @@ TEST_CASE("water noise: each octave is half as high, twice as fine and twice as 
     }
 }
 
-TEST_CASE("water noise: heights lie between the least and the greatest, normals look up") {
+TEST_CASE(
+    "water noise: heights lie between the least and the greatest, normals look up"
+    * technique("water.noise-surface")) {
     HeightField field;
     fill_noise_field({}, 2.5, field);
     REQUIRE(field.points == 65);
@@ -88,7 +94,9 @@ TEST_CASE("water noise: heights lie between the least and the greatest, normals 
     CHECK(field.range < 2 * 1.04f * 0.15f);
 }
 
-TEST_CASE("water noise: normals are those of the heights at the points around") {
+TEST_CASE(
+    "water noise: normals are those of the heights at the points around"
+    * technique("water.noise-surface")) {
     const NoiseSurface noise = {.size = {4, 8}, .points = 33, .amplitude = 0.4f};
     HeightField field;
     fill_noise_field(noise, 1.0, field);
@@ -105,7 +113,9 @@ TEST_CASE("water noise: normals are those of the heights at the points around") 
     }
 }
 
-TEST_CASE("water noise: the same time is the same field, another time another") {
+TEST_CASE(
+    "water noise: the same time is the same field, another time another"
+    * technique("water.noise-surface")) {
     HeightField a;
     HeightField b;
     fill_noise_field({}, 3.0, a);

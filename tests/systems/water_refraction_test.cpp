@@ -1,6 +1,7 @@
 #include "systems/water/water_dispersion.h"
 #include "systems/water/water_refraction.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -37,7 +38,9 @@ float slope_of(float z) {
 
 }  // namespace
 
-TEST_CASE("water refraction: over shallow water waves of one period are slower and shorter") {
+TEST_CASE(
+    "water refraction: over shallow water waves of one period are slower and shorter"
+    * technique("water.shallow-refraction")) {
     struct Case {
         double depth;
         double speed;
@@ -58,7 +61,9 @@ TEST_CASE("water refraction: over shallow water waves of one period are slower a
     }
 }
 
-TEST_CASE("water refraction: crests turn toward the shore as Snell says") {
+TEST_CASE(
+    "water refraction: crests turn toward the shore as Snell says"
+    * technique("water.shallow-refraction")) {
     CHECK(std::abs(degrees(snell_angle(radians(45), 1000, 1, kPeriod)) - 16.03f) < 0.005f);
     CHECK(
         degrees(snell_angle(radians(16.0272f), 1, 1000, kPeriod))
@@ -78,7 +83,9 @@ TEST_CASE("water refraction: crests turn toward the shore as Snell says") {
     CHECK(degrees(std::atan2(last.x, last.y)) == test::near(16.03).epsilon(0.02).scale(0));
 }
 
-TEST_CASE("water refraction: the phase of a train is the integral of its wave number") {
+TEST_CASE(
+    "water refraction: the phase of a train is the integral of its wave number"
+    * technique("water.shallow-refraction")) {
     const DepthGrid grid = beach(41, 201, 1.25f, slope_of);
     for (const float angle : {0.0f, 25.0f, -40.0f}) {
         const WaveTrain train = refract_waves(grid, kPeriod, radians(90 - angle));
@@ -105,7 +112,9 @@ TEST_CASE("water refraction: the phase of a train is the integral of its wave nu
     }
 }
 
-TEST_CASE("water refraction: over an even bottom a train stays plane, whichever way it runs") {
+TEST_CASE(
+    "water refraction: over an even bottom a train stays plane, whichever way it runs"
+    * technique("water.shallow-refraction")) {
     const DepthGrid grid = beach(31, 24, 2, [](float) { return 8.0f; });
     const float k = number_at(8);
     for (int i = 0; i < 16; ++i) {
@@ -123,7 +132,9 @@ TEST_CASE("water refraction: over an even bottom a train stays plane, whichever 
     }
 }
 
-TEST_CASE("water refraction: the wave number of a train is everywhere that of its depth") {
+TEST_CASE(
+    "water refraction: the wave number of a train is everywhere that of its depth"
+    * technique("water.shallow-refraction")) {
     // Over a shoal, where nothing is even: |grad S| = k.
     DepthGrid grid{.points = {121, 121}, .cell = 1};
     for (int z = 0; z < 121; ++z) {
@@ -155,7 +166,9 @@ TEST_CASE("water refraction: the wave number of a train is everywhere that of it
     CHECK(train.phase[119 * 121 + 60] > train.phase[119 * 121 + 2] + 0.2f);
 }
 
-TEST_CASE("water refraction: on land there are no waves, and rays end") {
+TEST_CASE(
+    "water refraction: on land there are no waves, and rays end"
+    * technique("water.shallow-refraction")) {
     const DepthGrid grid = beach(21, 61, 1, [](float z) { return 3 - 0.1f * z; });
     const WaveTrain train = refract_waves(grid, kPeriod, radians(90));
     for (int z = 0; z < 61; ++z) {

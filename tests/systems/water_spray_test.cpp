@@ -5,6 +5,7 @@
 #include "systems/water/water_dispersion.h"
 #include "systems/water/water_spray_drops.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -32,7 +33,9 @@ WaterWave wave_of(float steepness, float length = 10) {
 
 }  // namespace
 
-TEST_CASE("water spray: at a crest water moves with pi S of the wave's speed") {
+TEST_CASE(
+    "water spray: at a crest water moves with pi S of the wave's speed"
+    * technique("water.crest-spray")) {
     const auto speed = static_cast<float>(phase_speed(2 * 3.14159265358979 / 10, 1e9));
     CHECK(speed == test::near(3.951342).epsilon(1e-6).scale(0));
     CHECK(orbital_speed(1, 10, speed) == test::near(1.241351).epsilon(1e-6).scale(0));
@@ -46,7 +49,8 @@ TEST_CASE("water spray: at a crest water moves with pi S of the wave's speed") {
     CHECK(orbital_speed(cusp.line()) == test::near(speed));
 }
 
-TEST_CASE("water spray: waves that are not steep enough do not spray") {
+TEST_CASE(
+    "water spray: waves that are not steep enough do not spray" * technique("water.crest-spray")) {
     constexpr float kOfBook = 0.31831f;
     struct Case {
         float wave;
@@ -64,7 +68,9 @@ TEST_CASE("water spray: waves that are not steep enough do not spray") {
     }
 }
 
-TEST_CASE("water spray: drops begin near crests, not in rows, and go along the wave") {
+TEST_CASE(
+    "water spray: drops begin near crests, not in rows, and go along the wave"
+    * technique("water.crest-spray")) {
     for (const float lean : {0.0f, 0.5f}) {
         WaterWave wave = wave_of(0.12f);
         wave.lean = lean;
@@ -93,7 +99,9 @@ TEST_CASE("water spray: drops begin near crests, not in rows, and go along the w
     }
 }
 
-TEST_CASE("water spray: as many as the rate says, however long the step") {
+TEST_CASE(
+    "water spray: as many as the rate says, however long the step"
+    * technique("water.crest-spray")) {
     const Sea sea(wave_of(0.2f));
     for (const float step : {0.001f, 0.01f}) {
         std::vector<SprayDrop> drops;
@@ -108,7 +116,9 @@ TEST_CASE("water spray: as many as the rate says, however long the step") {
     }
 }
 
-TEST_CASE("water spray: an ocean sheds drops where it breaks, as fast as its water") {
+TEST_CASE(
+    "water spray: an ocean sheds drops where it breaks, as fast as its water"
+    * technique("water.crest-spray")) {
     // A patch of 16 m that moves with (3, 4, 0) m/s; its half with x > 8 m is pressed together.
     OceanState ocean{.made_for = {.foam_threshold = 0.9f}, .step = 0.5f, .cascades = {}};
     OceanCascade& cascade = ocean.cascades.emplace_back();
@@ -150,7 +160,9 @@ TEST_CASE("water spray: an ocean sheds drops where it breaks, as fast as its wat
     CHECK(spray().empty());
 }
 
-TEST_CASE("water spray: a wall sprays most when a crest is at it, and not a quarter wave later") {
+TEST_CASE(
+    "water spray: a wall sprays most when a crest is at it, and not a quarter wave later"
+    * technique("water.impact-spray")) {
     CHECK(impact_share(0) == 1);
     CHECK(impact_share(0.5f * kPi) < 1e-20f);
     CHECK(impact_share(2) == 0);
@@ -171,7 +183,9 @@ TEST_CASE("water spray: a wall sprays most when a crest is at it, and not a quar
     CHECK(drops_at(2.5f, {0, 0, 1}).empty());
 }
 
-TEST_CASE("water spray: a wall throws drops back about as fast as the water was") {
+TEST_CASE(
+    "water spray: a wall throws drops back about as fast as the water was"
+    * technique("water.impact-spray")) {
     Sea sea({.amplitude = 0.5f, .length = 10}, 0);
     const Vec3 normal = glm::normalize(Vec3(-1, 0.1f, 0.8f));
     const SprayObstacle obstacle = {.rate = 10000};
@@ -198,7 +212,7 @@ TEST_CASE("water spray: a wall throws drops back about as fast as the water was"
     }
 }
 
-TEST_CASE("water spray: a world makes its drops anew each step") {
+TEST_CASE("water spray: a world makes its drops anew each step" * technique("water.crest-spray")) {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity water = world.create(

@@ -115,7 +115,7 @@ TEST_CASE("water shape: it reaches as far as its farthest point") {
             }
         }
         for (int i = 0; i < 3; ++i) {
-            CHECK(placed.reach[i] == test::near(farthest[i]).epsilon(2e-3).scale(0));
+            CHECK(placed.half_extent[i] == test::near(farthest[i]).epsilon(2e-3).scale(0));
             CHECK(placed.center[i] == test::near(i + 1));
         }
     }

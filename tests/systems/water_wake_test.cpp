@@ -6,6 +6,7 @@
 #include "systems/water/water_wake_system.h"
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -49,7 +50,8 @@ constexpr WakeEmitter kWake = {.spacing = 0.5f, .decay = 100};
 
 }  // namespace
 
-TEST_CASE("water wake: who stands still leaves no waves, nor does who jumps") {
+TEST_CASE(
+    "water wake: who stands still leaves no waves, nor does who jumps" * technique("water.wake")) {
     Sea sea(kWake);
     sea.sail(0, 120);
     CHECK(sea.rings() == 0);
@@ -59,7 +61,9 @@ TEST_CASE("water wake: who stands still leaves no waves, nor does who jumps") {
     CHECK(sea.height({-9, 0}) == 0);
 }
 
-TEST_CASE("water wake: there is a ring for each bit of way, whatever the speed") {
+TEST_CASE(
+    "water wake: there is a ring for each bit of way, whatever the speed"
+    * technique("water.wake")) {
     for (const float speed : {1.0f, 6.0f, 45.0f}) {
         Sea sea(kWake);
         sea.sail(speed, static_cast<int>(20.2f / speed / kStep) + 1);
@@ -84,7 +88,9 @@ TEST_CASE("water wake: rings fade and end") {
     CHECK(sea.rings() == 0);
 }
 
-TEST_CASE("water wake: behind what is faster than its waves they stay within the wedge") {
+TEST_CASE(
+    "water wake: behind what is faster than its waves they stay within the wedge"
+    * technique("water.wake")) {
     CHECK(kKelvinAngle == test::near(std::asin(1.0 / 3)).epsilon(1e-6).scale(0));
     CHECK(degrees(kKelvinAngle) == test::near(19.4712).epsilon(1e-5).scale(0));
     struct Case {
@@ -118,7 +124,7 @@ TEST_CASE("water wake: behind what is faster than its waves they stay within the
     }
 }
 
-TEST_CASE("water wake: it adds to the waves that are there") {
+TEST_CASE("water wake: it adds to the waves that are there" * technique("water.wake")) {
     const WaterWaves waves = {.waves = {{.amplitude = 0.3f, .length = 11}}};
     Sea calm(kWake);
     Sea rough(kWake, waves);
@@ -133,7 +139,7 @@ TEST_CASE("water wake: it adds to the waves that are there") {
     }
 }
 
-TEST_CASE("water wake: on land and high in the air there is none") {
+TEST_CASE("water wake: on land and high in the air there is none" * technique("water.wake")) {
     Sea sea(kWake);
     sea.world.get<Transform>(sea.boat).position.y = 9;
     sea.sail(5, 60);

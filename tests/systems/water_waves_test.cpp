@@ -5,6 +5,7 @@
 #include "systems/water/water_wave_kernels.h"
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -60,7 +61,9 @@ void check_derivatives(const WaterWaves& waves, const Vec2& at, double time, dou
 
 }  // namespace
 
-TEST_CASE("water waves: one of 10 m runs at 3.95 m/s, along its direction") {
+TEST_CASE(
+    "water waves: one of 10 m runs at 3.95 m/s, along its direction"
+    * technique("water.travelling-wave")) {
     const WaterWave wave = {.amplitude = 0.3f, .length = 10, .direction = 0.6f};
     const WaveTable start = table_of(wave, 0);
     CHECK(glm::length(start.lines[0].k) == test::near(0.628319).epsilon(1e-5).scale(0));
@@ -85,7 +88,9 @@ TEST_CASE("water waves: one of 10 m runs at 3.95 m/s, along its direction") {
         == test::near(height_of(start, {1, 2})).epsilon(1e-4).scale(0));
 }
 
-TEST_CASE("water waves: long ones are faster, with the root of the length") {
+TEST_CASE(
+    "water waves: long ones are faster, with the root of the length"
+    * technique("water.travelling-wave")) {
     const auto speed = [](float length) {
         const WaveTable table = table_of(WaterWave{.length = length}, 0);
         return table.lines[0].frequency / glm::length(table.lines[0].k);
@@ -94,7 +99,9 @@ TEST_CASE("water waves: long ones are faster, with the root of the length") {
     CHECK(speed(100) == test::near(12.495239).epsilon(1e-5).scale(0));
 }
 
-TEST_CASE("water waves: no higher than their amplitude, periodic, in the mean level") {
+TEST_CASE(
+    "water waves: no higher than their amplitude, periodic, in the mean level"
+    * technique("water.travelling-wave")) {
     const WaterWave wave = {.amplitude = 0.3f, .length = 4, .direction = 1.1f, .phase = 0.4f};
     const WaveTable table = table_of(wave, 12.3);
     const Vec2 along = {std::cos(1.1f), std::sin(1.1f)};
@@ -112,7 +119,9 @@ TEST_CASE("water waves: no higher than their amplitude, periodic, in the mean le
     CHECK(most > 0.2999f);
 }
 
-TEST_CASE("water waves: slopes and velocity are those of the surface") {
+TEST_CASE(
+    "water waves: slopes and velocity are those of the surface"
+    * technique("water.gerstner, water.travelling-wave")) {
     const WaterWaves lines = {
         .waves = {
             {.amplitude = 0.3f, .length = 5, .direction = 0.7f, .sharpness = 0.8f},
@@ -140,7 +149,9 @@ TEST_CASE("water waves: shallow water slows them down, and deep water does not k
     CHECK(speed(10, 0) == test::near(3.951342).epsilon(1e-5).scale(0));
 }
 
-TEST_CASE("water waves: circles run outward or inward, and are the same all around") {
+TEST_CASE(
+    "water waves: circles run outward or inward, and are the same all around"
+    * technique("water.radial-wave")) {
     for (const bool inward : {false, true}) {
         const RadialWave wave = {
             .center = {1, -2}, .amplitude = 0.2f, .length = 3, .inward = inward};
@@ -165,7 +176,9 @@ TEST_CASE("water waves: circles run outward or inward, and are the same all arou
     CHECK(evaluate_waves(table, {1, -2}).by_x.y == 0);
 }
 
-TEST_CASE("water waves: circles fade with the root of the distance where they should") {
+TEST_CASE(
+    "water waves: circles fade with the root of the distance where they should"
+    * technique("water.radial-wave")) {
     const RadialWave wave = {.amplitude = 0.2f, .length = 1, .fade_radius = 2};
     const WaveTable table = table_of(WaterWaves{.radial = {wave}}, 0);
     CHECK(height_of(table, {1.25f, 0}) == test::near(0.2).epsilon(1e-4).scale(0));
@@ -174,7 +187,9 @@ TEST_CASE("water waves: circles fade with the root of the distance where they sh
         == test::near(0.2 * std::sqrt(2 / 8.25)).epsilon(1e-4).scale(0));
 }
 
-TEST_CASE("water waves: a drop's ring is a ring: nothing before its front, nothing behind") {
+TEST_CASE(
+    "water waves: a drop's ring is a ring: nothing before its front, nothing behind"
+    * technique("water.radial-packet")) {
     WavePacket drop = {
         .center = {0.5f, 0}, .length = 0.2f, .waves = 3, .decay = 0, .smooth = false};
     const auto height = [&](float age, float r) {
@@ -198,7 +213,9 @@ TEST_CASE("water waves: a drop's ring is a ring: nothing before its front, nothi
     CHECK(std::abs(height(1.5f, speed * 1.5f - 0.05f)) > 0.9f * drop.amplitude);
 }
 
-TEST_CASE("water waves: drops fade, age by the step, and are taken away when they have ended") {
+TEST_CASE(
+    "water waves: drops fade, age by the step, and are taken away when they have ended"
+    * technique("water.radial-packet")) {
     const WavePacket young = {.age = 0.5f, .decay = 0.5f, .smooth = false};
     const WaveTable table = table_of(WaterWaves{.packets = {young}}, 0);
     CHECK(table.rings[0].amplitude == test::near(0.02 * std::exp(-1.0)));
@@ -215,7 +232,8 @@ TEST_CASE("water waves: drops fade, age by the step, and are taken away when the
 }
 
 TEST_CASE(
-    "water waves: smooth drops have no step at either edge, and the slopes of their surface") {
+    "water waves: smooth drops have no step at either edge, and the slopes of their surface"
+    * technique("water.radial-packet")) {
     const WaterWaves waves = {.packets = {{.age = 1.9f, .length = 1, .waves = 2, .decay = 0}}};
     const WaveTable table = table_of(waves, 0);
     const WaveRing& ring = table.rings[0];
@@ -235,7 +253,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water waves: a group is within its bounds, and the same for the same seed") {
+TEST_CASE(
+    "water waves: a group is within its bounds, and the same for the same seed"
+    * technique("water.wave-sum")) {
     const WaveGroup group = {
         .count = 200, .length = {0.3f, 3}, .amplitude = {0.002f, 0.02f}, .direction = 2, .seed = 9};
     const std::vector<WaterWave> waves = generate_waves(group);
@@ -262,7 +282,9 @@ TEST_CASE("water waves: a group is within its bounds, and the same for the same 
     CHECK(generate_waves(other).size() == 256);
 }
 
-TEST_CASE("water waves: waves add up, no higher than all together, with half the sum of squares") {
+TEST_CASE(
+    "water waves: waves add up, no higher than all together, with half the sum of squares"
+    * technique("water.wave-sum")) {
     const WaterWaves low = {.groups = {{.count = 4}}};
     const WaterWaves high = {
         .groups = {
@@ -297,7 +319,8 @@ TEST_CASE("water waves: waves add up, no higher than all together, with half the
     CHECK(squares == test::near(half_squares).epsilon(0.05).scale(0));
 }
 
-TEST_CASE("water waves: without sharpness water moves up and down alone") {
+TEST_CASE(
+    "water waves: without sharpness water moves up and down alone" * technique("water.gerstner")) {
     const WaveTable table = table_of(WaterWave{.sharpness = 0}, 1);
     const WavePoint point = evaluate_waves(table, {3, 4});
     CHECK(point.offset.x == 0);
@@ -305,7 +328,9 @@ TEST_CASE("water waves: without sharpness water moves up and down alone") {
     CHECK(point.offset.y != 0);
 }
 
-TEST_CASE("water waves: sharp ones are trochoids: the path of a point in a rolling wheel") {
+TEST_CASE(
+    "water waves: sharp ones are trochoids: the path of a point in a rolling wheel"
+    * technique("water.trochoid")) {
     // Of a wheel of radius 1 / k, at A from the axle, turned upside down (water.trochoid).
     const float length = 10;
     const float amplitude = 0.9f;
@@ -335,7 +360,8 @@ TEST_CASE("water waves: sharp ones are trochoids: the path of a point in a rolli
 }
 
 TEST_CASE(
-    "water waves: sharpness changes neither height nor period, and gathers points at crests") {
+    "water waves: sharpness changes neither height nor period, and gathers points at crests"
+    * technique("water.gerstner")) {
     const float a = 0.5f;
     const float k = kTurn / 10;
     for (const float q : {0.0f, 1.0f, 3.0f}) {
@@ -355,7 +381,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water waves: the sharpest are cusps; none folds over, however many there are") {
+TEST_CASE(
+    "water waves: the sharpest are cusps; none folds over, however many there are"
+    * technique("water.gerstner, water.trochoid")) {
     // Q = 3.183099 is the cusp of this wave.
     const WaveTable cusp =
         table_of(WaterWave{.amplitude = 0.5f, .length = 10, .sharpness = 3.183099f}, 0);
@@ -373,7 +401,7 @@ TEST_CASE("water waves: the sharpest are cusps; none folds over, however many th
     }
 }
 
-TEST_CASE("water waves: in a real wave the water goes in circles") {
+TEST_CASE("water waves: in a real wave the water goes in circles" * technique("water.gerstner")) {
     const WaterWave wave = {.amplitude = 0.4f, .length = 10, .sharpness = 1};
     for (int i = 0; i < 24; ++i) {
         const Vec3 offset = evaluate_waves(table_of(wave, 2.530786 * i / 24), {1.3f, 0.7f}).offset;
@@ -383,7 +411,8 @@ TEST_CASE("water waves: in a real wave the water goes in circles") {
     CHECK(evaluate_waves(table_of(wave, 0), {2.5f, 0}).velocity.x > 0.9f);
 }
 
-TEST_CASE("water waves: crests lean with the wind, and stay as high") {
+TEST_CASE(
+    "water waves: crests lean with the wind, and stay as high" * technique("water.wind-crest")) {
     const auto profile = [](float lean, float phase) {
         const WaveTable table =
             table_of(WaterWave{.amplitude = 1, .length = kTurn, .lean = lean}, 0);
@@ -421,7 +450,9 @@ TEST_CASE("water waves: crests lean with the wind, and stay as high") {
     }
 }
 
-TEST_CASE("water waves: at many points at once they are the same, and vectors are plain code") {
+TEST_CASE(
+    "water waves: at many points at once they are the same, and vectors are plain code"
+    * technique("water.wave-sum")) {
     const WaterWaves waves = {
         .waves = {{.amplitude = 0.3f, .length = 7, .sharpness = 1, .lean = 0.4f}},
         .groups = {{.count = 20, .length = {0.5f, 20}, .sharpness = 0.7f}}};

@@ -4,6 +4,7 @@
 #include "systems/faces/wrinkle_batch.h"
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -94,7 +95,9 @@ std::vector<std::vector<WrinkleRest>> all_rests(const Sheet& sheet) {
 
 }  // namespace
 
-TEST_CASE("wrinkle batch: eight faces at a time have the intensities of each by itself") {
+TEST_CASE(
+    "wrinkle batch: eight faces at a time have the intensities of each by itself"
+    * technique("wrinkle.compression.integration, wrinkle.natural-width")) {
     const Sheet sheet = make_sheet();
     REQUIRE(sheet.positions.size() % 4 != 0);
     for (const std::vector<WrinkleRest>& rests : all_rests(sheet)) {
@@ -118,8 +121,8 @@ TEST_CASE("wrinkle batch: eight faces at a time have the intensities of each by 
     }
 }
 
-TEST_CASE("wrinkle batch: which faces are measured together, and on how many threads, changes no "
-          "bit") {
+TEST_CASE(
+    "wrinkle batch: which faces are measured together, and on how many threads, changes no bit") {
     const Sheet sheet = make_sheet();
     const std::vector<WrinkleRest> rests = {
         make_wrinkle_rest(sheet.positions, sheet.indices, sheet.across)};

@@ -1,6 +1,7 @@
 #include "systems/faces/skin_strain.h"
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -65,7 +66,9 @@ std::vector<WrinkleRest> chord_rests(const Sheet& sheet, const Vec3& across) {
 
 }  // namespace
 
-TEST_CASE("wrinkle driver: edges react to a shear that leaves the chord as it is") {
+TEST_CASE(
+    "wrinkle driver: edges react to a shear that leaves the chord as it is"
+    * technique("wrinkle.compression.prior-models")) {
     const Sheet sheet = make_sheet();
     const Positions sheared = mapped(sheet.positions, [](Vec3 p) {
         return p + Vec3{0.7f * p.y, 0, 0};
@@ -87,7 +90,9 @@ TEST_CASE("wrinkle driver: edges react to a shear that leaves the chord as it is
     CHECK(vertex_compression(one, shorter)[0] == near(0.5 * (0.25 + 1)));
 }
 
-TEST_CASE("wrinkle driver: strain finds the shortest direction, whichever it is") {
+TEST_CASE(
+    "wrinkle driver: strain finds the shortest direction, whichever it is"
+    * technique("face.strain")) {
     const Sheet sheet = make_sheet();
     const std::vector<WrinkleRest> rests = strain_rests(sheet);
     for (int degrees = 0; degrees < 180; degrees += 15) {
@@ -111,7 +116,9 @@ TEST_CASE("wrinkle driver: strain finds the shortest direction, whichever it is"
     }
 }
 
-TEST_CASE("wrinkle driver: strain at vertices is that of skin_strain where it is small") {
+TEST_CASE(
+    "wrinkle driver: strain at vertices is that of skin_strain where it is small"
+    * technique("face.strain")) {
     Sheet sheet = make_sheet();
     sheet.positions = mapped(sheet.positions, [](Vec3 p) {  // of a cylinder
         return Vec3{2 * std::sin(0.1f * p.x), 0.2f * p.y, 2 * std::cos(0.1f * p.x)};
@@ -138,7 +145,9 @@ TEST_CASE("wrinkle driver: strain at vertices is that of skin_strain where it is
     CHECK(largest < 0.03f * strongest);
 }
 
-TEST_CASE("wrinkle driver: the strain of a tensor is its root less 1, in any axes") {
+TEST_CASE(
+    "wrinkle driver: the strain of a tensor is its root less 1, in any axes"
+    * technique("face.strain")) {
     // Shorter by 0.8 along u, longer by 1.05 along v; Green's strain would be -0.18 and 0.05125.
     const SkinStrain tensor = tensor_of_ratios(0.64f, 1.1025f, 0.5f * (0.64f + 1.1025f));
     const SkinStrain along = strain_of_tensor(tensor, 0, 1);
@@ -168,7 +177,9 @@ TEST_CASE("wrinkle driver: the strain of a tensor is its root less 1, in any axe
     }
 }
 
-TEST_CASE("wrinkle driver: means of squares exceed squares of means by the variance") {
+TEST_CASE(
+    "wrinkle driver: means of squares exceed squares of means by the variance"
+    * technique("wrinkle.compression.square-length")) {
     // Four right triangles about a vertex, shorter by 0.8, 0.9, 1 and 0.7.
     const Sheet fan = {
         {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},

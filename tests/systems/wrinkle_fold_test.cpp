@@ -1,5 +1,6 @@
 #include "systems/faces/wrinkle_fold.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -36,7 +37,9 @@ double length_of(const std::vector<Vec2>& slopes, double factor) {
 
 }  // namespace
 
-TEST_CASE("wrinkle fold: a sine is as high as its elliptic integral says") {
+TEST_CASE(
+    "wrinkle fold: a sine is as high as its elliptic integral says"
+    * technique("wrinkle.compression.skin-model")) {
     // Amplitude over wavelength by the fraction of the length that remains (face-facts F).
     struct Row {
         float left, amplitude;
@@ -52,7 +55,9 @@ TEST_CASE("wrinkle fold: a sine is as high as its elliptic integral says") {
     }
 }
 
-TEST_CASE("wrinkle fold: any profile keeps its length down to a half of it, to 0.5 %") {
+TEST_CASE(
+    "wrinkle fold: any profile keeps its length down to a half of it, to 0.5 %"
+    * technique("wrinkle.compression.skin-model")) {
     std::mt19937 random(3);
     std::vector<Vec2> creases;  // steep and rare, over gentle ones
     std::vector<Vec2> noise;
@@ -81,7 +86,9 @@ TEST_CASE("wrinkle fold: flat texels do not count, and a flat map has no folds")
     CHECK(fold_strength(make_fold_table({}), 0.3f) == 0);
 }
 
-TEST_CASE("wrinkle fold: no shortening, no fold; stretch neither, nor what the slack takes") {
+TEST_CASE(
+    "wrinkle fold: no shortening, no fold; stretch neither, nor what the slack takes"
+    * technique("wrinkle.compression.skin-model")) {
     const FoldTable table = make_fold_table(sine_slopes());
     CHECK(fold_strength(table, fold_excess(1, 0, 1)) == 0);
     CHECK(fold_strength(table, fold_excess(1.3f, 0, 1)) == 0);

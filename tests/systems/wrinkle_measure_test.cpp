@@ -1,5 +1,6 @@
 #include "systems/faces/wrinkle_measure.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -99,7 +100,9 @@ float mean_at_center(const Fan& fan, WrinkleWeight weight) {
 
 }  // namespace
 
-TEST_CASE("wrinkle measure: the examples of chords, from the middle vertex to the edge before it") {
+TEST_CASE(
+    "wrinkle measure: the examples of chords, from the middle vertex to the edge before it"
+    * technique("wrinkle.compression.rest-measure")) {
     const auto check = [](const Positions& p, Vec3 across, int apex, Vec3 end, float length2) {
         const Chord chord = find_chord(p, across);
         CHECK(chord.apex == apex);
@@ -121,7 +124,8 @@ TEST_CASE("wrinkle measure: the examples of chords, from the middle vertex to th
 }
 
 TEST_CASE(
-    "wrinkle measure: the ratio is that of the square of the chord, for any triangle and map") {
+    "wrinkle measure: the ratio is that of the square of the chord, for any triangle and map"
+    * technique("wrinkle.compression.rest-measure")) {
     Random random;
     for (int i = 0; i < 1000; ++i) {
         const Positions p = {random.vector(), random.vector(), random.vector()};
@@ -142,7 +146,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("wrinkle measure: only shortening across the wrinkles counts") {
+TEST_CASE(
+    "wrinkle measure: only shortening across the wrinkles counts"
+    * technique("wrinkle.compression.factor")) {
     CHECK(skew_ratio([](Vec3 p) { return p; }) == near(1).epsilon(1e-6));
     CHECK(skew_ratio([](Vec3 p) { return p * Vec3{0.8f, 1, 1}; }) == near(0.64));
     CHECK(skew_ratio([](Vec3 p) { return p * Vec3{1, 0.5f, 1}; }) == near(1).epsilon(1e-6));
@@ -158,7 +164,9 @@ TEST_CASE("wrinkle measure: only shortening across the wrinkles counts") {
         == 1);
 }
 
-TEST_CASE("wrinkle measure: directions have no sign, lie in the plane and are unit") {
+TEST_CASE(
+    "wrinkle measure: directions have no sign, lie in the plane and are unit"
+    * technique("wrinkle.compression.direction")) {
     Random random;
     for (int i = 0; i < 200; ++i) {
         const Positions p = {random.vector(), random.vector(), random.vector()};
@@ -183,7 +191,9 @@ TEST_CASE("wrinkle measure: directions have no sign, lie in the plane and are un
     }
 }
 
-TEST_CASE("wrinkle measure: triangles without area or direction, and NaN positions, count as 1") {
+TEST_CASE(
+    "wrinkle measure: triangles without area or direction, and NaN positions, count as 1"
+    * technique("wrinkle.compression.factor")) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Positions shrunk = mapped(kSkew, [](Vec3 p) { return 0.5f * p; });
     CHECK(ratio_of(rest_of(kSkew, {0, 0, 1}), shrunk) == 1);
@@ -219,7 +229,9 @@ TEST_CASE(
     CHECK(vertex_compression({&cut, 1}, shorter)[0] == near(0.81).epsilon(1e-5));
 }
 
-TEST_CASE("wrinkle measure: by angles, how a fan is divided does not matter") {
+TEST_CASE(
+    "wrinkle measure: by angles, how a fan is divided does not matter"
+    * technique("wrinkle.compression.vertex-weight")) {
     // Four right angles about a point, the last one compressed to a half.
     Fan four{
         {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
@@ -245,7 +257,9 @@ TEST_CASE("wrinkle measure: by angles, how a fan is divided does not matter") {
     CHECK(mean_at_center(cut, Uniform) == near(0.875));
 }
 
-TEST_CASE("wrinkle measure: weights at a vertex sum to 1, and a mean lies between its parts") {
+TEST_CASE(
+    "wrinkle measure: weights at a vertex sum to 1, and a mean lies between its parts"
+    * technique("wrinkle.compression.vertex-weight")) {
     Random random;
     Positions p;
     std::vector<std::uint32_t> indices;
@@ -280,7 +294,9 @@ TEST_CASE("wrinkle measure: weights at a vertex sum to 1, and a mean lies betwee
     }
 }
 
-TEST_CASE("wrinkle measure: vertices that a seam repeats get the mean of both its sides") {
+TEST_CASE(
+    "wrinkle measure: vertices that a seam repeats get the mean of both its sides"
+    * technique("wrinkle.compression.vertex-weight")) {
     // Two triangles with the edge x = 1 twice; the right one is compressed.
     const Positions p = {{0, -1, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 0}, {2, 1, 0}, {1, 1, 0}};
     const std::vector<std::uint32_t> indices = {0, 1, 2, 3, 4, 5};
@@ -295,7 +311,9 @@ TEST_CASE("wrinkle measure: vertices that a seam repeats get the mean of both it
     CHECK(vertices[4] == 0.5f);
 }
 
-TEST_CASE("wrinkle measure: skin without a direction folds by the mean of all of them") {
+TEST_CASE(
+    "wrinkle measure: skin without a direction folds by the mean of all of them"
+    * technique("wrinkle.dimples")) {
     const std::vector<Vec3> none(3, Vec3(0));
     const std::vector<float> aside(3, 0.5f);
     const WrinkleRest rest = make_wrinkle_rest(
@@ -322,7 +340,9 @@ TEST_CASE("wrinkle measure: skin without a direction folds by the mean of all of
     CHECK(vertex_compression({&rest, 1}, sheared)[0] > 1);
 }
 
-TEST_CASE("wrinkle measure: skin that is stretched along its folds gets narrower without folding") {
+TEST_CASE(
+    "wrinkle measure: skin that is stretched along its folds gets narrower without folding"
+    * technique("wrinkle.natural-width")) {
     constexpr float kPoisson = 0.5f;
     const std::vector<Vec3> across(3, Vec3{1, 0, 0});
     const WrinkleRest rest = make_wrinkle_rest(
@@ -343,7 +363,9 @@ TEST_CASE("wrinkle measure: skin that is stretched along its folds gets narrower
     CHECK(ratio(0.9f, 0.8f) == near(0.81));  // where it is compressed along them, too, it is not
 }
 
-TEST_CASE("wrinkle measure: where regions overlap the direction turns from one to the other") {
+TEST_CASE(
+    "wrinkle measure: where regions overlap the direction turns from one to the other"
+    * technique("wrinkle.dimples")) {
     constexpr std::size_t kSteps = 41;
     const auto merged = [&](bool second_has_direction) {
         MeshData mesh;
@@ -385,7 +407,8 @@ TEST_CASE("wrinkle measure: where regions overlap the direction turns from one t
     CHECK(any.across[kSteps - 1] == Vec3(0));
 }
 
-TEST_CASE("wrinkle intensity: the values of the table") {
+TEST_CASE(
+    "wrinkle intensity: the values of the table" * technique("wrinkle.compression.intensity")) {
     struct Row {
         float lambda, beta, ratio, expected;
     };
@@ -408,7 +431,9 @@ TEST_CASE("wrinkle intensity: the values of the table") {
     }
 }
 
-TEST_CASE("wrinkle intensity: it falls with the ratio, odd about its zero, and never overflows") {
+TEST_CASE(
+    "wrinkle intensity: it falls with the ratio, odd about its zero, and never overflows"
+    * technique("wrinkle.compression.intensity")) {
     for (const float lambda : {0.7f, 1.0f, 1.05f}) {
         for (const float beta : {1.0f, 4.0f, 8.0f}) {
             float before = 2;
@@ -432,7 +457,8 @@ TEST_CASE("wrinkle intensity: it falls with the ratio, odd about its zero, and n
 }
 
 TEST_CASE(
-    "wrinkle intensity: of lengths, by the square of lambda and half of beta, it is the same") {
+    "wrinkle intensity: of lengths, by the square of lambda and half of beta, it is the same"
+    * technique("wrinkle.compression.square-length")) {
     for (float ratio = 0.1f; ratio < 3; ratio += 0.1f) {
         CHECK(
             wrinkle_intensity(ratio, 1.1f * 1.1f, 2)

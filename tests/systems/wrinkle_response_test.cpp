@@ -2,6 +2,7 @@
 #include "ecs/world.h"
 #include "systems/faces/wrinkle_response_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -99,7 +100,9 @@ Vec3 scaled(const Vec3& p, float x, float y) {
     return p * Vec3(x, y, 1);
 }
 
-TEST_CASE("wrinkle response: at rest, stretched or moved as one piece, weights are zero") {
+TEST_CASE(
+    "wrinkle response: at rest, stretched or moved as one piece, weights are zero"
+    * technique("skin.pipeline")) {
     Face face({.smoothing = 0});
     const WrinkleWeights none = {};
     CHECK(face.weights([](const Vec3& p) { return p; }) == none);
@@ -108,7 +111,8 @@ TEST_CASE("wrinkle response: at rest, stretched or moved as one piece, weights a
 }
 
 TEST_CASE(
-    "wrinkle response: a fifth shorter across the wrinkles is 0.712663, along them less that") {
+    "wrinkle response: a fifth shorter across the wrinkles is 0.712663, along them less that"
+    * technique("skin.pipeline")) {
     Face face;
     const WrinkleWeights across = face.weights([](const Vec3& p) { return scaled(p, 1, 0.8f); });
     CHECK(across.left_brow == near(0.712663).epsilon(1e-5));
@@ -126,7 +130,9 @@ TEST_CASE(
         == near(0).scale(1).epsilon(1e-6));
 }
 
-TEST_CASE("wrinkle response: each region has its own half, and mirrored skin mirrored weights") {
+TEST_CASE(
+    "wrinkle response: each region has its own half, and mirrored skin mirrored weights"
+    * technique("skin.pipeline")) {
     Face face;
     const auto left_half = [](const Vec3& p) { return scaled(p, 1, p.x < 0 ? 0.8f : 1.0f); };
     const auto right_half = [](const Vec3& p) { return scaled(p, 1, p.x > 0 ? 0.8f : 1.0f); };
@@ -137,7 +143,9 @@ TEST_CASE("wrinkle response: each region has its own half, and mirrored skin mir
     CHECK(left.left_brow == near(right.right_brow).epsilon(1e-5));
 }
 
-TEST_CASE("wrinkle response: more shortening never lowers a weight, which is 1 at most") {
+TEST_CASE(
+    "wrinkle response: more shortening never lowers a weight, which is 1 at most"
+    * technique("skin.pipeline")) {
     Face face({.compressed_gain = 3, .smoothing = 0});
     float previous = 0;
     for (float length = 1; length > 0.2f; length -= 0.05f) {
@@ -175,7 +183,9 @@ TEST_CASE("wrinkle response: positions that are not finite count as at rest") {
     CHECK(found.left_brow < 0.712663f);
 }
 
-TEST_CASE("wrinkle response: weights move by 1 - exp(-dt / smoothing) a step, at first at once") {
+TEST_CASE(
+    "wrinkle response: weights move by 1 - exp(-dt / smoothing) a step, at first at once"
+    * technique("skin.pipeline")) {
     Face face({.smoothing = 0.06f, .lambda = 1, .beta = 4});
     MorphTarget flat;
     flat.name = "flat";

@@ -2,6 +2,7 @@
 #include "systems/faces/wrinkle_measure.h"
 #include "systems/faces/wrinkle_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -48,7 +49,9 @@ TEST_CASE(
     CHECK(cheek.rests[0].across[0] == Vec2{0, 1});
 }
 
-TEST_CASE("wrinkle system: what folds at rest is the largest of the regions, by their weights") {
+TEST_CASE(
+    "wrinkle system: what folds at rest is the largest of the regions, by their weights"
+    * technique("wrinkle.resting")) {
     const Assets assets = two_regions();
     const WrinkleSurface surface = {
         .resting = {{"brow", 0.2f}, {"cheek", 0.3f}, {"nose", 0.5f}}, .resting_shape = "age"};
@@ -65,7 +68,9 @@ TEST_CASE("wrinkle system: what folds at rest is the largest of the regions, by 
     CHECK(state.source != make_wrinkle_state(less, kInstance, assets).source);
 }
 
-TEST_CASE("wrinkle system: a state follows its mesh, its regions and what is asked for") {
+TEST_CASE(
+    "wrinkle system: a state follows its mesh, its regions and what is asked for"
+    * technique("wrinkle.compression.integration")) {
     World world;
     world.insert_resource(two_regions());
     const Entity entity = world.create(WrinkleSurface{}, kInstance);
@@ -90,7 +95,8 @@ TEST_CASE("wrinkle system: a state follows its mesh, its regions and what is ask
 }
 
 TEST_CASE(
-    "wrinkle system: regions of the wrong length and instances without a mesh have no state") {
+    "wrinkle system: regions of the wrong length and instances without a mesh have no state"
+    * technique("wrinkle.compression.integration")) {
     Assets assets = two_regions();
     CHECK(wrinkle_source({}, {.mesh = {7}, .material = {0}}, assets) == 0);
     CHECK(wrinkle_source({}, {.mesh = {0}, .material = {9}}, assets) != 0);
@@ -151,7 +157,9 @@ TEST_CASE("wrinkle system: each driver measures what it is named after") {
     CHECK(state(WrinkleDriver::Strain).mask == std::vector<float>(4, 1.0f));
 }
 
-TEST_CASE("wrinkle system: a radial driver is strongest at its center and none at its radius") {
+TEST_CASE(
+    "wrinkle system: a radial driver is strongest at its center and none at its radius"
+    * technique("wrinkle.compression.prior-models")) {
     const Assets assets = two_regions();
     const WrinkleState state =
         make_wrinkle_state({.driver = WrinkleDriver::Radial, .radius = 1}, kInstance, assets);

@@ -1,6 +1,7 @@
 #include "ecs/world.h"
 #include "systems/faces/wrinkle_track_system.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -16,7 +17,9 @@ const WrinkleTrack kTrack = {
 
 }  // namespace
 
-TEST_CASE("wrinkle track: at a key are its weights, before the first and after the last too") {
+TEST_CASE(
+    "wrinkle track: at a key are its weights, before the first and after the last too"
+    * technique("wrinkle.maps.animation")) {
     for (const bool smooth : {false, true}) {
         WrinkleTrack track = kTrack;
         track.smooth = smooth;
@@ -32,7 +35,9 @@ TEST_CASE("wrinkle track: at a key are its weights, before the first and after t
     }
 }
 
-TEST_CASE("wrinkle track: between keys each region moves by itself, straight or smoothly") {
+TEST_CASE(
+    "wrinkle track: between keys each region moves by itself, straight or smoothly"
+    * technique("wrinkle.maps.animation")) {
     WrinkleTrack track = kTrack;
     const WrinkleWeights straight = wrinkle_weights_at(track, 1.5);
     CHECK(straight.left_brow == near(-0.5));
@@ -44,7 +49,9 @@ TEST_CASE("wrinkle track: between keys each region moves by itself, straight or 
     CHECK(wrinkle_weights_at(track, 2).left_brow == near(0));
 }
 
-TEST_CASE("wrinkle track: a loop starts over after the last key, others stay there") {
+TEST_CASE(
+    "wrinkle track: a loop starts over after the last key, others stay there"
+    * technique("wrinkle.maps.animation")) {
     World world;
     WrinkleTrack track = kTrack;
     track.loop = true;

@@ -29,16 +29,16 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr const char* kLightsScene =
-    "lights";  ///< by name, not by file: measured by light count and method
-constexpr int kHeapFrames =
-    600;  ///< the last ones, whose least heap memory counts; a whole camera path if it is longer
-constexpr int kHeapInterval = 60;                    ///< frames between its measurements
-constexpr const char* kParticlesName = "particles";  ///< likewise: their pools, without a scene
+    "lights";                      ///< by name, not by file: measured by light count and method
+constexpr int kHeapFrames = 600;   ///< last ones, whose minimum of heap memory counts; at least a
+                                   ///< whole camera path
+constexpr int kHeapInterval = 60;  ///< frames between heap measurements
+constexpr const char* kParticlesName = "particles";  ///< likewise: particle pools, without a scene
 constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of heads
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
 constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
 
-/// Whether another program measures it.
+/// Whether another program runs this benchmark.
 bool is_program(const std::string& scene) {
     return scene == kParticlesName || scene == kFacesName;
 }
@@ -68,8 +68,8 @@ Status write_results(
     return written ? write_report(options.csv, csv) : written;
 }
 
-/// Processor time of this program, the threads of a software OpenGL included [ms]: depends less
-/// on other programs than the time of a frame.
+/// CPU time of this process, including threads of a software OpenGL [ms]: depends less
+/// on other programs than the frame time.
 double all_threads_ms() {
     std::timespec time{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -108,7 +108,7 @@ Status run_fakephong_bench(const BenchOptions& options) {
         fakephong_bench_csv(bench));
 }
 
-/// The report's own, which it reserves with the last frame of the warm-up.
+/// Memory of the report itself, reserved with the last warm-up frame.
 double memory_of_samples_mib(const BenchReport& report) {
     std::size_t bytes = 0;
     for (const BenchSeries& series : report.series) {
@@ -117,7 +117,7 @@ double memory_of_samples_mib(const BenchReport& report) {
     return static_cast<double>(bytes) / (1 << 20);
 }
 
-/// Empties all series, with their memory in RAM: it must not count as growth of the program.
+/// Empties all series but keeps their memory resident, so that it does not count as growth.
 void touch_samples(BenchReport& report) {
     for (BenchSeries& series : report.series) {
         series.samples.assign(static_cast<std::size_t>(report.frames), 0.0);
@@ -254,7 +254,7 @@ Status run_bench(const BenchOptions& options) {
         const int heap_frames = std::max(kHeapFrames, path);
         Progress progress("frame", frames);
         for (int i = 0; i < frames; ++i) {
-            // The last frame of the warmup names the series.
+            // The last warm-up frame names the series.
             const bool reported = i + 1 >= options.warmup;
             run_bench_frame(stage, *headless, options.size, reported ? &report : nullptr);
             const int left = (i < options.warmup ? options.warmup : frames) - (i + 1);

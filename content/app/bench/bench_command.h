@@ -11,6 +11,11 @@
 
 namespace limn {
 
+// Shown by `limn bench fakephong`: fakephong.forward-difference, fakephong.metric-efficiency
+// Shown by `limn bench gallery`: shade.batching
+// Shown by `limn bench lights`: engine.visibility-sets
+// Shown by `limn bench stress-instances`: shade.stream-kernel
+
 struct BenchReport;
 struct HeadlessRenderer;
 struct Stage;
@@ -22,16 +27,15 @@ struct BenchOptions {
     int warmup = 60;   ///< run before, not measured
     IVec2 size = {1280, 720};
     std::vector<Assignment> assignments;  ///< --set
-    std::string json;  ///< file, or "-" for stdout instead of the table; empty = none
-    std::string csv;   ///< the same
-    std::string svg;   ///< file, of `particles` and `faces`; empty = none
-    std::string only;  ///< one part of `particles` or `faces`; empty = all
-    std::size_t most =
-        0;  ///< particles of the last point of their curves; 0 = as the program has it
-    std::optional<gpu::Profile> profile;  ///< empty = by the device
+    std::string json;      ///< file, or "-" for stdout instead of the table; empty = none
+    std::string csv;       ///< the same
+    std::string svg;       ///< file, of `particles` and `faces`; empty = none
+    std::string only;      ///< one part of `particles` or `faces`; empty = all
+    std::size_t most = 0;  ///< particles at the last point of the curves; 0 = the program's default
+    std::optional<gpu::Profile> profile;  ///< empty = chosen by the device
 };
 
-/// The command line of the program that measures `particles` or `faces`.
+/// Arguments of the program that measures `particles` or `faces`.
 [[nodiscard]] std::vector<std::string> bench_program_arguments(const BenchOptions& options);
 
 /// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the
@@ -43,7 +47,7 @@ void run_bench_frame(
 [[nodiscard]] BenchReport
 machine_report(const Stage& stage, const HeadlessRenderer& headless, const BenchOptions& options);
 
-/// Fails where an option is for other scenes than that.
+/// Fails if an option does not apply to the scene.
 [[nodiscard]] Status check_bench_options(const BenchOptions& options);
 [[nodiscard]] Status run_bench(const BenchOptions& options);
 

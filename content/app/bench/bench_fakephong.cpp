@@ -25,6 +25,9 @@
 #include <span>
 #include <utility>
 
+// Techniques: fakephong.blinn-path, fakephong.forward-difference, fakephong.metric-analytic,
+//     fakephong.metric-efficiency, fakephong.results
+
 namespace limn {
 namespace {
 
@@ -36,18 +39,18 @@ std::string rate_name(std::size_t rate) {
     return std::string(field->values[rate]);
 }
 
-/// Leaves one model, seen from the front, under `count` lamps on a ring before it whose light sums
-/// to the same.
+/// Keeps one model, viewed from the front, lit by `count` lamps on a ring before it whose light
+/// sums to a constant.
 Status arrange(Stage& stage, const std::string& model, int count) {
     World& world = stage.world;
-    Vec3 middle(0);
+    Vec3 model_center(0);
     std::vector<Entity> others;
     bool found = false;
     world.query<const Name, const MeshInstance, const Transform>().each(
         [&](Entity entity, const Name& name, const MeshInstance&, const Transform& transform) {
             if (name.text == model) {
                 found = true;
-                middle = {transform.position.x, 0, 0};
+                model_center = {transform.position.x, 0, 0};
             } else {
                 others.push_back(entity);
             }
@@ -61,7 +64,7 @@ Status arrange(Stage& stage, const std::string& model, int count) {
     }
     for (int i = 0; i < count; ++i) {
         const float angle = 2 * kPi * (static_cast<float>(i) + 0.3f) / static_cast<float>(count);
-        const Vec3 at = middle + Vec3(1.2f * std::cos(angle), 1.2f * std::sin(angle), 2.4f);
+        const Vec3 at = model_center + Vec3(1.2f * std::cos(angle), 1.2f * std::sin(angle), 2.4f);
         world.create(
             Transform{.position = at}, WorldTransform{affine_from(at, {1, 0, 0, 0}, Vec3(1))},
             PointLight{
@@ -69,7 +72,7 @@ Status arrange(Stage& stage, const std::string& model, int count) {
                 .radius = 30,
                 .attenuation = {.falloff = Falloff::None}});
     }
-    world.get<Transform>(stage.scene.camera).position = middle + Vec3(0, 0, kDistance);
+    world.get<Transform>(stage.scene.camera).position = model_center + Vec3(0, 0, kDistance);
     world.remove_resource<ShadingComparison>();
     world.remove_resource<ScanlinePlot>();
     return Done{};
@@ -152,7 +155,8 @@ std::string count_table(std::span<const FakePhongCount> counts) {
             return one.model == counts[0].model;
         }));
     std::string text = fmt::format(
-        "\nCounted on a processor under one light: lightings per facet, operations per pixel of "
+        "\nCounted on a CPU under one light: lighting evaluations per facet, operations per pixel "
+        "of "
         "the "
         "{},\nand the work of a frame over that of Phong shading, set-up "
         "included:\n{:<28}{:>6}{:>8}"

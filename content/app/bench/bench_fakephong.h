@@ -17,12 +17,12 @@ struct HeadlessRenderer;
 // What `limn bench fakephong` prints: what each ShadingRate costs beside per-pixel Phong shading,
 // on each model of the level `phonglab`, under 1, 4 and 16 lights (fakephong.metric-efficiency).
 //
-// The time is that of the pass that draws and lights the surfaces. The methods take turns, frame by
+// The time is that of the pass that draws and lights the surfaces. The methods alternate, frame by
 // frame, so that other programs slow all of them; the best frame of each counts. Lights beyond
-// those that a method keeps terms of are lit per vertex, or left out by the hardware of 2002.
+// those that a method stores terms of are lit per vertex, or dropped by the hardware of 2002.
 //
-// Beside it stand the operations that the same methods take on a processor, counted by the
-// laboratory (bench/fakephong) on its own views of the models, under one light.
+// Beside it are the operations that the same methods take on a CPU, counted by the
+// rasterizer of bench/fakephong in its own views of the models, under one light.
 
 inline constexpr const char* kFakePhongScene = "phonglab";
 inline constexpr std::array kFakePhongLights = {1, 4, 16};
@@ -34,7 +34,7 @@ struct FakePhongPoint {
     std::array<double, kShadingRates> best_ms = {};  ///< by ShadingRate
 };
 
-/// A method on a model of the laboratory.
+/// A method on a model, as bench/fakephong counts it.
 struct FakePhongCount {
     std::string model;
     std::string method;
@@ -47,7 +47,7 @@ struct FakePhongBench {
     std::vector<FakePhongCount> counts = {};  ///< all methods of a model, then the next model
 };
 
-/// Models by methods; those that step by forward differences have a second line, ", stepped".
+/// Models by methods; those that use forward differencing have a second line, ", stepped".
 [[nodiscard]] std::vector<FakePhongCount> count_fakephong();
 
 /// Draws options.frames frames of each method, model and number of lights.

@@ -22,7 +22,7 @@
 namespace limn {
 namespace {
 
-/// Encloses the table and everything on it.
+/// A box that encloses the table and everything on it.
 constexpr Transform kHotAir = {.position = {0, 0.2f, -0.1f}, .scale = {1, 0.4f, 0.8f}};
 
 /// If `wanted`, keeps the level's resource or inserts a default; else removes it.

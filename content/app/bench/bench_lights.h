@@ -15,7 +15,7 @@ struct BenchOptions;
 struct HeadlessRenderer;
 struct Stage;
 
-// What `limn bench lights` prints: frame time against the number of enabled lights, for every
+// What `limn bench lights` prints: frame time over the number of enabled lights, for every
 // LightMethod, in one run. A method stops where its next frame would take longer than
 // kMaxLightFrame.
 

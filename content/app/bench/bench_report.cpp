@@ -12,7 +12,7 @@ namespace {
 
 constexpr BenchKind kReportKinds[] = {BenchKind::Frame, BenchKind::System, BenchKind::Pass};
 
-constexpr double kShownMs = 0.005;  // the table has systems that take this long
+constexpr double kShownMs = 0.005;  // the table lists systems that take at least this long
 
 const char* kind_name(BenchKind kind) {
     switch (kind) {
@@ -67,7 +67,7 @@ std::string bench_table(const BenchReport& report) {
         "{}, {} x {}, {} frames after {}, {} threads\n{}, OpenGL {}\n"
         "{} entities, {} draws, {} triangles, {:.0f} MiB resident ({:+.1f} since the warm-up), "
         "{:.0f} MiB of render "
-        "targets\n{} shader programs, compiled and tried in {:.0f} ms; {} more while measuring\n\n",
+        "targets\n{} shader programs, compiled and run once in {:.0f} ms; {} more later\n\n",
         report.scene, report.size.x, report.size.y, report.frames, report.warmup, report.threads,
         report.gl_renderer, report.gl_version, report.entities, report.draws, report.triangles,
         report.resident_mib, report.resident_mib - report.resident_begin_mib, report.gpu_mib,

@@ -32,9 +32,8 @@ struct BenchReport {
     std::string gl_renderer = {};
     std::string gl_version = {};
     double resident_begin_mib = 0.0;  ///< memory of the process before the measured frames
-    double resident_mib = 0.0;        ///< and after them
-    double heap_begin_mib =
-        0.0;  ///< of it, what is allocated and not freed: the least of some frames
+    double resident_mib = 0.0;        ///< the same after them
+    double heap_begin_mib = 0.0;      ///< of it, allocated heap: the minimum over some frames
     double heap_mib = 0.0;
     double gpu_mib = 0.0;  ///< textures and buffers in the frame graph's pool
     std::int64_t entities = 0;
@@ -42,7 +41,7 @@ struct BenchReport {
     std::int64_t triangles = 0;  ///< of the last frame
     int programs = 0;            ///< shader programs, after the last frame
     int compiled = 0;            ///< of them, in the measured frames
-    double compile_ms = 0.0;     ///< before the first frame, for all that were expected
+    double compile_ms = 0.0;     ///< before the first frame, for all programs that the level needs
     std::vector<BenchSeries> series = {};
 };
 

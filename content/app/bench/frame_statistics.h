@@ -8,7 +8,7 @@ namespace limn {
 
 /// Summary of a series of times.
 struct Summary {
-    double median = 0.0;  ///< of an even count, the mean of the middle two
+    double median = 0.0;  ///< for an even count, the mean of the two central samples
     double p95 = 0.0;     ///< smallest sample that at least 95 % of them do not exceed
     double max = 0.0;
 };

@@ -9,11 +9,11 @@
 namespace limn {
 
 /// "drawing gallery, 4 s" on stderr while something takes longer than a second, redrawn in place.
-/// Prints nothing unless stderr is a terminal. For work whose steps are not counted; if they are,
-/// Progress shows how much is left. Only one of both at a time.
+/// Prints nothing unless stderr is a terminal. For work without countable steps; with them,
+/// Progress shows how much is left. Use only one of the two at a time.
 class Activity {
   public:
-    /// `what` is going on. Not `shown`: prints nothing.
+    /// `what` names the work. Not `shown`: prints nothing.
     explicit Activity(std::string what, bool shown = true);
     Activity(const Activity&) = delete;
     Activity& operator=(const Activity&) = delete;

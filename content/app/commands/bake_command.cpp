@@ -34,9 +34,9 @@
 namespace limn {
 namespace {
 
-constexpr int kGutter = 4;  // around the parts of an atlas [px]
+constexpr int kGutter = 4;  // padding around the charts of an atlas [px]
 
-/// A mesh of the file: the one of this name, or the one with the most triangles.
+/// A mesh of the file: the one with this name, or the one with the most triangles.
 Result<MeshData> load_mesh(const std::string& path, const std::string& name) {
     register_game_components();
     GltfScene scene = LIMN_TRY(load_gltf(path));
@@ -64,7 +64,7 @@ Result<MeshData> load_mesh(const std::string& path, const std::string& name) {
     return std::move(*found);
 }
 
-/// Sets the fields of `recipe` that the file and --set name.
+/// Sets the fields of `recipe` that the recipe file and --set name.
 template <typename Recipe>
 Status read_recipe(const BakeOptions& options, Recipe& recipe) {
     if (!options.recipe.empty()) {
@@ -107,7 +107,7 @@ Status write_furrow_height(const std::string& path, ImageFileKind kind, const Fu
     return write_png16(path, size.x, size.y, 1, gray);
 }
 
-/// The same as make_furrow_maps, by compute shaders.
+/// Like make_furrow_maps, in compute shaders.
 Result<FurrowMaps> make_furrow_maps_on_gpu(const FurrowMap& map, const FurrowStyle& style) {
     const std::unique_ptr<gpu::Context> context = LIMN_TRY(gpu::create_headless_context());
     const std::unique_ptr<gpu::Device> device = LIMN_TRY(gpu::Device::from_current_context());
@@ -152,8 +152,9 @@ Status bake_furrows(const BakeOptions& options) {
 
 constexpr BakeKind kKinds[] = {
     {"furrows", "wrinkle furrows of skin along vector fields: height and normal map", bake_furrows},
-    {"photometric", "normals and reflectance from photographs in one light each", bake_photometric},
-    {"strain_model", "wrinkles of captured normal maps, as a model of the strain of a face",
+    {"photometric", "normals and reflectance from photographs, each under one light",
+     bake_photometric},
+    {"strain_model", "wrinkles of captured normal maps, as a function of the strain of a face",
      bake_strain_model},
 };
 

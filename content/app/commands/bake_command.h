@@ -9,14 +9,16 @@
 
 namespace limn {
 
+// Shown by `limn bake photometric shots.json -o face.png`: face.photometric-normals
+
 /// `limn bake`: makes maps from a mesh or from photographs.
 struct BakeOptions {
     std::string kind;
-    std::string in;                       ///< .gltf or .glb; of photometric and strain_model, .json
-    std::string out;                      ///< NAME.png or NAME.exr; a kind adds to the name
-    std::string recipe;                   ///< JSON of the kind; empty = its defaults
-    std::string mesh;                     ///< name of a mesh of the file; empty = its largest
-    bool gpu = false;                     ///< compute on the GPU, to the same maps
+    std::string in;                       ///< .gltf or .glb; .json for photometric and strain_model
+    std::string out;                      ///< NAME.png or NAME.exr; kinds append to NAME
+    std::string recipe;                   ///< JSON file of settings; empty = defaults of the kind
+    std::string mesh;                     ///< name of a mesh in the file; empty = the largest
+    bool gpu = false;                     ///< compute the same maps on the GPU
     std::vector<Assignment> assignments;  ///< FIELD=VALUE of the recipe
 };
 

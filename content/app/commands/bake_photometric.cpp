@@ -27,17 +27,19 @@
 #include <string>
 #include <vector>
 
+// Techniques: face.photometric-normals
+
 namespace limn {
 
-/// A photograph and where its only light was.
+/// A photograph and the direction to its only light.
 struct PhotometricShot {
     std::string image;
     Vec3 to_light = {0, 0, 1};
 };
 
 LIMN_FIELDS(PhotometricShot) {
-    LIMN_FIELD(image, "file, relative to this one; of 8 bits: sRGB");
-    LIMN_FIELD(to_light, "to the right, up, and to the camera; of any length");
+    LIMN_FIELD(image, "file, relative to this one; 8 bits are read as sRGB");
+    LIMN_FIELD(to_light, "direction: right, up, toward the camera; of any length");
 }
 
 struct PhotometricShots {
@@ -46,7 +48,7 @@ struct PhotometricShots {
 };
 
 LIMN_FIELDS(PhotometricShots) {
-    LIMN_FIELD(shots, "at least three, whose lights do not lie in one plane");
+    LIMN_FIELD(shots, "at least three, with lights that are not coplanar");
     LIMN_FIELD(shadow, "radiance of pixels that no light reaches", "", 0, 1);
 }
 
@@ -137,7 +139,7 @@ Status bake_photometric(const BakeOptions& options) {
         albedo.push_back(byte_of(srgb_from_linear(std::min(found.reflectance, 1.0f))));
     }
     if (dark > 0) {
-        log_info("{}: too few lights reach {} of {} pixels", options.in, dark, pixels);
+        log_info("{}: too few lights illuminate {} of {} pixels", options.in, dark, pixels);
     }
     const std::string stem = options.out.substr(0, options.out.rfind('.'));
     LIMN_TRY(write_png(stem + "_normal.png", width, height, 3, normals));

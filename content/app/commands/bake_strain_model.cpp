@@ -27,6 +27,8 @@
 #include <string_view>
 #include <vector>
 
+// Techniques: face.wrinkle-model
+
 namespace limn {
 
 struct CapturedShape {
@@ -46,8 +48,8 @@ struct CapturedPose {
 };
 
 LIMN_FIELDS(CapturedPose) {
-    LIMN_FIELD(image, "normal map of 8 bits, green up; file, relative to this one");
-    LIMN_FIELD(shapes, "morph targets of the face whose weights are not 0");
+    LIMN_FIELD(image, "normal map of 8 bits, green up; file relative to this one");
+    LIMN_FIELD(shapes, "morph targets of the face with nonzero weights");
 }
 
 struct CapturedPoses {
@@ -62,23 +64,22 @@ struct CapturedPoses {
 
 LIMN_FIELDS(CapturedPoses) {
     LIMN_FIELD(face, ".gltf or .glb, relative to this file");
-    LIMN_FIELD(rest, "normal map at rest, whose slopes are no wrinkles; none: flat");
-    LIMN_FIELD(poses, "as many as the polynomial has terms, or more");
+    LIMN_FIELD(rest, "normal map at rest, whose slopes are subtracted; none: flat");
+    LIMN_FIELD(poses, "at least as many as the polynomial has terms");
     LIMN_FIELD(
-        uv_set,
-        "texture coordinates of the maps, those of the tangents: 0 or 1, as of imported faces", "",
-        0, 1);
+        uv_set, "texture coordinates of the maps and tangents: 0, or 1 as in imported faces", "", 0,
+        1);
     LIMN_FIELD(size, "texels along each side of the model", "", 1, 1024);
-    LIMN_FIELD(degree, "of the polynomial: 3, 9 or 19 terms", "", 1, 3);
-    LIMN_FIELD(ridge, "of the least squares", "", 1e-8, 1);
+    LIMN_FIELD(degree, "degree of the polynomial: 3, 9 or 19 terms", "", 1, 3);
+    LIMN_FIELD(ridge, "regularization of the least-squares fit", "", 1e-8, 1);
 }
 
 namespace {
 
 constexpr int kStrainGutter = 4;      ///< [texels]
-constexpr float kMinNormalZ = 0.05f;  ///< steeper ones are cut off
+constexpr float kMinNormalZ = 0.05f;  ///< steeper normals are clamped
 
-/// Slopes of a normal map at size x size texels: the mean of what each covers.
+/// Slopes of a normal map, averaged over each of size x size texels.
 Result<std::vector<Vec2>> load_slopes(const std::string& path, int size) {
     const ImageData image = LIMN_TRY(load_image(path, false));
     if (image.format != PixelFormat::Rgba8) {
@@ -115,7 +116,7 @@ Result<std::vector<Vec2>> load_slopes(const std::string& path, int size) {
     return slopes;
 }
 
-/// The mesh with the most morph targets; of several, the largest.
+/// The mesh with the most morph targets; among equals, the largest.
 Result<MeshData> load_face(const std::string& path, int uv_set) {
     register_game_components();
     GltfScene scene = LIMN_TRY(load_gltf(path));
@@ -129,7 +130,8 @@ Result<MeshData> load_face(const std::string& path, int uv_set) {
         found->uvs = found->uvs1;
     }
     if (found->uvs.size() != found->positions.size()) {
-        return fail("{}: found no texture coordinates {}, expected the maps' ones", path, uv_set);
+        return fail(
+            "{}: found no texture coordinates {}, expected those of the maps", path, uv_set);
     }
     if (found->tangents.size() != found->positions.size()) {
         generate_tangents(*found);

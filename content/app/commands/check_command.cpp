@@ -23,7 +23,7 @@ constexpr IVec2 kSize = {320, 180};
 
 std::atomic<int> warning_count{0};
 
-/// To stderr, as usual, and counted.
+/// Logs to stderr as usual, and counts.
 void count_message(LogLevel level, std::string_view message) {
     if (level == LogLevel::Warn) {
         ++warning_count;

@@ -6,9 +6,9 @@
 
 namespace limn {
 
-/// `limn check SCENE`: loads it, simulates a second and draws a frame. Every warning and error is
-/// printed as it comes; fails where there was an error. Without OpenGL nothing is drawn, and that
-/// is said.
+/// `limn check SCENE`: loads it, simulates a second and draws a frame. Prints every warning and
+/// error as it occurs; fails if there was an error. Without OpenGL nothing is drawn, and the output
+/// says so.
 [[nodiscard]] Status run_check(const std::string& scene);
 
 }  // namespace limn

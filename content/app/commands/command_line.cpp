@@ -64,7 +64,7 @@ Command add_play(CLI::App& program, PlayOptions& options) {
                options.scale = static_cast<float>(*scale);
            },
            "rendered pixels per window pixel, 0.1 to 2; auto adapts it to hold 60 frames per "
-           "second, on a processor 16, where it is the default")
+           "second, or 16 without a GPU, where it is the default")
         ->type_name("auto|X");
     app->add_option_function<std::string>(
            "--antialiasing",
@@ -117,7 +117,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     add_seed(*app, options.seed);
     add_integer(
         *app, "--spp",
-        "samples per pixel, over lens and shutter, for final images; default: effects as played",
+        "samples per pixel, over lens and shutter, for final images; default: real-time effects",
         options.samples, 1, 65536);
     add_parsed(*app, "--aov", "layers to add to an EXR", options.aovs, parse_list)
         ->type_name("A,B");
@@ -132,8 +132,8 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     app->footer("Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
                 "shadow_texels (shadow map texels per pixel), volume_layers (of shadow volumes).\n"
                 "An EXR holds linear radiance, a PNG the tone-mapped image.\n"
-                "PATH of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD;\n"
-                "a name may contain dots, as in glTF files: the longest that fits is meant.\n"
+                "PATH of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD.\n"
+                "A name may contain dots, as in glTF files; the longest match is used.\n"
                 "VALUE is JSON or a bare word: '[1, 2, 3]', 40deg, orange.\n"
                 "Files are written under a temporary name and renamed when complete.\n\n"
                 "Examples:\n"
@@ -168,11 +168,13 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
         ->type_name("FILE");
     app->add_option(
-           "--svg", options.svg, "of `particles`, `faces`: draw the cost over their number")
+           "--svg", options.svg, "`particles` and `faces` only: plot the cost over their number")
         ->type_name("FILE");
-    app->add_option("--only", options.only, "of `particles`, `faces`: one part")->type_name("PART");
+    app->add_option("--only", options.only, "`particles` and `faces` only: measure one part")
+        ->type_name("PART");
     add_integer(
-        *app, "--most", "of `particles`: of the last point of the curves; default: 10000000",
+        *app, "--most",
+        "`particles` only: how many at the last point of the curves; default: 10000000",
         options.most, 1000, 100'000'000);
     app->callback([&options] {
         if (const Status fits = check_bench_options(options); !fits) {
@@ -181,7 +183,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     });
     app->footer(
         R"(Every frame simulates one step and renders off screen. Times are in milliseconds; "all threads" is
-processor time, which depends less on other programs. Shaders are compiled before the first frame
+CPU time, which depends less on other programs. Shaders are compiled before the first frame
 ("compile_ms"); "compiled" counts those that a measured frame had to compile.
 
 JSON: {"scene", "size": [w, h], "frames", "warmup", "threads", "gl": {"renderer", "version"},
@@ -205,26 +207,26 @@ JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"effect
 CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms
 
 `limn bench fakephong` draws each model of the level `phonglab` under 1, 4 and 16 lights by every
-method of rendering.shading, in turns, --frames times each; the best counts. Beside these times
-stand the operations that the methods take on a processor: lightings per facet, all else per pixel,
-and the work of a frame over that of Phong shading.
+method of rendering.shading, alternating, --frames times each; the best counts. Beside these times
+are the operations that the methods take on a CPU: lighting evaluations per facet, the rest per pixel,
+and the work of a frame relative to Phong shading.
 JSON: {"scene", "size", "frames", "threads", "gl", "points": [{"model", "lights",
 "methods": [{"shading", "best_ms", "ratio"}]}], "counts": [{"model", "method", "lightings",
 "additions", "multiplications", "divisions", "roots", "powers", "fetches", "work"}]}
 CSV: model,lights,shading,frames,best_ms,ratio and, after an empty line,
 model,method,lightings,additions,multiplications,divisions,roots,powers,fetches,work
 
-`limn bench particles` holds particles to their gates, ratios to loops that people write by hand,
-and shows what a particle costs among a thousand to ten million. It draws nothing; --frames is how
-often each is run at most, and the best counts. --only update, sort, collision, world, draw or growth
+`limn bench particles` checks particles against their gates, ratios to hand-written loops,
+and shows the cost per particle for a thousand to ten million. It draws nothing; each runs at most
+--frames times, and the best counts. --only update, sort, collision, world, draw or growth
 measures that part.
 JSON: {"threads", "gates": [{"gate", "name", "ours", "other", "against", "unit", "ratio", "limit",
 "met"}], "growth": [{"curve", "points": [{"count", "ns"}]}], "notes"}
 CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, curve,count,ns
 
-`limn bench faces` moves a hundred heads and measures how their skin is compressed, beside scalar
-versions of the same, draws skin that wrinkles beside plain PBR, and shows what a face
-costs among 1 to 100. --frames is how often each is run at most, and the best counts.
+`limn bench faces` deforms a hundred heads and measures the compression of their skin, beside
+scalar versions, draws wrinkled skin beside plain PBR, and shows the cost per face for 1 to 100.
+Each runs at most --frames times, and the best counts.
 JSON: {"threads", "rows": [{"name", "ours_ms", "reference_ms", "against", "ratio", "limit", "met"}],
 "growth": [{"curve", "faces", "ns"}]}
 CSV: name,ours_ms,reference_ms,against,ratio,limit,met and, after an empty line, curve,faces,ns
@@ -254,7 +256,7 @@ Command add_view(CLI::App& program, ViewOptions& options) {
         const char* name;
         const char* doc;
     };
-    // Fields of the resource exposure, with its ranges and defaults but for the curve.
+    // Fields of the resource exposure; ranges and defaults are the same except for the curve.
     constexpr Field kFields[] = {
         {"curve", "neutral, aces, linear, reinhard, local or knee; default: the image's, or knee"},
         {"metering", "manual, or key: from the log-average luminance"},
@@ -285,7 +287,7 @@ Command add_view(CLI::App& program, ViewOptions& options) {
         "An EXR of `limn render` is shown with the exposure of its scene, as the PNG would be;\n"
         "an image of 8 bits as it is.\n"
         "Prints log-average luminance, mean color and dynamic range. Pixels with NaN or infinity\n"
-        "are counted, left out of the statistics and shown black or white.\n"
+        "are counted, excluded from the statistics and shown black or white.\n"
         "Knee is 0.3333 (ln(contrast c + 1) / contrast)^(1 / gamma) with c = 2^ev (light - "
         "defog).\n"
         "In the window, Up and Down change the exposure, C the curve; F9 saves the image.\n\n"
@@ -316,7 +318,7 @@ Command add_check(CLI::App& program, std::string& scene) {
     CLI::App* app = program.add_subcommand("check", "Check a level: load, step, draw, warn");
     app->add_option("scene", scene, kSceneDoc)->type_name("SCENE")->required();
     app->footer(
-        "Prints what is wrong or has no effect, and ends with 1 where there is an error.\n\n"
+        "Prints what is wrong or has no effect; exits with status 1 if there is an error.\n\n"
         "Example:\n"
         "  limn check my.level.json");
     return {app, [&scene] { return run_check(scene); }};
@@ -324,7 +326,7 @@ Command add_check(CLI::App& program, std::string& scene) {
 
 Command add_quality(CLI::App& program) {
     CLI::App* app = program.add_subcommand("quality", "Compare the effects with their oracles");
-    app->set_help_flag();  // everything behind the name is for the other program, --help as well
+    app->set_help_flag();  // all further arguments, including --help, are for the other program
     app->prefix_command();
     return {app, [app] { return run_sibling("limn quality", "limn-quality", app->remaining()); }};
 }
@@ -339,7 +341,7 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
     add_parsed(*app, "--diff", "write a difference image", options.diff, parse_png_path)
         ->type_name("FILE.png");
     app->footer(
-        "Prints PSNR [dB], SSIM, FLIP (mean and 99th percentile), the largest difference of a\n"
+        "Prints PSNR [dB], SSIM, FLIP (mean and 99th percentile), the largest difference in a\n"
         "channel, color correctness and the scanline through A's brightest pixel; for two EXR "
         "files also\n"
         "the relative mean square error. --diff raises differences to the power 1/10: one step of\n"
@@ -366,7 +368,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         })
         ->type_name("KIND")
         ->required();
-    app->add_option("in", options.in, ".gltf or .glb; of photometric and strain_model: .json")
+    app->add_option("in", options.in, ".gltf or .glb; .json for photometric and strain_model")
         ->type_name("IN")
         ->required();
     add_parsed(
@@ -380,7 +382,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
     app->add_option("--recipe", options.recipe, "settings of the kind")->type_name("FILE.json");
     app->add_option("--mesh", options.mesh, "name of the mesh; default: the largest of the file")
         ->type_name("NAME");
-    app->add_flag("--gpu", options.gpu, "compute on the GPU, to the same maps");
+    app->add_flag("--gpu", options.gpu, "compute the same maps on the GPU");
     add_assignments(*app, options.assignments);
     app->footer(fmt::format(
         "KIND is one of\n{}\n"
@@ -394,13 +396,13 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "photometric reads a file that says\n"
         "  {{\"shots\": [{{\"image\": \"a.png\", \"to_light\": [1, 0, 1]}}, ...], \"shadow\": "
         "0.02}}\n"
-        "of at least three photographs of a matt surface from one place, each in one of equally\n"
-        "bright lights, and writes NAME_normal.png and NAME_albedo.png.\n"
+        "of at least three photographs of a matte surface from one viewpoint, each lit by one of\n"
+        "several equally bright lights, and writes NAME_normal.png and NAME_albedo.png.\n"
         "strain_model reads a file that says\n"
         "  {{\"face\": \"face.glb\", \"rest\": \"rest.png\", \"poses\": [\n"
         "    {{\"image\": \"smile.png\", \"shapes\": [{{\"name\": \"mouthSmile_L\"}}, ...]}}, "
         "...]}}\n"
-        "of normal maps of the face in expressions, and writes NAME.exr, the wrinkle texture of a\n"
+        "with normal maps of facial expressions, and writes NAME.exr, the wrinkle texture of a\n"
         "wrinkle_surface with the method model.\n"
         "Files are written under a temporary name and renamed when complete.\n\n"
         "Examples:\n"
@@ -419,13 +421,13 @@ Command add_info(CLI::App& program, std::string& file) {
         ->type_name("FILE")
         ->required();
     app->footer(
-        "A .csv with the answers of viewers to the level relax: their counts beside those of the "
-        "test's source.\n\nExample:\n  limn info model.glb");
+        "For a .csv with answers of viewers to the level relax: their counts beside those of the "
+        "original study.\n\nExample:\n  limn info model.glb");
     return {app, [&file] { return run_info(file); }};
 }
 
 Command add_import(CLI::App& program, ImportOptions& options) {
-    CLI::App* app = program.add_subcommand("import", "Convert outside data to glTF");
+    CLI::App* app = program.add_subcommand("import", "Convert other formats to glTF");
     app->add_option("kind", options.kind, "of the data: ict-facekit, makehuman or markers")
         ->type_name("KIND")
         ->required()
@@ -435,22 +437,24 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         ->required();
     app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
     app->add_flag(
-        "--head", options.head, "markers: by name those of the head that is made here, see below");
+        "--head", options.head,
+        "markers only: they are named after those of the built-in head, see below");
     app->footer(
         "ict-facekit: the neutral face of ICT FaceKit with all expressions in its folder "
         "FaceXModel;\n"
         "where one half of an expression is missing, the other is mirrored.\n"
         "makehuman: the base mesh of MakeHuman with its expression units, the mean of the young\n"
         "builds, the default rig and eyes, from base.obj, targets, rigs and proxies.\n"
-        "Shapes keep their names and know their FACS action units; skin has regions that wrinkle,\n"
+        "Shapes keep their names and have their FACS action units; skin has wrinkle regions\n"
         "with the direction across the folds.\n"
         "markers: recorded markers of a face, a TRC file whose first frame is the face at rest;\n"
-        "those called head... take the head's motion out, gaps are filled. A face follows it by\n"
+        "those called head... remove the motion of the head, gaps are filled. A face follows by\n"
         "\"surface_binding\": {\"surface\": \"take\", \"method\": \"patches\"}, where the entity "
         "take\n"
-        "has the file as its gltf. With --head, names are those of the head's own surface, a mesh\n"
-        "of part \"markers\": mouth9_90_M is on its loop 9, at 90 degrees, in the middle; the\n"
-        "face may be another, and markers that it lacks go with their neighbors.\n\n"
+        "has the file as its gltf. With --head, markers are named as in the mesh of the built-in\n"
+        "head, part \"markers\": mouth9_90_M is on loop 9 of the mouth, at 90 degrees, on the\n"
+        "midline; the recorded face may be another, and markers that it lacks follow their\n"
+        "neighbors.\n\n"
         "Examples:\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
         "  limn import makehuman makehuman -o person.glb\n"
@@ -461,8 +465,8 @@ Command add_import(CLI::App& program, ImportOptions& options) {
 }
 
 Command add_speak(CLI::App& program, SpeakOptions& options) {
-    CLI::App* app = program.add_subcommand("speak", "Make a face say a text, with its sound");
-    app->add_option("text", options.text, "what it says, English")->required();
+    CLI::App* app = program.add_subcommand("speak", "Make a face speak a text, with audio");
+    app->add_option("text", options.text, "what it says, in English")->required();
     app->add_option("--face", options.face, "face whose shapes have FACS action units")
         ->type_name("FILE.glb")
         ->required();
@@ -474,16 +478,18 @@ Command add_speak(CLI::App& program, SpeakOptions& options) {
     add_assignments(
         *app, options.expression, "--express",
         "weight of a shape or action unit while speaking, as AU12=0.5");
-    app->add_option("--fragments", options.fragments, "move as these recordings do, not by rules")
+    app->add_option(
+           "--fragments", options.fragments, "use the motion of these recordings instead of rules")
         ->type_name("FILE.json");
     app->add_option("--record", options.record, "add the utterance to these recordings")
         ->type_name("FILE.json");
-    app->add_flag("--silent", options.silent, "spell by rules, without espeak-ng and sound");
-    app->add_option("--seed", options.seed, "of blinks, gaze and the head")->capture_default_str();
+    app->add_flag("--silent", options.silent, "pronounce by rules, without espeak-ng and audio");
+    app->add_option("--seed", options.seed, "seed of blinks, gaze and head motion")
+        ->capture_default_str();
     app->footer(
-        "The clip comes first in a copy of the face: mouth, blinks, gaze, and the head where a\n"
-        "node is named so. Sounds and their times come from the program espeak-ng; without it,\n"
-        "from spelling rules and mean durations. Neighboring sounds shape each other\n"
+        "Writes a copy of the face with a new first clip: mouth, blinks, gaze, and the head if a\n"
+        "node has that name. Phonemes and their timing come from espeak-ng; without it,\n"
+        "from spelling rules and mean durations. Neighboring phonemes influence each other\n"
         "(dominance functions of Cohen and Massaro 1993).\n\n"
         "Examples:\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
@@ -503,7 +509,7 @@ Command add_levels(CLI::App& program) {
 Command add_shows(CLI::App& program, std::string& id) {
     CLI::App* app =
         program.add_subcommand("shows", "List the techniques that levels show, on and off");
-    app->add_option("id", id, "of a technique: print how to see it; default: list all")
+    app->add_option("id", id, "of a technique: print how to show it; default: list all")
         ->type_name("ID");
     app->footer("Examples:\n"
                 "  limn shows\n"
@@ -527,7 +533,7 @@ Command add_components(CLI::App& program, ComponentsOptions& options) {
                             ->type_name("NAME");
     app->add_flag("--schema", options.schema, "print the JSON Schema of a level file instead")
         ->excludes(name);
-    app->add_flag("--all", options.all, "with those that systems keep for themselves");
+    app->add_flag("--all", options.all, "include those that only systems use");
     app->footer("Examples:\n"
                 "  limn components\n"
                 "  limn components point_light\n"

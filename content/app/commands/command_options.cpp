@@ -50,8 +50,9 @@ void add_assignments(
 
 void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile) {
     add_parsed(
-        app, "--profile", "render as on a GPU or as on a software OpenGL; default: by the device",
-        profile, parse_profile)
+        app, "--profile",
+        "render as on a GPU or as on software OpenGL; default: chosen by the device", profile,
+        parse_profile)
         ->type_name("gpu|software");
 }
 
@@ -69,11 +70,11 @@ void add_model_view(CLI::App& app, ModelViewOptions& options) {
            "of a model: studio, sky, gray, black, or an image, a panorama that lights it")
         ->type_name("NAME|IMAGE");
     add_number(
-        app, "--turntable", "of a model: turn it in so many seconds", options.turntable, 0.1, 3600)
+        app, "--turntable", "of a model: seconds per full turn", options.turntable, 0.1, 3600)
         ->type_name("SECONDS");
     app.add_flag(
         "--strict", options.load.strict,
-        "of a model: refuse a file with a bad part, which otherwise is left out with a warning");
+        "of a model: fail on a bad part, which otherwise is skipped with a warning");
 }
 
 }  // namespace limn

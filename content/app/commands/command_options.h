@@ -17,9 +17,9 @@
 
 namespace limn {
 
-// Options that several commands have. What their values may not be is wrong usage.
+// Options that several commands have. Invalid values are wrong usage.
 
-/// An option whose value `parse` checks; what it rejects is wrong usage.
+/// An option whose value `parse` checks; values that it rejects are wrong usage.
 template <typename T, typename Parse>
 CLI::Option*
 add_parsed(CLI::App& app, const std::string& name, const std::string& doc, T& target, Parse parse) {
@@ -69,7 +69,7 @@ CLI::Option* add_size(CLI::App& app, IVec2& size);
 /// --seed of all random numbers.
 CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed);
 
-/// --set of fields, or `name` of what `doc` says, any number of times.
+/// --set of fields, or an option `name` with the help `doc`; may be repeated.
 void add_assignments(
     CLI::App& app, std::vector<Assignment>& assignments, const std::string& name = "--set",
     const std::string& doc = "change a field after loading");
@@ -80,7 +80,7 @@ void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile);
 /// --show of a technique.
 CLI::Option* add_show(CLI::App& app, std::string& technique);
 
-/// How a model by itself is shown.
+/// How a single model is displayed.
 void add_model_view(CLI::App& app, ModelViewOptions& options);
 
 }  // namespace limn

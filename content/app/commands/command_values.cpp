@@ -78,7 +78,7 @@ Result<std::vector<std::string>> parse_list(std::string_view text) {
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t comma = std::min(text.find(',', begin), text.size());
         if (comma == begin) {
-            return fail("found \"{}\", expected names with commas between", text);
+            return fail("found \"{}\", expected names separated by commas", text);
         }
         parts.emplace_back(text.substr(begin, comma - begin));
         begin = comma + 1;

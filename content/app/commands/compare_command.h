@@ -6,6 +6,8 @@
 
 namespace limn {
 
+// Shown by `limn compare a.png b.png`: fakephong.metric-color
+
 /// `limn compare`: compares two images of equal size.
 struct CompareOptions {
     std::string a;

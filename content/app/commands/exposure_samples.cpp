@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+// Techniques: post.distributed-sampling
+
 namespace limn {
 namespace {
 

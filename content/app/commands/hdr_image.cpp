@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: hdr.viewer
+
 namespace limn {
 namespace {
 
@@ -129,7 +131,7 @@ double range_ratio(double least, double largest) {
     return least > 0.0 ? largest / least : 1.0;
 }
 
-double clipped_share(const gpu::Texture& display) {
+double clipped_fraction(const gpu::Texture& display) {
     const gpu::ByteImage image = gpu::read_bytes(display);
     const std::int64_t pixels = std::int64_t{image.width} * image.height;
     std::int64_t clipped = 0;
@@ -151,7 +153,7 @@ std::string describe(const HdrImage& image) {
         range_text(s.clipped_min_luminance, s.clipped_max_luminance));
     if (s.not_finite > 0) {
         text += fmt::format(
-            "{} of {} pixels hold NaN or infinity: left out of the statistics, shown black or "
+            "{} of {} pixels hold NaN or infinity: excluded from the statistics, shown black or "
             "white\n",
             s.not_finite, s.pixels + s.not_finite);
     }

@@ -17,7 +17,7 @@ class Device;
 
 // An HDR image loaded from a file, and its tone mapping by an Exposure (hdr.viewer). Measured once,
 // tone mapped when something changes. The GPU holds the file's values unchanged: NaN and infinity
-// are left out of the statistics and shown as black and white.
+// are excluded from the statistics and shown as black and white.
 
 /// hdr.log-average, hdr.defog and hdr.dynamic-range of the whole image.
 struct HdrStatistics {
@@ -61,7 +61,7 @@ class HdrImage {
 [[nodiscard]] double range_ratio(double least, double largest);
 
 /// Fraction of the pixels with a channel at the display's maximum, 0 .. 1. Waits for the GPU.
-[[nodiscard]] double clipped_share(const gpu::Texture& display);
+[[nodiscard]] double clipped_fraction(const gpu::Texture& display);
 
 /// The statistics as a few lines of text.
 [[nodiscard]] std::string describe(const HdrImage& image);

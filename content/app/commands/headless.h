@@ -22,7 +22,8 @@ struct HeadlessRenderer {
 /// Fails if the device cannot render an image of that size.
 [[nodiscard]] Status check_image_size(const gpu::Device& device, const IVec2& size);
 
-/// Fails without OpenGL 4.5 or with a shader compiler's message. Default profile: by the device.
+/// Fails without OpenGL 4.5 or with a shader compiler's message. Default profile: chosen by the
+/// device.
 [[nodiscard]] Result<HeadlessRenderer> create_headless_renderer(
     std::optional<gpu::Profile> profile = {}, const RenderSettings& settings = {});
 

@@ -6,10 +6,10 @@ namespace limn {
 
 struct Stage;
 
-/// Attribute of an EXR: the Exposure of its scene, as JSON, with which `limn view` shows it.
+/// EXR attribute with the Exposure of the scene, as JSON; `limn view` applies it.
 inline constexpr const char* kExposureNote = "limn.exposure";
 
-/// What is noted in an EXR of a scene: its name, the simulation time [s], the exposure.
+/// Attributes of an EXR of a scene: its name, the simulation time [s], the exposure.
 [[nodiscard]] ImageAttributes image_notes(const Stage& stage, double time);
 
 }  // namespace limn

@@ -32,10 +32,12 @@
 #include <utility>
 #include <vector>
 
+// Techniques: anim.bezier-join, wrinkle.compression.ab-evaluation
+
 namespace limn {
 namespace {
 
-constexpr std::size_t kMaxLines = 40;         // of a list; the rest is only counted
+constexpr std::size_t kMaxLines = 40;         // lines of a list; the rest are only counted
 constexpr IVec2 kProgramsSize = {1280, 720};  // of the images that the programs are for
 
 /// The file name's extension in lower case: ".png".
@@ -65,7 +67,7 @@ std::string counted(std::size_t count, std::string_view what) {
     return fmt::format("{} {}{}", count, what, what.ends_with("sh") ? "es" : "s");
 }
 
-/// Entities of the file, without what a model gets to be looked at.
+/// Entities of the file, without the camera, lights and ground that a model viewer adds.
 std::vector<Entity> own_entities(const World& world, const LoadedScene& scene) {
     std::vector<Entity> own;
     world.each_entity([&](Entity entity) {
@@ -99,7 +101,7 @@ void print_components(const World& world, std::span<const Entity> entities) {
     }
 }
 
-/// A heading and a line for each; nothing where there are none.
+/// A heading and a line for each; nothing if there are none.
 void print_list(const char* what, const std::vector<std::string>& lines) {
     if (lines.empty()) {
         return;
@@ -133,14 +135,14 @@ void print_cameras_and_lights(const World& world, std::span<const Entity> entiti
     print_list("light", lights);
 }
 
-/// Capacity, bytes and executor of each emitter, those of copies in one line, and the sums.
+/// Capacity, bytes and executor of each emitter, copies in one line, and totals.
 void print_particles(const World& world, std::span<const Entity> entities) {
     struct Budget {
         std::size_t emitters = 0;
         std::uint64_t capacity = 0;
         std::uint64_t bytes = 0;
     };
-    std::map<std::string, std::size_t> lines;  // to their places in `budgets`
+    std::map<std::string, std::size_t> lines;  // to indices in `budgets`
     std::vector<std::pair<std::string, Budget>> budgets;
     Budget sums[2];
     for (const Entity entity : entities) {
@@ -178,7 +180,7 @@ void print_particles(const World& world, std::span<const Entity> entities) {
         fmt::print("    {}\n", rows[i]);
     }
     print_rest(rows.size());
-    fmt::print("    {}  cpu, in all\n    {}  gpu, in all\n", text(sums[0]), text(sums[1]));
+    fmt::print("    {}  cpu, total\n    {}  gpu, total\n", text(sums[0]), text(sums[1]));
 }
 
 /// Names, children indented below their parents.
@@ -209,7 +211,7 @@ void print_hierarchy(World& world, std::span<const Entity> entities) {
     print_rest(entities.size());
 }
 
-/// Length, and how many of its joins are smooth: in direction and speed, in direction alone, or
+/// Length, and how many of its joins are smooth: in direction and speed, only in direction, or
 /// not.
 void print_path(const PathData& path) {
     std::array<int, 4> joins = {};
@@ -227,7 +229,7 @@ void print_path(const PathData& path) {
         path.name);
 }
 
-/// A factor of a texture is rarely what one sees.
+/// A factor that multiplies a texture says little about the color.
 std::string factor_text(float factor, const TextureSlot& texture) {
     return texture.image.index != kNoAsset && factor > 0 ? "mapped" : fmt::format("{:.2f}", factor);
 }
@@ -300,7 +302,7 @@ void print_assets(
     print_rest(assets.clips.size());
 }
 
-/// Needs OpenGL, which need not be there.
+/// Needs OpenGL, which may be missing.
 void print_programs(World& world, Entity camera) {
     Result<HeadlessRenderer> headless = create_headless_renderer();
     if (!headless) {
@@ -323,10 +325,10 @@ Status print_scene(const std::string& file) {
         "{}{}{}\n{}\n", scene->name, scene->title.empty() ? "" : ": ", scene->title, scene->path);
     if (!is_empty(scene->bounds)) {
         const Vec3 size = 2.0f * half_extent(scene->bounds);
-        const Vec3 middle = center(scene->bounds);
+        const Vec3 box_center = center(scene->bounds);
         fmt::print(
             "{:.3g} x {:.3g} x {:.3g} m about ({:.3g}, {:.3g}, {:.3g})\n", size.x, size.y, size.z,
-            middle.x, middle.y, middle.z);
+            box_center.x, box_center.y, box_center.z);
     }
     if (scene->duration > 0.0) {
         fmt::print("camera path of {:.1f} s\n", scene->duration);
@@ -393,7 +395,7 @@ Status print_image(const std::string& file) {
     return Done{};
 }
 
-/// Answers of viewers to the level relax.
+/// The answers of viewers to the level relax.
 Status print_trials(const std::string& file) {
     const std::vector<TrialRecord> records = LIMN_TRY(load_trials(file));
     fmt::print("{} viewers\n{}", records.size(), describe_tally(tally_trials(records)));

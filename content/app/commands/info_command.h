@@ -6,6 +6,9 @@
 
 namespace limn {
 
+// Shown by `limn info herd`: char.clip-layout
+// Shown by `limn info museum`: shade.program-lifecycle
+
 /// `limn info`: prints the contents of a level, a glTF file, an image or the answers of viewers.
 [[nodiscard]] Status run_info(const std::string& file);
 

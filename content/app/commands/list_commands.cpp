@@ -43,7 +43,7 @@ double to_degrees(double radians) {
     return std::stod(fmt::format("{:.4g}", radians * 180.0 / std::numbers::pi));
 }
 
-/// "0 .. 10 m", or the unit alone where there are no limits; angles in degrees.
+/// "0 .. 10 m", or only the unit if there are no limits; angles in degrees.
 std::string range_or_unit(FieldMeta meta) {
     if (meta.unit == kRadians) {
         meta.unit = "deg";
@@ -54,7 +54,7 @@ std::string range_or_unit(FieldMeta meta) {
     return range.empty() ? meta.unit : range;
 }
 
-/// As a level has it: angles in degrees, rotations as [yaw, pitch, roll].
+/// As in a level: angles in degrees, rotations as [yaw, pitch, roll].
 std::string written_value(const FieldInfo& field, const void* element) {
     if (field.type == FieldType::Quat && *static_cast<const Quat*>(element) == Quat(1, 0, 0, 0)) {
         return "[0, 0, 0]";
@@ -175,7 +175,7 @@ void print_show(const FoundShow& found) {
     }
     fmt::print(
         "\noff {}\n", show.off.kind == JsonKind::Object ? write_json(show.off)
-                                                        : std::string("without what is set"));
+                                                        : std::string("without these changes"));
     fmt::print(
         "\nlimn play --show {0}\nlimn render --show {0} -o on.png\n"
         "limn render --show {0} --off -o off.png\n",
@@ -190,13 +190,13 @@ void print_types(const ListedTypes& listed) {
 }
 
 void print_all_keys(const std::vector<LevelKeys>& all) {
-    fmt::print("==== Keys of a level, beside what is above\n\n");
+    fmt::print("==== Further keys of a level\n\n");
     for (const LevelKeys& listed : all) {
         print_keys(listed);
     }
 }
 
-/// Everything that a level names, by where it belongs.
+/// Everything that a level can name, grouped by the section of the level.
 std::vector<ListedTypes> list_types() {
     const auto chosen = [](const std::vector<const ComponentInfo*>& infos, bool internal) {
         std::vector<ListedType> types;
@@ -221,11 +221,11 @@ std::vector<ListedTypes> list_types() {
          {{"material", &component_info<Material>()}, {"path", &component_info<PathShape>()}}},
         {"Under \"meshes\": {\"make\": NAME}", kinds(mesh_kinds())},
         {"Under \"images\": {\"make\": NAME}", kinds(pattern_kinds())},
-        {"Internal components: systems write them", chosen(all_components(), true), true},
+        {"Internal components: written by systems", chosen(all_components(), true), true},
         {"Internal resources", chosen(all_resources(), true), true}};
 }
 
-/// One component, resource, material or maker, with where it belongs.
+/// One component, resource, material or maker, with its section.
 Status print_named(const std::string& name) {
     bool is_known = false;
     std::vector<std::string_view> names;

@@ -14,7 +14,7 @@ namespace limn {
 [[nodiscard]] Status run_shows(const std::string& id);
 
 /// `limn components [NAME]`: what levels are made of, with fields, units, ranges and defaults as
-/// levels write them; or that of one name. With `all` those, too, that systems keep for themselves;
+/// levels write them; or only NAME. With `all` also what only systems use;
 /// with `schema` the JSON Schema of a level file instead.
 [[nodiscard]] Status run_components(const std::string& name, bool schema, bool all);
 

@@ -35,12 +35,12 @@ void Progress::update(int done) {
     }
     last_draw_ = now;
     drawn_ = true;
-    const double share = std::clamp(static_cast<double>(done) / total_, 0.0, 1.0);
-    const int filled = static_cast<int>(share * kBarWidth);
+    const double done_fraction = std::clamp(static_cast<double>(done) / total_, 0.0, 1.0);
+    const int filled = static_cast<int>(done_fraction * kBarWidth);
     const double elapsed = std::chrono::duration<double>(now - begin_).count();
     std::string left;
     if (done > 0 && elapsed > 1.0) {
-        left = fmt::format(" {:.0f} s left", elapsed / share * (1.0 - share));
+        left = fmt::format(" {:.0f} s left", elapsed / done_fraction * (1.0 - done_fraction));
     }
     const std::string line = fmt::format(
         "{}{} {} of {} [{:#>{}}{:->{}}]{}", kClearProgressLine, what_, done, total_, "", filled, "",

@@ -25,10 +25,12 @@
 #include <filesystem>
 #include <utility>
 
+// Techniques: post.distributed-sampling
+
 namespace limn {
 namespace {
 
-constexpr int kTemporalFrames = 16;  ///< after which temporal antialiasing has settled
+constexpr int kTemporalFrames = 16;  ///< after which temporal antialiasing has converged
 
 /// Motion blur modes that keep previous frames must keep whole frames, not antialiasing samples.
 int played_samples(const World& world, const RenderOptions& options) {
@@ -41,7 +43,7 @@ std::string camera_names(const World& world) {
     std::string names;
     world.query<const Name, const Camera>().each(
         [&](const Name& name, const Camera&) { names += (names.empty() ? "" : ", ") + name.text; });
-    return names.empty() ? "no camera with a name" : names;
+    return names.empty() ? "no named camera" : names;
 }
 
 Result<Entity> choose_camera(const Stage& stage, const std::string& name) {
@@ -88,11 +90,12 @@ advance_to_view(Stage& stage, Entity camera, const RenderOptions& options, const
 /// Exposure time [s]: at most the time between frames.
 double open_seconds(const World& world, const FrameTimes& time) {
     const auto* blur = world.find_resource<MotionBlur>();
-    const double share = blur != nullptr ? static_cast<double>(blur->shutter) / 360.0 : 0.0;
-    return std::clamp(share, 0.0, 1.0) * (time.shown - time.previous);
+    const double shutter_fraction =
+        blur != nullptr ? static_cast<double>(blur->shutter) / 360.0 : 0.0;
+    return std::clamp(shutter_fraction, 0.0, 1.0) * (time.shown - time.previous);
 }
 
-/// Renders the frame with effects as in `limn play`, antialiased by accumulation.
+/// Renders the frame with the effects of `limn play`, antialiased by accumulation.
 FrameOutput draw_played(
     Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options,
     const FrameTimes& time) {
@@ -132,7 +135,7 @@ FrameOutput draw_sampled(
     return finish_accumulation(renderer, stage.world, shown);
 }
 
-/// Frames that particles which meet what the camera sees live, of two seconds at most.
+/// Frames that particles with screen-space collision live, two seconds at most.
 int depth_collision_frames(const World& world, double step) {
     constexpr double kLongest = 2;  // [s]
     double longest = 0;
@@ -146,7 +149,7 @@ int depth_collision_frames(const World& world, double step) {
     return static_cast<int>(std::ceil(std::min(longest, kLongest) / step));
 }
 
-/// How many frames the image of a later one depends on.
+/// How many previous frames an image depends on.
 int previous_frames(const World& world, double step) {
     const auto* const blur = world.find_resource<MotionBlur>();
     const auto* const rendering = world.find_resource<Rendering>();

@@ -13,6 +13,12 @@
 
 namespace limn {
 
+// Shown by `limn render --show shadow.volume-count --aov volume_layers -o layers.exr`:
+//     shadow.density-view
+// Shown by `limn render museum --profile gpu -o museum.png`: shade.profile
+// Shown by `limn render museum -o museum.exr`: hdr.float-formats, hdr.openexr
+// Shown by `limn render stilllife --spp 64 -o stilllife.png`: post.distributed-sampling
+
 /// `limn render`: renders images without a window.
 struct RenderOptions {
     std::string scene;  ///< level name, level file or glTF; empty: the first level with the show
@@ -22,20 +28,20 @@ struct RenderOptions {
     std::optional<FrameRange> frames;  ///< frame n shows time n / fps
     double fps = 60.0;
     std::optional<std::uint64_t> seed;    ///< overrides the level's
-    int samples = 0;                      ///< per pixel; 0: effects as played, antialiased
-    int edge_samples = 16;                ///< antialiasing samples of effects as played
+    int samples = 0;                      ///< per pixel; 0: real-time effects, antialiased
+    int edge_samples = 16;                ///< antialiasing samples with real-time effects
     std::vector<std::string> aovs;        ///< additional EXR layers
     std::vector<Assignment> assignments;  ///< applied after loading, in order
     std::string camera;                   ///< by name; empty = the level's
     ShowChoice show;                      ///< what to show of the level
-    std::optional<gpu::Profile> profile;  ///< empty = by the device
-    ModelViewOptions model;               ///< of a model by itself
+    std::optional<gpu::Profile> profile;  ///< empty = chosen by the device
+    ModelViewOptions model;               ///< of a single model
     bool quiet = false;                   ///< prints nothing but errors and warnings
 };
 
-/// One frame at `time` as `limn play` shows it, antialiased. Draws first what it depends on: the
-/// first frame where probes remember what they saw, and the frames before it that motion blur
-/// averages or temporal antialiasing accumulates.
+/// One frame at `time` as `limn play` shows it, antialiased. First draws the frames it depends on:
+/// the first one if probes keep what they captured, and the previous ones that motion blur averages
+/// or temporal antialiasing accumulates.
 [[nodiscard]] FrameOutput draw_still(
     Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options, double time);
 
@@ -43,7 +49,7 @@ struct RenderOptions {
 [[nodiscard]] Status check_render_options(const RenderOptions& options);
 
 /// Writes every image under a temporary name and renames it, so an interrupted run leaves only
-/// complete files. On a terminal shows what goes on; at last prints a line with the file, its size
+/// complete files. On a terminal shows progress; finally prints a line with the file, its size
 /// and the time it took.
 [[nodiscard]] Status run_render(const RenderOptions& options);
 

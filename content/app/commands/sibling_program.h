@@ -8,9 +8,13 @@
 
 namespace limn {
 
-/// Becomes the program of that name beside this one, with these arguments: `limn quality` is
+// Shown by `limn quality fakephong`: fakephong.blinn-path, fakephong.metric-analytic,
+//     fakephong.results
+// Shown by `limn quality skinning`: char.skin-cpu
+
+/// Replaces this process by the program of that name in its folder: `limn quality` is
 /// `limn-quality`, `limn bench particles` is `limn-bench-particles`, so that this program contains
-/// neither oracles nor references. `command` names what failed, as "limn quality". Returns only if
+/// neither oracles nor references. `command` is for the error, as "limn quality". Returns only if
 /// that fails.
 [[nodiscard]] Status
 run_sibling(std::string_view command, const std::string& name, std::vector<std::string> arguments);

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: face.categories, face.talking-head
+
 namespace limn {
 
 namespace {
@@ -25,7 +27,7 @@ constexpr double kMaxWeight = 10.0;
 constexpr float kRate = 60.0f;      ///< keys per second
 constexpr float kJoinCost = 0.25f;  ///< of a jump by 1 on one axis of the mouth, against one join
 
-/// A node of a face: its shapes, those that speak, and the weight of each in the expression.
+/// A node of a face: its shapes, those used for speech, and the weight of each in the expression.
 struct FaceNode {
     std::vector<FaceLink> links;
     std::vector<float> expression;
@@ -56,7 +58,7 @@ GltfFaceClip make_clip(
     return clip;
 }
 
-/// Sets the weight of every shape of that name or action unit, halves included. Fails where the
+/// Sets the weight of every shape with that name or action unit, including halves. Fails if the
 /// face has none.
 Status express(
     const GltfFace& face, const Assignment& assignment, const std::string& file,
@@ -85,8 +87,8 @@ Status express(
     return Done{};
 }
 
-/// The nodes of a face with shapes; those that do not open the mouth, as eyes and lashes, may have
-/// few links or none.
+/// The nodes of a face with shapes; nodes that do not open the mouth, such as eyes and lashes, may
+/// have few links or none.
 Result<std::vector<FaceNode>> link_face(const GltfFace& face, const SpeakOptions& options) {
     std::vector<FaceNode> nodes;
     bool opens = false;
@@ -106,14 +108,14 @@ Result<std::vector<FaceNode>> link_face(const GltfFace& face, const SpeakOptions
     return nodes;
 }
 
-/// As espeak-ng speaks it, or else by rules.
+/// Phonemes from espeak-ng, or else from spelling rules.
 Result<Utterance> utter(const SpeakOptions& options) {
     if (options.silent) {
         return spell_utterance(options.text);
     }
     if (!has_espeak()) {
         fmt::print(
-            stderr, "limn speak: found no program espeak-ng: spelled by rules, without sound\n");
+            stderr, "limn speak: found no program espeak-ng: pronounced by rules, without audio\n");
         return spell_utterance(options.text);
     }
     return speak_utterance(options.text, options.voice);
@@ -126,16 +128,16 @@ Result<SampledCurves> move_mouth(const SpeechTrack& track, const SpeakOptions& o
     }
     const SpeechLibrary library = LIMN_TRY(load_speech_library(options.fragments));
     const std::vector<SpeechUnit> units = generate_units(library.recordings);
-    const Result<std::vector<PlacedUnit>> placed =
+    const Result<std::vector<PlacedUnit>> selected =
         select_units(track, units, library.recordings, kJoinCost);
-    if (!placed) {
-        return fail("{}: {}", options.fragments, placed.error().message);
+    if (!selected) {
+        return fail("{}: {}", options.fragments, selected.error().message);
     }
-    fmt::print("{}: {} recorded units\n", options.fragments, placed->size());
-    return join_units(track, *placed, library.recordings, kRate);
+    fmt::print("{}: {} recorded units\n", options.fragments, selected->size());
+    return join_units(track, *selected, library.recordings, kRate);
 }
 
-/// Adds the utterance to a library, which is made where it does not exist.
+/// Adds the utterance to a library, which is created if it does not exist.
 Status record(const Utterance& utterance, const SpeakOptions& options) {
     SpeechLibrary library;
     if (std::filesystem::exists(options.record)) {
@@ -160,7 +162,7 @@ Status run_speak(const SpeakOptions& options) {
     const SampledCurves mouth = LIMN_TRY(move_mouth(utterance.track, options));
     const GltfFaceClip clip = make_clip(face, nodes, utterance.track, mouth, options.seed);
     const std::vector<std::byte> bytes = LIMN_TRY(add_face_clip(options.face, face, clip));
-    std::string sound = "no sound";
+    std::string sound = "no audio";
     if (!utterance.wave.samples.empty()) {
         sound = std::filesystem::path(options.out).replace_extension(".wav").string();
         LIMN_TRY(write_file(sound, write_wave(utterance.wave)));

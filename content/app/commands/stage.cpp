@@ -40,7 +40,7 @@ Result<std::unique_ptr<Stage>> open_stage(const std::string& scene, const StageO
             return status.error();
         }
     }
-    stage->world.run(update_furrow_skins);  // with what was assigned: a frame needs no step
+    stage->world.run(update_furrow_skins);  // after assignments: a frame may need no step
     return stage;
 }
 

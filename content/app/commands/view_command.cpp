@@ -19,10 +19,12 @@
 #include <fstream>
 #include <ios>
 
+// Techniques: hdr.viewer
+
 namespace limn {
 namespace {
 
-/// The settings were checked when they were parsed.
+/// The settings have been checked by the parser.
 Exposure shown_exposure(const ViewOptions& options) {
     Exposure exposure = exposure_of_file(options.file);
     for (const auto& [field, value] : options.settings) {
@@ -46,7 +48,7 @@ Status view_headless(const ViewOptions& options) {
     }
     fmt::print("{}", describe(**hdr));
     const gpu::Texture& display = (*hdr)->show(shown_exposure(options));
-    fmt::print("clipped {:.2f} % of the pixels\n", 100.0 * clipped_share(display));
+    fmt::print("clipped {:.2f} % of the pixels\n", 100.0 * clipped_fraction(display));
     if (options.out.empty()) {
         return Done{};
     }

@@ -11,16 +11,19 @@
 
 namespace limn {
 
+// Shown by `limn view museum.exr`: hdr.viewer
+// Shown by `limn view museum.exr -o museum.png`: hdr.dynamic-range
+
 /// `limn view`: tone maps an HDR image, in a window with sliders or to a PNG.
 struct ViewOptions {
-    std::string file;          ///< any that load_image reads
+    std::string file;          ///< any format that load_image reads
     std::string out;           ///< .png; not empty: no window
     IVec2 size = {1280, 720};  ///< of the window
     /// Fields of the Exposure and their values, on top of the one that exposure_of_file() finds.
     std::vector<std::pair<std::string, std::string>> settings;
 };
 
-/// With which an EXR of `limn render` was displayed; as it is for images of 8 bits, else knee.
+/// That of the scene for an EXR of `limn render`; neutral for images of 8 bits; else knee.
 [[nodiscard]] Exposure exposure_of_file(const std::string& path);
 
 /// Sets one field of an Exposure as a level would; fails with what was found and expected.

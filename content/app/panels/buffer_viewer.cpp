@@ -156,11 +156,11 @@ void BufferViewer::fit_range(const gpu::Texture& texture) {
     if (values.empty()) {
         return;
     }
-    const auto percentile = [&values](std::size_t share) {
-        const auto place =
-            values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * share / 100);
-        std::nth_element(values.begin(), place, values.end());
-        return *place;
+    const auto percentile = [&values](std::size_t percent) {
+        const auto value =
+            values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
+        std::nth_element(values.begin(), value, values.end());
+        return *value;
     };
     const float low = percentile(1);
     const float high = percentile(99);

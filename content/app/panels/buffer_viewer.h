@@ -21,7 +21,7 @@ struct FrameOutput;
 struct FrameRequest;
 
 // F4: shows the intermediate textures of the frame. The frame graph keeps the selected one alive
-// past its last use; it is mapped to the display range and drawn large, and the texel under the
+// past its last use; it is mapped to the display range and enlarged, and the texel under the
 // pointer is read back. Costs nothing while the panel is closed.
 
 class BufferViewer {
@@ -31,7 +31,8 @@ class BufferViewer {
 
     /// Call before render_frame: requests the selected texture.
     void before_frame(FrameGraph& graph, FrameRequest& request);
-    /// Call after render_frame: draws the selected texture, mapped, into the viewer's own.
+    /// Call after render_frame: draws the selected texture, mapped to the display range, into the
+    /// viewer's texture.
     void after_frame(gpu::Device& device, const FrameGraph& graph, const FrameOutput& frame);
     /// Draws the panel.
     void draw(const HudStyle& style, const FrameGraph& graph);

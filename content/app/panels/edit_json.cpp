@@ -22,7 +22,7 @@
 namespace limn {
 namespace {
 
-/// The member `key` of an object, added as an empty object where it has none.
+/// The member `key` of an object, added as an empty object if missing.
 JsonValue& member(JsonValue& object, const std::string& key) {
     const auto found =
         std::find_if(object.members.begin(), object.members.end(), [&](const JsonMember& m) {
@@ -51,7 +51,7 @@ JsonValue without_equal(JsonValue object, const JsonValue& base) {
     return object;
 }
 
-/// The member of an array of entities with this name, added where it has none.
+/// The entity with this name in an array, added if missing.
 JsonValue& named(JsonValue& entities, std::string_view name) {
     for (JsonValue& entity : entities.items) {
         if (entity["name"].text == name) {
@@ -63,7 +63,7 @@ JsonValue& named(JsonValue& entities, std::string_view name) {
     return added;
 }
 
-/// The entity of a level that placed the file of a node, or the root of a file by itself.
+/// The entity of a level that references the file of a node, or the root of a file opened directly.
 Entity source_of(const World& world, Entity node) {
     while (!node.is_null() && !world.has<GltfSource>(node)) {
         node = parent_of(world, node);
@@ -94,13 +94,13 @@ std::string node_as_json(const World& world, Entity node, JsonValue components) 
     set_member(object, "gltf", json_of(std::string_view(world.get<const GltfSource>(source).file)));
     const Name* const name = name_of(world, node);
     if (name == nullptr) {
-        return write_json(object) + "  // this node has no name, by which a level could change it";
+        return write_json(object) + "  // unnamed node: a level cannot refer to it";
     }
     set_member(member(object, "nodes"), name->text, std::move(components));
     return write_json(object);
 }
 
-/// Whether `repeat` made the entity.
+/// Whether `repeat` created the entity.
 bool is_copy(const Name& name) {
     const std::size_t open = name.text.rfind('[');
     return open != std::string::npos && open > 0 && name.text.ends_with(']');
@@ -111,7 +111,7 @@ std::string_view repeated_name(const Name& copy) {
     return std::string_view(copy.text).substr(0, copy.text.rfind('['));
 }
 
-/// The entity itself or the nearest ancestor that `repeat` made; null where there is none.
+/// The entity itself or the nearest ancestor that `repeat` created; null if there is none.
 Entity nearest_copy(const World& world, Entity entity) {
     for (; !entity.is_null(); entity = parent_of(world, entity)) {
         const Name* const name = name_of(world, entity);
@@ -122,8 +122,8 @@ Entity nearest_copy(const World& world, Entity entity) {
     return entity;
 }
 
-/// The entity in whose "nodes" a level changes this one: the one that placed a node of a file, or
-/// the outermost parent below one that placed a file.
+/// The entity in whose "nodes" a level changes this one: the one that references a node's file, or
+/// the outermost ancestor below one that references a file.
 Entity owner_of(const World& world, Entity entity) {
     for (Entity parent = parent_of(world, entity); !parent.is_null();
          parent = parent_of(world, entity)) {
@@ -138,8 +138,8 @@ Entity owner_of(const World& world, Entity entity) {
     return entity;
 }
 
-/// Where the components of an entity are in a patch of a level; null where a level has no words for
-/// it. A copy is changed when it begins to play.
+/// The components of an entity in a patch of a level; null if a level cannot refer to it. Copies
+/// are changed by an event at time 0.
 JsonValue* patched(
     const World& world, JsonValue& entities, JsonValue& copies, Entity entity, const Name& name) {
     if (!nearest_copy(world, parent_of(world, entity)).is_null()) {
@@ -157,7 +157,7 @@ JsonValue* patched(
                          : &member(member(named(entities, outer->text), "nodes"), name.text);
 }
 
-/// An entity and its children, as a level has them.
+/// An entity and its children, as in a level.
 class CopiedTree {
   public:
     CopiedTree(const World& world, const Hierarchy& tree, Entity root)
@@ -171,7 +171,7 @@ class CopiedTree {
     CopiedTree(const CopiedTree&) = delete;
     CopiedTree& operator=(const CopiedTree&) = delete;
 
-    /// Of a node of a glTF file, only its components.
+    /// For a node of a glTF file, only its components.
     [[nodiscard]] JsonValue object_of(Entity entity) const {
         JsonValue object = json_object();
         const bool is_node = world_.has<FromGltf>(entity);
@@ -192,7 +192,7 @@ class CopiedTree {
             }
             const AnyComponent value = AnyComponent::read(world_, entity, info);
             JsonValue json = write_component(info, value.data(), provider_);
-            if (info.defaults != nullptr && !is_node) {  // a file may have others than the defaults
+            if (info.defaults != nullptr && !is_node) {  // a file's values may differ
                 json = without_equal(std::move(json), write_component(info, info.defaults, {}));
             }
             set_member(object, info.name, std::move(json));
@@ -208,7 +208,7 @@ class CopiedTree {
     }
 
   private:
-    /// Those that a level has to say, in order: what a glTF file brings is in that.
+    /// Children that a level has to list, in order; those from a glTF file are in that file.
     [[nodiscard]] std::vector<Entity> children_of(Entity entity) const {
         std::vector<Entity> children;
         for (const Entity child : tree_.children_of(entity)) {
@@ -219,8 +219,8 @@ class CopiedTree {
         return children;
     }
 
-    /// Two instances of a prefab have children of the same names, which one level cannot: "glow"
-    /// and "glow 2".
+    /// Instances of a prefab have children of the same name, which must be unique in a level:
+    /// "glow" and "glow 2".
     void add_names(Entity entity) {
         const Name* const name = name_of(world_, entity);
         if (name != nullptr && !world_.has<FromGltf>(entity)) {
@@ -242,7 +242,7 @@ class CopiedTree {
     std::unordered_set<std::string> used_;
 };
 
-/// What the value was before the first of its edits.
+/// The value before its first edit.
 const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
     const auto same = [&](const Edit& other) {
         const auto info = [](const Edit& e) {
@@ -272,7 +272,7 @@ std::string edit_note(const World& world, Entity entity) {
     const Name* const name = name_of(world, copy);
     if (name == nullptr) {
         return name_of(world, entity) == nullptr
-                   ? "has no name: its edits cannot be saved, name it in its file"
+                   ? "has no name: its edits cannot be copied; name it in its file"
                    : "";
     }
     const std::string_view repeated = repeated_name(*name);
@@ -283,13 +283,13 @@ std::string edit_note(const World& world, Entity entity) {
                       ? 1
                       : 0;
     });
-    const bool is_saved = copy == entity && nearest_copy(world, parent_of(world, copy)).is_null()
-                          && owner_of(world, copy) == copy;
+    const bool is_kept = copy == entity && nearest_copy(world, parent_of(world, copy)).is_null()
+                         && owner_of(world, copy) == copy;
     return fmt::format(
         "{} of {} copies of {} by repeat: {}", copy == entity ? "one" : "part of one", copies,
         repeated,
-        is_saved ? "its edits are saved as an event, to edit all copies edit the level's file"
-                 : "its edits cannot be saved, edit the prefab or the repeat in the level's file");
+        is_kept ? "its edits are copied as an event; to edit all copies, edit the level's file"
+                : "its edits cannot be copied; edit the prefab or the repeat in the level's file");
 }
 
 std::string edits_as_json(const World& world, std::span<const Edit> edits) {
@@ -313,8 +313,9 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
                 if (world.has(edit.entity, info.id)) {
                     value = edited(AnyComponent::read(world, edit.entity, info).data());
                 }
-                if (JsonValue* const place = patched(world, entities, copies, edit.entity, *name)) {
-                    set_member(*place, info.name, std::move(value));
+                if (JsonValue* const target =
+                        patched(world, entities, copies, edit.entity, *name)) {
+                    set_member(*target, info.name, std::move(value));
                 } else {
                     left_out = true;
                 }
@@ -345,7 +346,8 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
         set_member(patch, "events", json_array({std::move(event)}));
     }
     return write_json(patch)
-           + (left_out ? "  // without edits of children of copies: no level can name those" : "");
+           + (left_out ? "  // without edits of children of copies: a level cannot refer to those"
+                       : "");
 }
 
 }  // namespace limn

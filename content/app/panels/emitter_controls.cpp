@@ -44,7 +44,7 @@ std::string describe_drops(const World& world) {
         return {};
     }
     return fmt::format(
-        "no room for {} birth{} of {} emitter{}: raise particle_emitter.capacity", dropped,
+        "{} particle{} of {} emitter{} dropped: raise particle_emitter.capacity", dropped,
         dropped == 1 ? "" : "s", emitters, emitters == 1 ? "" : "s");
 }
 

@@ -26,10 +26,10 @@ namespace limn {
 namespace {
 
 constexpr double kSliderRange = 100.0;    // wider ranges are dragged: a slider would be too coarse
-constexpr std::size_t kMaxElements = 64;  // shown of a list
+constexpr std::size_t kMaxElements = 64;  // of a list that are shown
 constexpr float kDegrees = 57.29577951f;  // of a radian
 
-/// What the widgets of one component need, and what they report.
+/// Input of the widgets of one component, and what they report.
 struct Context {
     const HudStyle& style;
     const World& world;
@@ -101,7 +101,7 @@ bool edit_floats(const FieldInfo& field, float* values, int count) {
     return changed;
 }
 
-/// A color as the file has it, linear, and beside it a swatch of it in sRGB, which opens a picker.
+/// A linear color, and beside it a swatch in sRGB that opens a picker.
 bool edit_color(const FieldInfo& field, float* values, int count) {
     std::array<float, 4> shown = {0, 0, 0, 1};
     for (int i = 0; i < count; ++i) {
@@ -465,7 +465,7 @@ std::string entity_label(const World& world, Entity entity) {
     if (name != nullptr && !name->text.empty()) {
         return name->text;
     }
-    // Nameless: by its mesh or kind.
+    // Unnamed: by its mesh or kind.
     const char* kind = world.has<PointLight>(entity)         ? "point light"
                        : world.has<SpotLight>(entity)        ? "spot light"
                        : world.has<DirectionalLight>(entity) ? "sun"

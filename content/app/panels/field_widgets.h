@@ -24,10 +24,10 @@ struct FieldChange {
     Entity clicked;          ///< the entity whose link was clicked, or null
 };
 
-/// Fields that are drawn last, under a heading that is folded at first.
+/// Fields that are drawn last, under an initially collapsed heading.
 struct FoldedFields {
-    std::string heading;                                ///< empty: there are none
-    std::function<bool(std::string_view name)> is_one;  ///< of the outermost fields
+    std::string heading;                                ///< empty: no such fields
+    std::function<bool(std::string_view name)> is_one;  ///< for outermost fields
 };
 
 /// Draws the fields of `object` as rows of name and widget, and edits it in place. `world` gives

@@ -18,11 +18,15 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.furrow.editor
+
 namespace limn {
 namespace {
 
-constexpr float kHidden = 1e-4f;   // of the way to a vertex, that what hides it is nearer
-constexpr float kGrazing = 0.02f;  // sine of the angle at which a ray hardly meets a plane
+constexpr float kHidden =
+    1e-4f;  // fraction of the distance by which an occluder must be nearer than the vertex
+constexpr float kGrazing =
+    0.02f;  // sine of the angle below which a ray counts as parallel to a plane
 
 /// The fitted BRDFs were never published: sets of lobes of the same kind.
 struct Measured {
@@ -36,12 +40,12 @@ constexpr Measured kMeasured[] = {
     {{0.40f, 0.26f, 0.19f}, {-0.98f, -0.60f}, {0.98f, 0.50f}, {40, 5}},
 };
 
-bool is_hidden(const SeenMesh& seen, const Vec3& point) {
-    const MeshData& mesh = *seen.mesh;
-    const Vec3 way = point - seen.eye;
+bool is_hidden(const ViewedMesh& viewed, const Vec3& point) {
+    const MeshData& mesh = *viewed.mesh;
+    const Vec3 offset = point - viewed.eye;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const auto corner = [&](std::size_t k) { return mesh.positions[mesh.indices[i + k]]; };
-        const auto hit = hit_triangle(seen.eye, way, corner(0), corner(1), corner(2));
+        const auto hit = hit_triangle(viewed.eye, offset, corner(0), corner(1), corner(2));
         if (hit && hit->distance < 1.0f - kHidden) {
             return true;
         }
@@ -51,50 +55,51 @@ bool is_hidden(const SeenMesh& seen, const Vec3& point) {
 
 }  // namespace
 
-std::optional<Vec2> pixel_of(const SeenMesh& seen, const Vec3& point) {
-    const Vec4 clip = seen.clip_from_mesh * Vec4(point, 1);
+std::optional<Vec2> pixel_of(const ViewedMesh& viewed, const Vec3& point) {
+    const Vec4 clip = viewed.clip_from_mesh * Vec4(point, 1);
     if (!(clip.w > 0)) {
         return std::nullopt;
     }
-    return seen.size * (0.5f + Vec2(0.5f, -0.5f) * Vec2(clip) / clip.w);
+    return viewed.size * (0.5f + Vec2(0.5f, -0.5f) * Vec2(clip) / clip.w);
 }
 
-Ray ray_of(const SeenMesh& seen, const Vec2& pixel) {
-    const Vec2 ndc = Vec2(2, -2) * pixel / seen.size + Vec2(-1, 1);
-    const Vec4 near = glm::inverse(seen.clip_from_mesh) * Vec4(ndc, 1, 1);  // depth is reversed
-    return {seen.eye, normalize_or(Vec3(near) / near.w - seen.eye, {0, 0, -1})};
+Ray ray_of(const ViewedMesh& viewed, const Vec2& pixel) {
+    const Vec2 ndc = Vec2(2, -2) * pixel / viewed.size + Vec2(-1, 1);
+    const Vec4 near = glm::inverse(viewed.clip_from_mesh) * Vec4(ndc, 1, 1);  // depth is reversed
+    return {viewed.eye, normalize_or(Vec3(near) / near.w - viewed.eye, {0, 0, -1})};
 }
 
 std::optional<std::uint32_t>
-pick_furrow_vertex(const SeenMesh& seen, const Vec2& pointer, float reach) {
+pick_furrow_vertex(const ViewedMesh& viewed, const Vec2& pointer, float pick_radius) {
     struct Near {
         float pixels;
         std::uint32_t vertex;
     };
-    const MeshData& mesh = *seen.mesh;
+    const MeshData& mesh = *viewed.mesh;
     std::vector<Near> near;
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-        const auto pixel = pixel_of(seen, mesh.positions[v]);
-        if (!pixel || !(glm::dot(mesh.normals[v], seen.eye - mesh.positions[v]) > 0)) {
+        const auto pixel = pixel_of(viewed, mesh.positions[v]);
+        if (!pixel || !(glm::dot(mesh.normals[v], viewed.eye - mesh.positions[v]) > 0)) {
             continue;
         }
-        if (const float pixels = glm::distance(*pixel, pointer); pixels <= reach) {
+        if (const float pixels = glm::distance(*pixel, pointer); pixels <= pick_radius) {
             near.push_back({pixels, v});
         }
     }
     std::ranges::stable_sort(near, {}, &Near::pixels);
     const auto found = std::ranges::find_if(
-        near, [&](const Near& n) { return !is_hidden(seen, mesh.positions[n.vertex]); });
+        near, [&](const Near& n) { return !is_hidden(viewed, mesh.positions[n.vertex]); });
     return found != near.end() ? std::optional(found->vertex) : std::nullopt;
 }
 
 std::optional<int> pick_furrow_tip(
-    const SeenMesh& seen, const Vec3& position, const FurrowVectors& vectors, float length,
-    const Vec2& pointer, float reach) {
+    const ViewedMesh& viewed, const Vec3& position, const FurrowVectors& vectors, float length,
+    const Vec2& pointer, float pick_radius) {
     std::optional<int> found;
-    float least = reach;
+    float least = pick_radius;
     for (int f = 0; f < 2; ++f) {
-        const auto pixel = pixel_of(seen, position + length * vectors[static_cast<std::size_t>(f)]);
+        const auto pixel =
+            pixel_of(viewed, position + length * vectors[static_cast<std::size_t>(f)]);
         const float pixels = pixel ? glm::distance(*pixel, pointer) : INFINITY;
         if (pixels < least || (!found && pixels <= least)) {
             least = pixels;
@@ -108,9 +113,9 @@ Vec3 drag_furrow_tip(const Vec3& position, const Vec3& normal, float length, con
     LIMN_CHECK(length > 0);
     const float sine = glm::dot(ray.direction, normal);
     const Vec3 from = position - ray.origin;
-    const float way =
+    const float distance =
         std::abs(sine) > kGrazing ? glm::dot(from, normal) / sine : glm::dot(from, ray.direction);
-    const Vec3 offset = (way * ray.direction - from) / length;
+    const Vec3 offset = (distance * ray.direction - from) / length;
     const Vec3 tangent = offset - glm::dot(offset, normal) * normal;
     const float magnitude = glm::length(tangent);
     return tangent * (magnitude > kMaxFurrowMagnitude ? kMaxFurrowMagnitude / magnitude : 1.0f);
@@ -189,7 +194,7 @@ void set_furrow_look(Material& material, const FurrowLook& look) {
         material.shading = ShadingModel::Skin;
         material.pigments = Pigments::Plane;
         material.base_color = {1, 1, 1, material.base_color.w};
-        material.skin_color = {0, 0, 0};  // Bando's model has no rim
+        material.skin_color = {0, 0, 0};  // Bando's model has no rim light
         return;
     }
     const Measured& measured = kMeasured[look.reflection == FurrowReflection::Measured1 ? 0 : 1];
@@ -232,15 +237,15 @@ Status save_furrows(const std::string& path, const FurrowFile& file) {
 
 Result<FurrowFile> load_furrows(const std::string& path) {
     const JsonValue json = LIMN_TRY(load_json(path));
-    const JsonPlace place = {path, ""};
+    const JsonLocation location = {path, ""};
     constexpr std::string_view kKeys[] = {"furrows", "skin"};
-    LIMN_TRY(expect_keys(json, place, kKeys));
+    LIMN_TRY(expect_keys(json, location, kKeys));
     FurrowFile file;
     if (const JsonValue* const furrows = json.find("furrows")) {
-        LIMN_TRY(read_struct(*furrows, file.furrows, place_in(place, "furrows"), {}));
+        LIMN_TRY(read_struct(*furrows, file.furrows, location_in(location, "furrows"), {}));
     }
     if (const JsonValue* const skin = json.find("skin")) {
-        LIMN_TRY(read_struct(*skin, file.skin, place_in(place, "skin"), {}));
+        LIMN_TRY(read_struct(*skin, file.skin, location_in(location, "skin"), {}));
     }
     file.furrows.hold = {};
     return file;

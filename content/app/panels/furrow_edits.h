@@ -21,49 +21,49 @@ struct MeshData;
 // materials, files. Positions are in the space of the mesh at rest unless they are in pixels, which
 // count from the top left of the image.
 
-inline constexpr float kFurrowReach = 6;         ///< around the pointer [px]
+inline constexpr float kFurrowPickRadius = 6;    ///< [px]
 inline constexpr float kMaxFurrowMagnitude = 2;  ///< of a vector
 
 // ---- picking ----
 
-/// A mesh as a camera sees it.
-struct SeenMesh {
+/// A mesh and the camera that views it.
+struct ViewedMesh {
     const MeshData* mesh = nullptr;
     Mat4 clip_from_mesh{1.0f};  ///< without jitter
-    Vec3 eye = {0, 0, 0};       ///< where the camera is
+    Vec3 eye = {0, 0, 0};       ///< camera position
     Vec2 size = {1, 1};         ///< of the image [px]
 };
 
-/// Where a point is in the image [px]; nothing behind the camera.
-[[nodiscard]] std::optional<Vec2> pixel_of(const SeenMesh& seen, const Vec3& point);
+/// Image position of a point [px]; none behind the camera.
+[[nodiscard]] std::optional<Vec2> pixel_of(const ViewedMesh& viewed, const Vec3& point);
 
 /// The ray through a pixel.
-[[nodiscard]] Ray ray_of(const SeenMesh& seen, const Vec2& pixel);
+[[nodiscard]] Ray ray_of(const ViewedMesh& viewed, const Vec2& pixel);
 
-/// The vertex that is nearest in the image, at most `reach` pixels away, of those whose normal
-/// faces the camera and that no triangle hides. Of several equally near, the first.
-[[nodiscard]] std::optional<std::uint32_t>
-pick_furrow_vertex(const SeenMesh& seen, const Vec2& pointer, float reach = kFurrowReach);
+/// The vertex nearest to the pointer in the image, within `pick_radius` pixels, among those whose
+/// normal faces the camera and that no triangle occludes. Among equally near ones, the first.
+[[nodiscard]] std::optional<std::uint32_t> pick_furrow_vertex(
+    const ViewedMesh& viewed, const Vec2& pointer, float pick_radius = kFurrowPickRadius);
 
 /// Which of the two vectors drawn at `position` with this `length` per magnitude has its tip
-/// nearest to the pointer, at most `reach` pixels away.
+/// nearest to the pointer, within `pick_radius` pixels.
 [[nodiscard]] std::optional<int> pick_furrow_tip(
-    const SeenMesh& seen, const Vec3& position, const FurrowVectors& vectors, float length,
-    const Vec2& pointer, float reach = kFurrowReach);
+    const ViewedMesh& viewed, const Vec3& position, const FurrowVectors& vectors, float length,
+    const Vec2& pointer, float pick_radius = kFurrowPickRadius);
 
-/// The vector whose tip is where `ray` meets the plane through `position` with unit `normal`,
-/// perpendicular to it and of a magnitude of at most 2. Where they hardly meet, the point of the
+/// The vector whose tip is where `ray` intersects the plane through `position` with unit `normal`,
+/// of a magnitude of at most 2. Where they are nearly parallel, the point of the
 /// plane below the point of the ray that is nearest to `position`.
 [[nodiscard]] Vec3
 drag_furrow_tip(const Vec3& position, const Vec3& normal, float length, const Ray& ray);
 
 // ---- arrows ----
 
-/// The arrow that sets the place of `vertex`, which others may share: the last one that does.
+/// The arrow at the position of `vertex`, which other vertices may share; among several, the last.
 [[nodiscard]] std::optional<std::size_t>
 find_furrow_arrow(const FurrowSkin& skin, const MeshData& mesh, std::uint32_t vertex);
 
-/// The arrow that sets `vertex`, added with the vectors that the skin shows there if there is none.
+/// The arrow at `vertex`; if there is none, adds one with the skin's current vectors there.
 FurrowArrow& edit_furrow_vertex(
     Furrows& furrows, const FurrowSkin& skin, const MeshData& mesh, std::uint32_t vertex);
 
@@ -71,18 +71,18 @@ FurrowArrow& edit_furrow_vertex(
 
 /// INITIALIZE: no arrows; both fields are those of an unedited mesh.
 void initialize_furrows(Furrows& furrows);
-/// Whether edits wait for the steps below, or show at once.
+/// Whether edits wait for the steps below, or take effect at once.
 void let_furrows_wait(Furrows& furrows, bool wait);
 /// INTERPOLATE: vertices without an arrow follow those with one.
 void interpolate_furrows(Furrows& furrows);
-/// GENERATE: furrows grow along the fields as last interpolated.
+/// GENERATE: furrows grow along the last interpolated fields.
 void generate_furrows(Furrows& furrows);
-/// REMAKE: noise and bump, on the furrows as they are.
+/// REMAKE: noise and bump on the existing furrows.
 void remake_furrows(Furrows& furrows);
 
 // ---- skin ----
 
-/// What lights the skin.
+/// The reflection model of the skin.
 enum class FurrowReflection : std::uint8_t {
     Own,  ///< Blinn's model with the parameters of FurrowLook (skin.blinn, skin.melanin-blood)
     Measured1,  ///< BRDF1: stand-ins for the measured lobes, which were not published
@@ -105,12 +105,12 @@ LIMN_FIELDS(FurrowLook) {
         .values = "own brdf_1 brdf_2");
     LIMN_FIELD(melanin, "amount of melanin", "", 0, 1);
     LIMN_FIELD(blood, "amount of blood", "", 0, 1);
-    LIMN_FIELD(specular, "reflectance, of no color", "", 0, 1);
+    LIMN_FIELD(specular, "reflectance, colorless", "", 0, 1);
     LIMN_FIELD(shininess, "exponent of the highlight", "", 0, 128);
 }
 
 [[nodiscard]] FurrowLook furrow_look_of(const Material& material);
-/// Textures stay. An exponent below 1, which materials do not have, becomes 1.
+/// Keeps textures. Exponents are clamped to at least 1, the minimum of materials.
 void set_furrow_look(Material& material, const FurrowLook& look);
 
 /// The settings of a figure: noise, bump and scale of `furrows`, and the skin.
@@ -118,17 +118,17 @@ void set_furrow_preset(Furrows& furrows, FurrowLook& look, const FurrowPreset& p
 
 // ---- files ----
 
-/// All that the editor sets. As a file it is JSON with "furrows", which a level takes as it is, and
-/// "skin".
+/// All that the editor sets. As a file it is JSON with "furrows", which a level can use unchanged,
+/// and "skin".
 struct FurrowFile {
-    Furrows furrows;  ///< without images; nothing waits
+    Furrows furrows;  ///< without images or pending steps
     FurrowLook skin;
     bool operator==(const FurrowFile&) const = default;
 };
 
 /// Fails with the file's name and the reason.
 [[nodiscard]] Status save_furrows(const std::string& path, const FurrowFile& file);
-/// Fails with file, line and what was expected; then nothing is read.
+/// Fails with file, line and what was expected, and changes nothing.
 [[nodiscard]] Result<FurrowFile> load_furrows(const std::string& path);
 
 }  // namespace limn

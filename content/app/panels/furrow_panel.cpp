@@ -21,10 +21,12 @@
 #include <iterator>
 #include <limits>
 
+// Techniques: wrinkle.furrow.editor
+
 namespace limn {
 namespace {
 
-/// What is edited, as the world has it.
+/// The edited entity's components in the world.
 struct Target {
     const Furrows* furrows = nullptr;
     const FurrowSkin* skin = nullptr;
@@ -39,22 +41,22 @@ std::optional<Target> find_target(const World& world, Entity entity) {
         return std::nullopt;
     }
     const auto* const instance = world.find<MeshInstance>(entity);
-    const auto* const place = world.find<WorldTransform>(entity);
+    const auto* const transform = world.find<WorldTransform>(entity);
     Target target = {
         world.find<Furrows>(entity), world.find<FurrowSkin>(entity),
         world.find<FurrowView>(entity)};
     if (target.furrows == nullptr || target.skin == nullptr || target.view == nullptr
-        || !target.skin->fault.empty() || instance == nullptr || place == nullptr
+        || !target.skin->fault.empty() || instance == nullptr || transform == nullptr
         || instance->mesh.index >= assets->meshes.size()) {
         return std::nullopt;
     }
     target.mesh = &assets->meshes[instance->mesh.index];
-    target.world_from_mesh = place->world;
+    target.world_from_mesh = transform->world;
     return target.skin->field.size() == target.mesh->positions.size() ? std::optional(target)
                                                                       : std::nullopt;
 }
 
-SeenMesh seen_by(const RenderView& view, const Target& target, const IVec2& window) {
+ViewedMesh viewed_by(const RenderView& view, const Target& target, const IVec2& window) {
     const Mat4 world_from_mesh = to_mat4(target.world_from_mesh);
     const Vec3 eye = transform_point(view.world_from_camera, {0, 0, 0});
     return {
@@ -78,8 +80,8 @@ const Material* material_of(const World& world, Entity entity) {
                : nullptr;
 }
 
-/// Records that the target of `edit` is `after` now. What the last edit changed it extends while a
-/// widget or a tip is held.
+/// Records that the target of `edit` now is `after`. Extends the last edit of the same target while
+/// a widget or a tip is held.
 void record_edit(
     World& world, UndoStack& undo, Edit edit, AnyComponent after, const std::string& what,
     std::string& last) {
@@ -94,7 +96,7 @@ void record_edit(
     undo.record(std::move(edit));
 }
 
-/// Of the tips as they are drawn in a window, whose image may have fewer rows [px].
+/// Radius of the tips in window pixels; the rendered image may have fewer rows [px].
 float tip_radius(const RenderView& view, const IVec2& window) {
     const float rows = static_cast<float>(std::max(view.height, 1));
     return furrow_mark_pixels(view.height, kFurrowTipRadius) * static_cast<float>(window.y) / rows;
@@ -174,10 +176,10 @@ void FurrowPanel::drag_tip(
     if (!vertex || pointer.motion == Vec2(0)) {
         return;
     }
-    const SeenMesh seen = seen_by(view, *target, pointer.window);
+    const ViewedMesh viewed = viewed_by(view, *target, pointer.window);
     const Vec3 dragged = drag_furrow_tip(
         target->mesh->positions[*vertex], target->mesh->normals[*vertex],
-        furrow_vector_length(*target->view, *target->skin), ray_of(seen, pointer.at));
+        furrow_vector_length(*target->view, *target->skin), ray_of(viewed, pointer.at));
     Furrows after = *target->furrows;
     FurrowArrow& arrow = edit_furrow_vertex(after, *target->skin, *target->mesh, *vertex);
     (*tip_ == 0 ? arrow.first : arrow.second) = dragged;
@@ -200,9 +202,9 @@ bool FurrowPanel::take_pointer(
         return false;
     }
     if (pointer.right) {
-        if (const auto middle = entity_middle(world, entity_)) {
+        if (const auto center = entity_center(world, entity_)) {
             light_.drag(
-                world, undo, *middle, pointer.motion, static_cast<float>(pointer.window.y),
+                world, undo, *center, pointer.motion, static_cast<float>(pointer.window.y),
                 view.world_from_camera);
         }
         return true;
@@ -210,20 +212,20 @@ bool FurrowPanel::take_pointer(
     if (target->view->mode != FurrowMode::Vectors) {
         return false;
     }
-    const SeenMesh seen = seen_by(view, *target, pointer.window);
+    const ViewedMesh viewed = viewed_by(view, *target, pointer.window);
     const auto vertex = selected_vertex(*target);
     if (pressed && vertex) {
         tip_ = pick_furrow_tip(
-            seen, target->mesh->positions[*vertex], target->skin->field[*vertex],
+            viewed, target->mesh->positions[*vertex], target->skin->field[*vertex],
             furrow_vector_length(*target->view, *target->skin), pointer.at,
-            std::max(kFurrowReach, tip_radius(view, pointer.window)));
+            std::max(kFurrowPickRadius, tip_radius(view, pointer.window)));
     }
     if (tip_ && pointer.left) {
         drag_tip(world, undo, view, pointer);
         return true;
     }
     if (pointer.clicked) {
-        const auto found = pick_furrow_vertex(seen, pointer.at);
+        const auto found = pick_furrow_vertex(viewed, pointer.at);
         select(world, found ? static_cast<int>(*found) : -1);
         return true;
     }
@@ -311,7 +313,7 @@ void FurrowPanel::draw_vectors(World& world, UndoStack& undo) {
     }
     if (ImGui::IsItemHovered()) {
         ImGui::SetTooltip(
-            "Fields and furrows follow every edit; otherwise each button does its step.");
+            "Fields and furrows follow every edit; otherwise each button runs its step.");
     }
     ImGui::SameLine();
     ImGui::TextColored(kHudDim, "%zu edited", before.arrows.size());
@@ -346,7 +348,7 @@ void FurrowPanel::draw_vectors(World& world, UndoStack& undo) {
         set_furrows(world, undo, after, "weight");
     }
     ImGui::BeginDisabled(!is_edited);
-    if (ImGui::Button("Unedit the vertex")) {
+    if (ImGui::Button("Reset the vertex")) {
         after.arrows.erase(after.arrows.begin() + static_cast<std::ptrdiff_t>(*known));
         set_furrows(world, undo, after, "arrows");
     }

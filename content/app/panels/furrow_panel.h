@@ -17,7 +17,7 @@ class World;
 struct HudStyle;
 struct RenderView;
 
-/// What the mouse does in a frame, in pixels of the window from its top left.
+/// The mouse in a frame, in pixels of the window from its top left.
 struct PanelPointer {
     Vec2 at = {0, 0};
     Vec2 motion = {0, 0};
@@ -29,28 +29,28 @@ struct PanelPointer {
 };
 
 // The editor of furrows in `limn play` (wrinkle.furrow.editor): a click selects a vertex, a drag of
-// the tip of one of its vectors turns and stretches it, a right drag directs the light; everything
-// else is in the panel. Edits are undone with all others.
+// the tip of one of its vectors turns and stretches it, a right drag aims the light; everything
+// else is in the panel. Edits go on the inspector's undo stack.
 
 class FurrowPanel {
   public:
     /// Shows the fields of an entity with Furrows.
     void open(World& world, Entity entity);
-    /// Looks at it as before.
+    /// Restores the previous FurrowView.
     void close(World& world);
     [[nodiscard]] bool is_open() const { return !entity_.is_null(); }
     [[nodiscard]] Entity entity() const { return entity_; }
     /// For a new world.
     void reset() { *this = {}; }
 
-    /// Whether the pointer is the editor's in this frame, so that it moves no camera.
+    /// Whether the editor takes the pointer in this frame, so that it moves no camera.
     [[nodiscard]] bool take_pointer(
         World& world, UndoStack& undo, const RenderView& view, const PanelPointer& pointer);
     void draw(const HudStyle& style, World& world, UndoStack& undo);
 
-    /// Whether view and light shall face the entity, since the last call.
+    /// Whether view and light were asked to face the entity since the last call.
     [[nodiscard]] bool take_reset() { return std::exchange(reset_view_, false); }
-    /// What was saved, loaded or failed since the last call; empty: nothing.
+    /// Message on what was saved, loaded or failed since the last call; empty: none.
     [[nodiscard]] std::string take_message() { return std::exchange(message_, {}); }
 
   private:
@@ -67,10 +67,10 @@ class FurrowPanel {
 
     Entity entity_;
     std::optional<FurrowView> before_;  ///< of the entity, when it was opened
-    std::optional<int> tip_;            ///< of the selected vertex, that is dragged
+    std::optional<int> tip_;            ///< of the selected vertex, while dragged
     PressEdge left_;
     LightDrag light_;
-    std::string last_edit_;  ///< what the last edit changed, that a drag extends
+    std::string last_edit_;  ///< target of the last edit, which a drag extends
     bool reset_view_ = false;
     std::string path_;
     std::string message_;

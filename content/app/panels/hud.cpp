@@ -21,11 +21,11 @@ namespace {
 constexpr float kToastLife = 5.0f;       // [s]
 constexpr float kToastFade = 0.6f;       // [s]
 constexpr float kMargin = 14.0f;         // from the edge of the window, in units of the layout
-constexpr float kLoadingWidth = 260.0f;  // of what says so, in units of the layout
+constexpr float kLoadingWidth = 260.0f;  // of the loading message, in units of the layout
 constexpr std::size_t kMaxToasts = 5;
 constexpr float kTwoColumns =
-    1050.0f;  // width of the window from which help may have them, in units of the layout
-constexpr double kSlowMotion = 0.95;  // of real time; below it the status says so
+    1050.0f;  // minimum width of the window for them, in units of the layout
+constexpr double kSlowMotion = 0.95;  // of real time; below it the status line says so
 
 constexpr ImGuiWindowFlags kOverlay =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing
@@ -70,7 +70,8 @@ Hud::Hud(Window& window) : window_(&window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;  // panels start at their default places; nothing is written to disk
+    io.IniFilename =
+        nullptr;  // panels start at their default positions; nothing is written to disk
     io.LogFilename = nullptr;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     style_ = apply_hud_style(hud_scale(window.content_scale(), window.framebuffer_size().y));
@@ -90,7 +91,7 @@ Hud::~Hud() {
     ImGui::DestroyContext();
 }
 
-/// The window may have another height now.
+/// The window's height may have changed.
 void Hud::follow_window() {
     const int height = window_->framebuffer_size().y;
     const float scale = hud_scale(window_->content_scale(), height);
@@ -113,7 +114,7 @@ void Hud::begin_frame(float dt) {
     std::erase_if(toasts_, [](const Toast& toast) { return toast.age > kToastLife; });
 }
 
-/// In the order in which they were typed, as far as one frame can show it.
+/// In the order of typing, as far as one frame can preserve it.
 void Hud::feed_typing() {
     ImGuiIO& io = ImGui::GetIO();
     for (const TypingEvent& event : window_->typing().take_frame()) {
@@ -212,7 +213,7 @@ void Hud::draw_status(const HudStatus& status) {
         if (status.particle_stride > 1) {
             numbers_text(
                 style_, kHudDim,
-                format("one particle of {}, to keep it playable", status.particle_stride));
+                format("one in {} particles, to stay playable", status.particle_stride));
         }
         if (*status.motion != '\0') {
             numbers_text(style_, kHudDim, status.motion);
@@ -240,7 +241,8 @@ void Hud::draw_status(const HudStatus& status) {
         ImGui::PushStyleColor(ImGuiCol_Border, kHudBad);
         if (ImGui::Begin("##error", nullptr, kOverlay)) {
             ImGui::PushTextWrapPos(std::min(0.6f * display.x, 760.0f * style_.scale));
-            ImGui::TextColored(kHudBad, "A file has an error; what was right last goes on.");
+            ImGui::TextColored(
+                kHudBad, "A file has an error; the last valid version stays in use.");
             ImGui::PushFont(style_.numbers);
             ImGui::TextUnformatted(status.error);
             ImGui::PopFont();
@@ -256,7 +258,7 @@ void Hud::draw_loading(const std::string& what, const std::string& step) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
     if (ImGui::Begin("##loading", nullptr, kOverlay)) {
-        ImGui::Dummy({kLoadingWidth * style_.scale, 0});  // its steps differ in length
+        ImGui::Dummy({kLoadingWidth * style_.scale, 0});  // loading steps differ in length
         ImGui::TextColored(kHudDim, "loading");
         ImGui::SameLine();
         ImGui::PushFont(style_.title);
@@ -278,7 +280,7 @@ void Hud::draw_help() {
     constexpr ImGuiWindowFlags kFlags =
         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize
         | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
-    // Two columns where one is too high, from a heading on.
+    // Two columns if one is too high, split at a heading.
     auto second = help.end();
     const float line_height = ImGui::GetFrameHeightWithSpacing();
     const float height = static_cast<float>(help.size()) * line_height;

@@ -18,19 +18,19 @@ class Window;
 struct HudStatus {
     const char* level = "";
     const char* camera = "";     ///< name of the camera mode
-    const char* weather = "";    ///< wind and rain, where there is any
-    const char* drops = "";      ///< births of particles that found no room
+    const char* weather = "";    ///< wind and rain, if the level has weather
+    const char* drops = "";      ///< warning about dropped particles
     double time = 0.0;           ///< of the simulation [s]
-    double rate = 1.0;           ///< simulated seconds a real second; < 1: slow motion
+    double rate = 1.0;           ///< simulated seconds per real second; < 1: slow motion
     const char* motion = "";     ///< of the player's camera: speed, position
     double frame_ms = 0.0;       ///< median of the last second
     IVec2 render_size = {0, 0};  ///< rendered resolution [px]
     IVec2 window_size = {0, 0};  ///< of the framebuffer [px]
     bool software_gl = false;    ///< OpenGL runs on the CPU
     bool scale_auto = false;
-    int particle_stride = 1;  ///< one of so many particles is drawn
+    int particle_stride = 1;  ///< one in this many particles is drawn
     bool paused = false;
-    const char* error = "";  ///< shown until it is fixed: of a shader or the level
+    const char* error = "";  ///< of a shader or the level, shown until it is fixed
 };
 
 /// A line of the key help.
@@ -53,13 +53,13 @@ class Hud {
     /// `dt`: real time since the last frame [s].
     void begin_frame(float dt);
     void draw_status(const HudStatus& status);
-    /// Draws a whole frame that says what is being loaded.
+    /// Draws a whole frame with a message on what is being loaded.
     void draw_loading(const std::string& what, const std::string& step);
     /// Draws everything since begin_frame into the window's framebuffer.
     void end_frame();
 
-    /// A line that fades after some seconds; the newest is lowest. What is shown already begins
-    /// anew.
+    /// A line that fades after some seconds; the newest is at the bottom. Repeating a visible one
+    /// restarts its timer.
     void toast(std::string text, ToastKind kind = ToastKind::Note);
 
     /// The pointer is over a panel, or a text field has the focus: the game ignores that input.

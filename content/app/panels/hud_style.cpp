@@ -87,7 +87,7 @@ void set_colors(ImGuiStyle& style) {
 }  // namespace
 
 float hud_scale(float content_scale, int window_height) {
-    constexpr float kText = 14.0f;  // [px] of the text at 1
+    constexpr float kText = 14.0f;  // text size [px] at scale 1
     constexpr float kSmallest = 11.0f;
     const auto height = static_cast<float>(window_height);
     const float small = std::clamp(height / content_scale / 720.0f, kSmallest / kText, 1.0f);

@@ -23,7 +23,7 @@ struct HudStyle {
 };
 
 /// Pixels per layout unit for a window of that height [px] on a display with that content scale:
-/// of 720 to 900 px at a content scale of 1 one; larger and smaller windows have larger and
+/// 1 for 720 to 900 px at a content scale of 1; larger and smaller windows have larger and
 /// smaller text, of whole pixels and at least 11 times the content scale.
 [[nodiscard]] float hud_scale(float content_scale, int window_height);
 

@@ -348,8 +348,8 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         if (info.id == component_id<Furrows> && ImGui::SmallButton("Edit furrows")) {
             furrows_ = true;
         }
-        const std::string place = fmt::format("{}: {}", entity_label(world, selected_), info.name);
-        edit_copy(style, world, std::move(edit), info, value.data(), place);
+        const std::string label = fmt::format("{}: {}", entity_label(world, selected_), info.name);
+        edit_copy(style, world, std::move(edit), info, value.data(), label);
     }
     if (!keep && info.ops.construct_copy != nullptr) {
         Edit edit;
@@ -398,7 +398,7 @@ void Inspector::draw_emitter(World& world) {
 
 void Inspector::edit_copy(
     const HudStyle& style, World& world, Edit edit, const ComponentInfo& info, const void* value,
-    const std::string& place, const FoldedFields& folded) {
+    const std::string& label, const FoldedFields& folded) {
     edit.before = AnyComponent(info, value);
     AnyComponent after = edit.before;
     const FieldChange change = edit_fields(style, world, info, after.data(), folded);
@@ -409,7 +409,7 @@ void Inspector::edit_copy(
         return;
     }
     apply_edit_value(world, edit, after);
-    edit.label = fmt::format("{}.{}", place, change.field);
+    edit.label = fmt::format("{}.{}", label, change.field);
     if (dragging_ == edit.label && undo_.redo_count() == 0 && undo_.undo_count() > 0) {
         undo_.extend(std::move(after));
         return;

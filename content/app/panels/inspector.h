@@ -37,7 +37,7 @@ class Inspector {
     [[nodiscard]] const UndoStack& undo_stack() const { return undo_; }
     /// Edits that leaving the level would lose.
     [[nodiscard]] std::size_t edit_count() const { return undo_.undo_count(); }
-    /// What they changed, as a patch of the level (edit_json.h).
+    /// Those edits as a patch of the level (edit_json.h).
     [[nodiscard]] std::string edits_as_json(const World& world) const;
     /// Whether "Focus" was pressed since the last call.
     [[nodiscard]] bool take_focus() { return std::exchange(focus_, false); }
@@ -61,7 +61,7 @@ class Inspector {
     void draw_entities(const HudStyle& style, World& world);
     void draw_tree(const HudStyle& style, World& world);
     void draw_selected(const HudStyle& style, World& world);
-    /// How many edits there are, and a button that copies them.
+    /// The number of edits, and a button that copies them.
     void draw_edits(const World& world);
     void draw_component(const HudStyle& style, World& world, const ComponentInfo& info);
     void draw_add_button(World& world);
@@ -72,17 +72,17 @@ class Inspector {
 
     void rebuild_rows(World& world);
     void add_rows(const Hierarchy& tree, Entity entity, int depth);
-    /// Edits a copy of the value; on a change, records it under the label `place` and applies it to
+    /// Edits a copy of the value; on a change, records it under the label `label` and applies it to
     /// the world.
     void edit_copy(
         const HudStyle& style, World& world, Edit edit, const ComponentInfo& info,
-        const void* value, const std::string& place, const FoldedFields& folded = {});
+        const void* value, const std::string& label, const FoldedFields& folded = {});
 
     UndoStack undo_;
     Entity selected_;
     Entity copied_;     ///< whose JSON was copied last
     Entity noted_;      ///< of note_
-    std::string note_;  ///< what to know before editing the selected entity (edit_json.h)
+    std::string note_;  ///< hint for editing the selected entity (edit_json.h)
     std::string search_;
     std::string resource_search_;
     std::string material_search_;

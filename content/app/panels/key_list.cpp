@@ -40,17 +40,17 @@ ColorKey new_key(const KeyPlot& plot, const Vec2& pointer, const std::vector<Col
 }
 
 float distance(const KeyPlot& plot, const CurveKey& key, const Vec2& pointer) {
-    return glm::length(key_place(plot, key) - pointer);
+    return glm::length(key_position(plot, key) - pointer);
 }
 
 float distance(const KeyPlot& plot, const ColorKey& key, const Vec2& pointer) {
-    return std::abs(key_place(plot, key).x - pointer.x);
+    return std::abs(key_position(plot, key).x - pointer.x);
 }
 
 template <typename Key>
 int hit(const KeyPlot& plot, const std::vector<Key>& keys, const Vec2& pointer) {
     int nearest = -1;
-    float smallest = plot.reach;
+    float smallest = plot.pick_radius;
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const float away = distance(plot, keys[i], pointer);
         if (away <= smallest) {
@@ -105,11 +105,11 @@ bool edit(const KeyPlot& plot, const KeyInput& input, std::vector<Key>& keys, in
         return false;
     }
     Key& key = keys[static_cast<std::size_t>(selected)];
-    const Vec2 before = key_place(plot, key);
+    const Vec2 before = key_position(plot, key);
     Key moved = key;
     follow(plot, input.pointer, moved);
-    // A click need not hit the middle of a key, and does not move it.
-    if (glm::length(key_place(plot, moved) - before) < 1) {
+    // A click need not hit the center of a key, and does not move it.
+    if (glm::length(key_position(plot, moved) - before) < 1) {
         return false;
     }
     key = moved;
@@ -129,12 +129,12 @@ float plot_top(const std::vector<CurveKey>& keys) {
     return top;
 }
 
-Vec2 key_place(const KeyPlot& plot, const CurveKey& key) {
+Vec2 key_position(const KeyPlot& plot, const CurveKey& key) {
     const float height = std::clamp(key.value / plot.top, 0.0f, 1.0f);
     return {x_of(plot, key.at), plot.corner.y + (1 - height) * plot.size.y};
 }
 
-Vec2 key_place(const KeyPlot& plot, const ColorKey& key) {
+Vec2 key_position(const KeyPlot& plot, const ColorKey& key) {
     return {x_of(plot, key.at), plot.corner.y + plot.size.y};
 }
 

@@ -40,7 +40,7 @@ ImU32 shown_color(const Vec3& linear, float opacity) {
          std::clamp(srgb_from_linear(linear.z), 0.0f, 1.0f), opacity});
 }
 
-/// An area that takes clicks, and what happens in it.
+/// An area that takes clicks, and its input.
 struct KeyArea {
     KeyPlot plot;
     KeyInput input;
@@ -60,7 +60,7 @@ KeyArea key_area(const HudStyle& style, float height) {
     KeyArea area;
     area.plot.corner = {corner.x + margin, corner.y + margin};
     area.plot.size = size;
-    area.plot.reach = 8 * style.scale;
+    area.plot.pick_radius = 8 * style.scale;
     area.active = ImGui::IsItemActive();
     area.input.pointer = {io.MousePos.x, io.MousePos.y};
     area.input.pressed = hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left);
@@ -79,7 +79,7 @@ bool edit_at(float& at) {
 
 bool edit_curve(const HudStyle& style, std::vector<CurveKey>& keys, int& selected, float& top) {
     KeyArea area = key_area(style, kPlotHeight);
-    // The scale stays while a key is dragged: it would run away from the pointer.
+    // The scale is kept while a key is dragged; otherwise it would run away from the pointer.
     top = area.active && top > 0 ? top : 1.25f * plot_top(keys);
     area.plot.top = top;
     bool changed = edit_keys(area.plot, area.input, keys, selected);
@@ -88,22 +88,22 @@ bool edit_curve(const HudStyle& style, std::vector<CurveKey>& keys, int& selecte
     const Vec2 a = area.plot.corner;
     const Vec2 b = a + area.plot.size;
     draw.AddRectFilled(im(a), im(b), IM_COL32(255, 255, 255, 10), 3);
-    const float one = key_place(area.plot, CurveKey{0, 1}).y;
+    const float one = key_position(area.plot, CurveKey{0, 1}).y;
     draw.AddLine({a.x, one}, {b.x, one}, IM_COL32(255, 255, 255, 36));
     std::vector<CurveKey> sorted = keys;
     sort_keys(sorted);
     const ImU32 accent = ImGui::ColorConvertFloat4ToU32(kHudAccent);
-    Vec2 last = key_place(area.plot, CurveKey{0, sample_curve(keys, 0)});
+    Vec2 last = key_position(area.plot, CurveKey{0, sample_curve(keys, 0)});
     sorted.push_back({1, sample_curve(keys, 1)});
     for (const CurveKey& key : sorted) {
-        const Vec2 next = key_place(area.plot, key);
+        const Vec2 next = key_position(area.plot, key);
         draw.AddLine(im(last), im(next), accent, 1.6f * style.scale);
         last = next;
     }
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const bool chosen = static_cast<int>(i) == selected;
         draw.AddCircleFilled(
-            im(key_place(area.plot, keys[i])), (chosen ? 5.0f : 3.5f) * style.scale,
+            im(key_position(area.plot, keys[i])), (chosen ? 5.0f : 3.5f) * style.scale,
             chosen ? IM_COL32_WHITE : accent);
     }
     if (selected >= 0) {
@@ -123,7 +123,7 @@ void draw_gradient(const KeyPlot& plot, const std::vector<ColorKey>& keys) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const Vec2 a = plot.corner;
     const Vec2 b = a + plot.size;
-    // Squares, so that one sees what is transparent.
+    // A checkerboard, to show transparency.
     const float side = 0.5f * plot.size.y;
     for (int y = 0; y < 2; ++y) {
         for (int x = 0; static_cast<float>(x) * side < plot.size.x; ++x) {
@@ -157,7 +157,7 @@ bool edit_gradient(const HudStyle& style, std::vector<ColorKey>& keys, int& sele
     const float half = 5 * style.scale;
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const bool chosen = static_cast<int>(i) == selected;
-        const float x = key_place(bar, keys[i]).x;
+        const float x = key_position(bar, keys[i]).x;
         const float y = bar.corner.y + bar.size.y + 2 * style.scale;
         const std::array<ImVec2, 5> stop = {
             ImVec2{x, y - half},

@@ -10,8 +10,7 @@ class Inspector;
 class World;
 struct HudStyle;
 
-// The question before something is lost: to quit, or to leave a level whose edits are saved
-// nowhere. Enter or Y accepts, Esc or N stays.
+// Confirms quitting, or leaving a level with unsaved edits. Enter or Y accepts, Esc or N stays.
 
 class LeaveDialog {
   public:

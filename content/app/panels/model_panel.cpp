@@ -55,7 +55,7 @@ void draw_clips(World& world, Entity character) {
     ImGui::Checkbox("loop", &player.loop);
 }
 
-/// Of the weights of `character`, by the meshes that they deform; empty where there is none.
+/// Names of the weights of `character`, from the meshes that they deform; empty if there are none.
 std::vector<std::string> morph_names(const World& world, Entity character, std::size_t count) {
     const Assets& assets = world.resource<Assets>();
     std::vector<std::string> names(count);

@@ -10,8 +10,7 @@ namespace limn {
 class World;
 struct HudStyle;
 
-// M: what a model by itself can do: its clips, its morph targets, its cameras. Open at first if it
-// has any of them.
+// M: the clips, morph targets and cameras of a single model. Initially open if it has any of them.
 
 class ModelPanel {
   public:
@@ -19,7 +18,7 @@ class ModelPanel {
     [[nodiscard]] static bool has_choices(const World& world, std::span<const Entity> cameras);
 
     void draw(const HudStyle& style, World& world, std::span<const Entity> cameras, Entity camera);
-    /// The camera that was chosen since the last call: an index of `cameras`.
+    /// The camera chosen since the last call: an index of `cameras`.
     [[nodiscard]] std::optional<std::size_t> take_camera();
 
     bool open = false;

@@ -51,12 +51,12 @@ void heading_row(const char* name, std::initializer_list<const char*> numbers) {
 }
 
 /// A name with a bar behind it that shows its fraction of the total.
-void name_cell(std::string_view name, double share) {
+void name_cell(std::string_view name, double fraction) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
-    const float length = width * static_cast<float>(std::clamp(share, 0.0, 1.0));
+    const float length = width * static_cast<float>(std::clamp(fraction, 0.0, 1.0));
     ImGui::GetWindowDrawList()->AddRectFilled(
         at, {at.x + length, at.y + ImGui::GetTextLineHeight()},
         ImGui::GetColorU32(ImGuiCol_HeaderHovered), 2.0f);

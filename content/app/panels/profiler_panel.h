@@ -54,10 +54,10 @@ class ProfilerPanel {
     int frames_until_memory_ = 0;
 };
 
-/// Memory of this process that is in RAM [MiB]; 0 if the system does not say.
+/// Resident memory of this process [MiB]; 0 if unknown.
 [[nodiscard]] double resident_memory_mib();
 
-/// What the process has allocated and not freed [MiB]: of malloc, all threads.
+/// Allocated heap memory of the process [MiB]: malloc, all threads.
 [[nodiscard]] double heap_memory_mib();
 
 }  // namespace limn

@@ -97,7 +97,7 @@ void ShowsPanel::draw_shown(const HudStyle& style, const std::string& shown) {
         select_neighbor(shown, 1);
     }
     if (shown.empty()) {
-        ImGui::TextColored(kHudDim, "Select a technique to see it with and without.");
+        ImGui::TextColored(kHudDim, "Select a technique to compare the image with and without it.");
         ImGui::Separator();
         return;
     }

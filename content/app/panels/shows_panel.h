@@ -10,7 +10,7 @@ namespace limn {
 
 struct HudStyle;
 
-/// What of a show is on screen.
+/// Which side of a show is on screen.
 enum class ShowSide : std::uint8_t { On, Off, Both };
 
 // F6: the techniques that levels show, by level. Selecting one asks the player to load it; then the
@@ -20,14 +20,14 @@ class ShowsPanel {
   public:
     /// `shown` is the technique that is loaded; empty: none.
     void draw(const HudStyle& style, const std::string& shown);
-    /// The line between off (left) and on (right), with what is on either side.
+    /// The line between off (left) and on (right), with a label on either side.
     void draw_divider(const HudStyle& style) const;
 
-    /// From on to off to side by side.
+    /// Cycles on, off, side by side.
     void cycle_side();
-    /// The show `offset` places behind the loaded one, as if it had been selected.
+    /// Selects the show `offset` positions after the loaded one.
     void select_neighbor(const std::string& shown, int offset);
-    /// The show that was selected since the last call.
+    /// The show selected since the last call.
     [[nodiscard]] std::optional<FoundShow> take_selected();
 
     bool open = false;

@@ -135,10 +135,10 @@ void draw_chunks(const HudStyle& style, const ArchetypeStats& archetype) {
         const float right = left + cell - (count > 1 ? 1.0f : 0.0f);
         const std::uint32_t before = i * rows_a_cell;
         const std::uint32_t rows = std::min(archetype.rows - before, rows_a_cell);
-        const float share = static_cast<float>(rows) / static_cast<float>(rows_a_cell);
+        const float fill = static_cast<float>(rows) / static_cast<float>(rows_a_cell);
         list->AddRectFilled({left, at.y}, {right, at.y + height}, ImGui::GetColorU32(kLines), 2.0f);
         list->AddRectFilled(
-            {left, at.y}, {left + share * (right - left), at.y + height}, filled, 2.0f);
+            {left, at.y}, {left + fill * (right - left), at.y + height}, filled, 2.0f);
     }
     ImGui::Dummy({width, height});
 }

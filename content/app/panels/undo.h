@@ -49,8 +49,8 @@ class UndoStack {
     /// Changes whenever the world may have been edited.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     void clear();
-    /// After the level's files have changed: undo and redo keep what they say now. Drops the edits
-    /// that change nothing then, as those whose values were written into the files.
+    /// After the level's files have changed: rebases the edits on the new values. Drops edits
+    /// without effect, such as those whose values were saved to the files.
     void adopt(std::span<const LevelChange> changes);
 
   private:

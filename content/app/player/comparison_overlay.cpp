@@ -20,13 +20,13 @@ constexpr ImGuiWindowFlags kBare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFl
 /// Lets the pointer drag the divider.
 void drag_divider(const HudStyle& style, ShadingComparison& comparison, float bottom) {
     const float width = ImGui::GetIO().DisplaySize.x;
-    const float reach = 14 * style.scale;
+    const float half_width = 14 * style.scale;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-    ImGui::SetNextWindowPos({comparison.divider * width - reach, 0});
-    ImGui::SetNextWindowSize({2 * reach, bottom});
+    ImGui::SetNextWindowPos({comparison.divider * width - half_width, 0});
+    ImGui::SetNextWindowSize({2 * half_width, bottom});
     if (ImGui::Begin("##divider", nullptr, kBare)) {
-        ImGui::InvisibleButton("##drag", {2 * reach, bottom});
+        ImGui::InvisibleButton("##drag", {2 * half_width, bottom});
         if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
             ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
         }

@@ -6,8 +6,8 @@ namespace limn {
 
 class World;
 
-/// Where two methods of shading are compared: the pointer can drag the divider, and the scanline's
-/// plot has captions.
+/// Lets the pointer drag the divider of a shading comparison, and draws captions on the scanline
+/// plot.
 void draw_comparison_overlay(const HudStyle& style, World& world);
 
 }  // namespace limn

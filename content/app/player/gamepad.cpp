@@ -12,7 +12,7 @@ namespace limn {
 namespace {
 
 constexpr float kDeadZone = 0.15f;
-constexpr float kLookSpeed = 900.0f;  // [pixels/s] of a mouse, with the stick at its rim
+constexpr float kLookSpeed = 900.0f;  // [mouse pixels/s] at full deflection
 
 /// The actions that have `key` as their first key by default: "W" moves forward, or accelerates.
 void set_actions_of(Input& input, std::string_view key, float value) {

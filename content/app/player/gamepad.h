@@ -10,7 +10,7 @@ namespace limn {
 // A gamepad with the layout of an Xbox controller (GLFW's mapping): the left stick moves or drives,
 // the right one looks around, the triggers go down and up, A clicks at the pointer, B is faster.
 
-/// What a player does with a gamepad: in the words of actions, which are also those of who drives.
+/// The state of a gamepad in terms of the camera's and drivers' actions.
 struct GamepadInput {
     Vec2 move = {0, 0};  ///< right, forward; -1 .. 1 after the dead zone
     Vec2 look = {0, 0};  ///< right, down; -1 .. 1
@@ -19,13 +19,13 @@ struct GamepadInput {
     bool click = false;  ///< A is down
 };
 
-/// A stick's position without its dead zone: 0 within 0.15 of the center, then from 0 to 1 at the
-/// rim; the direction stays.
+/// A stick's position without its dead zone: 0 within 0.15 of the center, rising to 1 at the
+/// rim; keeps the direction.
 [[nodiscard]] Vec2 without_dead_zone(const Vec2& stick);
 
 [[nodiscard]] GamepadInput read_gamepad(const GLFWgamepadstate& state);
 
-/// The first gamepad that is connected; all 0 without one.
+/// The first connected gamepad; all 0 without one.
 [[nodiscard]] GamepadInput poll_gamepad();
 
 /// Adds it to `input`: the stick as the keys W, A, S, D of every group of actions, the look as the

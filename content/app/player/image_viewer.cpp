@@ -16,6 +16,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+// Techniques: hdr.viewer
+
 namespace limn {
 namespace {
 
@@ -121,7 +123,7 @@ void ImageViewer::move_image(const WindowEvents& events) {
     }
     if (events.wheel != 0.0f) {
         const float zoom = std::clamp(zoom_ * std::pow(kZoomStep, events.wheel), 0.1f, kMaxZoom);
-        // What is under the pointer stays there.
+        // The point under the pointer stays fixed.
         const Vec2 pointer = window_->mouse_position() - 0.5f * Vec2(window_->framebuffer_size());
         shift_ = pointer - (pointer - shift_) * (zoom / zoom_);
         zoom_ = zoom;
@@ -175,7 +177,7 @@ Status ImageViewer::run() {
 void ImageViewer::draw_frame(float dt) {
     if (display_ == nullptr) {
         display_ = &image_->show(exposure_);
-        clipped_ = clipped_share(*display_);
+        clipped_ = clipped_fraction(*display_);
     }
     const IVec2 size = window_->framebuffer_size();
     device_->bind_window(size.x, size.y);

@@ -15,7 +15,7 @@
 namespace limn {
 namespace {
 
-/// Words for what a schema accepts.
+/// Describes what a schema accepts.
 std::string type_of(const JsonValue& schema) {
     constexpr std::size_t kMaxWords = 12;
     if (const JsonValue* const words = schema.find("enum")) {
@@ -37,7 +37,7 @@ std::string type_of(const JsonValue& schema) {
                                : "object";
 }
 
-/// The properties of `schema` that have a description, and those within; components have none.
+/// The properties of `schema` that have a description, recursively; components have none.
 void add_keys(const JsonValue& schema, const std::string& prefix, LevelKeys& to) {
     for (const JsonValue& choice : schema["anyOf"].items) {
         add_keys(choice, prefix, to);

@@ -5,9 +5,9 @@
 
 namespace limn {
 
-// What a level file may hold beside components, resources and generators: the keys of the file
-// itself, of entities, events ... for `limn components`. From the JSON Schema, so that whatever is
-// accepted is listed.
+// Keys of a level file besides components, resources and generators: those of the file
+// itself, of entities, events ... for `limn components`. Derived from the JSON Schema, so that all
+// accepted keys are listed.
 
 struct LevelKey {
     std::string path;  ///< "vary.NAME.from"; NAME is any, [] an item of a list

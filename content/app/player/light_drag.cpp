@@ -23,20 +23,20 @@ float brightness(const Vec3& color) {
     return std::max(color.x, std::max(color.y, color.z));
 }
 
-/// Of the illuminance of a white ball, what its viewer sees: 1 from behind the viewer, 0 from
-/// behind the ball.
-float seen_share(const Vec3& to_light, const Vec3& to_viewer) {
+/// Fraction of a sphere's lit side that faces the viewer: 1 for a light behind the viewer, 0 for
+/// one behind the sphere.
+float facing_lit_fraction(const Vec3& to_light, const Vec3& to_viewer) {
     return 0.5f + 0.5f * glm::dot(normalize_or(to_light, to_viewer), to_viewer);
 }
 
 /// Into the space of the entity's Transform: that of its parent, which should not be stretched.
 Affine parent_from_world(const World& world, Entity entity) {
     const Entity parent = parent_of(world, entity);
-    const auto* const place = parent.is_null() ? nullptr : world.find<WorldTransform>(parent);
-    return place != nullptr ? to_affine(glm::inverse(to_mat4(place->world))) : Affine{};
+    const auto* const transform = parent.is_null() ? nullptr : world.find<WorldTransform>(parent);
+    return transform != nullptr ? to_affine(glm::inverse(to_mat4(transform->world))) : Affine{};
 }
 
-/// The edit of a light's place, as if it were not done yet.
+/// The edit of a light's transform, not yet applied.
 Edit edit_of(const World& world, Entity light, const Transform& after) {
     Edit edit;
     edit.entity = light;
@@ -58,44 +58,46 @@ brightest_light(const World& world, const Vec3& point, const Vec3& to_viewer) {
             found = entity;
         }
     };
-    const auto offer_lamp = [&](Entity entity, const auto& lamp, const Transform& place) {
+    const auto offer_lamp = [&](Entity entity, const auto& lamp, const Transform& transform) {
         const Affine to_parent = parent_from_world(world, entity);
-        const Vec3 way = place.position - transform_point(to_parent, point);
+        const Vec3 to_light = transform.position - transform_point(to_parent, point);
         const float intensity = lamp.enabled ? lamp.intensity * brightness(lamp.color) : 0.0f;
-        const float share =
-            seen_share(way, normalize_or(transform_vector(to_parent, to_viewer), {0, 0, 1}));
-        offer(entity, share * intensity / std::max(glm::dot(way, way), 1e-6f));
+        const float fraction = facing_lit_fraction(
+            to_light, normalize_or(transform_vector(to_parent, to_viewer), {0, 0, 1}));
+        offer(entity, fraction * intensity / std::max(glm::dot(to_light, to_light), 1e-6f));
     };
     world.query<const PointLight, const Transform>().each(offer_lamp);
     world.query<const SpotLight, const Transform>().each(offer_lamp);
     world.query<const DirectionalLight, const Transform>().each([&](Entity entity,
                                                                     const DirectionalLight& light,
-                                                                    const Transform& place) {
-        const Vec3 seen_from =
+                                                                    const Transform& transform) {
+        const Vec3 viewer_direction =
             normalize_or(transform_vector(parent_from_world(world, entity), to_viewer), {0, 0, 1});
-        const float share = seen_share(place.rotation * Vec3(0, 0, 1), seen_from);
-        offer(entity, light.enabled ? share * light.illuminance * brightness(light.color) : 0.0f);
+        const float fraction =
+            facing_lit_fraction(transform.rotation * Vec3(0, 0, 1), viewer_direction);
+        offer(
+            entity, light.enabled ? fraction * light.illuminance * brightness(light.color) : 0.0f);
     });
     return found;
 }
 
 Transform turned_light(
-    const Transform& place, const Vec3& center, const Vec2& motion, float height,
+    const Transform& transform, const Vec3& center, const Vec2& motion, float height,
     const Affine& world_from_camera) {
     const float angle = kPi / std::max(height, 1.0f);
     const Vec3 right = glm::normalize(transform_vector(world_from_camera, {1, 0, 0}));
     const Vec3 up = glm::normalize(transform_vector(world_from_camera, {0, 1, 0}));
     const Quat turn =
         glm::angleAxis(motion.x * angle, up) * glm::angleAxis(motion.y * angle, right);
-    Transform turned = place;
-    turned.position = center + turn * (place.position - center);
-    turned.rotation = glm::normalize(turn * place.rotation);
+    Transform turned = transform;
+    turned.position = center + turn * (transform.position - center);
+    turned.rotation = glm::normalize(turn * transform.rotation);
     return turned;
 }
 
-Transform facing_light(const Transform& place, const Vec3& center, const Vec3& direction) {
-    Transform turned = place;
-    turned.position = center + glm::distance(place.position, center) * direction;
+Transform facing_light(const Transform& transform, const Vec3& center, const Vec3& direction) {
+    Transform turned = transform;
+    turned.position = center + glm::distance(transform.position, center) * direction;
     const Vec3 up = std::abs(direction.y) > 0.999f ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     turned.rotation = glm::quatLookAt(-direction, up);
     return turned;
@@ -111,12 +113,12 @@ void LightDrag::drag(
     if (!light || motion == Vec2(0)) {
         return;
     }
-    const Transform place = *std::as_const(world).find<Transform>(*light);
+    const Transform transform = *std::as_const(world).find<Transform>(*light);
     const Affine to_parent = parent_from_world(world, *light);
     Edit edit = edit_of(
         world, *light,
         turned_light(
-            place, transform_point(to_parent, center), motion, height,
+            transform, transform_point(to_parent, center), motion, height,
             to_parent * world_from_camera));
     apply_edit_value(world, edit, edit.after);
     if (begins || undo.redo_count() > 0 || undo.undo_count() == 0) {
@@ -129,12 +131,12 @@ void LightDrag::drag(
 
 void face_light(World& world, UndoStack& undo, const Vec3& center, const Vec3& direction) {
     if (const std::optional<Entity> light = brightest_light(world, center, direction)) {
-        const Transform place = *std::as_const(world).find<Transform>(*light);
+        const Transform transform = *std::as_const(world).find<Transform>(*light);
         const Affine to_parent = parent_from_world(world, *light);
         Edit edit = edit_of(
             world, *light,
             facing_light(
-                place, transform_point(to_parent, center),
+                transform, transform_point(to_parent, center),
                 glm::normalize(transform_vector(to_parent, direction))));
         apply_edit_value(world, edit, edit.after);
         undo.record(std::move(edit));

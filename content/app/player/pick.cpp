@@ -37,18 +37,18 @@ std::optional<float> hit_box(const Vec3& origin, const Vec3& direction, const Bo
     return enter <= leave ? std::optional(enter) : std::nullopt;
 }
 
-/// A mesh whose box the ray hits, in the mesh's own space.
+/// A mesh whose box the ray hits, in the mesh's space.
 struct Candidate {
     Entity entity;
     const MeshData* mesh = nullptr;
-    std::vector<Vec3> posed;  // deformed positions; empty if it is drawn at rest
+    std::vector<Vec3> posed;  // deformed positions; empty if not deformed
     float inflate = 0.0f;
     Vec3 origin;
-    Vec3 direction;  // scaled so that distances are those of the world
+    Vec3 direction;  // scaled so that ray parameters are world distances
     float enter = 0.0f;
 };
 
-/// Box of the mesh as it is posed, in its own space.
+/// Box of the posed mesh, in its own space.
 Bounds shape_bounds(const MeshData& mesh, const std::vector<Vec3>& posed) {
     Bounds box = posed.empty() ? mesh.bounds : Bounds{};
     for (const Vec3& p : posed) {
@@ -63,9 +63,9 @@ std::optional<float> hit_mesh(const Candidate& candidate, float nearest) {
         const std::uint32_t vertex = mesh.indices[i];
         const bool moves = candidate.inflate != 0.0f && vertex < mesh.normals.size();
         const Vec3 outward = moves ? normalize_or(mesh.normals[vertex], {0, 0, 0}) : Vec3(0);
-        const Vec3& place =
+        const Vec3& position =
             candidate.posed.empty() ? mesh.positions[vertex] : candidate.posed[vertex];
-        return place + candidate.inflate * outward;
+        return position + candidate.inflate * outward;
     };
     std::optional<float> hit;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -128,7 +128,7 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
     std::optional<Hit> nearest;
     for (const Candidate& candidate : candidates) {
         if (nearest && candidate.enter >= nearest->distance) {
-            break;  // the remaining boxes begin behind the hit
+            break;  // the remaining boxes begin beyond the hit
         }
         const float limit = nearest ? nearest->distance : INFINITY;
         if (const std::optional<float> distance = hit_mesh(candidate, limit)) {
@@ -157,7 +157,7 @@ Bounds entity_bounds(const World& world, Entity entity) {
                                                  : transform_bounds(transform->world, box);
 }
 
-std::optional<Vec3> entity_middle(const World& world, Entity entity) {
+std::optional<Vec3> entity_center(const World& world, Entity entity) {
     const Bounds box = entity_bounds(world, entity);
     if (!is_empty(box)) {
         return center(box);

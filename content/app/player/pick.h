@@ -37,6 +37,6 @@ struct Hit {
 [[nodiscard]] Bounds entity_bounds(const World& world, Entity entity);
 
 /// The center of the entity's box, or its origin if it has none.
-[[nodiscard]] std::optional<Vec3> entity_middle(const World& world, Entity entity);
+[[nodiscard]] std::optional<Vec3> entity_center(const World& world, Entity entity);
 
 }  // namespace limn

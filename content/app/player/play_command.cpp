@@ -19,7 +19,7 @@
 namespace limn {
 namespace {
 
-constexpr int kHeadlessFrames = 8;  // where there is no display
+constexpr int kHeadlessFrames = 8;  // without a display
 constexpr int kHeadlessSamples = 8;
 constexpr double kStillDuration = 4.0;  // [s] for a scene without a camera path
 

@@ -23,14 +23,14 @@ struct PlayOptions {
     float scale = 0.0f;       ///< rendered pixels per window pixel; 0 = automatic
     bool scale_auto = false;  ///< adapts the scale to hold 60 frames per second
     Antialiasing antialiasing = Antialiasing::Auto;  ///< Auto: the level's, temporal if it has none
-    std::optional<gpu::Profile> profile;             ///< empty = by the device
-    ModelViewOptions model;                          ///< of a model by itself
-    int headless_frames = 0;  ///< > 0: renders so many frames along the camera path, no window
+    std::optional<gpu::Profile> profile;             ///< empty = chosen by the device
+    ModelViewOptions model;                          ///< of a single model
+    int headless_frames = 0;  ///< > 0: renders this many frames along the camera path, no window
     std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the
                       ///< current one for screenshots
 };
 
-/// Played frames are antialiased unless the player, by `wanted`, or the level says how.
+/// Antialiasing of played frames: `wanted`, else the level's, else temporal.
 void set_antialiasing(World& world, Antialiasing wanted);
 
 [[nodiscard]] Status run_play(const PlayOptions& options);

@@ -58,15 +58,15 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
         const IVec2 size = render_size(player->scale_, window_size);
         const std::string resolution =
             player->scale_.automatic
-                ? std::string("at a resolution that keeps it playable; --scale 1 for the full one")
+                ? std::string("at a resolution that stays playable; --scale 1 for full resolution")
                 : fmt::format("{} x {} pixels", size.x, size.y);
         log_info("{} renders on the CPU, {}", player->device_->caps().renderer, resolution);
     }
     return player;
 }
 
-/// While time stands, the last state is shown, and no mixture with the one before: what is edited
-/// is that state, and all else stays where it is.
+/// While paused, shows the last state without interpolation: edits apply to that state, and nothing
+/// else moves.
 void Player::set_paused(bool paused) {
     paused_ = paused;
     unsimulated_ = paused ? 0.0 : stage_step(*stage_);

@@ -52,7 +52,7 @@ class Player {
     /// Runs until the window is closed.
     [[nodiscard]] Status run();
 
-    /// What the keys do.
+    /// Actions of the keys.
     [[nodiscard]] static std::span<const PlayerKey> keys();
 
   private:
@@ -72,7 +72,7 @@ class Player {
     void warm_up_level();
     void load_or_report(const std::string& scene, const std::string& show = {});
     void load_neighbor(int offset);
-    /// Runs the action, or asks first where edits would be lost.
+    /// Runs the action, but asks first if edits would be lost.
     void leave_level(std::function<void()> action, const char* verb = "Leave");
     void ask_to_quit();
 
@@ -84,14 +84,14 @@ class Player {
     void toggle_paths();
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events, float dt);
-    /// Drag and wheel of an orbiting camera, or of the first camera of a model, which they take
-    /// over.
+    /// Drag and wheel of an orbiting camera, or of a model's initial camera, which then becomes
+    /// one.
     void orbit_model(const WindowEvents& events, Input& input, bool on_panel);
-    [[nodiscard]] Vec3 model_middle() const;
-    /// The camera circles the selection, and frames it.
+    [[nodiscard]] Vec3 model_center() const;
+    /// Orbits the selection, and frames it.
     void focus_selection();
     void go_home();
-    /// The camera circles the point under the pointer.
+    /// Orbits the point under the pointer.
     void focus_under_pointer();
     void cycle_camera();
     /// Switches to the level's next camera; false if the last one is active.
@@ -104,7 +104,7 @@ class Player {
     /// Whether an editor takes the pointer in this frame, so that it moves no camera.
     [[nodiscard]] bool edit_by_pointer(const WindowEvents& events);
     void edit_furrows();
-    /// View and light face the entity whose furrows are edited.
+    /// Makes view and light face the entity whose furrows are edited.
     void face_furrows();
 
     void set_paused(bool paused);
@@ -122,10 +122,10 @@ class Player {
     [[nodiscard]] HelpState help_state() const;
 
     void reload_shaders(bool all);
-    /// Brings what has changed in the level's files to its living entities (level_update.h); an
-    /// error is shown, and the level goes on as it was.
+    /// Applies changes of the level's files to the running level (level_update.h); an error is
+    /// shown, and the level stays as it was.
     void follow_level_files();
-    /// When each of them was last written.
+    /// Modification time of each of them.
     [[nodiscard]] std::vector<std::filesystem::file_time_type> level_file_times() const;
     void save_screenshot(const IVec2& size);
     void save_exr(const RenderView& view);
@@ -171,14 +171,14 @@ class Player {
     std::vector<std::filesystem::file_time_type> level_times_;
     FrameCost cost_;
 
-    double unsimulated_ = 0.0;         ///< real time not yet simulated [s]
+    double unsimulated_ = 0.0;         ///< real time not simulated yet [s]
     double shown_time_ = 0.0;          ///< simulation time of the last frame [s]
     double until_shader_check_ = 0.0;  ///< [s]
     double until_pick_ = 0.0;          ///< [s] until the distance ahead is measured again
     float ahead_ = INFINITY;           ///< distance to what the camera looks at [m]
     double real_seconds_ = 0.0;        ///< of the window in which rate_ is measured
     double simulated_seconds_ = 0.0;   ///< likewise
-    double rate_ = 1.0;                ///< simulated seconds a real second
+    double rate_ = 1.0;                ///< simulated seconds per real second
     bool gamepad_click_ = false;       ///< A was down in the last frame
     bool pointer_taken_ = false;       ///< by an editor
     bool paused_ = false;

@@ -18,10 +18,10 @@ constexpr float kEaseTime = 0.08f;               // [s] time constant: 63 % of a
 constexpr float kStill = 1e-3f;                  // fraction of full speed treated as 0
 constexpr float kSpeedStep = 1.2f;               // of one wheel step
 constexpr float kCameraZoomStep = 0.88f;         // of one wheel step
-constexpr float kZoomKeys = 8.0f;                // wheel steps a second of W and S
-constexpr float kMinSpeed = 0.1f;                // [unit/s], so that walls do not hold the camera
+constexpr float kZoomKeys = 8.0f;                // wheel steps per second of W and S
+constexpr float kMinSpeed = 0.1f;                // [unit/s], so that walls do not stop the camera
 constexpr float kMaxSpeed = 1000.0f;             // [unit/s]
-constexpr float kReachTime = 0.4f;               // [s] time constant of PlayerCamera::reach
+constexpr float kViewDistanceTime = 0.4f;        // [s] time constant of PlayerCamera::view_distance
 constexpr float kMinDistance = 0.02f;            // [unit]
 constexpr float kMaxDistance = 10000.0f;         // [unit]
 
@@ -55,14 +55,14 @@ void start_fly(PlayerCamera& camera, const Affine& pose) {
     const Vec3 position = position_of(pose);
     const Vec3 ahead = transform_point(pose, {0, 0, -1});
     camera.mode = CameraMode::Fly;
-    camera.place = {.position = position, .rotation = rotation_of(look_at(position, ahead))};
+    camera.fly_pose = {.position = position, .rotation = rotation_of(look_at(position, ahead))};
     camera.glide = {0, 0, 0};
 }
 
 void step_fly(PlayerCamera& camera, const MoveInput& input, float dt) {
     camera.pace = std::clamp(camera.pace * std::pow(kSpeedStep, input.zoom), 0.02f, 20.0f);
-    camera.fly.speed =
-        std::clamp(camera.pace * camera.reach, kMinSpeed * camera.unit, kMaxSpeed * camera.unit);
+    camera.fly.speed = std::clamp(
+        camera.pace * camera.view_distance, kMinSpeed * camera.unit, kMaxSpeed * camera.unit);
     const Vec3 wanted = input.move / std::max(glm::length(input.move), 1.0f);
     camera.glide += (wanted - camera.glide) * (1.0f - std::exp(-dt / kEaseTime));
     if (input.move == Vec3(0) && glm::length(camera.glide) < kStill) {
@@ -70,24 +70,25 @@ void step_fly(PlayerCamera& camera, const MoveInput& input, float dt) {
     }
     MoveInput eased = input;
     eased.move = camera.glide;
-    step_fly_camera(camera.place, camera.fly, eased, dt);
-    camera.pose = affine_from(camera.place.position, camera.place.rotation, Vec3(1));
+    step_fly_camera(camera.fly_pose, camera.fly, eased, dt);
+    camera.pose = affine_from(camera.fly_pose.position, camera.fly_pose.rotation, Vec3(1));
 }
 
-void follow_reach(PlayerCamera& camera, float ahead, float scene_radius, float dt) {
+void update_view_distance(PlayerCamera& camera, float ahead, float scene_radius, float dt) {
     const float wanted = clamp_distance(camera, std::min(ahead, scene_radius));
-    const float share = 1.0f - std::exp(-dt / kReachTime);
-    camera.reach *= std::pow(wanted / camera.reach, share);  // far and near in equal times
+    const float blend = 1.0f - std::exp(-dt / kViewDistanceTime);
+    camera.view_distance *=
+        std::pow(wanted / camera.view_distance, blend);  // equal times for growing and shrinking
 }
 
 void stop_at_floor(PlayerCamera& camera, std::optional<float> floor) {
     const float before = position_of(camera.previous).y;
     const float eye_height = kEyeHeight * camera.unit;
-    if (!floor || *floor < eye_height || camera.place.position.y >= before) {
+    if (!floor || *floor < eye_height || camera.fly_pose.position.y >= before) {
         return;
     }
-    camera.place.position.y = std::max(camera.place.position.y, before - *floor + eye_height);
-    camera.pose = affine_from(camera.place.position, camera.place.rotation, Vec3(1));
+    camera.fly_pose.position.y = std::max(camera.fly_pose.position.y, before - *floor + eye_height);
+    camera.pose = affine_from(camera.fly_pose.position, camera.fly_pose.rotation, Vec3(1));
 }
 
 float framing_distance(const PlayerCamera& camera, float radius, float aspect) {
@@ -123,7 +124,7 @@ void pan_orbit(PlayerCamera& camera, const Vec2& motion, float height) {
 void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target, float dt) {
     OrbitCamera& orbit = camera.orbit;
     const float sensitivity =
-        1.5f * camera.fly.sensitivity;  // by eye: circling feels slower than turning
+        1.5f * camera.fly.sensitivity;  // by eye: orbiting feels slower than turning
     const float zoom = input.zoom + kZoomKeys * input.move.z * dt;
     orbit.azimuth -= input.look.x * sensitivity;
     orbit.elevation =

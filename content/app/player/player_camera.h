@@ -12,13 +12,13 @@ namespace limn {
 
 // The user-controlled camera. It is not an entity: it moves while the simulation is paused and
 // never affects the level. C cycles through its three modes; each starts from the pose of the
-// previous one, so that the view jumps only on the way back to the level's camera. The motion
+// previous one, so that the view jumps only when it returns to the level's camera. The motion
 // itself is in systems/fly_camera_system.h and systems/orbit_camera_system.h.
 
 enum class CameraMode : std::uint8_t {
     Level,  ///< the level's own camera and path
     Fly,    ///< first person, moved by keys and mouse
-    Orbit,  ///< third person: circles a point, which follows an entity if one is selected
+    Orbit,  ///< third person: orbits a point, which follows an entity if one is selected
 };
 
 struct PlayerCamera {
@@ -29,36 +29,36 @@ struct PlayerCamera {
     Affine previous;  ///< of the previous frame
     FlyCamera fly;
     OrbitCamera orbit;
-    Transform place;         ///< pose while flying
-    float unit = 1.0f;       ///< what limits of distances and speeds are multiples of [m]
-    Vec3 glide = {0, 0, 0};  ///< MoveInput::move, eased in and out
-    float reach = 5.0f;      ///< distance to what a flying camera looks at, smoothed [m]
-    float pace = 0.6f;       ///< speed of flying as fractions of `reach` [1/s]
-    Vec3 aim = {0, 0, 0};    ///< target of the orbit where it follows no entity [m]
+    Transform fly_pose;          ///< pose while flying
+    float unit = 1.0f;           ///< unit of the limits of distances and speeds [m]
+    Vec3 glide = {0, 0, 0};      ///< MoveInput::move, eased in and out
+    float view_distance = 5.0f;  ///< distance to what a flying camera looks at, smoothed [m]
+    float pace = 0.6f;           ///< flying speed as a multiple of `view_distance` [1/s]
+    Vec3 aim = {0, 0, 0};        ///< target of the orbit if it follows no entity [m]
     Vec3 focus = {0, 0, 0};  ///< point that the orbit looks at; follows its target with a lag [m]
 };
 
 inline constexpr float kEyeHeight =
-    0.15f;  ///< [PlayerCamera::unit] of a flying camera above the floor, at least
+    0.15f;  ///< minimum height of a flying camera above the floor [PlayerCamera::unit]
 
 /// The name of the mode for the HUD.
 [[nodiscard]] const char* camera_mode_name(CameraMode mode);
 
-/// Moves a flying camera by `input` for `dt` real seconds, as fast as the distance to what it looks
-/// at asks for: `pace` of `reach` a second, which the wheel changes. Speed eases in and out within
+/// Moves a flying camera by `input` for `dt` real seconds, at `pace` times `view_distance` per
+/// second; the wheel changes `pace`. Speed eases in and out within
 /// a tenth of a second.
 void step_fly(PlayerCamera& camera, const MoveInput& input, float dt);
 
-/// Lets `reach` follow the distance ahead [m] within some tenths of a second; where nothing is
-/// ahead, that is the scene's own radius.
-void follow_reach(PlayerCamera& camera, float ahead, float scene_radius, float dt);
+/// Lets `view_distance` follow the distance ahead [m] within some tenths of a second; if nothing is
+/// ahead, the scene's radius.
+void update_view_distance(PlayerCamera& camera, float ahead, float scene_radius, float dt);
 
-/// Keeps a flying camera that sinks without being told to above the floor: no nearer than
+/// Keeps a flying camera above the floor unless it is steered down: no nearer than
 /// kEyeHeight where `floor`, the distance [m] from its `previous` position straight down, is known.
 void stop_at_floor(PlayerCamera& camera, std::optional<float> floor);
 
 /// The distance at which a box of `radius` [m] fills most of an image of `aspect` = width / height,
-/// in whichever direction the image is narrower.
+/// in the narrower direction of the image.
 [[nodiscard]] float framing_distance(const PlayerCamera& camera, float radius, float aspect);
 
 /// Rotates and zooms an orbiting camera about `target`, which it follows with `orbit.follow`

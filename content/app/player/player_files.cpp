@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.compression.ab-evaluation
+
 namespace limn {
 namespace {
 

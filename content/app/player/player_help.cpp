@@ -49,7 +49,7 @@ void add_events(const Bindings* bindings, std::vector<KeyHelp>& lines) {
     }
 }
 
-/// Those of the window that are of use now.
+/// Keys of the window that are usable now.
 void add_help_keys(
     std::span<const PlayerKey> keys, const HelpState& state, std::vector<KeyHelp>& lines) {
     std::string_view heading;

@@ -14,8 +14,8 @@ namespace limn {
 class Player;
 class World;
 
-// The keys of the window, one table for what they do and for the help (F1), which lists those of
-// this level and of what is on screen, no others.
+// The keys of the window, one table for their actions and for the help (F1), which lists only keys
+// that apply to this level and the open panels.
 
 /// What the player is doing.
 struct HelpState {
@@ -24,7 +24,7 @@ struct HelpState {
     bool drives = false;     ///< the level's camera follows something that the keys drive
     bool throws = false;     ///< a click throws a stone
     bool paths = false;      ///< there are paths to show
-    bool model = false;      ///< a model by itself
+    bool model = false;      ///< a single model is shown
     bool show = false;       ///< a technique with and without is loaded
     bool selected = false;   ///< an entity is
     bool edited = false;     ///< there is something to undo or to redo
@@ -34,7 +34,7 @@ struct HelpState {
     bool panel = false;      ///< some panel is open
 };
 
-/// A key of the window: what it does and, for the help, when that is of use.
+/// A key of the window: its action and when the help lists it.
 struct PlayerKey {
     const char* heading = "";
     const char* label = "";  ///< "Ctrl Z"; empty: another key for the same, which no help lists
@@ -43,17 +43,17 @@ struct PlayerKey {
     int modifiers = 0;       ///< GLFW_MOD_CONTROL, GLFW_MOD_SHIFT
     void (*act)(Player& player) = nullptr;
     bool (*shown)(const HelpState& state) = nullptr;  ///< nullptr: always
-    bool repeats = false;                             ///< while it is held
+    bool repeats = false;                             ///< while held
 };
 
-/// What a press does: the row with its modifiers, or else, as Shift also flies faster, the one
-/// without Shift; nullptr: nothing.
+/// The row for a press: with its modifiers, or else the one without Shift, which also means flying
+/// faster; nullptr: none.
 [[nodiscard]] const PlayerKey* find_key(std::span<const PlayerKey> keys, int key, int modifiers);
 
-/// The group of actions that moves something else than the player's own camera; nullptr: none.
+/// The group of actions that moves something other than the player's camera; nullptr: none.
 [[nodiscard]] const ActionGroup* driving_group(const World& world, Entity camera);
 
-/// The keys of an action. Those that the level has given to actions of its own are not among them.
+/// The keys of an action, without those that the level assigns to actions of its own.
 [[nodiscard]] std::vector<std::string>
 free_keys(const ActionInfo& action, const Bindings* bindings);
 

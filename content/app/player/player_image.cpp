@@ -1,4 +1,5 @@
-// What the window of `limn play` shows: the level, of a show with and without, and the HUD.
+// What the window of `limn play` shows: the level, for a show with and without the technique, and
+// the HUD.
 
 #include "content/app/panels/emitter_controls.h"
 #include "content/app/player/comparison_overlay.h"
@@ -27,7 +28,7 @@
 namespace limn {
 namespace {
 
-/// "wind 7.0 m/s from SW, rain 30 %"; nothing where a level has no weather. -z is north.
+/// "wind 7.0 m/s from SW, rain 30 %"; empty if the level has no weather. -z is north.
 std::string describe_weather(const World& world) {
     const auto* settings = world.find_resource<Weather>();
     const auto* state = world.find_resource<WeatherState>();
@@ -47,7 +48,7 @@ std::string describe_weather(const World& world) {
     return line;
 }
 
-/// Detail that suits the image. The world has Rendering, as each that is played.
+/// Level of detail for the image's resolution. Needs the resource Rendering.
 void fit_detail(World& world, float particle_share, int rows) {
     Rendering& rendering = world.resource<Rendering>();
     rendering.particle_share = std::min(rendering.particle_share, particle_share);
@@ -67,7 +68,7 @@ void Player::draw_frame(float dt, const Input& input) {
     }
     const Clock::time_point begin = Clock::now();
     if (furrows_.is_open()) {
-        stage_->world.run(update_furrow_skins);  // also while time stands
+        stage_->world.run(update_furrow_skins);  // also while paused
     }
     show_edits();
     const IVec2 size = render_size(scale_, window_size);
@@ -90,7 +91,7 @@ void Player::draw_frame(float dt, const Input& input) {
     draw_hud(view_, window_size, dt);
 }
 
-/// What was edited since the last frame shows at once, also while time stands.
+/// Shows edits since the last frame at once, also while paused.
 void Player::show_edits() {
     const std::uint64_t revision = inspector_.undo_stack().revision();
     const bool inspected = std::exchange(shown_revision_, revision) != revision;
@@ -100,7 +101,7 @@ void Player::show_edits() {
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
         if (played != nullptr && paused_) {
             played->world.run(update_furrow_skins);
-            // Twice: what was moved has not moved since the last frame.
+            // Twice: what an edit moved must have no velocity.
             played->world.run(update_transforms);
             played->world.run(update_transforms);
         }
@@ -112,7 +113,7 @@ void Player::show_edits() {
     }
 }
 
-/// The level, or of a show what is chosen of it.
+/// The level, or the chosen sides of a show.
 void Player::draw_stages(const IVec2& window_size) {
     const ShowSide side = off_stage_ != nullptr ? shows_.side : ShowSide::On;
     if (side != ShowSide::Off) {
@@ -124,9 +125,10 @@ void Player::draw_stages(const IVec2& window_size) {
         cost_.statistics = frame.statistics;
     }
     if (side != ShowSide::On) {
-        const float share = side == ShowSide::Both ? shows_.divider : 1.0f;
+        const float width_fraction = side == ShowSide::Both ? shows_.divider : 1.0f;
         draw_off_stage(
-            window_size, static_cast<int>(std::lround(share * static_cast<float>(window_size.x))));
+            window_size,
+            static_cast<int>(std::lround(width_fraction * static_cast<float>(window_size.x))));
     }
 }
 
@@ -223,8 +225,9 @@ void Player::draw_outline(const RenderView& view) const {
 
 /// "3.2 m/s  at 1.2, 0.5, -3.4"
 std::string Player::describe_motion() const {
-    const Vec3 place = transform_point(camera_.pose, {0, 0, 0});
-    std::string text = fmt::format("at {:.1f}, {:.1f}, {:.1f} m", place.x, place.y, place.z);
+    const Vec3 position = transform_point(camera_.pose, {0, 0, 0});
+    std::string text =
+        fmt::format("at {:.1f}, {:.1f}, {:.1f} m", position.x, position.y, position.z);
     if (camera_.mode == CameraMode::Fly) {
         text += fmt::format("   flies {:.1f} m/s", camera_.fly.speed);
     } else if (camera_.mode == CameraMode::Orbit) {

@@ -25,7 +25,7 @@ int key_code(std::string_view name) {
     return found != codes.end() ? found->second : name.size() == 1 ? name[0] : GLFW_KEY_UNKNOWN;
 }
 
-/// Held, or pressed since the last frame and released already.
+/// Held, or pressed and released since the last frame.
 bool is_down(const Window& window, const WindowEvents& events, std::string_view name) {
     const int key = key_code(name);
     const bool has_right = key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_LEFT_ALT;
@@ -124,9 +124,9 @@ bool Player::edit_by_pointer(const WindowEvents& events) {
     }
     const std::optional<Hit> ahead = pick_entity(world, ray_through(view_, {0.5f, 0.5f}));
     const Vec3 center =
-        entity_middle(world, inspector_.selected())
+        entity_center(world, inspector_.selected())
             .value_or(
-                ahead ? entity_middle(world, ahead->entity).value_or(Vec3(0)) : model_middle());
+                ahead ? entity_center(world, ahead->entity).value_or(Vec3(0)) : model_center());
     light_.drag(
         world, undo, center, pointer.motion, static_cast<float>(pointer.window.y),
         view_.world_from_camera);

@@ -1,4 +1,4 @@
-// What single presses of keys do in the window of `limn play`, and what its help says of them.
+// Single key presses in the window of `limn play`, and their help.
 
 #include "content/app/player/path_overlay.h"
 #include "content/app/player/player.h"
@@ -39,17 +39,17 @@ std::span<const PlayerKey> Player::keys() {
     constexpr int kControl = GLFW_MOD_CONTROL;
     constexpr int kShift = GLFW_MOD_SHIFT;
     static const PlayerKey kKeys[] = {
-        {.heading = "Camera", .label = "Drag", .text = "circle the target", .shown = circles},
-        {.heading = "Camera", .label = "Right drag", .text = "move sideways", .shown = circles},
+        {.heading = "Camera", .label = "Drag", .text = "orbit the target", .shown = circles},
+        {.heading = "Camera", .label = "Right drag", .text = "pan", .shown = circles},
         {.heading = "Camera", .label = "Wheel", .text = "distance", .shown = circles},
         {.heading = "Camera", .label = "Drag", .text = "look around", .shown = looks},
         {.heading = "Camera", .label = "Wheel", .text = "fly slower, faster", .shown = flies},
-        {.heading = "Camera", .label = "Double-click", .text = "circle what is under the pointer"},
+        {.heading = "Camera", .label = "Double-click", .text = "orbit what is under the pointer"},
         {"Camera", "Home", "back to the level's camera", GLFW_KEY_HOME, 0,
          [](Player& p) { p.go_home(); }},
         {"Camera", "C", "next camera: those of the level, fly, orbit", GLFW_KEY_C, 0,
          [](Player& p) { p.cycle_camera(); }},
-        {"Camera", "F", "circle the selection", GLFW_KEY_F, 0,
+        {"Camera", "F", "orbit the selection", GLFW_KEY_F, 0,
          [](Player& p) { p.focus_selection(); },
          [](const HelpState& state) { return state.selected; }},
 
@@ -76,13 +76,13 @@ std::span<const PlayerKey> Player::keys() {
          [](Player& p) { p.profiler_.open = !p.profiler_.open; }},
         {"Panels", "F4", "intermediate textures of the frame", GLFW_KEY_F4, 0,
          [](Player& p) { p.buffers_->open = !p.buffers_->open; }},
-        {"Panels", "F6", "techniques that levels show, each with and without", GLFW_KEY_F6, 0,
+        {"Panels", "F6", "techniques that levels show, with and without", GLFW_KEY_F6, 0,
          [](Player& p) { p.shows_.open = !p.shows_.open; }},
-        {"Panels", "F7", "the technique on, off, side by side", GLFW_KEY_F7, 0,
+        {"Panels", "F7", "technique on, off, side by side", GLFW_KEY_F7, 0,
          [](Player& p) { p.cycle_show_side(); }, [](const HelpState& state) { return state.show; }},
         {"Panels", "F8", "hide the status", GLFW_KEY_F8, 0,
          [](Player& p) { p.hud_->status_shown = !p.hud_->status_shown; }},
-        {"Panels", "F12", "paths with their knots, cameras' with their times", GLFW_KEY_F12, 0,
+        {"Panels", "F12", "paths with their knots, camera paths with times", GLFW_KEY_F12, 0,
          [](Player& p) { p.toggle_paths(); }, [](const HelpState& state) { return state.paths; }},
         {"Panels", "M", "clips, morph targets and cameras of the model", GLFW_KEY_M, 0,
          [](Player& p) { p.model_panel_.open = p.stage_->scene.model && !p.model_panel_.open; },
@@ -90,7 +90,7 @@ std::span<const PlayerKey> Player::keys() {
 
         {.heading = "Edit",
          .label = "Click",
-         .text = "select what is under it",
+         .text = "select what is under the pointer",
          .shown = [](const HelpState& state) { return !state.throws; }},
         {.heading = "Edit",
          .label = "Click",
@@ -110,7 +110,7 @@ std::span<const PlayerKey> Player::keys() {
          .shown = has_inspector},
         {.heading = "Edit",
          .label = "L + drag",
-         .text = "turn the brightest light about the selection"},
+         .text = "turn the brightest light around the selection"},
         {.heading = "Edit",
          .label = "Drag",
          .text = "the skin of a face: pull it; it springs back",
@@ -159,7 +159,7 @@ void Player::handle_key(const KeyPress& press) {
         }
         return;
     }
-    // While somebody types, only keys without a character count.
+    // While a text field has the focus, only keys without a character count.
     const bool types = press.key < GLFW_KEY_F1 || press.key > GLFW_KEY_F12;
     if (types && hud_->wants_keyboard()) {
         return;

@@ -42,7 +42,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
         camera_.unit = radius > 0 ? radius : 1;
     }
     if (!is_empty(bounds)) {
-        camera_.reach = std::clamp(
+        camera_.view_distance = std::clamp(
             0.3f * glm::length(half_extent(bounds)), 0.5f * camera_.unit, 50.0f * camera_.unit);
     }
     paused_ = false;
@@ -63,7 +63,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     return Done{};
 }
 
-/// Compiles the level's shaders, so that its frames need not.
+/// Compiles the level's shaders, so that no frame has to.
 void Player::warm_up_level() {
     const IVec2 size = render_size(scale_, window_->framebuffer_size());
     const RenderView view = make_render_view(
@@ -161,9 +161,8 @@ void Player::follow_level_files() {
     files_changed_ = files_changed_ || updated > 0;
     const std::size_t saved = edits - inspector_.edit_count();
     std::string message =
-        updated == 0
-            ? "the file was saved; what it says is as before"
-            : fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s");
+        updated == 0 ? "the file was saved without changes"
+                     : fmt::format("level updated: {} change{}", updated, updated == 1 ? "" : "s");
     if (saved > 0) {
         message += fmt::format("; {} edit{} in the file now", saved, saved == 1 ? " is" : "s are");
     }

@@ -1,4 +1,4 @@
-// Where the window of `limn play` looks from: cameras of the level, flying, circling.
+// The camera of the window of `limn play`: those of the level, flying, orbiting.
 
 #include "content/app/player/pick.h"
 #include "content/app/player/player.h"
@@ -57,7 +57,7 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
     }
     if (camera_.mode == CameraMode::Orbit) {
         const Vec3 target =
-            entity_middle(stage_->world, camera_.orbit.target).value_or(camera_.aim);
+            entity_center(stage_->world, camera_.orbit.target).value_or(camera_.aim);
         step_orbit(camera_, camera_input(input), target, dt);
     } else {
         fly(dt, input);
@@ -79,10 +79,10 @@ void Player::fly(float dt, const Input& input) {
     }
     const Bounds& bounds = stage_->scene.bounds;
     const float radius = is_empty(bounds) ? 10.0f : glm::length(half_extent(bounds));
-    follow_reach(camera_, ahead_, radius, dt);
+    update_view_distance(camera_, ahead_, radius, dt);
     step_fly(camera_, move, dt);
     const Vec3 before = transform_point(camera_.previous, {0, 0, 0});
-    if (move.move.y >= 0 && camera_.place.position.y < before.y) {
+    if (move.move.y >= 0 && camera_.fly_pose.position.y < before.y) {
         const std::optional<Hit> floor = pick_entity(world, {before, {0, -1, 0}});
         stop_at_floor(camera_, floor ? std::optional(floor->distance) : std::nullopt);
     }
@@ -91,13 +91,13 @@ void Player::fly(float dt, const Input& input) {
 void Player::orbit_model(const WindowEvents& events, Input& input, bool on_panel) {
     const bool of_model = stage_->scene.model && camera_.mode == CameraMode::Level;
     if (of_model && camera_.started && (input.look != Vec2(0) || input.zoom != 0)) {
-        start_orbit(camera_, camera_.pose, model_middle());
+        start_orbit(camera_, camera_.pose, model_center());
     }
     const bool pans = window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT)
                       || window_->is_button_down(GLFW_MOUSE_BUTTON_MIDDLE);
     if (camera_.mode == CameraMode::Orbit && pans && !on_panel) {
-        if (const auto middle = entity_middle(stage_->world, camera_.orbit.target)) {
-            camera_.aim = *middle;
+        if (const auto center = entity_center(stage_->world, camera_.orbit.target)) {
+            camera_.aim = *center;
             camera_.orbit.target = {};
         }
         pan_orbit(camera_, events.mouse_motion, static_cast<float>(window_->framebuffer_size().y));
@@ -105,7 +105,7 @@ void Player::orbit_model(const WindowEvents& events, Input& input, bool on_panel
     }
 }
 
-Vec3 Player::model_middle() const {
+Vec3 Player::model_center() const {
     const LoadedScene& scene = stage_->scene;
     const Bounds& box = scene.model ? scene.model->subject : scene.bounds;
     return is_empty(box) ? Vec3(0) : center(box);
@@ -118,7 +118,7 @@ void Player::focus_under_pointer() {
         return;
     }
     if (camera_.mode != CameraMode::Orbit) {
-        start_orbit(camera_, camera_.pose, model_middle());
+        start_orbit(camera_, camera_.pose, model_center());
     }
     camera_.orbit.target = {};
     camera_.aim = ray.origin + hit->distance * ray.direction;
@@ -126,12 +126,12 @@ void Player::focus_under_pointer() {
 
 void Player::focus_selection() {
     const Entity selected = inspector_.selected();
-    const std::optional<Vec3> middle = entity_middle(stage_->world, selected);
-    if (!middle) {
+    const std::optional<Vec3> center = entity_center(stage_->world, selected);
+    if (!center) {
         hud_->toast("nothing is selected: click an object, or choose one in the inspector (F2)");
         return;
     }
-    start_orbit(camera_, camera_.pose, *middle);
+    start_orbit(camera_, camera_.pose, *center);
     camera_.orbit.target = selected;
     const Bounds box = entity_bounds(stage_->world, selected);
     if (!is_empty(box)) {
@@ -148,15 +148,15 @@ void Player::edit_furrows() {
 
 void Player::face_furrows() {
     World& world = stage_->world;
-    const auto* const place = std::as_const(world).find<WorldTransform>(furrows_.entity());
-    const std::optional<Vec3> middle = entity_middle(world, furrows_.entity());
-    if (place == nullptr || !middle) {
+    const auto* const transform = std::as_const(world).find<WorldTransform>(furrows_.entity());
+    const std::optional<Vec3> center = entity_center(world, furrows_.entity());
+    if (transform == nullptr || !center) {
         return;
     }
-    const Vec3 front = normalize_or(transform_vector(place->world, {0, 0, 1}), {0, 0, 1});
+    const Vec3 front = normalize_or(transform_vector(transform->world, {0, 0, 1}), {0, 0, 1});
     const float distance = camera_.orbit.distance;
-    start_orbit(camera_, look_at(*middle + distance * front, *middle), *middle);
-    face_light(world, inspector_.undo_stack(), *middle, front);
+    start_orbit(camera_, look_at(*center + distance * front, *center), *center);
+    face_light(world, inspector_.undo_stack(), *center, front);
 }
 
 void Player::go_home() {
@@ -177,7 +177,7 @@ void Player::cycle_camera() {
         camera_.orbit.target = inspector_.selected();
         start_orbit(
             camera_, camera_.pose,
-            entity_middle(stage_->world, camera_.orbit.target).value_or(model_middle()));
+            entity_center(stage_->world, camera_.orbit.target).value_or(model_center()));
         break;
     }
     case CameraMode::Orbit:

@@ -4,7 +4,7 @@
 
 namespace limn {
 
-/// Tells when a button goes down, of one that is looked at in every frame.
+/// Detects when a button that is polled every frame goes down.
 class PressEdge {
   public:
     [[nodiscard]] bool begins(bool down) {

@@ -52,11 +52,11 @@ bool update_render_scale(RenderScale& scale, float frame_ms, float busy_ms, floa
             std::min(std::sqrt(kHeadroom * scale.target_ms / std::max(busy_ms, 0.1f)), kMaxGrowth);
     }
     if (factor < 1 && scale.scale == kMinScale && scale.thins_particles) {
-        const float share = scale.particle_share;
+        const float previous = scale.particle_share;
         // Half, at least: strides are powers of two.
-        scale.particle_share =
-            std::clamp(share * std::min(scale.target_ms / frame_ms, 0.5f), kMinParticleShare, 1.0f);
-        return scale.particle_share != share;
+        scale.particle_share = std::clamp(
+            previous * std::min(scale.target_ms / frame_ms, 0.5f), kMinParticleShare, 1.0f);
+        return scale.particle_share != previous;
     }
     const float before = scale.scale;
     scale.scale = std::clamp(scale.scale * factor, kMinScale, kMaxAutoScale);

@@ -5,6 +5,8 @@
 #include "ecs/components/skin_pull.h"
 #include "ecs/world.h"
 
+// Techniques: face.pull
+
 namespace limn {
 
 bool is_pullable(const World& world, const Ray& ray) {

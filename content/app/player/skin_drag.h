@@ -7,14 +7,14 @@ namespace limn {
 
 class World;
 
-/// Whether the ray meets skin that can be pulled first: a mesh with PullableSkin, or one that
-/// follows it.
+/// Whether the first mesh that the ray hits is skin that can be pulled: one with PullableSkin, or
+/// one that follows it.
 [[nodiscard]] bool is_pullable(const World& world, const Ray& ray);
 
 /// A drag by the left button that begins on such skin: it pulls the skin, and moves no camera.
 class SkinDrag {
   public:
-    /// Of each frame; `left`: the button is down, `blocked`: over a panel.
+    /// Call every frame; `left`: the button is down, `blocked`: over a panel.
     void follow(const World& world, const Ray& ray, bool left, bool blocked);
     [[nodiscard]] bool pulls() const { return pulls_; }
 

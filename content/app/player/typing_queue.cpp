@@ -12,7 +12,7 @@ bool is_modifier(int key) {
     return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER;
 }
 
-/// Whether it does something else than to type a character: Enter, Backspace, Ctrl A ...
+/// Whether it does something other than type a character: Enter, Backspace, Ctrl A ...
 bool is_command(int key, const std::set<int>& down) {
     const bool control =
         down.contains(GLFW_KEY_LEFT_CONTROL) || down.contains(GLFW_KEY_RIGHT_CONTROL);
@@ -23,7 +23,7 @@ bool is_command(int key, const std::set<int>& down) {
 
 std::vector<TypingEvent> TypingQueue::take_frame() {
     std::set<int> changed;   // keys in this frame
-    bool commanded = false;  // panels read characters before keys, so that nothing may follow
+    bool commanded = false;  // panels read characters before keys, so nothing may follow
     std::size_t taken = 0;
     for (; taken < waiting_.size() && !commanded; ++taken) {
         const TypingEvent& event = waiting_[taken];

@@ -5,7 +5,7 @@
 
 namespace limn {
 
-// Keys and characters on their way to panels, which look at the keys once a frame. However long a
+// Queues keys and characters for panels, which poll the keys once per frame. However long a
 // frame takes, nothing is lost and the order is kept: a press of Enter, Backspace, Ctrl A ... lasts
 // at least one frame, and what follows it waits for the next one. Plain text never waits.
 
@@ -19,7 +19,7 @@ struct TypingEvent {
 class TypingQueue {
   public:
     void add(const TypingEvent& event) { waiting_.push_back(event); }
-    /// What the next frame sees, in order.
+    /// Input of the next frame, in order.
     [[nodiscard]] std::vector<TypingEvent> take_frame();
 
   private:

@@ -34,7 +34,7 @@ bool start_glfw() {
     return started;
 }
 
-/// A sun over water, drawn by hand: 64 x 64 pixels, antialiased by distance.
+/// A procedural sun over water: 64 x 64 pixels, antialiased by distance.
 void set_icon(GLFWwindow* window) {
     constexpr int kSide = 64;
     std::vector<unsigned char> pixels;
@@ -193,7 +193,7 @@ void Window::toggle_fullscreen() {
 
 void Window::swap() {
     glfwSwapBuffers(window_);
-    // Much less than a refresh has passed only where the driver does not wait.
+    // Much less than a refresh interval means that the driver does not wait.
     const double elapsed = glfwGetTime() - last_swap_;
     if (elapsed < 0.8 * refresh_) {
         std::this_thread::sleep_for(std::chrono::duration<double>(refresh_ - elapsed));

@@ -54,14 +54,14 @@ class Window {
     const WindowEvents& poll();
     /// Sleeps until an event arrives, at most `seconds`; poll returns it.
     void wait_events(double seconds);
-    /// Keys and text for panels, since somebody took them.
+    /// Keys and text for panels since the last call.
     [[nodiscard]] TypingQueue& typing() { return typing_; }
     /// Presents the back buffer; if vsync is on it waits for the display, or where the driver
     /// cannot (software OpenGL, remote displays), as long as the display would.
     void swap();
 
     [[nodiscard]] bool wants_to_close() const;
-    /// Makes wants_to_close() true; or false again, where somebody would rather stay.
+    /// Makes wants_to_close() true, or false again if the user decides to stay.
     void request_close(bool close = true);
 
     [[nodiscard]] IVec2 framebuffer_size() const;  ///< [pixels]; 0 x 0 while minimized

@@ -45,11 +45,11 @@ void WorldLines::draw_point(const Vec3& at, float radius, const std::string& lab
     if (clip.w < view_.near) {
         return;
     }
-    const ImVec2 place = to_screen(clip);
+    const ImVec2 position = to_screen(clip);
     ImDrawList* const list = ImGui::GetBackgroundDrawList();
-    list->AddCircleFilled(place, radius, color_);
+    list->AddCircleFilled(position, radius, color_);
     if (!label.empty()) {
-        list->AddText({place.x + 2 * radius, place.y - 2 * radius}, color_, label.c_str());
+        list->AddText({position.x + 2 * radius, position.y - 2 * radius}, color_, label.c_str());
     }
 }
 

@@ -9,8 +9,8 @@ namespace limn {
 
 struct RenderView;
 
-/// Draws lines and points of the world behind the HUD's panels, clipped at the near plane; nothing
-/// hides them.
+/// Draws lines and points of the world behind the HUD's panels, clipped at the near plane, without
+/// depth test.
 class WorldLines {
   public:
     /// `color` is sRGB, 0 .. 1.

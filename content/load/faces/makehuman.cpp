@@ -190,7 +190,7 @@ class RigReader {
             sum += positions_[LIMN_TRY(vertex_of(vertex, file_))];
         }
         if (vertices.empty()) {
-            return fail("{}: found no joint {}", place_text(file_, at), in_quotes(name));
+            return fail("{}: found no joint {}", location_text(file_, at), in_quotes(name));
         }
         return sum / static_cast<float>(vertices.size());
     }
@@ -199,7 +199,7 @@ class RigReader {
         const auto count = static_cast<double>(positions_.size());
         if (value.kind != JsonKind::Number || !(value.number >= 0) || value.number >= count) {
             return fail(
-                "{}: found {}, expected a vertex below {}", place_text(file, value.at),
+                "{}: found {}, expected a vertex below {}", location_text(file, value.at),
                 describe(value), positions_.size());
         }
         return static_cast<std::size_t>(value.number);
@@ -209,14 +209,14 @@ class RigReader {
         const auto number = numbers_.find(bone.key);
         if (number == numbers_.end()) {
             return fail(
-                "{}: found weights of {}, expected a bone of {}", place_text(file, bone.at),
+                "{}: found weights of {}, expected a bone of {}", location_text(file, bone.at),
                 in_quotes(bone.key), file_);
         }
         for (const JsonValue& pair : bone.value.items) {
             if (pair.items.size() != 2 || pair.items[1].kind != JsonKind::Number
                 || !(pair.items[1].number >= 0)) {
                 return fail(
-                    "{}: found {}, expected [vertex, weight]", place_text(file, pair.at),
+                    "{}: found {}, expected [vertex, weight]", location_text(file, pair.at),
                     describe(pair));
             }
             const std::size_t vertex = LIMN_TRY(vertex_of(pair.items[0], file));

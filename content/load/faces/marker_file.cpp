@@ -12,6 +12,8 @@
 #include <limits>
 #include <vector>
 
+// Techniques: face.mocap-drive
+
 namespace limn {
 namespace {
 

@@ -19,6 +19,8 @@
 #include <string_view>
 #include <utility>
 
+// Techniques: face.head-stabilise, face.mocap-drive
+
 namespace limn {
 namespace {
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 template <typename T>
 constexpr bool is_plain = std::is_trivially_copyable_v<T>;
 
-/// Appends what it is called with.
+/// Serializes its arguments.
 class Writer {
   public:
     template <typename T>
@@ -54,7 +54,7 @@ class Writer {
     }
 };
 
-/// Fills what it is called with from the same calls' bytes; `ok` ends where they are too few.
+/// Deserializes its arguments in the same order; `ok` becomes false if bytes run out.
 class CacheReader {
   public:
     explicit CacheReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -77,7 +77,7 @@ class CacheReader {
     bool ok = true;
 
   private:
-    /// Of values of at least `size` bytes each.
+    /// A count of values of at least `size` bytes each.
     std::uint64_t count(std::size_t size) {
         std::uint64_t found = 0;
         (*this)(found);
@@ -101,7 +101,8 @@ class CacheReader {
     std::span<const std::byte> left_;
 };
 
-// Structured bindings name all members: a new one does not compile before it is kept, too.
+// Structured bindings name all members, so that a new member does not compile until it is
+// serialized.
 
 template <typename Archive, typename Image>
 void visit_image(Archive& archive, Image& image) {
@@ -171,7 +172,7 @@ std::string cache_path(const std::string& folder, std::string_view key) {
     return fmt::format("{}/{:016x}.asset", folder, hash_text(key, hash_text(generators_hash())));
 }
 
-/// Removes the files that were used longest ago, until the rest is small enough.
+/// Removes the least recently used files until the rest fits.
 void prune(const std::string& folder, std::uint64_t max_bytes) {
     struct File {
         fs::file_time_type used;
@@ -195,7 +196,7 @@ void prune(const std::string& folder, std::uint64_t max_bytes) {
     }
 }
 
-/// A file: hash of the rest, generators, key, asset.
+/// File format: hash of the rest, hash of the generators, key, asset.
 template <typename T>
 void write_asset(
     const std::string& folder, std::uint64_t max_bytes, std::string_view key, const T& asset,

@@ -10,8 +10,8 @@
 
 namespace limn {
 
-// Keeps generated images and meshes in files, so that a level that any program has loaded before
-// loads fast. The key of an asset contains everything that it is generated from. A file stores its
+// Caches generated images and meshes in files, so that a level loads faster the second time.
+// The key of an asset contains everything that it is generated from. A file stores its
 // key and is used only if the key is equal. A file that is missing, damaged, or cannot be read
 // counts as a miss: the asset is generated again.
 
@@ -21,10 +21,11 @@ namespace limn {
 
 class AssetCache {
   public:
-    /// Keeps up to `max_bytes` in `folder`, the newest; nothing where it is empty.
+    /// Keeps up to `max_bytes` of the newest files in `folder`; an empty `folder` disables the
+    /// cache.
     explicit AssetCache(std::string folder, std::uint64_t max_bytes = std::uint64_t{1} << 30)
         : folder_(std::move(folder)), max_bytes_(max_bytes) {}
-    /// The folder that LIMN_CACHE names ("off": none), else XDG_CACHE_HOME/limn or
+    /// The folder from LIMN_CACHE ("off": none), else XDG_CACHE_HOME/limn or
     /// HOME/.cache/limn.
     [[nodiscard]] static AssetCache of_user();
 

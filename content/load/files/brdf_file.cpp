@@ -12,6 +12,8 @@
 #include <optional>
 #include <system_error>
 
+// Techniques: skin.brdf-lafortune
+
 namespace limn {
 namespace {
 

@@ -19,11 +19,11 @@ namespace limn {
 
 struct BrdfFit {
     Vec3 diffuse = {0, 0, 0};
-    std::vector<LafortuneLobe> lobes;  ///< channels with fewer have lobes of 0 in their place
+    std::vector<LafortuneLobe> lobes;  ///< shorter channels are padded with zero lobes
 };
 
-/// `file` is the prefix of messages. Fails with the line and what was expected where a line is no
-/// such line, a number is not finite or out of the range of its field, or there are not three
+/// `file` is the prefix of messages. Fails with the line and what was expected if a line is no
+/// such line, a number is not finite or out of range, or there are not three
 /// channels with at most kMaxLafortuneLobes each.
 [[nodiscard]] Result<BrdfFit> parse_brdf(std::string_view text, const std::string& file);
 

@@ -12,8 +12,8 @@ void ErrorList::keep(const Status& status) {
     }
     ++count_;
     const std::string& message = status.error().message;
-    const std::size_t place = message.find(": ", file_.size());
-    if (has_room() && places_.insert(message.substr(0, place)).second
+    const std::size_t location_end = message.find(": ", file_.size());
+    if (has_room() && locations_.insert(message.substr(0, location_end)).second
         && lines_.size() < kShownErrors) {
         lines_.push_back(message);
     }
@@ -24,7 +24,7 @@ Status ErrorList::status() const {
         return Done{};
     }
     std::string lines = join_text(lines_, "\n");
-    if (const std::size_t more = places_.size() - lines_.size(); more > 0) {
+    if (const std::size_t more = locations_.size() - lines_.size(); more > 0) {
         lines += fmt::format("\n{}: and {}{} more", file_, has_room() ? "" : "at least ", more);
     }
     return Error{std::move(lines)};

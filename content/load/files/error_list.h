@@ -9,20 +9,20 @@
 
 namespace limn {
 
-/// Errors of a file that do not depend on each other, so that one run reports several: the first
-/// ten, a line each, and how many more.
+/// Independent errors of a file, so that one run reports several: the first ten, a line each, and
+/// how many more.
 class ErrorList {
   public:
     explicit ErrorList(std::string file) : file_(std::move(file)) {}
 
-    /// Keeps an error, one for each place in the file, since a prefab has the same errors in all
+    /// Keeps one error per location in the file, since a prefab repeats its errors in all
     /// its copies.
     void keep(const Status& status);
     [[nodiscard]] bool empty() const { return lines_.empty(); }
-    /// Number of errors that keep() was given, with those of places that had one.
+    /// Number of errors given to keep(), including repeated locations.
     [[nodiscard]] std::size_t count() const { return count_; }
     /// Whether further errors are counted.
-    [[nodiscard]] bool has_room() const { return places_.size() < kMaxErrors; }
+    [[nodiscard]] bool has_room() const { return locations_.size() < kMaxErrors; }
     /// All of them as one error, or Done.
     [[nodiscard]] Status status() const;
 
@@ -33,7 +33,7 @@ class ErrorList {
     std::string file_;
     std::vector<std::string> lines_;
     std::size_t count_ = 0;
-    std::unordered_set<std::string> places_;  // of all
+    std::unordered_set<std::string> locations_;  // of all
 };
 
 }  // namespace limn

@@ -19,6 +19,8 @@
 #include <exception>
 #include <stdexcept>
 
+// Techniques: hdr.float-formats, hdr.openexr
+
 namespace limn {
 
 namespace {
@@ -30,8 +32,8 @@ constexpr int kLibraryMaxSize = 65536;
 
 class MemoryReader : public Imf::IStream {
   public:
-    MemoryReader(std::span<const std::byte> bytes, const std::string& place)
-        : IStream(place.c_str()), bytes_(bytes) {}
+    MemoryReader(std::span<const std::byte> bytes, const std::string& location)
+        : IStream(location.c_str()), bytes_(bytes) {}
     bool read(char c[], int n) override {
         if (n < 0 || static_cast<std::uint64_t>(n) > bytes_.size() - position_) {
             throw std::runtime_error("the file is truncated");
@@ -73,37 +75,38 @@ class MemoryWriter : public Imf::OStream {
 };
 
 /// Rejects unsupported kinds of files before OpenEXR reads them.
-Status check_kind(std::span<const std::byte> bytes, const std::string& place) {
+Status check_kind(std::span<const std::byte> bytes, const std::string& location) {
     constexpr unsigned char kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
     if (bytes.size() < 8 || std::memcmp(bytes.data(), kMagic, 4) != 0) {
         return fail(
-            "{}: found {} bytes without the OpenEXR signature, expected 76 2f 31 01", place,
+            "{}: found {} bytes without the OpenEXR signature, expected 76 2f 31 01", location,
             bytes.size());
     }
     const auto version = std::to_integer<unsigned>(bytes[4]);
     const auto flags = std::to_integer<unsigned>(bytes[5]);
     if (version != 2) {
-        return fail("{}: found OpenEXR version {}, expected 2", place, version);
+        return fail("{}: found OpenEXR version {}, expected 2", location, version);
     }
     constexpr std::pair<unsigned, const char*> kUnsupported[] = {
         {0x10, "multi-part"}, {0x08, "deep"}, {0x02, "tiled"}};
     for (const auto& [flag, name] : kUnsupported) {
         if ((flags & flag) != 0) {
             return fail(
-                "{}: found a {} OpenEXR file, which is unsupported, expected scan lines", place,
+                "{}: found a {} OpenEXR file, which is unsupported, expected scan lines", location,
                 name);
         }
     }
     return Done{};
 }
 
-Status check_header(const Imf::Header& header, const std::string& place, const ExrLimits& limits) {
+Status
+check_header(const Imf::Header& header, const std::string& location, const ExrLimits& limits) {
     const Imath::Box2i& window = header.dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     if (width < 1 || height < 1 || width > limits.max_size || height > limits.max_size) {
         return fail(
-            "{}: dataWindow: found {} x {} pixels, expected 1 to {} along a side", place, width,
+            "{}: dataWindow: found {} x {} pixels, expected 1 to {} along a side", location, width,
             height, limits.max_size);
     }
     const Imath::Box2i& display = header.displayWindow();
@@ -113,23 +116,23 @@ Status check_header(const Imf::Header& header, const std::string& place, const E
         || shown_height > limits.max_size || 4 * shown_width * shown_height > limits.max_values) {
         return fail(
             "{}: displayWindow: found {} x {} pixels, expected 1 to {} along a side and {} in all",
-            place, shown_width, shown_height, limits.max_size, limits.max_values / 4);
+            location, shown_width, shown_height, limits.max_size, limits.max_values / 4);
     }
     std::int64_t channels = 0;
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
         ++channels;
         if (it.channel().xSampling != 1 || it.channel().ySampling != 1) {
             return fail(
-                "{}: channel {}: found subsampling, which is unsupported", place, it.name());
+                "{}: channel {}: found subsampling, which is unsupported", location, it.name());
         }
     }
     if (channels < 1 || channels > limits.max_channels) {
         return fail(
-            "{}: found {} channels, expected 1 to {}", place, channels, limits.max_channels);
+            "{}: found {} channels, expected 1 to {}", location, channels, limits.max_channels);
     }
     if (width * height * channels > limits.max_values) {
         return fail(
-            "{}: found {} x {} x {} values, expected at most {}", place, width, height, channels,
+            "{}: found {} x {} x {} values, expected at most {}", location, width, height, channels,
             limits.max_values);
     }
     return Done{};
@@ -153,20 +156,20 @@ Imath::Box2i exr_box_of(const ExrWindow& window) {
     return {{window.x, window.y}, {window.x + window.width - 1, window.y + window.height - 1}};
 }
 
-/// The display window; where it has no size, the data window.
+/// The display window, or the data window if that is empty.
 ExrWindow exr_display_of(const ExrImage& image) {
     return image.display.width > 0 ? image.display
                                    : ExrWindow{image.x, image.y, image.width, image.height};
 }
 
 Result<ExrImage>
-decode(std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits) {
-    LIMN_TRY(check_kind(bytes, place));
+decode(std::span<const std::byte> bytes, const std::string& location, const ExrLimits& limits) {
+    LIMN_TRY(check_kind(bytes, location));
     Imf::Header::setMaxImageSize(kLibraryMaxSize, kLibraryMaxSize);
-    MemoryReader reader(bytes, place);
+    MemoryReader reader(bytes, location);
     Imf::InputFile file(reader);
     const Imf::Header& header = file.header();
-    LIMN_TRY(check_header(header, place, limits));
+    LIMN_TRY(check_header(header, location, limits));
     const Imath::Box2i& window = header.dataWindow();
 
     ExrImage image;
@@ -257,11 +260,11 @@ Result<ExrImage> read_exr(const std::string& path, const ExrLimits& limits) {
 }
 
 Result<ExrImage>
-decode_exr(std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits) {
+decode_exr(std::span<const std::byte> bytes, const std::string& location, const ExrLimits& limits) {
     try {
-        return decode(bytes, place, limits);
+        return decode(bytes, location, limits);
     } catch (const std::exception& exception) {
-        return fail("{}: corrupt OpenEXR file: {}", place, exr_line(exception.what()));
+        return fail("{}: corrupt OpenEXR file: {}", location, exr_line(exception.what()));
     }
 }
 
@@ -357,7 +360,7 @@ bool show_exr_layer(
     return true;
 }
 
-/// The layers in the order of their first channels, "" without one.
+/// The layers in the order of their first channels; "" for channels without a layer.
 std::vector<std::string_view> exr_layers_of(const ExrImage& image) {
     std::vector<std::string_view> layers;
     for (const ExrChannel& channel : image.channels) {
@@ -449,7 +452,7 @@ ImageData to_image_data(const ExrImage& image, const std::string& name) {
     result.pixels.resize(count * 4 * bytes);
     std::uint8_t* to = result.pixels.data();
     for (int y = 0; y < display.height; ++y) {
-        // Both windows have at most 2^31 pixels along a side, but any position.
+        // Both windows have at most 2^31 pixels per side, but arbitrary positions.
         const std::int64_t from_y = std::int64_t{y} + display.y - image.y;
         for (int x = 0; x < display.width; ++x) {
             const std::int64_t from_x = std::int64_t{x} + display.x - image.x;

@@ -16,9 +16,10 @@ struct ImageData;
 
 // OpenEXR images with any number of named channels (hdr.openexr): linear color and AOVs. A layer is
 // a channel prefix: "normal.X", "normal.Y", "normal.Z"; the color is R, G, B and A without one.
-// The display window is the image, the data window says where it has pixels: without them it is
-// black, and those beyond it are not shown. Values are floats in memory whatever the file holds:
-// half to float and back is lossless (hdr.float-formats); a 32 bit integer rounds to a float.
+// The display window is the image; the data window is the area with pixels. The rest of the image
+// is black, and pixels outside the display window are not shown. Values are floats in memory
+// whatever the file holds: half to float and back is lossless (hdr.float-formats); a 32 bit integer
+// rounds to a float.
 //
 // Scan-line files of one part; tiled, deep, multi-part and subsampled (luminance/chroma) files are
 // errors that say so.
@@ -62,9 +63,9 @@ struct ExrLimits {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>>
 read_exr_metadata(const std::string& path);
 
-/// The same as read_exr from memory; `place` is the prefix of error messages.
+/// The same as read_exr from memory; `location` is the prefix of error messages.
 [[nodiscard]] Result<ExrImage> decode_exr(
-    std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits = {});
+    std::span<const std::byte> bytes, const std::string& location, const ExrLimits& limits = {});
 
 /// Writes the file atomically. Half channels clamp finite values to +-65504 and keep inf and NaN.
 [[nodiscard]] Status write_exr(
@@ -86,18 +87,20 @@ std::size_t replace_non_finite(std::span<float> values);
 /// The channels that are shown as color, by index; -1: none.
 struct ExrShown {
     int channels[4] = {-1, -1, -1, -1};
-    std::string layer;                ///< "" for the plain ones
-    std::vector<std::string> others;  ///< layers with a color, or channels, instead of which it is
+    std::string layer;  ///< "" for the plain ones
+    std::vector<std::string>
+        others;  ///< other layers with a color, or channels, that are not shown
 };
 
 /// R, G and B; else Y; else the first layer with those; else the first with X, Y and Z; else the
 /// first channel as gray. A in the same layer.
 [[nodiscard]] ExrShown find_shown(const ExrImage& image);
 
-/// One line on what is shown of an image without plain R, G and B, Y or single channel; else "".
+/// One line on which layer is shown if an image has no plain R, G and B, Y or single channel; else
+/// "".
 [[nodiscard]] std::string describe_shown(const ExrImage& image);
 
-/// The display window of what find_shown says as an image for a texture: Rgba16F where all are
+/// The display window of the channels from find_shown as an image for a texture: Rgba16F if all are
 /// half, else Rgba32F. A missing alpha is 1.
 [[nodiscard]] ImageData to_image_data(const ExrImage& image, const std::string& name);
 

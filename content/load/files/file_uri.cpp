@@ -77,23 +77,23 @@ std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
 }
 
 /// data:[type][;base64],content (RFC 2397).
-Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::string& place) {
+Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::string& location) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string_view::npos) {
-        return fail("{}: found {}, expected a comma before the data", place, in_quotes(uri));
+        return fail("{}: found {}, expected a comma before the data", location, in_quotes(uri));
     }
     const std::string_view content = uri.substr(comma + 1);
     if (!uri.substr(0, comma).ends_with(";base64")) {
         const std::optional<std::string> text = decode_percent(content);
         if (!text) {
-            return fail("{}: found a data: URI with a % without two hexadecimal digits", place);
+            return fail("{}: found a data: URI with a % without two hexadecimal digits", location);
         }
         const auto bytes = std::as_bytes(std::span(*text));
         return std::vector<std::byte>(bytes.begin(), bytes.end());
     }
     std::optional<std::vector<std::byte>> bytes = decode_base64(content);
     if (!bytes) {
-        return fail("{}: found a data: URI with a character that is not base64", place);
+        return fail("{}: found a data: URI with a character that is not base64", location);
     }
     return std::move(*bytes);
 }
@@ -132,40 +132,41 @@ bool is_under(const std::filesystem::path& path, const std::filesystem::path& fo
 }  // namespace
 
 Result<std::vector<std::byte>> fetch_uri(
-    const std::string& uri, const std::string& folder, const std::string& place,
+    const std::string& uri, const std::string& folder, const std::string& location,
     std::uint64_t max_bytes) {
     if (uri.starts_with("data:")) {
-        return decode_data_uri(uri, place);
+        return decode_data_uri(uri, location);
     }
     const std::optional<std::string> relative = decode_percent(uri);
     if (!relative) {
         return fail(
-            "{}: found {}, expected %XX with two hexadecimal digits", place, in_quotes(uri));
+            "{}: found {}, expected %XX with two hexadecimal digits", location, in_quotes(uri));
     }
     if (const std::string_view why = refusal(*relative); !why.empty()) {
         return fail(
-            "{}: found {} in {}, expected a path under the file's own folder", place, why,
+            "{}: found {} in {}, expected a path under the file's own folder", location, why,
             in_quotes(uri));
     }
     if (folder.empty()) {
-        return fail("{}: found {}, expected no references to other files", place, in_quotes(uri));
+        return fail(
+            "{}: found {}, expected no references to other files", location, in_quotes(uri));
     }
     std::error_code error;
     const std::filesystem::path base = std::filesystem::canonical(folder, error);
     const std::filesystem::path path = std::filesystem::canonical(base / *relative, error);
     if (error) {
         return fail(
-            "{}: {}: no such file in {}{}", place, in_quotes(uri), base.string(),
+            "{}: {}: no such file in {}{}", location, in_quotes(uri), base.string(),
             file_suggestion((base / *relative).string()));
     }
     if (!is_under(path, base)) {
         return fail(
-            "{}: found {}, a link out of the file's folder, expected a file under it", place,
+            "{}: found {}, a link out of the file's folder, expected a file under it", location,
             in_quotes(uri));
     }
     Result<std::vector<std::byte>> bytes = read_file(path.string(), max_bytes);
     if (!bytes) {
-        return fail("{}: {}", place, bytes.error().message);
+        return fail("{}: {}", location, bytes.error().message);
     }
     return bytes;
 }

@@ -9,12 +9,13 @@
 
 namespace limn {
 
-// URIs in files of others (glTF, OBJ, levels): data, or files under one folder and nothing else.
+// URIs in untrusted files (glTF, OBJ, levels): data URIs, or files under one folder and nothing
+// else.
 
 /// The bytes of a data: URI, or of a file under `folder`. Rejects other schemes, absolute paths,
 /// "..", symbolic links out of the folder, and all files when `folder` is "".
 [[nodiscard]] Result<std::vector<std::byte>> fetch_uri(
-    const std::string& uri, const std::string& folder, const std::string& place,
+    const std::string& uri, const std::string& folder, const std::string& location,
     std::uint64_t max_bytes);
 
 }  // namespace limn

@@ -53,8 +53,8 @@ std::string one_line(std::string message) {
     return message.empty() ? "unknown reason" : message;
 }
 
-/// The decoder of the codec library, which is loaded when the first image needs it; nullptr, with
-/// the reason in `error`, where it cannot be.
+/// The decoder of the codec library, which is loaded when the first image needs it; nullptr if that
+/// fails, with the reason in `error`.
 DecodeImage load_decoder(std::string& error) {
     static const auto loaded = [] {
         void* const library = dlopen(kCodecLibrary, RTLD_NOW | RTLD_LOCAL);
@@ -68,46 +68,46 @@ DecodeImage load_decoder(std::string& error) {
 }
 
 Result<ImageData> decode(
-    std::span<const std::byte> bytes, const std::string& place, bool srgb,
+    std::span<const std::byte> bytes, const std::string& location, bool srgb,
     const ImageLimits& limits) {
     const std::string format = sniff_format(bytes);
     if (bytes.empty()) {
-        return fail("{}: found an empty file, expected an image", place);
+        return fail("{}: found an empty file, expected an image", location);
     }
     if (format.empty()) {
         return fail(
             "{}: found {} bytes in an unknown format, expected a PNG, JPEG, BMP, WebP, HDR or EXR "
             "image",
-            place, bytes.size());
+            location, bytes.size());
     }
     if (format == "png") {
-        ImageData image = LIMN_TRY(decode_png(bytes, place, limits));
+        ImageData image = LIMN_TRY(decode_png(bytes, location, limits));
         image.srgb = srgb;
         return image;
     }
     if (format == "jpeg" && is_truncated_jpeg(bytes)) {
-        return fail("{}: truncated JPEG image", place);
+        return fail("{}: truncated JPEG image", location);
     }
 
     if (format == "exr") {
         const ExrLimits exr_limits{
             .max_size = limits.max_size, .max_values = 4 * limits.max_pixels, .max_channels = 64};
-        const ExrImage exr = LIMN_TRY(decode_exr(bytes, place, exr_limits));
+        const ExrImage exr = LIMN_TRY(decode_exr(bytes, location, exr_limits));
         if (const std::string shown = describe_shown(exr); !shown.empty()) {
-            log_warn("{}: {}", place, shown);
+            log_warn("{}: {}", location, shown);
         }
-        return to_image_data(exr, place);
+        return to_image_data(exr, location);
     }
 
     std::string error;
     const DecodeImage decode_image = load_decoder(error);
     if (decode_image == nullptr) {
-        return fail("{}: cannot read {} images: {}", place, format, one_line(error));
+        return fail("{}: cannot read {} images: {}", location, format, one_line(error));
     }
     ImageData image;
-    image.name = place;
+    image.name = location;
     if (!decode_image(bytes, format.c_str(), limits, image, error)) {
-        return fail("{}: {}", place, one_line(error));
+        return fail("{}: {}", location, one_line(error));
     }
     image.srgb = srgb && image.format == PixelFormat::Rgba8;
     return image;
@@ -159,12 +159,12 @@ Result<ImageData> load_image(const std::string& path, bool srgb, const ImageLimi
 }
 
 Result<ImageData> decode_image(
-    std::span<const std::byte> bytes, const std::string& place, bool srgb,
+    std::span<const std::byte> bytes, const std::string& location, bool srgb,
     const ImageLimits& limits) {
     try {
-        return decode(bytes, place, srgb, limits);
+        return decode(bytes, location, srgb, limits);
     } catch (const std::exception& exception) {
-        return fail("{}: corrupt image: {}", place, one_line(exception.what()));
+        return fail("{}: corrupt image: {}", location, one_line(exception.what()));
     }
 }
 

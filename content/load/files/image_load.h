@@ -30,12 +30,12 @@ struct ImageLimits {
 [[nodiscard]] Result<ImageData>
 load_image(const std::string& path, bool srgb, const ImageLimits& limits = {});
 
-/// The same from memory; `place` is the prefix of error messages and the name of the image.
+/// The same from memory; `location` is the prefix of error messages and the name of the image.
 [[nodiscard]] Result<ImageData> decode_image(
-    std::span<const std::byte> bytes, const std::string& place, bool srgb,
+    std::span<const std::byte> bytes, const std::string& location, bool srgb,
     const ImageLimits& limits = {});
 
-/// Why an image of this size is refused; empty where it is not. Inline, because limn_codecs calls
+/// Why an image of this size is refused; empty if it is accepted. Inline, because limn_codecs calls
 /// it and links nothing of Limn.
 [[nodiscard]] inline std::string
 image_size_error(std::int64_t width, std::int64_t height, const ImageLimits& limits) {

@@ -16,7 +16,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kQuotedBytes = 48;  // of a string that messages show
+constexpr std::size_t kQuotedBytes = 48;  // of a string, in messages
 constexpr std::size_t kLineWidth = 96;    // write_json breaks longer values
 
 bool is_digit(char c) {
@@ -404,9 +404,9 @@ class JsonParser {
     }
 
     bool check_keys_differ(const JsonValue& object) {
-        std::unordered_set<std::string_view> seen;
+        std::unordered_set<std::string_view> keys;
         for (const JsonMember& member : object.members) {
-            if (!seen.insert(member.key).second) {
+            if (!keys.insert(member.key).second) {
                 return refuse_at(
                     member.at, "a duplicate key " + in_quotes(member.key), "each key once");
             }
@@ -417,7 +417,7 @@ class JsonParser {
     std::string_view text_;
     std::string_view file_;
     JsonLimits limits_;
-    std::size_t next_ = 0;  // the next character to read
+    std::size_t next_ = 0;  // position of the next character
     std::uint32_t line_ = 1;
     std::uint32_t column_ = 1;  // of the character at counted_
     std::size_t counted_ = 0;
@@ -540,7 +540,7 @@ const JsonValue& JsonValue::operator[](std::string_view key) const {
     return member != nullptr ? *member : null;
 }
 
-std::string place_text(std::string_view file, SourcePosition at) {
+std::string location_text(std::string_view file, SourcePosition at) {
     const std::string_view name = at.file != nullptr ? *at.file : file;
     return at.line > 0 ? fmt::format("{}:{}:{}", name, at.line, at.column) : std::string(name);
 }
@@ -640,7 +640,7 @@ std::string did_you_mean(std::string_view name, std::span<const std::string_view
     std::copy_if(
         candidates.begin(), candidates.end(), std::back_inserter(short_ones),
         [](std::string_view c) { return c.size() <= kLongestName; });
-    // Of equally near ones the first is taken: that which begins alike for longest.
+    // Among equally near ones the one with the longest common prefix comes first.
     std::stable_sort(
         short_ones.begin(), short_ones.end(), [name](std::string_view a, std::string_view b) {
             const auto alike = [name](std::string_view other) {

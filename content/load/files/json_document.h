@@ -23,11 +23,11 @@ namespace limn {
 struct SourcePosition {
     std::uint32_t line = 0;
     std::uint32_t column = 0;
-    const std::string* file = nullptr;  ///< of an included file (level_include.h), kept elsewhere
+    const std::string* file = nullptr;  ///< of an included file (level_include.h); not owned
 };
 
 /// "file:line:column", with the position's own file if it has one; without a line only the file.
-[[nodiscard]] std::string place_text(std::string_view file, SourcePosition at);
+[[nodiscard]] std::string location_text(std::string_view file, SourcePosition at);
 
 enum class JsonKind : std::uint8_t { Null, Bool, Number, String, Array, Object };
 

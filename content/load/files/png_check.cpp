@@ -42,30 +42,30 @@ std::uint32_t crc32_of(std::span<const std::byte> bytes) {
     return ~crc;
 }
 
-Status check_png(std::span<const std::byte> bytes, const std::string& place) {
+Status check_png(std::span<const std::byte> bytes, const std::string& location) {
     constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
     if (bytes.size() < kSignature.size()
         || std::memcmp(bytes.data(), kSignature.data(), kSignature.size()) != 0) {
-        return fail("{}: found {} bytes without the PNG signature", place, bytes.size());
+        return fail("{}: found {} bytes without the PNG signature", location, bytes.size());
     }
     std::span<const std::byte> rest = bytes.subspan(kSignature.size());
     for (bool first = true;; first = false) {
         // length, type, data, checksum of type and data
         if (rest.size() < 12) {
-            return fail("{}: truncated PNG image", place);
+            return fail("{}: truncated PNG image", location);
         }
         const std::uint32_t length = big_endian(rest);
         const std::string type(reinterpret_cast<const char*>(rest.data()) + 4, 4);
         if (first && (type != "IHDR" || length != 13)) {
-            return fail("{}: corrupt PNG image: it does not begin with a header", place);
+            return fail("{}: corrupt PNG image: it does not begin with a header", location);
         }
         if (length > rest.size() - 12) {
-            return fail("{}: truncated PNG image", place);
+            return fail("{}: truncated PNG image", location);
         }
         if (crc32_of(rest.subspan(4, 4 + std::size_t{length}))
             != big_endian(rest.subspan(8 + std::size_t{length}))) {
             return fail(
-                "{}: corrupt PNG image: wrong checksum {} bytes before its end", place,
+                "{}: corrupt PNG image: wrong checksum {} bytes before its end", location,
                 rest.size());
         }
         if (type == "IEND") {

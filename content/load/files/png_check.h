@@ -16,7 +16,7 @@ namespace limn {
 /// CRC-32 of PNG and zlib (polynomial 0xedb88320).
 [[nodiscard]] std::uint32_t crc32_of(std::span<const std::byte> bytes);
 
-/// Fails with "place: ..." when `bytes` is truncated, corrupt or not a PNG.
-[[nodiscard]] Status check_png(std::span<const std::byte> bytes, const std::string& place);
+/// Fails with "location: ..." when `bytes` is truncated, corrupt or not a PNG.
+[[nodiscard]] Status check_png(std::span<const std::byte> bytes, const std::string& location);
 
 }  // namespace limn

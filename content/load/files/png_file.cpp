@@ -16,8 +16,8 @@ namespace limn {
 
 namespace {
 
-/// What libpng's callbacks need. libpng reports an error by a jump to the caller's setjmp, so
-/// functions that call it hold no objects with destructors: those are here.
+/// State of libpng's callbacks. libpng reports errors by a jump to the caller's setjmp, so that
+/// functions that call it hold no objects with destructors; those are here.
 struct PngState {
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -57,13 +57,13 @@ void write_bytes(png_structp png, png_bytep from, std::size_t count) {
 
 void flush_nothing(png_structp) {}
 
-/// Reads the header; false, with `error`, where libpng finds it corrupt.
+/// Reads the header; false, with `error`, if libpng finds it corrupt.
 bool read_header(PngState& state) {
     if (setjmp(png_jmpbuf(state.png)) != 0) {
         return false;
     }
     png_set_read_fn(state.png, &state, read_bytes);
-    png_set_user_limits(state.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // ours follow
+    png_set_user_limits(state.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // our own are checked next
     png_read_info(state.png, state.info);
     state.width = static_cast<int>(png_get_image_width(state.png, state.info));
     state.height = static_cast<int>(png_get_image_height(state.png, state.info));
@@ -148,19 +148,19 @@ Status write_values(
     return write_file(path, std::as_bytes(std::span(*bytes)));
 }
 
-Status read_png(PngState& state, const std::string& place, const ImageLimits& limits) {
+Status read_png(PngState& state, const std::string& location, const ImageLimits& limits) {
     if (state.info == nullptr || !read_header(state)) {
-        return fail("{}: corrupt PNG image: {}", place, state.error);
+        return fail("{}: corrupt PNG image: {}", location, state.error);
     }
     const std::string too_large = image_size_error(state.width, state.height, limits);
     if (!too_large.empty()) {
-        return fail("{}: {}", place, too_large);
+        return fail("{}: {}", location, too_large);
     }
     const std::size_t row = static_cast<std::size_t>(state.width) * 4;
     state.pixels.resize(row * static_cast<std::size_t>(state.height));
     fill_png_rows(state, state.pixels.data(), row);
     if (!read_rows(state)) {
-        return fail("{}: corrupt PNG image: {}", place, state.error);
+        return fail("{}: corrupt PNG image: {}", location, state.error);
     }
     return Done{};
 }
@@ -184,19 +184,19 @@ png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pix
     return encode(width, height, channels, pixels);
 }
 
-Result<ImageData>
-decode_png(std::span<const std::byte> bytes, const std::string& place, const ImageLimits& limits) {
-    LIMN_TRY(check_png(bytes, place));
+Result<ImageData> decode_png(
+    std::span<const std::byte> bytes, const std::string& location, const ImageLimits& limits) {
+    LIMN_TRY(check_png(bytes, location));
     PngState state{.rest = bytes};
     state.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, report_error, ignore_warning);
     state.info = state.png != nullptr ? png_create_info_struct(state.png) : nullptr;
-    const Status read = read_png(state, place, limits);
+    const Status read = read_png(state, location, limits);
     png_destroy_read_struct(&state.png, &state.info, nullptr);
     if (!read) {
         return read.error();
     }
     ImageData image;
-    image.name = place;
+    image.name = location;
     image.width = state.width;
     image.height = state.height;
     image.pixels = std::move(state.pixels);

@@ -32,9 +32,9 @@ struct ImageLimits;
 [[nodiscard]] Result<std::vector<std::uint8_t>>
 png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pixels);
 
-/// Reads an untrusted PNG of any kind as Rgba8; `place` is the prefix of error messages and the
-/// name of the image. Fails where the file is truncated or corrupt or exceeds the limits.
-[[nodiscard]] Result<ImageData>
-decode_png(std::span<const std::byte> bytes, const std::string& place, const ImageLimits& limits);
+/// Reads an untrusted PNG of any kind as Rgba8; `location` is the prefix of error messages and the
+/// name of the image. Fails if the file is truncated or corrupt or exceeds the limits.
+[[nodiscard]] Result<ImageData> decode_png(
+    std::span<const std::byte> bytes, const std::string& location, const ImageLimits& limits);
 
 }  // namespace limn

@@ -3,12 +3,18 @@
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <span>
 #include <utility>
+
+// Techniques: anim.mocap-keys
 
 namespace limn {
 
@@ -35,13 +41,133 @@ struct Channel {
 /// Channels with the same times.
 struct ChannelGroup {
     std::vector<float> times;
+    std::vector<std::size_t> keys;  ///< of the file, one for each time
+    std::size_t count = 0;          ///< of the keys of the file
     Interpolation interpolation = Interpolation::Linear;
     std::vector<Channel> channels;
 };
 
-/// Rows of its sheet; a cubic key has three.
+std::size_t rows_per_key(const ChannelGroup& group) {
+    return group.interpolation == Interpolation::Cubic ? 3 : 1;
+}
+
+/// Rows of its sheet.
 std::size_t height_of(const ChannelGroup& group) {
-    return group.times.size() * (group.interpolation == Interpolation::Cubic ? 3 : 1);
+    return group.times.size() * rows_per_key(group);
+}
+
+bool are_all_finite(std::span<const float> values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
+/// Of keys at the same time the first counts up to it, and the last from it on: the first moves to
+/// the float before. Where there is none after the previous key, it goes.
+void part_equal_times(const std::vector<float>& times, ChannelGroup& group) {
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        std::size_t last = i;
+        while (last + 1 < times.size() && times[last + 1] == times[i]) {
+            ++last;
+        }
+        const float before = std::nextafter(times[i], -INFINITY);
+        if (last > i && times[i] > 0 && (group.times.empty() || before > group.times.back())) {
+            group.times.push_back(before);
+            group.keys.push_back(i);
+        }
+        group.times.push_back(times[i]);
+        group.keys.push_back(last);
+        i = last;
+    }
+}
+
+/// `values` of the keys that `group` has; each is a block of `size` numbers.
+std::vector<float>
+choose_keys(const std::vector<float>& values, const ChannelGroup& group, std::size_t size) {
+    std::vector<float> chosen;
+    chosen.reserve(group.keys.size() * size);
+    for (const std::size_t key : group.keys) {
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(key * size);
+        chosen.insert(chosen.end(), first, first + static_cast<std::ptrdiff_t>(size));
+    }
+    return chosen;
+}
+
+/// How many keys were made anew, and what the first was.
+struct MendedKeys {
+    std::size_t count = 0;
+    std::size_t key = 0;
+    std::string value;
+
+    void add(std::size_t mended, std::span<const float> found) {
+        if (count++ == 0) {
+            key = mended;
+            value = fmt::format("({})", fmt::join(found, ", "));
+        }
+    }
+};
+
+std::size_t width_of(Path path) {
+    return path == Path::Weights ? 1 : path == Path::Rotation ? 4 : 3;
+}
+
+/// Finite, and a rotation has a length.
+bool is_good_key(std::span<const float> value, Path path) {
+    float length2 = 0;
+    for (const float x : value) {
+        length2 += x * x;
+    }
+    return are_all_finite(value) && std::isfinite(length2)
+           && (path != Path::Rotation || length2 > 1e-12f);
+}
+
+/// Of the keys of one joint or weight: part(key, row) are its numbers.
+template <typename Part>
+Status
+mend_keys_of(std::size_t keys, std::size_t rows, Path path, const Part& part, MendedKeys& mended) {
+    const std::size_t value_row = rows == 3 ? 1 : 0;
+    std::size_t good = 0;
+    while (good < keys && !is_good_key(part(good, value_row), path)) {
+        ++good;
+    }
+    if (good == keys) {
+        return fail("found no key that is {}", path == Path::Rotation ? "a rotation" : "finite");
+    }
+    for (std::size_t key = 0; key < keys; ++key) {
+        const bool is_good = is_good_key(part(key, value_row), path);
+        for (std::size_t row = 0; row < rows; ++row) {
+            const std::span<float> numbers = part(key, row);
+            if (is_good && (row == value_row || are_all_finite(numbers))) {
+                continue;
+            }
+            if (row == value_row || is_good) {
+                mended.add(key, numbers);
+            }
+            if (row == value_row) {
+                std::ranges::copy(part(good, value_row), numbers.begin());
+            } else {
+                std::ranges::fill(numbers, 0.0f);  // a slope
+            }
+        }
+        good = is_good ? key : good;
+    }
+    return Done{};
+}
+
+/// Replaces values that are not finite, and rotations without length, by those of the previous key,
+/// at the start by those of the next. Fails where a channel has no other.
+Result<MendedKeys> mend_keys(Channel& channel, std::size_t rows) {
+    const std::size_t width = width_of(channel.path);
+    const std::size_t size = rows * channel.count * width;  // of a key
+    MendedKeys mended;
+    for (std::size_t item = 0; item < channel.count; ++item) {
+        LIMN_TRY(mend_keys_of(
+            channel.values.size() / size, rows, channel.path,
+            [&](std::size_t key, std::size_t row) {
+                return std::span(channel.values)
+                    .subspan(key * size + (row * channel.count + item) * width, width);
+            },
+            mended));
+    }
+    return mended;
 }
 
 /// The keys of all channels of one kind as rows of one value per joint; cubic keys are three rows.
@@ -99,8 +225,9 @@ class AnimationBuilder {
 
     Status build() {
         LIMN_TRY(find_joints());
-        LIMN_TRY(add_skins());
-        return add_clips();
+        add_skins();
+        add_clips();
+        return Done{};
     }
 
   private:
@@ -114,19 +241,15 @@ class AnimationBuilder {
     }
 
     /// The nodes that a skin in use or a channel references.
-    Result<std::vector<bool>> find_moving_nodes() {
+    [[nodiscard]] std::vector<bool> find_moving_nodes() const {
         std::vector<bool> moves(scene_.nodes.size(), false);
         for (const GltfNode& node : scene_.nodes) {
             if (node.skin >= 0) {
                 const auto skin = static_cast<std::size_t>(node.skin);
                 for (const int joint : document_.model.skins[skin].joints) {
-                    const std::int32_t found = scene_node(joint);
-                    if (found < 0) {
-                        return fail(
-                            "{}.joints: found node {}, which is not in the scene", skin_place(skin),
-                            joint);
+                    if (const std::int32_t found = scene_node(joint); found >= 0) {
+                        moves[static_cast<std::size_t>(found)] = true;
                     }
-                    moves[static_cast<std::size_t>(found)] = true;
                 }
             }
         }
@@ -142,7 +265,7 @@ class AnimationBuilder {
     }
 
     Status find_joints() {
-        std::vector<bool> moves = LIMN_TRY(find_moving_nodes());
+        std::vector<bool> moves = find_moving_nodes();
         // Parents come before their children: propagate from the end to the ancestors.
         for (std::size_t i = scene_.nodes.size(); i-- > 0;) {
             if (moves[i] && scene_.nodes[i].parent >= 0) {
@@ -190,21 +313,23 @@ class AnimationBuilder {
             scene_.joints[static_cast<std::size_t>(scene_node(node))]);
     }
 
-    /// Adds the skins in use, in order of first use, and updates the indices of the nodes.
-    Status add_skins() {
+    /// Adds the skins in use, in order of first use, and updates the indices of the nodes. Without
+    /// its skin a mesh stands where its node is.
+    void add_skins() {
         std::map<std::int32_t, std::int32_t> numbers;
-        for (GltfNode& node : scene_.nodes) {
-            if (node.skin < 0) {
-                continue;
-            }
+        for (const auto& [index, owner] : document_.skinned_nodes) {
+            GltfNode& node = scene_.nodes[index];
             const auto [number, is_new] =
                 numbers.try_emplace(node.skin, static_cast<std::int32_t>(scene_.skins.size()));
             if (is_new) {
-                LIMN_TRY(add_skin(static_cast<std::size_t>(node.skin)));
+                if (const Status added = add_skin(static_cast<std::size_t>(node.skin)); !added) {
+                    number->second = -1;
+                    warn_of_loss(document_, added.error(), "its meshes are drawn without it");
+                }
             }
             node.skin = number->second;
+            node.parent = node.skin < 0 ? static_cast<std::int32_t>(owner) : node.parent;
         }
-        return Done{};
     }
 
     Status add_skin(std::size_t index) {
@@ -212,6 +337,11 @@ class AnimationBuilder {
         SkinData skin;
         skin.name = source.name;
         for (const int joint : source.joints) {
+            if (scene_node(joint) < 0) {
+                return fail(
+                    "{}.joints: found node {}, which is not in the scene", skin_place(index),
+                    joint);
+            }
             skin.joints.push_back(joint_of(joint));
         }
         skin.joint_from_mesh.resize(skin.joints.size());
@@ -239,11 +369,20 @@ class AnimationBuilder {
         return Done{};
     }
 
-    Status add_clips() {
+    void add_clips() {
         for (std::size_t i = 0; i < animations_.size(); ++i) {
-            place_ = fmt::format("{}: animations[{}]", document_.file, i);
+            if (find_bad_part(document_, "animations", i) != nullptr) {
+                continue;
+            }
+            part_ = fmt::format("animations[{}]", i);
+            place_ = fmt::format("{}: {}", document_.file, part_);
             groups_.clear();
-            LIMN_TRY(read_channels(animations_[i]));
+            moved_.clear();
+            const bool is_whole = read_channels(animations_[i]);
+            std::erase_if(groups_, [](const auto& group) { return group.second.channels.empty(); });
+            if (!is_whole && groups_.empty()) {
+                continue;
+            }
             const std::string& name = animations_[i].name;
             ClipData clip;
             clip.name = !name.empty() ? name : fmt::format("clip {}", i);
@@ -254,47 +393,99 @@ class AnimationBuilder {
             if (Status status =
                     check_clip(clip, scene_.skeleton.joints.size(), scene_.morph_weights.size());
                 !status) {
-                return fail("{}: {}", place_, status.error().message);
+                warn_of_loss(
+                    document_, {fmt::format("{}: {}", place_, status.error().message)},
+                    "it is left out");
+                continue;
             }
             scene_.clips.push_back(std::move(clip));
         }
+    }
+
+    /// Whether no channel is lost.
+    bool read_channels(const tinygltf::Animation& animation) {
+        bool is_whole = true;
+        for (std::size_t i = 0; i < animation.channels.size(); ++i) {
+            if (find_bad_part(document_, part_ + ".channels", i) != nullptr) {
+                is_whole = false;
+                continue;
+            }
+            if (const Status read = read_channel(animation, i); !read) {
+                is_whole = false;
+                warn_of_loss(
+                    document_,
+                    {fmt::format("{}.channels[{}]: {}", place_, i, read.error().message)},
+                    "the channel is left out");
+            }
+        }
+        return is_whole;
+    }
+
+    Status read_channel(const tinygltf::Animation& animation, std::size_t index) {
+        const tinygltf::AnimationChannel& channel = animation.channels[index];
+        const auto sampler = static_cast<std::size_t>(channel.sampler);
+        if (sampler >= animation.samplers.size()) {
+            return fail(
+                "sampler: found the number {}, expected an index below {}", sampler,
+                animation.samplers.size());
+        }
+        if (scene_node(channel.target_node) < 0) {
+            return Done{};  // ignored, as specified; nodes outside of the scene likewise
+        }
+        const std::string& name = channel.target_path;
+        const auto* path =
+            std::find_if(std::begin(kPaths), std::end(kPaths), [&](const auto& known) {
+                return known.first == name;
+            });
+        const bool is_weights = path != std::end(kPaths) && path->second == Path::Weights;
+        const GltfMorphs& morphs = item_at(document_.node_morphs, channel.target_node);
+        if (path == std::end(kPaths) || (is_weights && morphs.count == 0)) {
+            document_.warnings.push_back(fmt::format(
+                "{}.channels[{}].target.path: {} is ignored", place_, index, in_quotes(name)));
+            return Done{};
+        }
+        if (const std::string* const reason =
+                find_bad_part(document_, part_ + ".samplers", sampler)) {
+            return Error{*reason};
+        }
+        Channel moved{path->second, 0, 1, {}};
+        if (is_weights) {
+            moved.subject = static_cast<std::uint16_t>(morphs.first);
+            moved.count = morphs.count;
+        } else {
+            moved.subject = joint_of(channel.target_node);
+        }
+        if (moved_.contains({moved.path, moved.subject})) {
+            return fail("target: found the {} of node {} twice", name, channel.target_node);
+        }
+        LIMN_TRY(read_sampler(
+            animation.samplers[sampler], fmt::format("samplers[{}]", sampler), std::move(moved)));
         return Done{};
     }
 
-    Status read_channels(const tinygltf::Animation& animation) {
-        for (std::size_t i = 0; i < animation.channels.size(); ++i) {
-            const tinygltf::AnimationChannel& channel = animation.channels[i];
-            const auto sampler = static_cast<std::size_t>(channel.sampler);
-            if (sampler >= animation.samplers.size()) {
-                return fail(
-                    "{}.channels[{}].sampler: found the number {}, expected an index below {}",
-                    place_, i, sampler, animation.samplers.size());
-            }
-            if (scene_node(channel.target_node) < 0) {
-                continue;  // ignored, as specified; nodes outside of the scene likewise
-            }
-            const std::string& name = channel.target_path;
-            const auto* path =
-                std::find_if(std::begin(kPaths), std::end(kPaths), [&](const auto& known) {
-                    return known.first == name;
-                });
-            const bool is_weights = path != std::end(kPaths) && path->second == Path::Weights;
-            const GltfMorphs& morphs = item_at(document_.node_morphs, channel.target_node);
-            if (path == std::end(kPaths) || (is_weights && morphs.count == 0)) {
-                document_.warnings.push_back(fmt::format(
-                    "{}.channels[{}].target.path: {} is ignored", place_, i, in_quotes(name)));
-                continue;
-            }
-            const std::string place = fmt::format("{}.samplers[{}]", place_, sampler);
-            Channel moved{path->second, 0, 1, {}};
-            if (is_weights) {
-                moved.subject = static_cast<std::uint16_t>(morphs.first);
-                moved.count = morphs.count;
-            } else {
-                moved.subject = joint_of(channel.target_node);
-            }
-            LIMN_TRY(read_sampler(animation.samplers[sampler], place, std::move(moved)));
+    /// The times of a group that has none yet.
+    Status read_times(std::int32_t input, const std::string& place, ChannelGroup& group) {
+        const std::vector<float> times = LIMN_TRY(read_floats(document_, input, 1, place));
+        if (times.empty()) {
+            return fail("{}: accessors[{}]: found no keys, expected at least one", place, input);
         }
+        bool has_equal = false;
+        for (std::size_t i = 1; i < times.size(); ++i) {
+            if (times[i] < times[i - 1]) {
+                return fail(
+                    "{}: accessors[{}]: found {} after {} at key {}, expected increasing times",
+                    place, input, times[i], times[i - 1], i);
+            }
+            if (times[i] == times[i - 1] && !has_equal) {
+                has_equal = true;
+                document_.warnings.push_back(fmt::format(
+                    "{}.{}: accessors[{}]: found {} again at key {}, expected increasing times; "
+                    "from then on the later key counts",
+                    place_, place, input, times[i], i));
+            }
+        }
+        group.count = times.size();
+        part_equal_times(times, group);
         return Done{};
     }
 
@@ -305,25 +496,42 @@ class AnimationBuilder {
         const Interpolation interpolation = word == "STEP"          ? Interpolation::Step
                                             : word == "CUBICSPLINE" ? Interpolation::Cubic
                                                                     : Interpolation::Linear;
-        ChannelGroup& group = groups_[{sampler.input, interpolation}];
-        if (group.times.empty()) {
-            group.times = LIMN_TRY(read_floats(document_, sampler.input, 1, place + ".input"));
-            group.interpolation = interpolation;
+        const std::pair key(sampler.input, interpolation);
+        if (!groups_.contains(key)) {
+            ChannelGroup made;
+            made.interpolation = interpolation;
+            LIMN_TRY(read_times(sampler.input, place + ".input", made));
+            groups_.emplace(key, std::move(made));
         }
-        const int width = channel.path == Path::Weights    ? 1
-                          : channel.path == Path::Rotation ? 4
-                                                           : 3;
-        channel.values = LIMN_TRY(read_floats(document_, sampler.output, width, place + ".output"));
-        const std::size_t expected = height_of(group) * channel.count;
-        const std::size_t found = channel.values.size() / static_cast<std::size_t>(width);
+        ChannelGroup& group = groups_[key];
+        const std::size_t width = width_of(channel.path);
+        const std::string output = place + ".output";
+        const std::vector<float> values =
+            LIMN_TRY(read_any_floats(document_, sampler.output, static_cast<int>(width), output));
+        const std::size_t rows = rows_per_key(group);
+        const std::size_t expected = group.count * rows * channel.count;
+        const std::size_t found = values.size() / width;
         if (found != expected) {
             return fail(
-                "{}.output: found {} values, expected {} for {} keys{}{}", place, found, expected,
-                group.times.size(),
+                "{}: found {} values, expected {} for {} keys{}{}", output, found, expected,
+                group.count,
                 channel.path == Path::Weights ? fmt::format(" of {} morph targets", channel.count)
                                               : "",
                 interpolation == Interpolation::Cubic ? ", with in- and out-tangents" : "");
         }
+        channel.values = choose_keys(values, group, rows * channel.count * width);
+        const Result<MendedKeys> mended = mend_keys(channel, rows);
+        if (!mended) {
+            return fail("{}: accessors[{}]: {}", output, sampler.output, mended.error().message);
+        }
+        if (mended->count > 0) {
+            document_.warnings.push_back(fmt::format(
+                "{}.{}: accessors[{}]: found {} in key {}, expected {}; {} such keys are as the "
+                "keys before them",
+                place_, output, sampler.output, mended->value, group.keys[mended->key],
+                channel.path == Path::Rotation ? "a rotation" : "finite numbers", mended->count));
+        }
+        moved_.insert({channel.path, channel.subject});
         group.channels.push_back(std::move(channel));
         return Done{};
     }
@@ -366,7 +574,9 @@ class AnimationBuilder {
     GltfDocument& document_;
     GltfScene& scene_;
     const std::vector<tinygltf::Animation>& animations_;
-    std::string place_;  ///< of the animation being read
+    std::string part_;                                ///< the animation being read
+    std::string place_;                               ///< likewise, with the file
+    std::set<std::pair<Path, std::uint16_t>> moved_;  ///< what it animates so far
     /// By input accessor and interpolation.
     std::map<std::pair<std::int32_t, Interpolation>, ChannelGroup> groups_;
 };

@@ -4,6 +4,7 @@
 #include "content/load/files/file_uri.h"
 #include "content/load/gltf/gltf_file.h"
 #include "ecs/base/check.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 #include <span>
 #include <string_view>
 #include <utility>
+
+// Techniques: face.talking-head
 
 namespace limn {
 
@@ -39,8 +42,8 @@ void join_buffers(tinygltf::Model& model) {
     model.buffers[0].uri.clear();
 }
 
-/// Puts images from files into the buffer.
-Status join_images(GltfDocument& document) {
+/// Puts images from files into the buffer, those that are there.
+void join_images(GltfDocument& document) {
     for (std::size_t i = 0; i < document.images.size(); ++i) {
         const std::optional<std::string>& uri = document.images[i].uri;
         tinygltf::Image& image = document.model.images[i];
@@ -49,14 +52,18 @@ Status join_images(GltfDocument& document) {
         if (!uri || uri->starts_with("data:")) {
             continue;
         }
-        const std::vector<std::byte> bytes =
-            LIMN_TRY(fetch_uri(*uri, document.folder, document.file, document.limits.max_bytes));
-        const bool is_png = bytes.size() > 3 && std::memcmp(bytes.data() + 1, "PNG", 3) == 0;
+        const Result<std::vector<std::byte>> bytes = fetch_uri(
+            *uri, document.folder, format_text("{}: images[{}]", document.file, i),
+            document.limits.max_bytes);
+        if (!bytes) {
+            log_warn("{}; the reference stays", bytes.error().message);
+            continue;
+        }
+        const bool is_png = bytes->size() > 3 && std::memcmp(bytes->data() + 1, "PNG", 3) == 0;
         image.uri.clear();
-        image.bufferView = append_view(document.model, bytes);
+        image.bufferView = append_view(document.model, *bytes);
         image.mimeType = is_png ? "image/png" : "image/jpeg";
     }
-    return Done{};
 }
 
 JsonValue& member_at(JsonValue& object, std::string_view key) {
@@ -120,7 +127,8 @@ Result<GltfFace> read_gltf_face(const std::string& path) {
             continue;
         }
         const auto mesh = static_cast<std::size_t>(nodes[i].mesh);
-        const std::size_t count = document.model.meshes[mesh].primitives[0].targets.size();
+        const std::vector<tinygltf::Primitive>& primitives = document.model.meshes[mesh].primitives;
+        const std::size_t count = primitives.empty() ? 0 : primitives[0].targets.size();
         if (count == 0) {
             continue;
         }
@@ -158,7 +166,7 @@ add_face_clip(const std::string& path, const GltfFace& face, const GltfFaceClip&
     GltfDocument document = LIMN_TRY(open_face(bytes, path));
     tinygltf::Model& model = document.model;
     join_buffers(model);
-    LIMN_TRY(join_images(document));
+    join_images(document);
     tinygltf::Animation animation;
     animation.name = clip.name;
     const int times = append_times(model, clip.times);

@@ -8,8 +8,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string_view>
 #include <utility>
+
+// Techniques: char.morph-target, char.skin-limits
 
 namespace limn {
 
@@ -35,10 +38,12 @@ struct InfluenceSet {
     std::vector<float> weights;
 };
 
+/// Of finite numbers or any.
 Result<std::vector<float>> read_attribute(
     GltfDocument& document, const GltfVertices& vertices, int accessor, int width,
-    const std::string& place) {
-    std::vector<float> values = LIMN_TRY(read_floats(document, accessor, width, place));
+    const std::string& place, bool is_finite = true) {
+    const auto read = is_finite ? read_floats : read_any_floats;
+    std::vector<float> values = LIMN_TRY(read(document, accessor, width, place));
     if (values.size() != vertices.count * static_cast<std::size_t>(width)) {
         return fail(
             "{}: found {} elements, expected as many as POSITION has, {}", place,
@@ -75,8 +80,8 @@ read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
         }
         set.joints = LIMN_TRY(
             read_attribute(document, vertices, joints->second, kInfluences, set.joints_place));
-        set.weights = LIMN_TRY(
-            read_attribute(document, vertices, weights->second, kInfluences, set.weights_place));
+        set.weights = LIMN_TRY(read_attribute(
+            document, vertices, weights->second, kInfluences, set.weights_place, false));
         sets.push_back(std::move(set));
     }
 }
@@ -112,33 +117,44 @@ void append_influences(SkinWeights& skin, std::vector<Influence>& influences, do
     }
 }
 
+/// Influences that cannot be: how many, and what the first is.
+struct BadInfluences {
+    std::size_t count = 0;
+    std::string first;
+
+    void add(const std::string& place, const std::string& found, std::uint32_t vertex) {
+        if (count++ == 0) {
+            first = fmt::format("{}: found {} in element {}", place, found, vertex);
+        }
+    }
+};
+
 /// The influences of vertex `vertex` of the file, without zero weights.
-Status gather_influences(
+void gather_influences(
     const std::vector<InfluenceSet>& sets, std::uint32_t vertex, std::size_t joints,
-    std::vector<Influence>& influences) {
+    std::vector<Influence>& influences, BadInfluences& bad) {
     influences.clear();
     for (const InfluenceSet& set : sets) {
         for (std::size_t i = kInfluences * vertex; i < kInfluences * (vertex + std::size_t{1});
              ++i) {
             const float weight = set.weights[i];
-            if (weight < kMinWeight) {
-                return fail(
-                    "{}: found {} in element {}, expected at least 0", set.weights_place, weight,
-                    vertex);
+            if (weight < kMinWeight || !std::isfinite(weight)) {
+                bad.add(set.weights_place, fmt::format("the weight {}", weight), vertex);
+                continue;
             }
             // A tiny weight would vanish, and its sum with it, in the division below.
             if (!(weight > 1e-9f)) {
                 continue;
             }
             if (set.joints[i] >= static_cast<float>(joints)) {
-                return fail(
-                    "{}: found joint {} in element {}, expected one of the {} of the skin",
-                    set.joints_place, set.joints[i], vertex, joints);
+                bad.add(
+                    set.joints_place,
+                    fmt::format("joint {} of a skin of {}", set.joints[i], joints), vertex);
+                continue;
             }
             influences.emplace_back(static_cast<std::uint16_t>(set.joints[i]), weight);
         }
     }
-    return Done{};
 }
 
 /// Displacements of one target at all vertices of the primitive; empty where it has none.
@@ -189,7 +205,28 @@ MorphTarget keep_displaced(const Differences& all, std::span<const std::uint32_t
     return target;
 }
 
-Result<Differences> read_differences(
+/// Sets differences of used vertices that no position can have to 0, with a warning.
+void drop_large(
+    GltfDocument& document, const GltfVertices& vertices, std::vector<float>& values,
+    const std::string& place) {
+    std::size_t count = 0;
+    for (const std::uint32_t vertex : vertices.used) {
+        const std::span<float> numbers = std::span(values).subspan(3 * std::size_t{vertex}, 3);
+        const auto bad =
+            std::ranges::find_if(numbers, [](float x) { return !(std::abs(x) <= kLargestOffset); });
+        if (bad == numbers.end()) {
+            continue;
+        }
+        if (count++ == 0) {
+            document.warnings.push_back(fmt::format(
+                "{}: found {} in element {}, expected at most {}; such elements do not move", place,
+                *bad, vertex, kLargestOffset));
+        }
+        std::ranges::fill(numbers, 0.0f);
+    }
+}
+
+Differences read_differences(
     GltfDocument& document, const GltfVertices& vertices, const std::map<std::string, int>& source,
     const std::string& place) {
     Differences all;
@@ -203,16 +240,16 @@ Result<Differences> read_differences(
             document.warnings.push_back(here + " is ignored");
             continue;
         }
-        std::vector<float> values = LIMN_TRY(read_attribute(document, vertices, accessor, 3, here));
-        const auto large = std::find_if(values.begin(), values.end(), [](float value) {
-            return std::abs(value) > kLargestOffset;
-        });
-        if (large != values.end()) {
-            return fail(
-                "{}: found {} in element {}, expected at most {}", here, *large,
-                (large - values.begin()) / 3, kLargestOffset);
+        Result<std::vector<float>> values =
+            read_attribute(document, vertices, accessor, 3, here, false);
+        if (!values) {
+            warn_of_loss(document, values.error(), "it is left out");
+            continue;
         }
-        *target = std::move(values);
+        if (target != &all.normals) {  // which build_mesh makes anew
+            drop_large(document, vertices, *values, here);
+        }
+        *target = *std::move(values);
     }
     return all;
 }
@@ -270,10 +307,11 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
     }
     ChangedWeights loose;  // no weight at all
     ChangedWeights off;    // did not sum to 1
+    BadInfluences bad;
     std::vector<Influence> influences;
     for (const std::uint32_t vertex : vertices.used) {
         skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
-        LIMN_TRY(gather_influences(sets, vertex, joints, influences));
+        gather_influences(sets, vertex, joints, influences, bad);
         double sum = 0;
         for (const auto& [joint, weight] : influences) {
             sum += weight;
@@ -289,6 +327,10 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
     }
     skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
     const std::string& place = sets[0].weights_place;
+    if (bad.count > 0) {
+        document.warnings.push_back(
+            fmt::format("{}; {} such influences are left out", bad.first, bad.count));
+    }
     if (off.count > 0) {
         document.warnings.push_back(fmt::format(
             "{}: the weights of {} vertices do not sum to 1 and were scaled; of element {} the "
@@ -310,8 +352,8 @@ read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const J
     std::vector<MorphTarget> targets;
     for (const std::map<std::string, int>& source : vertices.primitive.targets) {
         const std::size_t i = targets.size();
-        const Differences all = LIMN_TRY(read_differences(
-            document, vertices, source, fmt::format("{}.targets[{}]", vertices.place, i)));
+        const Differences all = read_differences(
+            document, vertices, source, fmt::format("{}.targets[{}]", vertices.place, i));
         targets.push_back(keep_displaced(all, vertices.used));
         targets.back().name = i < names.size() ? names[i].text : fmt::format("target {}", i);
         targets.back().action_unit = i < units.size() ? units[i].text : "";

@@ -90,7 +90,7 @@ struct Strip {
 Result<Strip> find_strip(
     const GltfDocument& document, std::int32_t index, std::uint64_t offset, std::uint64_t count,
     std::uint64_t element_size, bool strided, const std::string& place) {
-    const std::span<const std::byte> bytes = view_bytes(document, index);
+    const std::span<const std::byte> bytes = LIMN_TRY(view_bytes(document, index));
     const std::uint64_t given = item_at(document.model.bufferViews, index).byteStride;
     const std::uint64_t stride = strided && given != 0 ? given : element_size;
     if (stride < element_size) {
@@ -130,11 +130,6 @@ Status find_replacements(
     if (count > accessor.count) {
         return fail("{}.sparse.count: found {}, expected at most {}", place, count, accessor.count);
     }
-    if (!is_index_type(indices.componentType)) {
-        return fail(
-            "{}.sparse.indices.componentType: found {}, expected 5121, 5123 or 5125", place,
-            indices.componentType);
-    }
     const Strip strip = LIMN_TRY(find_strip(
         document, indices.bufferView, static_cast<std::uint64_t>(indices.byteOffset), count,
         size_of_component(indices.componentType), false, place + ".sparse.indices"));
@@ -164,6 +159,9 @@ Result<Elements> find_elements(
     Elements elements;
     elements.size = size_of_component(accessor.componentType)
                     * static_cast<std::uint64_t>(count_components(accessor));
+    if (accessor.count == 0) {
+        return elements;
+    }
     if (accessor.bufferView >= 0) {
         elements.base = LIMN_TRY(find_strip(
             document, accessor.bufferView, accessor.byteOffset, accessor.count, elements.size, true,
@@ -173,7 +171,7 @@ Result<Elements> find_elements(
             "{}.count: found {} elements without a bufferView, expected at most {}", place,
             accessor.count, kMaxZeros);
     }
-    if (accessor.sparse.isSparse) {
+    if (accessor.sparse.isSparse && accessor.sparse.count > 0) {
         LIMN_TRY(find_replacements(document, accessor, place, elements));
     }
     return elements;
@@ -217,20 +215,21 @@ float number_of(const tinygltf::Value& object, const char* name, double missing)
     return static_cast<float>(value.IsNumber() ? value.GetNumberAsDouble() : missing);
 }
 
-std::span<const std::byte> view_bytes(const GltfDocument& document, std::int32_t view) {
+Result<std::span<const std::byte>> view_bytes(const GltfDocument& document, std::int32_t view) {
+    if (const std::string* const reason =
+            find_bad_part(document, "bufferViews", static_cast<std::size_t>(view))) {
+        return fail("{}: {}", document.file, *reason);
+    }
     const tinygltf::BufferView& source = item_at(document.model.bufferViews, view);
     const auto bytes =
         std::as_bytes(std::span(item_at(document.model.buffers, source.buffer).data));
     return bytes.empty() ? bytes : bytes.subspan(source.byteOffset, source.byteLength);
 }
 
-Result<std::vector<float>>
-read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& place) {
+Result<std::vector<float>> read_any_floats(
+    GltfDocument& document, std::int32_t index, int components, const std::string& place) {
     const tinygltf::Accessor& accessor = item_at(document.model.accessors, index);
     const std::string here = fmt::format("{}: accessors[{}]", place, index);
-    if (const std::string& unknown = item_at(document.unknown_types, index); !unknown.empty()) {
-        return fail("{}.{}", here, unknown);
-    }
     if (const int found = count_components(accessor); found != components) {
         return fail(
             "{}.type: found {} components per element, expected {}", here, found, components);
@@ -240,19 +239,24 @@ read_floats(GltfDocument& document, std::int32_t index, int components, const st
     LIMN_TRY(take_values(document, accessor.count * width, here));
     const Elements elements = LIMN_TRY(find_elements(document, accessor, here));
     std::vector<float> values(accessor.count * width, 0.0f);
-    std::optional<std::uint64_t> bad;
     visit_elements(elements, accessor.count, [&](std::uint64_t element, const std::byte* bytes) {
         for (std::uint64_t k = 0; k < width; ++k) {
-            const float value =
+            values[element * width + k] =
                 load_float(bytes + k * size, accessor.componentType, accessor.normalized);
-            values[element * width + k] = value;
-            if (!std::isfinite(value) && !bad) {
-                bad = element;
-            }
         }
     });
-    if (bad) {
-        return fail("{}: found NaN or infinity in element {}, expected finite numbers", here, *bad);
+    return values;
+}
+
+Result<std::vector<float>>
+read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& place) {
+    std::vector<float> values = LIMN_TRY(read_any_floats(document, index, components, place));
+    const auto bad =
+        std::ranges::find_if(values, [](float value) { return !std::isfinite(value); });
+    if (bad != values.end()) {
+        return fail(
+            "{}: accessors[{}]: found NaN or infinity in element {}, expected finite numbers",
+            place, index, (bad - values.begin()) / components);
     }
     return values;
 }
@@ -261,9 +265,6 @@ Result<std::vector<std::uint32_t>>
 read_indices(GltfDocument& document, std::int32_t index, const std::string& place) {
     const tinygltf::Accessor& accessor = item_at(document.model.accessors, index);
     const std::string here = fmt::format("{}: accessors[{}]", place, index);
-    if (const std::string& unknown = item_at(document.unknown_types, index); !unknown.empty()) {
-        return fail("{}.{}", here, unknown);
-    }
     if (count_components(accessor) != 1 || !is_index_type(accessor.componentType)) {
         return fail(
             "{}: found {} components of type {} per element, expected one of type 5121, 5123 or "

@@ -7,9 +7,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -37,21 +40,34 @@ struct GltfDocument {
     std::string folder;  ///< base of relative URIs
     GltfLimits limits;
     tinygltf::Model model;
-    JsonValue json;                          ///< of the file, without URIs; see extras_of
-    std::vector<GltfImage> images;           ///< indexed as in the file
-    std::vector<std::string> unknown_types;  ///< of each accessor: what its type is, if not glTF's
-    std::uint64_t values_left = 0;           ///< remaining of limits.max_values
+    JsonValue json;                 ///< of the file, without URIs; see extras_of
+    std::vector<GltfImage> images;  ///< indexed as in the file
+    std::uint64_t values_left = 0;  ///< remaining of limits.max_values
+    /// "accessors[3]" and other items that are left out, and why: stand-ins are in their place.
+    std::map<std::string, std::string> bad_parts;
     /// Scene node of each file node, or -1; set by build_nodes.
     std::vector<std::int32_t> scene_nodes;
     std::vector<GltfMorphs> node_morphs;  ///< per file node; set by build_nodes
+    /// Scene nodes that stand for a skinned mesh, and the node that has it; set by build_nodes.
+    std::vector<std::pair<std::size_t, std::uint32_t>> skinned_nodes;
     std::vector<std::string> warnings;
 };
 
+/// A bad part costs that part and a warning: "file: images[2]: found X, expected Y; COST".
+inline void warn_of_loss(GltfDocument& document, const Error& error, std::string_view cost) {
+    document.warnings.push_back(error.message + "; " + std::string(cost));
+}
+
 /// Validates the JSON of a file: every property that is read has the right type and range, and
 /// every index refers to an existing item. Unknown properties are ignored, as the specification
-/// requires. Fails with "file: nodes[3].mesh: found the number 7, expected an index below 2".
-/// Integers that are spelled as 1e3 or 7.0 become 1000 and 7, the only spelling of tinygltf.
-[[nodiscard]] Status check_gltf_schema(JsonValue& json, const std::string& file);
+/// requires. What is bad is taken out of the JSON, with a warning: "file: nodes[3].camera: found
+/// the number 7, expected an index below 2; it is left out". Fails where a part that is drawn needs
+/// it. Integers that are spelled as 1e3 or 7.0 become 1000 and 7, the only spelling of tinygltf.
+[[nodiscard]] Status check_gltf_schema(GltfDocument& document);
+
+/// Why item `index` of `array` ("meshes") is left out, or nullptr.
+[[nodiscard]] const std::string*
+find_bad_part(const GltfDocument& document, std::string_view array, std::size_t index);
 
 // ---- values -------------------------------------------------------------------------------------
 
@@ -100,12 +116,16 @@ extras_of(const GltfDocument& document, std::string_view array, std::size_t inde
 // The total number of values per file is limited, since a small file can reference the same bytes a
 // million times.
 
-/// Empty in a buffer without data.
-[[nodiscard]] std::span<const std::byte>
+/// Empty in a buffer without data. Fails for a view that is left out.
+[[nodiscard]] Result<std::span<const std::byte>>
 view_bytes(const GltfDocument& document, std::int32_t view);
 
 /// All elements of accessor `index`, tightly packed; integers become floats, normalized ones 0 .. 1
-/// or -1 .. 1. Fails unless elements have `components` components and all are finite.
+/// or -1 .. 1. Fails unless elements have `components` components.
+[[nodiscard]] Result<std::vector<float>> read_any_floats(
+    GltfDocument& document, std::int32_t index, int components, const std::string& place);
+
+/// The same, all finite.
 [[nodiscard]] Result<std::vector<float>>
 read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& place);
 
@@ -123,7 +143,10 @@ read_indices(GltfDocument& document, std::int32_t index, const std::string& plac
 /// Primitive `primitive` of mesh `mesh` as triangles, points and lines as well, with normals,
 /// tangents, bounds, skin weights for `joints` > 0 joints, and morph targets; unused vertices are
 /// dropped. Empty when there is nothing to draw (no positions, no area); then a warning is added to
-/// the document.
+/// the document, as for attributes other than POSITION that are bad: they count as missing. What
+/// has a position that is not finite is left out; normals and tangents that are not, or are 0, are
+/// made anew; other numbers that are not finite get a default. Fails on indices and positions out
+/// of range.
 [[nodiscard]] Result<std::optional<MeshData>>
 build_mesh(GltfDocument& document, std::size_t mesh, std::size_t primitive, std::size_t joints);
 
@@ -137,9 +160,9 @@ struct GltfVertices {
 
 /// JOINTS_n and WEIGHTS_n for all n; empty when the file has none. Weights of 0 are dropped, those
 /// of a repeated joint are added, and all are normalized to sum to 1, with a warning where they
-/// were off by more than 1e-3. A vertex without weights is bound to the first joint, with a
-/// warning. Fails on a joint index >= `joints`, a negative weight, or when one of the two
-/// attributes is missing.
+/// were off by more than 1e-3. Left out with a warning: joint indices >= `joints`, weights that are
+/// negative or not finite. A vertex without weights is bound to the first joint, with a warning.
+/// Fails when one of the two attributes is missing.
 [[nodiscard]] Result<SkinWeights>
 read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::size_t joints);
 
@@ -147,7 +170,7 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
 /// units are the lists targetNames and actionUnits of `extras`, which may be shorter or missing;
 /// targetDrivers has {"target": name, "peak": weight} of those that follow others, by name. Fails
 /// where a driver is unknown or has drivers itself, and on a peak that is not above 0 and at
-/// most 1.
+/// most 1. Normals may be NaN or infinite; positions and tangents that are become 0.
 [[nodiscard]] Result<std::vector<MorphTarget>>
 read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const JsonValue& extras);
 
@@ -162,7 +185,8 @@ using GltfParts = std::vector<std::vector<GltfPart>>;
 
 /// Fills `scene.nodes` with the nodes of the file's scene, parents first, with their cameras and
 /// lights, and `scene.morph_weights`. Fails when the graph has a cycle, a node with two parents or
-/// is too deep, and when the number of a node's weights differs from the morph targets of its mesh.
+/// is too deep, and where a node needs a part that is bad. A root that is a child of another, or
+/// there twice, comes once, with a warning.
 ///
 /// A skinned mesh is placed by its joints alone, so it gets its own root node after the others.
 [[nodiscard]] Status build_nodes(GltfDocument& document, const GltfParts& parts, GltfScene& scene);
@@ -172,10 +196,11 @@ using GltfParts = std::vector<std::vector<GltfPart>>;
 /// first. A node with only animated morph weights is no joint.
 ///
 /// Channels of an animation with the same times and interpolation share one sheet. Rotations are
-/// normalized, each in the hemisphere of the previous key. Ignored with a warning: unknown target
-/// paths, and weights of a node without morph targets. Fails when a sampler has the wrong number of
-/// values, times are not increasing, a rotation has length 0, two channels animate the same
-/// property, a joint is not in the scene, or a matrix of a skin is singular.
+/// normalized, each in the hemisphere of the previous key. Left out with a warning: unknown target
+/// paths, weights of a node without morph targets, channels with the wrong number of values, with
+/// decreasing times or of a property that another has, and skins with a joint that is not in the
+/// scene or a singular matrix. Of keys at the same time, the later counts from then on; a key that
+/// is not finite, or a rotation of length 0, is as the key before it. Fails on too many joints.
 [[nodiscard]] Status build_animations(GltfDocument& document, GltfScene& scene);
 
 /// Fills the components of the nodes of `scene` from extras.limn of the file's nodes, which may

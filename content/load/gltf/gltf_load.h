@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/load/files/image_load.h"
+#include "content/load/files/load_warnings.h"
 #include "content/load/gltf/gltf_scene.h"
 #include "ecs/base/result.h"
 
@@ -44,9 +45,10 @@ struct GltfLimits {
     ImageLimits image;
 };
 
-/// Loads `path`. Components of extras.limn must be registered (ecs/components/all.h). Logs the
-/// warnings.
-[[nodiscard]] Result<GltfScene> load_gltf(const std::string& path, const GltfLimits& limits = {});
+/// Loads `path`. Components of extras.limn must be registered (ecs/components/all.h). Reports the
+/// warnings; see load_warnings.h.
+[[nodiscard]] Result<GltfScene>
+load_gltf(const std::string& path, const GltfLimits& limits = {}, const LoadOptions& options = {});
 
 /// The same from memory. `file` is the prefix of messages; URIs are resolved under `folder`, and if
 /// that is empty, a reference to another file is an error.

@@ -25,6 +25,10 @@ constexpr float kIndex = 1.5f;  ///< of refraction, by default; of every opaque 
 constexpr float kMaxIndex = 3;
 constexpr float kMaxThickness = 1000;  // [m]
 
+constexpr TextureSlot Material::*kImageSlots[] = {
+    &Material::base_color_texture, &Material::metal_rough_texture, &Material::normal_texture,
+    &Material::occlusion_texture, &Material::emission_texture};
+
 Wrap to_wrap(std::int32_t mode) {
     switch (mode) {
     case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
@@ -58,6 +62,7 @@ class MaterialBuilder {
         material.roughness = static_cast<float>(pbr.roughnessFactor);
         material.normal_scale = static_cast<float>(source.normalTexture.scale);
         material.occlusion_strength = static_cast<float>(source.occlusionTexture.strength);
+        warn_of_bright(source.emissiveFactor);
         const tinygltf::Value& emission =
             extension_of(source.extensions, "KHR_materials_emissive_strength");
         material.emission =
@@ -80,6 +85,16 @@ class MaterialBuilder {
     [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
 
   private:
+    /// Written before there was KHR_materials_emissive_strength.
+    void warn_of_bright(const std::vector<double>& factor) {
+        const auto largest = std::ranges::max_element(factor);
+        if (largest != factor.end() && *largest > 1 + 1e-5) {
+            document_.warnings.push_back(fmt::format(
+                "{}.emissiveFactor: found {:.6g}, expected at most 1; it is used as it is", place_,
+                *largest));
+        }
+    }
+
     void transmit(const tinygltf::ExtensionMap& extensions, Material& material) {
         const tinygltf::Value& transmission =
             extension_of(extensions, "KHR_materials_transmission");
@@ -175,7 +190,7 @@ load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits
             place += " (" + source.uri->substr(0, 200) + ")";
         }
     } else {
-        bytes = view_bytes(document, source.view);
+        bytes = LIMN_TRY(view_bytes(document, source.view));
     }
     ImageData image = LIMN_TRY(decode_image(bytes, place, used.srgb, limits));
     const std::string& name = document.model.images[used.source].name;
@@ -183,6 +198,56 @@ load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits
                  : source.uri  ? source.uri->substr(0, 200)
                                : fmt::format("image {}", used.source);
     return image;
+}
+
+std::uint64_t pixels_of(const ImageData& image) {
+    return static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+}
+
+/// Fills `scene.images`; slots of images that cannot be read become empty.
+void load_images(GltfDocument& document, const std::vector<UsedImage>& used, GltfScene& scene) {
+    // Decoding dominates the load time, so it is parallel; batches limit what is decoded before the
+    // total is checked.
+    constexpr std::size_t kBatch = 8;
+    std::vector<std::uint32_t> numbers;  // in the scene, of each used image
+    std::vector<bool> failed(document.images.size(), false);
+    std::uint64_t pixels_left = document.limits.max_pixels;
+    for (std::size_t first = 0; first < used.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, used.size() - first);
+        ImageLimits limits = document.limits.image;
+        limits.max_pixels = std::min(limits.max_pixels, static_cast<std::int64_t>(pixels_left));
+        std::vector<std::optional<Result<ImageData>>> images(count);
+        parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                images[i] = load_used(document, used[first + i], limits);
+            }
+        });
+        for (std::optional<Result<ImageData>>& image : images) {
+            const std::size_t source = used[numbers.size()].source;
+            if (*image && pixels_of(**image) > pixels_left) {
+                *image = fail(
+                    "{}: images[{}]: found {} more pixels, expected at most {} in all images",
+                    document.file, source, pixels_of(**image), document.limits.max_pixels);
+            }
+            numbers.push_back(*image ? static_cast<std::uint32_t>(scene.images.size()) : kNoAsset);
+            if (*image) {
+                pixels_left -= pixels_of(**image);
+                scene.images.push_back(**std::move(image));
+            } else if (!failed[source]) {  // as color and as data: one warning
+                failed[source] = true;
+                warn_of_loss(document, image->error(), "materials are without it");
+            }
+        }
+    }
+    for (Material& material : scene.materials) {
+        for (TextureSlot Material::*const slot : kImageSlots) {
+            TextureSlot& texture = material.*slot;
+            if (texture.image.index != kNoAsset) {
+                texture.image.index = numbers[texture.image.index];
+                texture = texture.image.index != kNoAsset ? texture : TextureSlot{};
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -198,35 +263,7 @@ Status build_materials(GltfDocument& document, GltfScene& scene) {
     fallback.metalness = 1.0f;
     fallback.roughness = 1.0f;
     scene.materials.push_back(fallback);
-
-    // Decoding dominates the load time, so it is parallel; batches limit what is decoded before the
-    // total is checked.
-    const std::vector<UsedImage>& used = builder.used();
-    constexpr std::size_t kBatch = 8;
-    std::uint64_t pixels_left = document.limits.max_pixels;
-    for (std::size_t first = 0; first < used.size(); first += kBatch) {
-        const std::size_t count = std::min(kBatch, used.size() - first);
-        ImageLimits limits = document.limits.image;
-        limits.max_pixels = std::min(limits.max_pixels, static_cast<std::int64_t>(pixels_left));
-        std::vector<std::optional<Result<ImageData>>> images(count);
-        parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                images[i] = load_used(document, used[first + i], limits);
-            }
-        });
-        for (std::optional<Result<ImageData>>& image : images) {
-            ImageData data = LIMN_TRY(*std::move(image));
-            const auto pixels =
-                static_cast<std::uint64_t>(data.width) * static_cast<std::uint64_t>(data.height);
-            if (pixels > pixels_left) {
-                return fail(
-                    "{}: found more pixels, expected at most {} in all images", document.file,
-                    document.limits.max_pixels);
-            }
-            pixels_left -= pixels;
-            scene.images.push_back(std::move(data));
-        }
-    }
+    load_images(document, builder.used(), scene);
     return Done{};
 }
 

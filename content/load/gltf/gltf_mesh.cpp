@@ -60,18 +60,20 @@ class MeshBuilder {
             return skip("it has no POSITION attribute");
         }
         LIMN_TRY(read_positions());
+        if (positions_.empty()) {
+            return skip("it has no vertices");
+        }
         LIMN_TRY(read_triangles());
         if (!strokes()) {
-            LIMN_TRY(read("NORMAL", result_.normals));
-            LIMN_TRY(read("TANGENT", result_.tangents));
+            read("NORMAL", result_.normals, Vec3(0), "made anew");
+            read("TANGENT", result_.tangents, Vec4(0), "made anew");
         }
-        LIMN_TRY(read("TEXCOORD_0", result_.uvs));
-        LIMN_TRY(read("TEXCOORD_1", result_.uvs1));
-        LIMN_TRY(read_colors());
+        read("TEXCOORD_0", result_.uvs, Vec2(0), "0");
+        read("TEXCOORD_1", result_.uvs1, Vec2(0), "0");
+        read_colors();
         LIMN_TRY(read_deformations());
         if (result_.indices.empty()) {
-            return skip(
-                strokes() ? "it has no point or line" : "all of its triangles are degenerate");
+            return skip(strokes() ? "it has no point or line" : "it has no triangle with an area");
         }
         complete();
         return std::optional(std::move(result_));
@@ -92,14 +94,30 @@ class MeshBuilder {
     Status read_positions() {
         const std::string place = place_ + ".attributes.POSITION";
         const std::vector<float> values =
-            LIMN_TRY(read_floats(document_, find_attribute("POSITION"), 3, place));
+            LIMN_TRY(read_any_floats(document_, find_attribute("POSITION"), 3, place));
         positions_.resize(values.size() / 3);
         std::memcpy(positions_.data(), values.data(), values.size() * sizeof(float));
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (std::abs(values[i]) > kLargestPosition) {
+        return Done{};
+    }
+
+    /// Fails where a position that is used is out of range; warns of those that are not finite.
+    Status check_used(const std::vector<std::uint32_t>& list) {
+        const std::string place = place_ + ".attributes.POSITION";
+        std::size_t count = 0;
+        for (const std::uint32_t index : list) {
+            const Vec3& position = positions_[index];
+            const float largest =
+                std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
+            if (is_finite(position) && largest > kLargestPosition) {
                 return fail(
-                    "{}: found {} in element {}, expected at most {}", place, values[i], i / 3,
+                    "{}: found {} in element {}, expected at most {}", place, largest, index,
                     kLargestPosition);
+            }
+            if (!is_finite(position) && count++ == 0) {
+                document_.warnings.push_back(fmt::format(
+                    "{}: found ({}, {}, {}) in element {}, expected finite numbers; what uses such "
+                    "elements is left out",
+                    place, position.x, position.y, position.z, index));
             }
         }
         return Done{};
@@ -124,13 +142,17 @@ class MeshBuilder {
             }
         }
         if (source_.mode == TINYGLTF_MODE_TRIANGLES && list.size() % 3 != 0) {
-            return fail("{}: found {} indices, expected a multiple of 3", place, list.size());
+            document_.warnings.push_back(fmt::format(
+                "{}: found {} indices, expected a multiple of 3; the last are left out", place,
+                list.size()));
+            list.resize(list.size() / 3 * 3);
         }
+        LIMN_TRY(check_used(list));
         if (strokes()) {
             stroke(list);
             return Done{};
         }
-        result_.indices = make_triangles(list, source_.mode);
+        result_.indices = drop_bad_triangles(make_triangles(list, source_.mode));
         std::vector<std::uint32_t> number(positions_.size(), kNoAsset);
         for (std::uint32_t& index : result_.indices) {
             if (number[index] == kNoAsset) {
@@ -141,6 +163,20 @@ class MeshBuilder {
         }
         result_.positions = gather(positions_);
         return Done{};
+    }
+
+    [[nodiscard]] std::vector<std::uint32_t>
+    drop_bad_triangles(const std::vector<std::uint32_t>& corners) const {
+        std::vector<std::uint32_t> kept;
+        kept.reserve(corners.size());
+        for (auto corner = corners.begin(); corner != corners.end(); corner += 3) {
+            if (std::all_of(corner, corner + 3, [&](std::uint32_t index) {
+                    return is_finite(positions_[index]);
+                })) {
+                kept.insert(kept.end(), corner, corner + 3);
+            }
+        }
+        return kept;
     }
 
     /// Points and lines, which have no triangles of their own.
@@ -172,16 +208,44 @@ class MeshBuilder {
         return values;
     }
 
-    /// The attribute `name`, for the vertices in use; empty when the file has none.
+    /// The attribute `name`, for the vertices in use; empty when the file has none, or a bad one.
+    /// Elements that are not finite, and directions without length, become `fallback`.
     template <typename T>
-    Status read(const char* name, std::vector<T>& target) {
+    void read(const char* name, std::vector<T>& target, T fallback, std::string_view cost) {
         const int accessor = find_attribute(name);
         if (accessor < 0) {
-            return Done{};
+            return;
         }
         const std::string place = fmt::format("{}.attributes.{}", place_, name);
+        Result<std::vector<T>> all = read_all<T>(accessor, place);
+        if (!all) {
+            warn_of_loss(document_, all.error(), "it is left out");
+            return;
+        }
+        target = gather(*all);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < target.size(); ++i) {
+            bool is_good = is_finite(target[i]);
+            if constexpr (T::length() > 2) {  // of a color, too, that is black
+                is_good = is_good && (fallback != T(0) || has_direction(Vec3(target[i])));
+            }
+            if (!is_good) {
+                if (count++ == 0) {
+                    document_.warnings.push_back(fmt::format(
+                        "{}: found {} in element {}, expected {}; such elements are {}", place,
+                        is_finite(target[i]) ? "a vector of length 0" : "NaN or infinity", used_[i],
+                        is_finite(target[i]) ? "1" : "finite numbers", cost));
+                }
+                target[i] = fallback;
+            }
+        }
+    }
+
+    template <typename T>
+    Result<std::vector<T>> read_all(int accessor, const std::string& place) {
         const int width = static_cast<int>(T::length());
-        const std::vector<float> values = LIMN_TRY(read_floats(document_, accessor, width, place));
+        const std::vector<float> values =
+            LIMN_TRY(read_any_floats(document_, accessor, width, place));
         std::vector<T> all(values.size() / static_cast<std::size_t>(width));
         if (all.size() != positions_.size()) {
             return fail(
@@ -189,28 +253,36 @@ class MeshBuilder {
                 positions_.size());
         }
         std::memcpy(all.data(), values.data(), values.size() * sizeof(float));
-        target = gather(all);
-        return Done{};
+        return all;
     }
 
-    Status read_colors() {
+    static bool has_direction(const Vec3& vector) {
+        return normalize_or(vector, Vec3(0)) != Vec3(0);
+    }
+
+    void read_colors() {
         const int accessor = find_attribute("COLOR_0");
         if (accessor < 0
             || item_at(document_.model.accessors, accessor).type == TINYGLTF_TYPE_VEC4) {
-            return read("COLOR_0", result_.colors);
+            read("COLOR_0", result_.colors, Vec4(1), "white");
+            return;
         }
         std::vector<Vec3> opaque;
-        LIMN_TRY(read("COLOR_0", opaque));
+        read("COLOR_0", opaque, Vec3(1), "white");
         for (const Vec3& color : opaque) {
             result_.colors.emplace_back(color, 1.0f);
         }
-        return Done{};
     }
 
     Status read_deformations() {
         const GltfVertices vertices{source_, place_, positions_.size(), used_};
         if (joints_ > 0) {
-            result_.skin = LIMN_TRY(read_skin_weights(document_, vertices, joints_));
+            Result<SkinWeights> skin = read_skin_weights(document_, vertices, joints_);
+            if (skin) {
+                result_.skin = *std::move(skin);
+            } else {
+                warn_of_loss(document_, skin.error(), "it is drawn without its skin");
+            }
         }
         // Most exporters write the names of the targets there.
         result_.morphs = LIMN_TRY(
@@ -220,8 +292,66 @@ class MeshBuilder {
                 morph.normals.clear();
             }
         }
+        drop_bad_morph_normals();
         result_.regions = LIMN_TRY(read_regions(document_, vertices));
         return Done{};
+    }
+
+    void drop_bad_morph_normals() {
+        for (std::size_t i = 0; i < result_.morphs.size(); ++i) {
+            MorphTarget& morph = result_.morphs[i];
+            const auto bad = std::ranges::find_if(morph.normals, [](const Vec3& normal) {
+                return !std::isfinite(glm::dot(normal, normal));
+            });
+            if (bad != morph.normals.end()) {
+                const auto at = static_cast<std::size_t>(bad - morph.normals.begin());
+                document_.warnings.push_back(fmt::format(
+                    "{}.targets[{}].NORMAL: found NaN or infinity in element {}, expected finite "
+                    "numbers; its normals are made anew",
+                    place_, i, used_[morph.vertices[at]]));
+                morph.normals.clear();
+                lost_morph_normals_.push_back(i);
+            }
+        }
+    }
+
+    /// Of the targets that lost theirs, and of no others.
+    void remake_morph_normals() {
+        std::vector<std::size_t> without;
+        for (std::size_t i = 0; i < result_.morphs.size(); ++i) {
+            const bool is_lost =
+                std::ranges::find(lost_morph_normals_, i) != lost_morph_normals_.end();
+            if (result_.morphs[i].normals.empty() && !is_lost) {
+                without.push_back(i);
+                result_.morphs[i].normals.resize(result_.morphs[i].vertices.size());
+            }
+        }
+        generate_morph_normals(result_);
+        for (const std::size_t i : without) {
+            result_.morphs[i].normals.clear();
+        }
+    }
+
+    /// Normals of length 0 get those of their triangles, by area.
+    void remake_normals() {
+        if (std::ranges::all_of(result_.normals, has_direction)) {
+            return;
+        }
+        std::vector<Vec3> sums(result_.normals.size(), Vec3(0));
+        for (std::size_t i = 0; i + 2 < result_.indices.size(); i += 3) {
+            const std::uint32_t* const corners = &result_.indices[i];
+            const Vec3& a = result_.positions[corners[0]];
+            const Vec3 area =
+                glm::cross(result_.positions[corners[1]] - a, result_.positions[corners[2]] - a);
+            for (int corner = 0; corner < 3; ++corner) {
+                sums[corners[corner]] += area;
+            }
+        }
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            if (!has_direction(result_.normals[i])) {
+                result_.normals[i] = normalize_or(sums[i], Vec3(0, 1, 0));
+            }
+        }
     }
 
     /// The set of texture coordinates that the normal map uses, if the mesh has it.
@@ -240,17 +370,25 @@ class MeshBuilder {
         if (result_.uvs.empty()) {
             result_.uvs.assign(result_.positions.size(), Vec2(0));
         }
-        if (result_.normals.empty()) {
+        if (std::ranges::none_of(result_.normals, has_direction)) {
             // Existing tangents and morph normals would not match the new normals.
             result_.tangents.clear();
             for (MorphTarget& morph : result_.morphs) {
                 morph.normals.clear();
             }
+            result_.normals.clear();
             generate_normals(result_, kCreaseAngle);
             generate_morph_normals(result_);
+        } else if (!lost_morph_normals_.empty()) {
+            remake_morph_normals();
         }
+        remake_normals();
         for (Vec3& normal : result_.normals) {
             normal = normalize_or(normal, Vec3(0, 1, 0));
+        }
+        if (std::ranges::any_of(
+                result_.tangents, [](const Vec4& t) { return !has_direction(Vec3(t)); })) {
+            result_.tangents.clear();
         }
         if (result_.tangents.empty()) {
             for (MorphTarget& morph : result_.morphs) {
@@ -281,6 +419,7 @@ class MeshBuilder {
     std::string place_;
     std::vector<Vec3> positions_;      ///< all of the accessor
     std::vector<std::uint32_t> used_;  ///< the vertex of the file of each vertex of the result
+    std::vector<std::size_t> lost_morph_normals_;  ///< numbers of targets
     MeshData result_;
 };
 

@@ -22,6 +22,8 @@ constexpr std::size_t kMaxMorphs = std::numeric_limits<std::uint16_t>::max();
 /// Replaces a scale of 0, which has no inverse; some files hide nodes with it.
 constexpr float kSmallestScale = 1e-6f;
 
+constexpr double kMatrixRounding = 1e-5;  ///< by which the last row of a matrix may be off
+
 constexpr float kSmallestFov = 0.01f;  // [rad]
 constexpr float kLargestFov = 3.1f;    // [rad]
 
@@ -87,7 +89,10 @@ class NodeBuilder {
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
             for (const int child : nodes_[i].children) {
                 std::uint32_t& parent = parent_[static_cast<std::size_t>(child)];
-                if (parent != kNone) {
+                if (parent == i) {
+                    document_.warnings.push_back(fmt::format(
+                        "{}.children: found node {} twice, expected it once", place(i), child));
+                } else if (parent != kNone) {
                     return fail(
                         "{}.children: found node {}, which is a child of nodes[{}] already, "
                         "expected one parent",
@@ -120,22 +125,45 @@ class NodeBuilder {
             return Done{};
         }
         const int scene = std::max(document_.model.defaultScene, 0);
+        LIMN_TRY(check_part("scenes", static_cast<std::size_t>(scene)));
+        std::vector<bool> is_root(nodes_.size(), false);
+        for (const int root : item_at(scenes, scene).nodes) {
+            is_root[static_cast<std::size_t>(root)] = true;
+        }
         reached.assign(nodes_.size(), false);
         for (const int root : item_at(scenes, scene).nodes) {
             const auto index = static_cast<std::uint32_t>(root);
             if (parent_[index] != kNone || reached[index]) {
-                return fail(
+                document_.warnings.push_back(fmt::format(
                     "{}: scenes[{}].nodes: found node {}, which {}, expected each root once",
                     document_.file, scene, index,
-                    reached[index] ? "is there twice" : "has a parent");
+                    reached[index] ? "is there already" : "has a parent"));
             }
-            LIMN_TRY(visit(index, reached, order_));
+            if (!reached[index] && !is_below_root(index, is_root)) {
+                LIMN_TRY(visit(index, reached, order_));
+            }
         }
         return Done{};
     }
 
-    /// Appends `root` and its descendants to `order`, without recursion. Each node has at most one
-    /// parent, so nothing is visited twice.
+    /// Whether an ancestor of a node is a root of the scene.
+    [[nodiscard]] bool is_below_root(std::uint32_t node, const std::vector<bool>& is_root) const {
+        while (parent_[node] != kNone) {
+            node = parent_[node];
+            if (is_root[node]) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// Fails for what the file has badly: it is needed here.
+    [[nodiscard]] Status check_part(std::string_view array, std::size_t index) const {
+        const std::string* const reason = find_bad_part(document_, array, index);
+        return reason != nullptr ? fail("{}: {}", document_.file, *reason) : Status(Done{});
+    }
+
+    /// Appends `root` and its descendants to `order`, without recursion; each node once.
     Status
     visit(std::uint32_t root, std::vector<bool>& reached, std::vector<std::uint32_t>& order) {
         struct Open {
@@ -151,6 +179,9 @@ class NodeBuilder {
                     "{}: found a hierarchy deeper than {} nodes", place(now.node),
                     document_.limits.max_depth);
             }
+            if (reached[now.node]) {
+                continue;
+            }
             reached[now.node] = true;
             order.push_back(now.node);
             const std::vector<int>& children = nodes_[now.node].children;
@@ -162,11 +193,13 @@ class NodeBuilder {
     }
 
     Status add_node(std::uint32_t index) {
+        LIMN_TRY(check_part("nodes", index));
         const tinygltf::Node& source = nodes_[index];
         GltfNode node;
         node.name = source.name;
-        if (parent_[index] != kNone) {
-            node.parent = static_cast<std::int32_t>(number_.at(parent_[index]));
+        // The root of a scene may have a parent that is not in the scene.
+        if (const auto parent = number_.find(parent_[index]); parent != number_.end()) {
+            node.parent = static_cast<std::int32_t>(parent->second);
         }
         LIMN_TRY(read_transform(index, node.transform));
         if (source.mesh >= 0 && source.skin < 0) {
@@ -186,7 +219,8 @@ class NodeBuilder {
     Status read_transform(std::uint32_t index, Transform& transform) {
         const tinygltf::Node& source = nodes_[index];
         if (const std::vector<double>& m = source.matrix; !m.empty()) {
-            if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
+            const double rest[] = {m[3], m[7], m[11], m[15] - 1};
+            if (std::ranges::any_of(rest, [](double x) { return std::abs(x) > kMatrixRounding; })) {
                 return fail(
                     "{}.matrix: found {}, {}, {}, {} as its last row, expected 0, 0, 0, 1",
                     place(index), m[3], m[7], m[11], m[15]);
@@ -203,27 +237,29 @@ class NodeBuilder {
         } else {
             transform.position = vector_of(source.translation, Vec3(0));
             transform.scale = vector_of(source.scale, Vec3(1));
-            LIMN_TRY(read_rotation(index, transform.rotation));
+            transform.rotation = read_rotation(index);
         }
         avoid_zero_scale(transform);
         return Done{};
     }
 
-    Status read_rotation(std::uint32_t index, Quat& rotation) {
+    [[nodiscard]] Quat read_rotation(std::uint32_t index) {
+        constexpr Quat kIdentity(1, 0, 0, 0);
         const std::vector<double>& items = nodes_[index].rotation;
         if (items.empty()) {
-            return Done{};
+            return kIdentity;
         }
         const glm::dvec4 q(items[0], items[1], items[2], items[3]);
         const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
         if (length < 1e-6) {
-            return fail(
-                "{}.rotation: found a quaternion of length {}, expected 1", place(index), length);
+            document_.warnings.push_back(fmt::format(
+                "{}.rotation: found a quaternion of length {}, expected 1; it is left out",
+                place(index), length));
+            return kIdentity;
         }
-        rotation = Quat(
+        return {
             static_cast<float>(q.w / length), static_cast<float>(q.x / length),
-            static_cast<float>(q.y / length), static_cast<float>(q.z / length));
-        return Done{};
+            static_cast<float>(q.y / length), static_cast<float>(q.z / length)};
     }
 
     void read_camera(const tinygltf::Node& source, GltfNode& node) {
@@ -298,6 +334,7 @@ class NodeBuilder {
             node.name = source.name.empty() ? "" : source.name + ".skin";
             node.skin = source.skin;
             LIMN_TRY(add_parts(index, node));
+            document_.skinned_nodes.emplace_back(scene_.nodes.size(), number_.at(index));
             scene_.nodes.push_back(std::move(node));
         }
         return Done{};
@@ -307,6 +344,7 @@ class NodeBuilder {
     Status add_parts(std::uint32_t index, GltfNode& node) {
         const tinygltf::Node& source = nodes_[index];
         const auto mesh = static_cast<std::size_t>(source.mesh);
+        LIMN_TRY(check_part("meshes", mesh));
         node.parts = parts_[mesh];
         const std::size_t count =
             node.parts.empty() ? 0 : scene_.meshes[node.parts[0].mesh].morphs.size();
@@ -329,15 +367,15 @@ class NodeBuilder {
         const std::vector<double>& values =
             own ? source.weights : document_.model.meshes[mesh].weights;
         if (!values.empty() && values.size() != count) {
-            return fail(
-                "{}.weights: found {}, expected one for each of {} targets",
+            document_.warnings.push_back(fmt::format(
+                "{}.weights: found {}, expected one for each of {} targets; missing ones are 0",
                 own ? place(index) : fmt::format("{}: meshes[{}]", document_.file, mesh),
-                values.size(), count);
+                values.size(), count));
         }
         node.first_morph = static_cast<std::int32_t>(weights.size());
         document_.node_morphs[index] = {node.first_morph, count};
         for (std::size_t i = 0; i < count; ++i) {
-            weights.push_back(values.empty() ? 0.0f : static_cast<float>(values[i]));
+            weights.push_back(i < values.size() ? static_cast<float>(values[i]) : 0.0f);
         }
         return Done{};
     }

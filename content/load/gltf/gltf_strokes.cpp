@@ -20,7 +20,9 @@ constexpr int kSides = 3;               // of a line
 float size_of(std::span<const Vec3> positions, std::span<const std::uint32_t> list) {
     Bounds bounds;
     for (const std::uint32_t index : list) {
-        grow(bounds, positions[index]);
+        if (is_finite(positions[index])) {
+            grow(bounds, positions[index]);
+        }
     }
     const float size = is_empty(bounds) ? 0.0f : glm::length(half_extent(bounds));
     return size > 0 ? size : 1.0f;
@@ -51,6 +53,9 @@ void add_point(Strokes& strokes, std::uint32_t source, float radius) {
 void add_line(
     Strokes& strokes, std::span<const Vec3> positions, std::pair<std::uint32_t, std::uint32_t> ends,
     float radius) {
+    if (!is_finite(positions[ends.first]) || !is_finite(positions[ends.second])) {
+        return;
+    }
     const Vec3 along = normalize_or(positions[ends.second] - positions[ends.first], Vec3(0));
     if (along == Vec3(0)) {
         return;
@@ -86,9 +91,9 @@ Strokes make_strokes(
     const std::size_t drawn = std::min(strokes.found, kMaxStrokes);
     for (std::size_t k = 0; k < drawn; ++k) {
         const std::size_t i = k * strokes.found / drawn;
-        if (mode == kGltfPoints) {
+        if (mode == kGltfPoints && is_finite(positions[list[i]])) {
             add_point(strokes, list[i], kPointRadius * size);
-        } else {
+        } else if (mode != kGltfPoints) {
             const std::size_t a = mode == kGltfLines ? 2 * i : i;
             add_line(strokes, positions, {list[a], list[(a + 1) % count]}, kLineRadius * size);
         }

@@ -32,7 +32,7 @@ struct Strokes {
 };
 
 /// The points or lines that `list` names in `positions`, evenly thinned out to kMaxStrokes. A line
-/// without length makes nothing.
+/// without length makes nothing, and neither does a position that is not finite.
 [[nodiscard]] Strokes make_strokes(
     std::span<const Vec3> positions, std::span<const std::uint32_t> list, std::int32_t mode);
 

@@ -17,6 +17,8 @@
 #include <cstring>
 #include <limits>
 
+// Techniques: anim.euler
+
 namespace limn {
 
 namespace {
@@ -35,7 +37,7 @@ std::string expected_number(const FieldInfo& info, std::string_view noun) {
     return range.empty() ? std::string(noun) : fmt::format("{} {}", noun, range);
 }
 
-/// A unit that people write, in a field's own: "45deg" of a field in radians.
+/// A unit of a number string, converted to a field's unit: "45deg" in a field in radians.
 struct WrittenUnit {
     std::string_view field;
     std::string_view written;
@@ -65,7 +67,7 @@ constexpr WrittenUnit kWrittenUnits[] = {
     {"cd", "cd", 1},
     {"EV", "EV", 1}};
 
-/// The unit in which "45deg" or "2 m" is written, and the number in the field's own.
+/// The unit of "45deg" or "2 m", and the number converted to the field's unit.
 struct WrittenNumber {
     double number;
     const WrittenUnit* unit;
@@ -89,7 +91,7 @@ std::optional<WrittenNumber> number_with_unit(std::string_view text, std::string
     return std::nullopt;
 }
 
-/// ` or a string like "2cm"`; empty where the field's unit has no other way to be written.
+/// ` or a string like "2cm"`; empty if the field's unit has no alternatives.
 std::string or_with_unit(std::string_view field_unit) {
     for (const WrittenUnit& known : kWrittenUnits) {
         if (known.field == field_unit) {
@@ -103,7 +105,7 @@ std::string or_with_unit(std::string_view field_unit) {
 /// The range of a field as "a number -180 .. 180 deg", in the unit of what was found.
 std::string expected_in_unit(FieldMeta meta, const WrittenUnit& unit) {
     for (double* const limit : {&meta.min, &meta.max}) {
-        if (*limit != 0 && std::isfinite(*limit)) {  // five digits: pi has many in radians
+        if (*limit != 0 && std::isfinite(*limit)) {  // five digits, enough for limits such as pi
             *limit /= unit.factor;
             const double digits = std::pow(10, 4 - std::floor(std::log10(std::abs(*limit))));
             *limit = std::round(*limit * digits) / digits;
@@ -119,7 +121,7 @@ struct ComponentReader {
 
     Status read_fields(
         const JsonValue& json, const std::vector<FieldInfo>& fields, void* object,
-        const JsonPlace& at) const {
+        const JsonLocation& at) const {
         LIMN_TRY(expect(json, JsonKind::Object, at, "an object with the fields to set"));
         for (const JsonMember& member : json.members) {
             const FieldInfo* const field = find_field(fields, member.key);
@@ -131,13 +133,13 @@ struct ComponentReader {
                         + where_it_belongs(member.key, did_you_mean(member.key, known)));
             }
             LIMN_TRY(read_shape(
-                member.value, *field, field_ptr(object, *field), place_in(at, member.key)));
+                member.value, *field, field_ptr(object, *field), location_in(at, member.key)));
         }
         return Done{};
     }
 
     Status read_shape(
-        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonLocation& at) const {
         if (info.shape == FieldShape::One) {
             return read_one(json, info, field, at);
         }
@@ -156,8 +158,8 @@ struct ComponentReader {
         return Done{};
     }
 
-    Status
-    read_one(const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+    Status read_one(
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonLocation& at) const {
         switch (info.type) {
         case FieldType::Bool:
             LIMN_TRY(expect(json, JsonKind::Bool, at, "true or false"));
@@ -211,7 +213,8 @@ struct ComponentReader {
 
   private:
     Status read_scalar(
-        const JsonValue& json, const FieldInfo& info, const JsonPlace& at, double& number) const {
+        const JsonValue& json, const FieldInfo& info, const JsonLocation& at,
+        double& number) const {
         const std::string_view unit = info.meta.unit;
         const std::optional<WrittenNumber> with_unit =
             json.kind == JsonKind::String ? number_with_unit(json.text, unit) : std::nullopt;
@@ -240,9 +243,9 @@ struct ComponentReader {
 
     Status read_floats(
         const JsonValue& json, const FieldInfo& info, std::span<float> floats,
-        const JsonPlace& at) const {
+        const JsonLocation& at) const {
         const auto read_float = [&](const JsonValue& item, float& out,
-                                    const JsonPlace& where) -> Status {
+                                    const JsonLocation& where) -> Status {
             double number = 0.0;
             LIMN_TRY(read_scalar(item, info, where, number));
             if (std::abs(number) > static_cast<double>(std::numeric_limits<float>::max())) {
@@ -272,7 +275,7 @@ struct ComponentReader {
     }
 
     Status read_integer(
-        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonLocation& at) const {
         const bool is_signed = info.type == FieldType::Int;
         const unsigned bits = 8 * info.size;
         const std::uint64_t high = (~std::uint64_t{0} >> (64 - bits)) >> (is_signed ? 1 : 0);
@@ -309,7 +312,8 @@ struct ComponentReader {
                    : R"([r, g, b], "#rrggbb", "#rgb" or a name such as "orange")";
     }
 
-    Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
+    Status
+    read_color(const JsonValue& json, std::span<float> floats, const JsonLocation& at) const {
         std::string text = json.text;
         const std::optional<std::uint32_t> named = find_color(text);
         if (text.starts_with('#') && text.size() <= 5) {  // "#f80" is "#ff8800"
@@ -343,7 +347,7 @@ struct ComponentReader {
     }
 
     Status read_rotation(
-        const JsonValue& json, const FieldInfo& info, Quat& q, const JsonPlace& at) const {
+        const JsonValue& json, const FieldInfo& info, Quat& q, const JsonLocation& at) const {
         const bool is_euler = json.kind == JsonKind::Array && json.items.size() == 3;
         if (!is_euler && (json.kind != JsonKind::Array || json.items.size() != 4)) {
             return unexpected(
@@ -370,7 +374,7 @@ struct ComponentReader {
     }
 
     Status read_enum(
-        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonLocation& at) const {
         const std::optional<std::uint64_t> value =
             json.kind == JsonKind::String ? find_enumerator(info, json.text) : std::nullopt;
         if (!value) {
@@ -385,7 +389,7 @@ struct ComponentReader {
     }
 
     Status read_name(
-        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonLocation& at) const {
         const bool is_entity = info.type == FieldType::Entity;
         const std::string kind = is_entity ? "entity" : info.asset;
         if (json.kind != JsonKind::String && json.kind != JsonKind::Null) {
@@ -499,7 +503,7 @@ JsonValue write_one(const FieldInfo& info, const void* field, const NameProvider
         return json;
     }
     case FieldType::Quat: {
-        // As people write it: few decimals, where they give the same bits.
+        // With few decimals, if they give the same bits.
         const Quat& q = *static_cast<const Quat*>(field);
         const Vec3 exact = degrees_from_rotation(q);
         const Vec3 rounded = glm::round(exact * 1e3f) / 1e3f;
@@ -530,40 +534,42 @@ JsonValue write_one(const FieldInfo& info, const void* field, const NameProvider
 }  // namespace
 
 Error error_at(
-    const JsonPlace& place, SourcePosition at, std::string_view found, std::string_view expected) {
-    std::string line = place_text(place.file, at);
-    if (!place.path.empty()) {
-        line += ": " + place.path;
+    const JsonLocation& location, SourcePosition at, std::string_view found,
+    std::string_view expected) {
+    std::string line = location_text(location.file, at);
+    if (!location.path.empty()) {
+        line += ": " + location.path;
     }
     return fail("{}: found {}, expected {}", line, found, expected);
 }
 
-Error unexpected(const JsonValue& json, const JsonPlace& place, std::string_view expected) {
-    return error_at(place, json.at, describe(json), expected);
+Error unexpected(const JsonValue& json, const JsonLocation& location, std::string_view expected) {
+    return error_at(location, json.at, describe(json), expected);
 }
 
-JsonPlace item_in(const JsonPlace& place, std::size_t index) {
-    return {place.file, fmt::format("{}[{}]", place.path, index)};
+JsonLocation item_in(const JsonLocation& location, std::size_t index) {
+    return {location.file, fmt::format("{}[{}]", location.path, index)};
 }
 
-JsonPlace place_in(const JsonPlace& place, std::string_view key) {
+JsonLocation location_in(const JsonLocation& location, std::string_view key) {
     return {
-        place.file, place.path.empty() ? std::string(key) : fmt::format("{}.{}", place.path, key)};
+        location.file,
+        location.path.empty() ? std::string(key) : fmt::format("{}.{}", location.path, key)};
 }
 
-Status
-expect(const JsonValue& json, JsonKind kind, const JsonPlace& place, std::string_view expected) {
-    return json.kind == kind ? Status(Done{}) : unexpected(json, place, expected);
+Status expect(
+    const JsonValue& json, JsonKind kind, const JsonLocation& location, std::string_view expected) {
+    return json.kind == kind ? Status(Done{}) : unexpected(json, location, expected);
 }
 
 Status expect_keys(
-    const JsonValue& json, const JsonPlace& place, std::span<const std::string_view> known,
+    const JsonValue& json, const JsonLocation& location, std::span<const std::string_view> known,
     std::string_view expected) {
-    LIMN_TRY(expect(json, JsonKind::Object, place, expected));
+    LIMN_TRY(expect(json, JsonKind::Object, location, expected));
     for (const JsonMember& member : json.members) {
         if (std::find(known.begin(), known.end(), member.key) == known.end()) {
             return error_at(
-                place, member.at, "the key " + in_quotes(member.key),
+                location, member.at, "the key " + in_quotes(member.key),
                 fmt::format("one of {}", fmt::join(known, " ")) + did_you_mean(member.key, known));
         }
     }
@@ -571,17 +577,19 @@ Status expect_keys(
 }
 
 Result<double> expect_number(
-    const JsonValue& json, double min, double max, const JsonPlace& place, std::string_view unit) {
+    const JsonValue& json, double min, double max, const JsonLocation& location,
+    std::string_view unit) {
     const std::optional<WrittenNumber> written =
         json.kind == JsonKind::String ? number_with_unit(json.text, unit) : std::nullopt;
     const double number = written ? written->number : json.number;
     const bool is_number = written || json.kind == JsonKind::Number;
     if (written && (number < min || number > max)) {
-        return unexpected(json, place, expected_in_unit({.min = min, .max = max}, *written->unit));
+        return unexpected(
+            json, location, expected_in_unit({.min = min, .max = max}, *written->unit));
     }
     if (!is_number || number < min || number > max) {
         return unexpected(
-            json, place,
+            json, location,
             fmt::format("a number {} .. {}{}{}", min, max, unit.empty() ? "" : " ", unit)
                 + or_with_unit(unit));
     }
@@ -589,27 +597,27 @@ Result<double> expect_number(
 }
 
 Status read_component(
-    const JsonValue& json, const ComponentInfo& info, void* object, const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, void* object, const JsonLocation& location,
     const NameResolver& names) {
-    LIMN_TRY(ComponentReader{names}.read_fields(json, info.fields, object, place));
+    LIMN_TRY(ComponentReader{names}.read_fields(json, info.fields, object, location));
     if (const std::string problem = constraint_error(info, object); !problem.empty()) {
-        return fail("{}: {}: {}", place_text(place.file, json.at), place.path, problem);
+        return fail("{}: {}: {}", location_text(location.file, json.at), location.path, problem);
     }
     return Done{};
 }
 
 Result<AnyComponent> read_component(
-    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, const JsonLocation& location,
     const NameResolver& names) {
     AnyComponent component(info);
-    LIMN_TRY(read_component(json, info, component.data(), place, names));
+    LIMN_TRY(read_component(json, info, component.data(), location, names));
     return component;
 }
 
 Status read_field(
-    const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
+    const JsonValue& json, const FieldInfo& info, void* field, const JsonLocation& location,
     const NameResolver& names) {
-    return ComponentReader{names}.read_shape(json, info, field, place);
+    return ComponentReader{names}.read_shape(json, info, field, location);
 }
 
 std::vector<std::string_view> written_units(std::string_view field_unit) {

@@ -18,8 +18,8 @@ namespace limn {
 // Converts JSON to components and back, for every type that has LIMN_FIELDS. Used by level files,
 // extras.limn of glTF, the inspector and --set.
 //
-//     number         a number within the field's range, in its unit, or with a unit as people
-//                    write it: "45deg", "30rpm", "2cm", "36km/h", "8kn", "200ms", "5min", "10klx"
+//     number         a number within the field's range, in its unit, or a string with a
+//                    unit: "45deg", "30rpm", "2cm", "36km/h", "8kn", "200ms", "5min", "10klx"
 //     bool           true, false
 //     enum           the enumerator's name: "inverse_square"
 //     vector         an array of its length
@@ -57,59 +57,60 @@ struct NameProvider {
 };
 
 /// Location of a value, for messages: "FILE:LINE:COLUMN: PATH: found X, expected Y".
-struct JsonPlace {
+struct JsonLocation {
     std::string_view file;
     std::string path;  ///< `entity "lamp": point_light`; field names are appended
 };
 
 /// The error at position `at`; an empty PATH is omitted.
 [[nodiscard]] Error error_at(
-    const JsonPlace& place, SourcePosition at, std::string_view found, std::string_view expected);
+    const JsonLocation& location, SourcePosition at, std::string_view found,
+    std::string_view expected);
 
 /// The error that `json` is not what is expected.
 [[nodiscard]] Error
-unexpected(const JsonValue& json, const JsonPlace& place, std::string_view expected);
+unexpected(const JsonValue& json, const JsonLocation& location, std::string_view expected);
 
-/// The places of a member and an item of the value at `place`.
-[[nodiscard]] JsonPlace place_in(const JsonPlace& place, std::string_view key);
-[[nodiscard]] JsonPlace item_in(const JsonPlace& place, std::size_t index);
+/// The locations of a member and an item of the value at `location`.
+[[nodiscard]] JsonLocation location_in(const JsonLocation& location, std::string_view key);
+[[nodiscard]] JsonLocation item_in(const JsonLocation& location, std::size_t index);
 
 /// Fails unless `json` is of `kind`, which the message calls `expected`.
-[[nodiscard]] Status
-expect(const JsonValue& json, JsonKind kind, const JsonPlace& place, std::string_view expected);
+[[nodiscard]] Status expect(
+    const JsonValue& json, JsonKind kind, const JsonLocation& location, std::string_view expected);
 
 /// Fails unless `json` is an object with no keys but `known`.
 [[nodiscard]] Status expect_keys(
-    const JsonValue& json, const JsonPlace& place, std::span<const std::string_view> known,
+    const JsonValue& json, const JsonLocation& location, std::span<const std::string_view> known,
     std::string_view expected = "an object");
 
-/// Fails unless `json` is a number within the range, or a string with one and a unit that a field
-/// in `unit` may have.
+/// Fails unless `json` is a number within the range, or a string with a number and a unit
+/// compatible with `unit`.
 [[nodiscard]] Result<double> expect_number(
-    const JsonValue& json, double min, double max, const JsonPlace& place,
+    const JsonValue& json, double min, double max, const JsonLocation& location,
     std::string_view unit = "");
 
 /// Sets the fields that the JSON object names and keeps the others. `object` is of type `info`. On
 /// an error some fields may already be set: work on a copy.
 [[nodiscard]] Status read_component(
-    const JsonValue& json, const ComponentInfo& info, void* object, const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, void* object, const JsonLocation& location,
     const NameResolver& names);
 
 /// A default component with the fields that `json` names set.
 [[nodiscard]] Result<AnyComponent> read_component(
-    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, const JsonLocation& location,
     const NameResolver& names);
 
-/// The same for a type known at compile time: `read_struct(json, material, place, names)`.
+/// The same for a type known at compile time: `read_struct(json, material, location, names)`.
 template <typename T>
-[[nodiscard]] Status
-read_struct(const JsonValue& json, T& object, const JsonPlace& place, const NameResolver& names) {
-    return read_component(json, component_info<T>(), &object, place, names);
+[[nodiscard]] Status read_struct(
+    const JsonValue& json, T& object, const JsonLocation& location, const NameResolver& names) {
+    return read_component(json, component_info<T>(), &object, location, names);
 }
 
 /// Reads one field; `field` points at its value.
 [[nodiscard]] Status read_field(
-    const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
+    const JsonValue& json, const FieldInfo& info, void* field, const JsonLocation& location,
     const NameResolver& names);
 
 /// Writes all fields of `object`; reading them into any value of the type restores `object`:

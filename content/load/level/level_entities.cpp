@@ -72,7 +72,7 @@ std::size_t weight(const JsonValue& json) {
     return sum;
 }
 
-/// Points unset character references at the nearest character, the entity itself or an ancestor.
+/// Sets unset character references to the nearest character, the entity itself or an ancestor.
 void follow_character(Prefab& list, std::uint32_t index) {
     std::vector<AnyComponent>& own = list.entities[index].components;
     std::vector<Entity*> open;
@@ -146,13 +146,13 @@ Status LevelEntities::try_add_node(
     return add_copies(list, node, context);
 }
 
-/// What can be told of a node whose prefab cannot be used: its glTF file and its number of copies.
+/// What is known of a node whose prefab cannot be used: its glTF file and its number of copies.
 void LevelEntities::check_without_prefab(List& list, Node& node) {
     node.layers = {node.json};
     errors_.keep(add_gltf(list, node, 0));
     JsonValue json = merged_repeat(node.layers);
     std::erase_if(json.members, [](const JsonMember& member) {
-        return member.key == "vary";  // of components that the prefab may bring
+        return member.key == "vary";  // of components that the prefab may have
     });
     if (json.kind != JsonKind::Null) {
         const Result<Repeat> repeat =
@@ -161,21 +161,21 @@ void LevelEntities::check_without_prefab(List& list, Node& node) {
     }
 }
 
-/// Adds what ancestors change of the node, the outermost last.
+/// Adds the changes that ancestors make to the node, the outermost last.
 Status LevelEntities::add_changes(Node& node, Changes* changes) const {
     for (; changes != nullptr && !node.name.empty(); changes = changes->outer) {
-        changes->seen.insert(node.name);
+        changes->descendants.insert(node.name);
         for (const JsonValue* const layer : changes->layers) {
             const JsonValue* const change = layer->find(node.name);
             if (change == nullptr) {
                 continue;
             }
-            const JsonPlace place{file_, "nodes." + node.name};
-            LIMN_TRY(expect(*change, JsonKind::Object, place, "an object: components by name"));
+            const JsonLocation location{file_, "nodes." + node.name};
+            LIMN_TRY(expect(*change, JsonKind::Object, location, "an object: components by name"));
             for (const JsonMember& member : change->members) {
                 if (is_node_key(member.key)) {
                     return refuse(
-                        place.path, member.at, "the key " + in_quotes(member.key), "components");
+                        location.path, member.at, "the key " + in_quotes(member.key), "components");
                 }
             }
             node.layers.push_back(change);
@@ -184,7 +184,7 @@ Status LevelEntities::add_changes(Node& node, Changes* changes) const {
     return Done{};
 }
 
-/// The "nodes" of a node that has children; those of one with a glTF file are of that.
+/// The "nodes" of a node with children; with a glTF file, they refer to the file instead.
 Result<LevelEntities::Changes> LevelEntities::read_changes(const Node& node, Changes* outer) const {
     Changes changes{{}, outer, {}};
     if (find_in_layers(node.layers, "gltf") != nullptr) {
@@ -209,10 +209,11 @@ Result<LevelEntities::Changes> LevelEntities::read_changes(const Node& node, Cha
 }
 
 Status LevelEntities::check_changes(const Node& node, const Changes& changes) const {
-    const std::vector<std::string_view> names(changes.seen.begin(), changes.seen.end());
+    const std::vector<std::string_view> names(
+        changes.descendants.begin(), changes.descendants.end());
     for (const JsonValue* const layer : changes.layers) {
         for (const JsonMember& change : layer->members) {
-            if (!changes.seen.contains(change.key) && !has_failed(change.key)) {
+            if (!changes.descendants.contains(change.key) && !has_failed(change.key)) {
                 return refuse(
                     node.path + ".nodes", change.at, "the node " + in_quotes(change.key),
                     "the name of a child or of its children" + did_you_mean(change.key, names));
@@ -222,7 +223,7 @@ Status LevelEntities::check_changes(const Node& node, const Changes& changes) co
     return Done{};
 }
 
-/// Notes the names that `node` and its descendants would have had.
+/// Records the names that `node` and its descendants would have had.
 void LevelEntities::note_missing(const JsonValue& node) {
     if (const std::string& name = node["name"].text; !name.empty()) {
         missing_.insert(name);
@@ -350,7 +351,7 @@ Status LevelEntities::add_copies(List& list, Node& node, const Context& context)
     LIMN_TRY(charge_limits(node, count - 1));
     const std::size_t errors_before = errors_.count();
     for (std::uint64_t i = 0; i < count; ++i) {
-        if (errors_.count() > errors_before) {  // the other copies would have the same
+        if (errors_.count() > errors_before) {  // other copies would repeat them
             note_missing(*node.json);
             break;
         }
@@ -372,13 +373,13 @@ void LevelEntities::add_copy(
     }
     if (!name.empty()) {
         components.push_back(AnyComponent::of(Name{name}));
-        const auto [place, is_new] = list.scopes[context.scope].names.try_emplace(name, index);
+        const auto [entry, is_new] = list.scopes[context.scope].names.try_emplace(name, index);
         if (!is_new) {
             errors_.keep(refuse(
                 node.path, node.json->find("name")->at, "a duplicate name " + in_quotes(name),
                 fmt::format(
                     "each name once (the first is in line {})",
-                    list.positions[place->second].line)));
+                    list.positions[entry->second].line)));
         }
     }
     list.entities.entities.push_back({std::move(components)});
@@ -415,10 +416,10 @@ void LevelEntities::add_copy(
 
 /// The file of an entity, and the changes of its nodes.
 Status LevelEntities::add_gltf(List& list, const Node& node, std::uint32_t index) {
-    const JsonPlace place{file_, node.path};
+    const JsonLocation location{file_, node.path};
     const JsonValue* const gltf = find_in_layers(node.layers, "gltf");
     if (gltf != nullptr) {
-        LIMN_TRY(expect(*gltf, JsonKind::String, place, "the path of a .gltf or .glb file"));
+        LIMN_TRY(expect(*gltf, JsonKind::String, location, "the path of a .gltf or .glb file"));
         const auto known =
             std::find_if(list.gltfs.begin(), list.gltfs.end(), [&](const GltfUse& use) {
                 return use.file == gltf->text;
@@ -432,7 +433,7 @@ Status LevelEntities::add_gltf(List& list, const Node& node, std::uint32_t index
         const JsonValue* const nodes = layer->find("nodes");
         if (nodes != nullptr && gltf != nullptr) {
             LIMN_TRY(read_node_changes(
-                *nodes, index, place_in(place, "nodes"), names_, list.node_changes));
+                *nodes, index, location_in(location, "nodes"), names_, list.node_changes));
         }
     }
     return Done{};
@@ -484,7 +485,7 @@ Status LevelEntities::read_member(
     if (is_internal(*info)) {
         log_warn(
             "{}: {}: systems keep {} and overwrite what is written here",
-            place_text(file_, member.at), node.path, member.key);
+            location_text(file_, member.at), node.path, member.key);
     }
     if (member.value.kind == JsonKind::Null) {
         std::erase_if(components, [info](const AnyComponent& c) { return &c.info() == info; });
@@ -587,7 +588,7 @@ Result<Prefab> LevelEntities::read_prefab(const JsonValue& node, const std::stri
 
 void LevelEntities::check_unused_prefabs() {
     if (has_left_out_) {
-        return;  // it may be what uses them
+        return;  // one of them may be the user
     }
     for (const auto& [name, prefab] : prefabs_) {
         if (is_full_) {

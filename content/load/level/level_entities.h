@@ -40,14 +40,14 @@ struct GltfUse {
 
 class LevelEntities {
   public:
-    /// `prefabs` are those of `file` and must outlive this, as must `errors`, which keeps what is
-    /// found. `names` resolves assets.
+    /// `prefabs` are those of `file` and must outlive this, as must `errors`, which collects
+    /// errors. `names` resolves assets.
     LevelEntities(
         std::string file, const std::vector<JsonMember>& prefabs, NameResolver names,
         const EntityLimits& limits, ErrorList& errors);
 
     /// Appends the entity `node` and its descendants. `path` is used in messages if it has no name.
-    /// What has an error is left out, so that the rest is read.
+    /// Parts with an error are skipped, so that the rest is read.
     void add(const JsonValue& node, const std::string& path);
     /// Whether an entity exceeded the limits, as all further ones would.
     [[nodiscard]] bool is_full() const { return is_full_; }
@@ -58,10 +58,10 @@ class LevelEntities {
     /// Index of the entity with this name outside of prefabs, or -1.
     [[nodiscard]] std::int64_t find(std::string_view name) const;
     [[nodiscard]] std::vector<std::string_view> names() const;
-    /// Any name may be that of an entity that could not be read.
+    /// Treats any name as that of an entity that could not be read.
     void expect_gaps() { has_gaps_ = true; }
-    /// Whether an entity with this name, or a copy `name[i]`, was left out because of an error:
-    /// what names it has no further one.
+    /// Whether an entity with this name, or a copy `name[i]`, was skipped because of an error:
+    /// references to it report no further one.
     [[nodiscard]] bool has_failed(std::string_view name) const;
 
     /// `node` and its descendants as a separate prefab, after all nodes are added. Names that it
@@ -72,7 +72,7 @@ class LevelEntities {
     void check_unused_prefabs();
 
     [[nodiscard]] Prefab& entities() { return level_.entities; }
-    /// Where each of them is written.
+    /// Source position of each of them.
     [[nodiscard]] std::vector<SourcePosition>& positions() { return level_.positions; }
     [[nodiscard]] std::vector<GltfUse>& gltfs() { return level_.gltfs; }
     [[nodiscard]] std::vector<NodeChange>& node_changes() { return level_.node_changes; }
@@ -97,13 +97,13 @@ class LevelEntities {
         std::vector<GltfUse> gltfs;
         std::vector<NodeChange> node_changes;
     };
-    /// The "nodes" of an entity without a glTF file: what it changes of its descendants.
+    /// The "nodes" of an entity without a glTF file: changes of its descendants.
     struct Changes {
         std::vector<const JsonValue*> layers;  // the innermost prefab's first
         Changes* outer = nullptr;              // those of an ancestor
-        std::set<std::string> seen;            // names of descendants
+        std::set<std::string> descendants;     // their names
     };
-    /// Where a node is added.
+    /// Context in which a node is added.
     struct Context {
         std::int64_t parent = -1;
         std::uint32_t scope = 0;
@@ -166,7 +166,7 @@ class LevelEntities {
     bool has_gaps_ = false;
     bool has_left_out_ = false;
     ErrorList& errors_;
-    std::unordered_set<std::string> missing_;  // names of entities that were left out
+    std::unordered_set<std::string> missing_;  // names of entities that were skipped
     List level_;
 };
 

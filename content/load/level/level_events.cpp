@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+// Techniques: engine.explosion
+
 namespace limn {
 
 namespace {
@@ -32,7 +34,7 @@ std::string event_hint(std::string_view name, const std::string& did_you_mean) {
 /// not named keep their values.
 Status read_field_edits(
     const JsonValue& json, const std::vector<FieldInfo>& fields, std::uint32_t offset,
-    const JsonPlace& at, const NameResolver& names, ScriptAction& action) {
+    const JsonLocation& at, const NameResolver& names, ScriptAction& action) {
     LIMN_TRY(expect(json, JsonKind::Object, at, "an object with the fields to set"));
     for (const JsonMember& member : json.members) {
         const FieldInfo* const field = find_field(fields, member.key);
@@ -41,7 +43,7 @@ Status read_field_edits(
                 at, member.at, "the field " + in_quotes(member.key),
                 "an existing field" + field_suggestion(fields, member.key));
         }
-        const JsonPlace inner = place_in(at, member.key);
+        const JsonLocation inner = location_in(at, member.key);
         const std::uint32_t inner_offset = offset + field->offset;
         if (field->type == FieldType::Struct && field->shape == FieldShape::One) {
             LIMN_TRY(
@@ -54,7 +56,8 @@ Status read_field_edits(
             const double steps =
                 LIMN_TRY(expect_number(member.value, -kMaxSteps, kMaxSteps, inner));
             if (steps != std::floor(steps) || steps == 0) {
-                return unexpected(member.value, inner, "how many values further: 1, -1 ...");
+                return unexpected(
+                    member.value, inner, "the number of values to advance: 1, -1 ...");
             }
             action.edits.push_back({field, inner_offset, static_cast<int>(steps)});
             continue;
@@ -74,19 +77,19 @@ Status read_field_edits(
 }
 
 struct EventReader {
-    const JsonPlace& place;
+    const JsonLocation& location;
     const NameResolver& names;
     const ReadPrefab& read_prefab;
     ScriptEvent event;
 
     Status read_key(const JsonValue& json, const char* name) {
-        const JsonPlace here = place_in(place, name);
+        const JsonLocation here = location_in(location, name);
         const JsonValue& key = json[name];
         for (const char* const time : {"at", "every", "times", "released"}) {
             if (const JsonValue* const other = json.find(time); other != nullptr && other != &key) {
                 return error_at(
                     here, other->at, fmt::format("{} with {}", in_quotes(time), in_quotes(name)),
-                    "a time or a key, in an event each");
+                    "either a time or a key; use two events for both");
             }
         }
         const std::vector<std::string_view>& known = key_names();
@@ -112,17 +115,17 @@ struct EventReader {
         const JsonValue* const times = json.find("times");
         if (at == nullptr) {
             return error_at(
-                place, json.at, "no time",
+                location, json.at, "no time",
                 "\"at\": seconds since the start of the level, or \"key\": one that is pressed");
         }
-        event.time = LIMN_TRY(expect_number(*at, 0.0, kMaxTime, place_in(place, "at"), "s"));
+        event.time = LIMN_TRY(expect_number(*at, 0.0, kMaxTime, location_in(location, "at"), "s"));
         if (every != nullptr) {
-            event.every =
-                LIMN_TRY(expect_number(*every, 1e-6, kMaxTime, place_in(place, "every"), "s"));
+            event.every = LIMN_TRY(
+                expect_number(*every, 1e-6, kMaxTime, location_in(location, "every"), "s"));
             event.times = std::numeric_limits<std::uint32_t>::max();
         }
         if (times != nullptr) {
-            const JsonPlace here = place_in(place, "times");
+            const JsonLocation here = location_in(location, "times");
             const double count = LIMN_TRY(expect_number(*times, 1.0, 1e9, here));
             if (count != std::floor(count) || every == nullptr) {
                 return unexpected(
@@ -135,7 +138,7 @@ struct EventReader {
 
     Status read_member(const JsonMember& member) {
         const std::string_view key = member.key;
-        const JsonPlace at = place_in(place, key);
+        const JsonLocation at = location_in(location, key);
         if (key == "set") {
             return read_targets(member.value, EventAction::Set, at);
         }
@@ -156,7 +159,7 @@ struct EventReader {
 
     Status read_change(
         const JsonMember& member, const ComponentInfo* info, const std::string& hint,
-        ScriptAction action, const JsonPlace& at) {
+        ScriptAction action, const JsonLocation& at) {
         if (info == nullptr || info->ops.construct_default == nullptr
             || info->ops.construct_copy == nullptr) {
             const char* const noun = action.is_resource ? "resource" : "component";
@@ -164,12 +167,12 @@ struct EventReader {
                 at, member.at, fmt::format("the {} {}", noun, in_quotes(member.key)),
                 "one of `limn components`" + event_hint(member.key, hint));
         }
-        LIMN_TRY(read_edits(member.value, *info, place_in(at, member.key), names, action));
+        LIMN_TRY(read_edits(member.value, *info, location_in(at, member.key), names, action));
         event.actions.push_back(std::move(action));
         return Done{};
     }
 
-    Result<Entity> find_entity(std::string_view name, SourcePosition at, const JsonPlace& here) {
+    Result<Entity> find_entity(std::string_view name, SourcePosition at, const JsonLocation& here) {
         const std::optional<Entity> entity = names.entity(name, at);
         if (!entity) {
             return error_at(
@@ -180,10 +183,10 @@ struct EventReader {
     }
 
     /// {"lamp": {"point_light": {...}}}
-    Status read_targets(const JsonValue& json, EventAction kind, const JsonPlace& at) {
+    Status read_targets(const JsonValue& json, EventAction kind, const JsonLocation& at) {
         LIMN_TRY(expect(json, JsonKind::Object, at, "an object: entities by name"));
         for (const JsonMember& target : json.members) {
-            const JsonPlace inner = place_in(at, target.key);
+            const JsonLocation inner = location_in(at, target.key);
             ScriptAction action;
             action.action = kind;
             action.entity = LIMN_TRY(find_entity(target.key, target.at, at));
@@ -198,7 +201,7 @@ struct EventReader {
         return Done{};
     }
 
-    Status read_resources(const JsonValue& json, EventAction kind, const JsonPlace& at) {
+    Status read_resources(const JsonValue& json, EventAction kind, const JsonLocation& at) {
         LIMN_TRY(expect(json, JsonKind::Object, at, "an object: resources by name"));
         for (const JsonMember& resource : json.members) {
             ScriptAction action;
@@ -211,7 +214,7 @@ struct EventReader {
         return Done{};
     }
 
-    Status read_spawns(const JsonValue& json, const JsonPlace& at) {
+    Status read_spawns(const JsonValue& json, const JsonLocation& at) {
         LIMN_TRY(expect(json, JsonKind::Array, at, "an array of entities"));
         for (const JsonValue& node : json.items) {
             ScriptAction action;
@@ -222,7 +225,7 @@ struct EventReader {
         return Done{};
     }
 
-    Status read_destroys(const JsonValue& json, const JsonPlace& at) {
+    Status read_destroys(const JsonValue& json, const JsonLocation& at) {
         LIMN_TRY(expect(json, JsonKind::Array, at, "an array of names"));
         for (const JsonValue& name : json.items) {
             LIMN_TRY(expect(name, JsonKind::String, at, "a name"));
@@ -238,14 +241,14 @@ struct EventReader {
 }  // namespace
 
 Status read_edits(
-    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, const JsonLocation& location,
     const NameResolver& names, ScriptAction& action) {
     action.value = AnyComponent(info);
-    return read_field_edits(json, info.fields, 0, place, names, action);
+    return read_field_edits(json, info.fields, 0, location, names, action);
 }
 
 Result<ScriptEvent> read_event(
-    const JsonValue& json, const JsonPlace& place, const NameResolver& names,
+    const JsonValue& json, const JsonLocation& location, const NameResolver& names,
     const ReadPrefab& read_prefab) {
     const auto time =
         std::find_if(json.members.begin(), json.members.end(), [](const JsonMember& member) {
@@ -253,16 +256,16 @@ Result<ScriptEvent> read_event(
         });
     if (time != json.members.end()) {
         return error_at(
-            place, time->at, "the key " + in_quotes(time->key),
+            location, time->at, "the key " + in_quotes(time->key),
             "\"at\": seconds since the start of the level");
     }
     if (const JsonValue* const set = json.find("set"); set != nullptr) {
         LIMN_TRY(expect(
-            *set, JsonKind::Object, place_in(place, "set"),
+            *set, JsonKind::Object, location_in(location, "set"),
             R"({"entity": {"component": {"field": value}}})"));
     }
-    LIMN_TRY(expect_keys(json, place, kKeys));
-    EventReader reader{place, names, read_prefab, {}};
+    LIMN_TRY(expect_keys(json, location, kKeys));
+    EventReader reader{location, names, read_prefab, {}};
     LIMN_TRY(reader.read_times(json));
     for (const JsonMember& member : json.members) {
         LIMN_TRY(reader.read_member(member));

@@ -14,7 +14,7 @@ namespace limn {
 //       "at": 2.0,                   // seconds since the start of the level
 //       "every": 0.5, "times": 10,   // repeated: ten times in total
 //       "key": "G",                  // instead of a time: when this key is pressed, or "released":
-//       "text": "strike the iron",   // what it does, for the help
+//       "text": "strike the iron",   // shown in the help
 //       // assigns fields
 //       "set": {"lamp": {"point_light": {"enabled": false}}},
 //       "set_resources": {"exposure": {"ev": -1}},
@@ -28,16 +28,17 @@ namespace limn {
 // The actions of an event run in the order in which they are written.
 
 /// Reads an entity of "spawn" and its descendants.
-using ReadPrefab = std::function<Result<Prefab>(const JsonValue& node, const JsonPlace& place)>;
+using ReadPrefab =
+    std::function<Result<Prefab>(const JsonValue& node, const JsonLocation& location)>;
 
 /// Reads the fields of a component that `json` names into the value and edits of `action`, which
 /// is Set or Impulse.
 [[nodiscard]] Status read_edits(
-    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, const JsonLocation& location,
     const NameResolver& names, ScriptAction& action);
 
 [[nodiscard]] Result<ScriptEvent> read_event(
-    const JsonValue& json, const JsonPlace& place, const NameResolver& names,
+    const JsonValue& json, const JsonLocation& location, const NameResolver& names,
     const ReadPrefab& read_prefab);
 
 }  // namespace limn

@@ -11,9 +11,9 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kMaxOwners = 3;  // a name that more have says nothing
+constexpr std::size_t kMaxOwners = 3;  // more owners make a poor hint
 
-/// Those of `types` that have a field `name`.
+/// The types that have a field `name`.
 std::vector<std::string_view>
 names_with_field(const std::vector<const ComponentInfo*>& types, std::string_view name) {
     std::vector<std::string_view> names;

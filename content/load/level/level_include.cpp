@@ -28,10 +28,10 @@ std::vector<fs::path> search_folders(const std::string& level_path) {
     return folders;
 }
 
-Result<std::string> find_file(const JsonValue& name, const JsonPlace& place) {
-    LIMN_TRY(expect(name, JsonKind::String, place, "the name of a file"));
+Result<std::string> find_file(const JsonValue& name, const JsonLocation& location) {
+    LIMN_TRY(expect(name, JsonKind::String, location, "the name of a file"));
     std::vector<std::string> known;
-    const std::vector<fs::path> folders = search_folders(std::string(place.file));
+    const std::vector<fs::path> folders = search_folders(std::string(location.file));
     for (const fs::path& folder : folders) {
         std::error_code error;
         const fs::path path = folder / name.text;
@@ -49,7 +49,7 @@ Result<std::string> find_file(const JsonValue& name, const JsonPlace& place) {
     std::sort(known.begin(), known.end());
     const std::vector<std::string_view> names(known.begin(), known.end());
     return error_at(
-        place, name.at, "no file " + in_quotes(name.text),
+        location, name.at, "no file " + in_quotes(name.text),
         "a file beside the level"
             + (known.empty() ? "" : fmt::format(" or one of {}", fmt::join(known, " ")))
             + did_you_mean(name.text, names));
@@ -66,7 +66,7 @@ void set_source(JsonValue& json, const std::string* file) {
     }
 }
 
-/// The section of `level`, which is added if it is missing.
+/// The section of `level`, added if missing.
 JsonValue& section_of(JsonValue& level, std::string_view name) {
     for (JsonMember& member : level.members) {
         if (member.key == name) {
@@ -79,7 +79,7 @@ JsonValue& section_of(JsonValue& level, std::string_view name) {
     return level.members.back().value;
 }
 
-/// Puts `members` before those of `section`, in which equal keys replace them.
+/// Inserts `members` before those of `section`; existing keys take precedence.
 void add_before(JsonValue& section, std::vector<JsonMember> members) {
     std::erase_if(
         members, [&](const JsonMember& member) { return section.find(member.key) != nullptr; });
@@ -97,16 +97,16 @@ include_files(JsonValue& level, const std::string& path, const JsonLimits& limit
     if (names == nullptr || level.kind != JsonKind::Object) {
         return files;
     }
-    const JsonPlace place = {path, "include"};
-    LIMN_TRY(expect(*names, JsonKind::Array, place, "an array of names of files"));
+    const JsonLocation location = {path, "include"};
+    LIMN_TRY(expect(*names, JsonKind::Array, location, "an array of names of files"));
     if (names->items.size() > kMaxFiles) {
         return error_at(
-            place, names->at, fmt::format("{} files", names->items.size()),
+            location, names->at, fmt::format("{} files", names->items.size()),
             fmt::format("at most {}", kMaxFiles));
     }
     const std::vector<JsonValue> items = names->items;
     for (auto name = items.rbegin(); name != items.rend(); ++name) {
-        const std::string file = LIMN_TRY(find_file(*name, place));
+        const std::string file = LIMN_TRY(find_file(*name, location));
         JsonValue library = LIMN_TRY(load_json(file, limits));
         files.push_back(std::make_shared<const std::string>(file));
         set_source(library, files.back().get());
@@ -119,11 +119,12 @@ include_files(JsonValue& level, const std::string& path, const JsonLimits& limit
                 == std::end(kSections)) {
                 return error_at(
                     {file, ""}, member.at, "the key " + in_quotes(member.key),
-                    fmt::format("one of {} in a file that is included", fmt::join(kSections, " ")));
+                    fmt::format("one of {} in an included file", fmt::join(kSections, " ")));
             }
             LIMN_TRY(expect(member.value, JsonKind::Object, {file, member.key}, "an object"));
             JsonValue& section = section_of(level, member.key);
-            if (section.kind == JsonKind::Object) {  // the level's own may be wrong, and is told
+            if (section.kind == JsonKind::Object) {  // else the level's section is invalid, which
+                                                     // is reported later
                 add_before(section, std::move(member.value.members));
             }
         }

@@ -88,8 +88,8 @@ JsonValue without(const JsonValue& json, std::initializer_list<std::string_view>
     return rest;
 }
 
-std::string place_of(const Level& level, SourcePosition at, std::string_view path) {
-    return place_text(level.file, at) + ": " + std::string(path);
+std::string location_of(const Level& level, SourcePosition at, std::string_view path) {
+    return location_text(level.file, at) + ": " + std::string(path);
 }
 
 /// JSON to Level; sections are read in an order in which names are defined before their use.
@@ -102,9 +102,9 @@ class LevelParser {
         level_.name = name.substr(0, name.find('.'));
     }
 
-    /// Where it has errors, also those of the files that it names under `folder`.
+    /// If it has errors, also reports those of the files that it references under `folder`.
     Result<Level> parse(const std::string& folder) {
-        LIMN_TRY(expect(json_, JsonKind::Object, place(""), "a level (an object)"));
+        LIMN_TRY(expect(json_, JsonKind::Object, location(""), "a level (an object)"));
         check_keys();
         level_.title = json_["title"].text;
         read_section("images", &LevelParser::read_image);
@@ -124,7 +124,9 @@ class LevelParser {
     }
 
   private:
-    [[nodiscard]] JsonPlace place(std::string path) const { return {level_.file, std::move(path)}; }
+    [[nodiscard]] JsonLocation location(std::string path) const {
+        return {level_.file, std::move(path)};
+    }
 
     void check_keys() {
         std::vector<std::string_view> names;
@@ -134,7 +136,7 @@ class LevelParser {
         for (const JsonMember& member : json_.members) {
             if (std::find(names.begin(), names.end(), member.key) == names.end()) {
                 errors_.keep(error_at(
-                    place(""), member.at, "the key " + in_quotes(member.key),
+                    location(""), member.at, "the key " + in_quotes(member.key),
                     fmt::format("one of {}", fmt::join(names, " "))
                         + where_it_belongs(member.key, did_you_mean(member.key, names))));
             }
@@ -142,7 +144,7 @@ class LevelParser {
         for (const auto& [name, kind] : kLevelKeys) {
             if (const JsonValue* const value = json_.find(name)) {
                 errors_.keep(expect(
-                    *value, kind, place(std::string(name)),
+                    *value, kind, location(std::string(name)),
                     kind == JsonKind::String   ? "a string"
                     : kind == JsonKind::Object ? "an object"
                                                : "an array"));
@@ -152,17 +154,18 @@ class LevelParser {
     }
 
     void read_section(
-        const char* section, Status (LevelParser::*read)(const JsonMember&, const JsonPlace&)) {
+        const char* section, Status (LevelParser::*read)(const JsonMember&, const JsonLocation&)) {
         for (const JsonMember& member : json_[section].members) {
             if (!errors_.has_room()) {
                 break;
             }
-            errors_.keep((this->*read)(member, place(fmt::format("{}.{}", section, member.key))));
+            errors_.keep(
+                (this->*read)(member, location(fmt::format("{}.{}", section, member.key))));
         }
     }
 
-    /// Whether `name` is in the section, or may be in one that could not be read, but what it names
-    /// had an error: no further one then.
+    /// Whether `name` is in the section, or may be in one that could not be read, but its
+    /// definition had an error; then it reports no further one.
     [[nodiscard]] bool has_failed(const char* section, std::string_view name) const {
         const std::string made(name.substr(0, name.rfind('.')));  // "stone" of "stone.normal"
         const JsonValue& names = json_[section];
@@ -172,11 +175,11 @@ class LevelParser {
                        || (names.find(made) != nullptr && !patterns_.contains(made))));
     }
 
-    /// Of a level that is not loaded any further.
+    /// For a level whose loading ends here.
     void check_files(const std::string& folder) {
         const auto check = [&](const std::string& file, SourcePosition at, std::string_view path) {
             const Result<std::vector<std::byte>> bytes =
-                fetch_uri(file, folder, place_of(level_, at, path), limits_.gltf.max_bytes);
+                fetch_uri(file, folder, location_of(level_, at, path), limits_.gltf.max_bytes);
             errors_.keep(bytes ? Status(Done{}) : bytes.error());
         };
         for (const LevelImage& image : level_.images) {
@@ -189,7 +192,7 @@ class LevelParser {
         }
     }
 
-    Status read_resource(const JsonMember& member, const JsonPlace& at) {
+    Status read_resource(const JsonMember& member, const JsonLocation& at) {
         const ComponentInfo* const info = find_resource(member.key);
         if (info == nullptr || info->ops.construct_default == nullptr) {
             return error_at(
@@ -200,14 +203,14 @@ class LevelParser {
         if (is_internal(*info)) {
             log_warn(
                 "{}: {}: systems keep this resource and overwrite what is written here",
-                place_text(level_.file, member.at), at.path);
+                location_text(level_.file, member.at), at.path);
         }
         level_.resources.push_back(
             LIMN_TRY(read_component(member.value, *info, at, asset_names())));
         return Done{};
     }
 
-    Status read_binding(const JsonMember& member, const JsonPlace& at) {
+    Status read_binding(const JsonMember& member, const JsonLocation& at) {
         const std::vector<std::string_view> actions = action_names();
         if (std::find(actions.begin(), actions.end(), member.key) == actions.end()) {
             return error_at(
@@ -230,7 +233,7 @@ class LevelParser {
         return Done{};
     }
 
-    Status read_image(const JsonMember& member, const JsonPlace& at) {
+    Status read_image(const JsonMember& member, const JsonLocation& at) {
         const JsonValue& json = member.value;
         const JsonValue* const make = json.find("make");
         const JsonValue* const file = json.find("file");
@@ -276,7 +279,7 @@ class LevelParser {
         return Done{};
     }
 
-    Status read_material(const JsonMember& member, const JsonPlace& at) {
+    Status read_material(const JsonMember& member, const JsonLocation& at) {
         const JsonValue& json = member.value;
         Material material;
         if (const JsonValue* const like = json.find("like")) {
@@ -313,7 +316,7 @@ class LevelParser {
             TextureSlot scaled;
             const FieldInfo* const scale =
                 find_field(component_info<TextureSlot>().fields, "scale");
-            LIMN_TRY(read_field(*tiling, *scale, &scaled.scale, place_in(at, "tiling"), names));
+            LIMN_TRY(read_field(*tiling, *scale, &scaled.scale, location_in(at, "tiling"), names));
             for (TextureSlot* const slot :
                  {&material.base_color_texture, &material.metal_rough_texture,
                   &material.normal_texture, &material.occlusion_texture, &material.emission_texture,
@@ -331,7 +334,7 @@ class LevelParser {
         return Done{};
     }
 
-    /// The next material starts as a copy of one whose file is not read yet.
+    /// The next material starts as a copy of one whose file has not been read yet.
     void read_brdf_of_like(std::uint32_t other) {
         const auto found =
             std::find_if(level_.brdfs.begin(), level_.brdfs.end(), [other](const LevelBrdf& brdf) {
@@ -344,7 +347,7 @@ class LevelParser {
         }
     }
 
-    /// What is meant by a pattern that does not exist: another one, or a file.
+    /// A hint for a pattern that does not exist: another one, or a file.
     [[nodiscard]] std::string pattern_hint(const std::string& name) const {
         constexpr const char* kUse = R"("base_color_texture": {"image": )";
         if (images_.contains(name)) {
@@ -358,7 +361,7 @@ class LevelParser {
     }
 
     /// Sets the maps of a pattern, and neutral factors for them.
-    Status read_pattern(const JsonValue& json, const JsonPlace& at, Material& material) {
+    Status read_pattern(const JsonValue& json, const JsonLocation& at, Material& material) {
         const auto pattern =
             json.kind == JsonKind::String ? patterns_.find(json.text) : patterns_.end();
         if (pattern == patterns_.end() && has_failed("images", json.text)) {
@@ -366,7 +369,7 @@ class LevelParser {
         }
         if (pattern == patterns_.end()) {
             return unexpected(
-                json, at, "the name of a made image in \"images\"" + pattern_hint(json.text));
+                json, at, "the name of a generated image in \"images\"" + pattern_hint(json.text));
         }
         const std::uint32_t first = pattern->second;
         material.base_color = Vec4(1);
@@ -379,13 +382,14 @@ class LevelParser {
         return Done{};
     }
 
-    Status read_path(const JsonMember& member, const JsonPlace& at) {
+    Status read_path(const JsonMember& member, const JsonLocation& at) {
         const AnyComponent shape =
             LIMN_TRY(read_component(member.value, component_info<PathShape>(), at, {}));
         Result<PathData> path = make_path(shape.as<PathShape>());
         if (!path) {
             return fail(
-                "{}: {}: {}", place_text(at.file, member.value.at), at.path, path.error().message);
+                "{}: {}: {}", location_text(at.file, member.value.at), at.path,
+                path.error().message);
         }
         path->name = member.key;
         paths_[member.key] = static_cast<std::uint32_t>(level_.assets.paths.size());
@@ -393,7 +397,7 @@ class LevelParser {
         return Done{};
     }
 
-    Status read_mesh(const JsonMember& member, const JsonPlace& at) {
+    Status read_mesh(const JsonMember& member, const JsonLocation& at) {
         const JsonValue* const make = member.value.find("make");
         if (make == nullptr) {
             return unexpected(
@@ -423,7 +427,7 @@ class LevelParser {
         for (std::size_t i = 0; i < nodes.size() && errors_.has_room(); ++i) {
             entities.add(nodes[i], fmt::format("entities[{}]", i));
             if (entities.is_full()) {
-                return;  // what is missing would be an error of what names it
+                return;  // missing definitions would cause errors where they are used
             }
         }
         entities.resolve_names();
@@ -447,13 +451,13 @@ class LevelParser {
         names.all = [&entities, assets = names.all](std::string_view kind) {
             return kind == "entity" ? entities.names() : assets(kind);
         };
-        const ReadPrefab read_prefab = [&](const JsonValue& node, const JsonPlace& at) {
+        const ReadPrefab read_prefab = [&](const JsonValue& node, const JsonLocation& at) {
             return entities.read_prefab(node, at.path);
         };
         const std::vector<JsonValue>& events = json_["events"].items;
         for (std::size_t i = 0; i < events.size() && errors_.has_room(); ++i) {
             Result<ScriptEvent> event =
-                read_event(events[i], place(fmt::format("events[{}]", i)), names, read_prefab);
+                read_event(events[i], location(fmt::format("events[{}]", i)), names, read_prefab);
             if (!event) {
                 errors_.keep(event.error());
                 continue;
@@ -464,7 +468,7 @@ class LevelParser {
         }
     }
 
-    /// So that the player reads the key of an event.
+    /// Registers the key of an event for input.
     void bind_key(const ScriptEvent& event, const std::string& text) {
         if (event.key.empty()) {
             return;
@@ -541,7 +545,7 @@ class LevelParser {
             std::vector<std::string_view> known = sorted_names(*all);
             for (const JsonMember& member : json_[section_of(kind)].members) {
                 if (!all->contains(member.key) && !patterns_.contains(member.key)) {
-                    known.emplace_back(member.key);  // it exists, though it has an error
+                    known.emplace_back(member.key);  // it exists, despite its error
                 }
             }
             return known;
@@ -552,7 +556,7 @@ class LevelParser {
     const JsonValue& json_;
     LevelLimits limits_;
     ErrorList errors_;
-    bool has_bad_keys_ = false;  // of the level itself: whole sections are missing
+    bool has_bad_keys_ = false;  // of the level: whole sections are missing
     Level level_;
     Names images_;
     Names materials_;
@@ -574,7 +578,7 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     if (pixels > pixels_left) {
         return fail(
             "{}: found {} pixels, expected at most {} more in this level",
-            place_of(level, image.at, "images." + image.name), pixels, pixels_left);
+            location_of(level, image.at, "images." + image.name), pixels, pixels_left);
     }
     pixels_left -= pixels;
     PatternMaps maps = made.pattern(*image.pattern, image.parameters);
@@ -589,18 +593,18 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
 Status load_image_file(
     Level& level, const LevelImage& image, const std::string& folder, const LevelLimits& limits,
     std::uint64_t& pixels_left) {
-    const std::string place = place_of(level, image.at, "images." + image.name);
+    const std::string location = location_of(level, image.at, "images." + image.name);
     const std::vector<std::byte> bytes =
-        LIMN_TRY(fetch_uri(image.file, folder, place, limits.gltf.max_bytes));
+        LIMN_TRY(fetch_uri(image.file, folder, location, limits.gltf.max_bytes));
     ImageLimits image_limits = limits.gltf.image;
     image_limits.max_pixels =
         std::min(image_limits.max_pixels, static_cast<std::int64_t>(pixels_left));
     ImageData data = LIMN_TRY(
-        decode_image(bytes, fmt::format("{}: {}", place, image.file), image.srgb, image_limits));
+        decode_image(bytes, fmt::format("{}: {}", location, image.file), image.srgb, image_limits));
     pixels_left -= static_cast<std::uint64_t>(data.width) * static_cast<std::uint64_t>(data.height);
     if (const std::size_t bad = replace_non_finite(data); bad > 0) {
         log_warn(
-            "{}: {}: {} values are not finite; NaN became 0, infinity 65504", place, image.file,
+            "{}: {}: {} values are not finite; NaN became 0, infinity 65504", location, image.file,
             bad);
     }
     data.name = image.name;
@@ -612,7 +616,7 @@ Status load_image_file(
 Status load_brdf_file(
     Level& level, const LevelBrdf& brdf, const std::string& folder, const LevelLimits& limits) {
     const std::vector<std::byte> bytes = LIMN_TRY(
-        fetch_uri(brdf.file, folder, place_of(level, brdf.at, "brdf"), limits.gltf.max_bytes));
+        fetch_uri(brdf.file, folder, location_of(level, brdf.at, "brdf"), limits.gltf.max_bytes));
     const std::string path = (std::filesystem::path(folder) / brdf.file).string();
     const BrdfFit fit =
         LIMN_TRY(parse_brdf({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path));
@@ -622,7 +626,7 @@ Status load_brdf_file(
     return Done{};
 }
 
-/// Skeleton and skin have the name of the mesh, clips begin with it: "fox.walk".
+/// Skeleton and skin get the name of the mesh, clips begin with it: "fox.walk".
 void add_rig(Assets& assets, const std::string& name, MeshRig rig) {
     rig.skeleton.name = name;
     rig.skin.name = name;
@@ -651,7 +655,7 @@ Status make_meshes(Level& level, const LevelLimits& limits, MadeAssets& made) {
         }
     }
     for (std::uint32_t i = 0; i < level.meshes.size(); ++i) {
-        add_piece_meshes(level.assets, {i});  // after those whose ids are their places in the file
+        add_piece_meshes(level.assets, {i});  // after those whose ids are their indices in the file
     }
     return Done{};
 }
@@ -659,7 +663,7 @@ Status make_meshes(Level& level, const LevelLimits& limits, MadeAssets& made) {
 Result<GltfScene> load_scene_file(
     const Level& level, const GltfUse& use, const std::string& folder, const LevelLimits& limits) {
     const std::vector<std::byte> bytes = LIMN_TRY(
-        fetch_uri(use.file, folder, place_of(level, use.at, "gltf"), limits.gltf.max_bytes));
+        fetch_uri(use.file, folder, location_of(level, use.at, "gltf"), limits.gltf.max_bytes));
     const std::filesystem::path path = std::filesystem::path(folder) / use.file;
     return parse_gltf(bytes, path.string(), path.parent_path().string(), limits.gltf);
 }

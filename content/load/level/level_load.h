@@ -45,7 +45,7 @@ class World;
 //         "dull gold": {"like": "gold", "roughness": 0.6},      // a copy of an earlier one
 //         "marble": {"pattern": "floor", "tiling": [4, 4]}      // all maps of a pattern
 //       },
-//       "include": ["fire.effect.json"],        // its prefabs and what they use: level_include.h
+//       "include": ["fire.effect.json"],        // its prefabs and their assets: level_include.h
 //       "meshes": {"pot": {"make": "teapot", "divisions": 12},
 //                  "fox": {"make": "creature"}},   // with skeleton and skin "fox", "fox.run" ...
 //       "prefabs": {"lamp": NODE},
@@ -90,7 +90,7 @@ struct LevelLimits {
     GltfLimits gltf = {};
 };
 
-/// A name that is resolved when all files are read.
+/// A name that is resolved after all files are read.
 struct DeferredName {
     std::string name;
     SourcePosition at;
@@ -137,10 +137,10 @@ struct Level {
     /// Entities outside the action's own prefab are level_entity(index in `entities`).
     EventList events;
     SourceFiles included;  ///< names of included files, which positions refer to
-    std::vector<SourcePosition> entity_positions;  ///< where each of `entities` is written
-    std::vector<SourcePosition> event_positions;   ///< and each of `events`
+    std::vector<SourcePosition> entity_positions;  ///< of each of `entities`
+    std::vector<SourcePosition> event_positions;   ///< of each of `events`
     std::vector<LevelShow> shows;
-    std::optional<LevelShow> show;  ///< the one that was chosen and is applied
+    std::optional<LevelShow> show;  ///< the chosen one, already applied
 
     /// Names of skeletons, skins and clips; components hold indices into this list until
     /// load_level_assets has read the files that define them.
@@ -156,13 +156,13 @@ struct Level {
 [[nodiscard]] Result<Level>
 parse_level(std::string_view text, const std::string& file, const LevelLimits& limits = {});
 
-/// Fills `assets` and `scenes`; files are resolved under `folder`. Generates what `made` does not
-/// have.
+/// Fills `assets` and `scenes`; files are resolved under `folder`. Generates assets that are not in
+/// `made`.
 [[nodiscard]] Status load_level_assets(
     Level& level, const std::string& folder, const LevelLimits& limits = {},
     MadeAssets* made = nullptr);
 
-/// Both, for the file `path`, with the chosen show applied before.
+/// Both, for the file `path`, after applying the chosen show.
 [[nodiscard]] Result<Level> load_level(
     const std::string& path, const LevelLimits& limits = {}, const ShowChoice& choice = {},
     MadeAssets* made = nullptr);
@@ -171,9 +171,9 @@ parse_level(std::string_view text, const std::string& file, const LevelLimits& l
 /// batch, inserts the EventList. Returns the entities in the order of `level.entities`.
 std::vector<Entity> spawn_level(World& world, Level level);
 
-/// What update_level compares with, after load_level; `entities` are added when they are spawned.
+/// The state that update_level compares with, after load_level; spawning adds `entities`.
 [[nodiscard]] LevelFields remember_fields(const Level& level, const std::string& path);
-/// Indices of level entities in a component become the entities that were spawned.
+/// Replaces indices of level entities in a component by the spawned entities.
 void localize_component(AnyComponent& component, const std::vector<Entity>& entities);
 /// Replaces the events of a level that was spawned as `entities`, into a world without assets.
 void replace_events(World& world, EventList events, const std::vector<Entity>& entities);

@@ -103,15 +103,15 @@ class DeferredNames {
             std::vector<AnyComponent>& components = prefab.entities[i].components;
             const auto* const name = find_in<Name>(components);
             for (AnyComponent& component : components) {
-                const std::string place = fmt::format(
+                const std::string location = fmt::format(
                     "entity {}: {}", name != nullptr ? in_quotes(name->text) : std::to_string(i),
                     component.info().name);
-                resolve(component, place, is_level ? scene_of(i) : std::nullopt);
+                resolve(component, location, is_level ? scene_of(i) : std::nullopt);
             }
         }
     }
 
-    void resolve(AnyComponent& component, std::string_view place, SceneNumber own) {
+    void resolve(AnyComponent& component, std::string_view location, SceneNumber own) {
         for_each_asset(
             component.info().fields, component.data(),
             [&](std::string_view kind, std::uint32_t& index) {
@@ -127,8 +127,8 @@ class DeferredNames {
                 }
                 const std::vector<std::string_view> known = known_names(lists->second, own);
                 errors_.keep(fail(
-                    "{}: {}: found the {} {}, expected {}{}", place_text(level_.file, at), place,
-                    kind, in_quotes(name),
+                    "{}: {}: found the {} {}, expected {}{}", location_text(level_.file, at),
+                    location, kind, in_quotes(name),
                     known.empty() ? "one of a glTF file or a generated mesh, which have none"
                                   : "one of " + some_of(known),
                     did_you_mean(name, known)));

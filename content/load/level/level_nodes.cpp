@@ -17,7 +17,8 @@ namespace limn {
 namespace {
 
 Status read_change(
-    const JsonMember& member, const JsonPlace& at, const NameResolver& names, NodeChange& change) {
+    const JsonMember& member, const JsonLocation& at, const NameResolver& names,
+    NodeChange& change) {
     const ComponentInfo* const info = find_component(member.key);
     if (info == nullptr || info->ops.construct_default == nullptr
         || info->ops.construct_copy == nullptr || is_internal(*info)) {
@@ -30,10 +31,10 @@ Status read_change(
     if (member.value.kind == JsonKind::Null) {
         return Done{};
     }
-    return read_edits(member.value, *info, place_in(at, member.key), names, change.set);
+    return read_edits(member.value, *info, location_in(at, member.key), names, change.set);
 }
 
-/// The entities that files made below `entity`, but not below other entities of the level.
+/// The entities created by files below `entity`, but not below other entities of the level.
 void collect_nodes(World& world, Entity entity, std::vector<Entity>& nodes) {
     for (const Entity child : children_of(world, entity)) {
         if (world.has<FromGltf>(child)) {
@@ -48,7 +49,7 @@ bool is_named(const World& world, Entity entity, std::string_view name) {
     return own != nullptr && own->text == name;
 }
 
-/// Whether it is one of several parts of a node, with a material of that name.
+/// Whether it is one of several parts of a node and has a material of that name.
 bool is_part(const World& world, Entity entity, std::string_view material) {
     const auto* const instance = world.find<MeshInstance>(entity);
     const auto* const assets = world.find_resource<Assets>();
@@ -57,14 +58,14 @@ bool is_part(const World& world, Entity entity, std::string_view material) {
            && assets->materials[instance->material.index].name == material;
 }
 
-/// Whether a node of several parts has one with a material of that name.
+/// Whether one of several parts of a node has a material of that name.
 bool has_part(const GltfScene& scene, const GltfNode& node, std::string_view material) {
     return node.parts.size() > 1 && std::ranges::any_of(node.parts, [&](const GltfPart& part) {
                return scene.materials[part.material].name == material;
            });
 }
 
-/// The entities of a node that have the component, or get it.
+/// The entities of a node that have or get the component.
 std::vector<Entity> find_targets(World& world, Entity node, const ComponentInfo& info) {
     std::vector<Entity> targets;
     if (&info == &component_info<MeshInstance>() && !world.has<MeshInstance>(node)) {
@@ -97,13 +98,13 @@ void change_component(World& world, Entity entity, const NodeChange& change) {
 }  // namespace
 
 Status read_node_changes(
-    const JsonValue& json, std::uint32_t entity, const JsonPlace& place, const NameResolver& names,
-    std::vector<NodeChange>& changes) {
+    const JsonValue& json, std::uint32_t entity, const JsonLocation& location,
+    const NameResolver& names, std::vector<NodeChange>& changes) {
     NameResolver assets = names;
     assets.entity = nullptr;
-    LIMN_TRY(expect(json, JsonKind::Object, place, "an object: nodes of the glTF file by name"));
+    LIMN_TRY(expect(json, JsonKind::Object, location, "an object: nodes of the glTF file by name"));
     for (const JsonMember& node : json.members) {
-        const JsonPlace at = place_in(place, node.key);
+        const JsonLocation at = location_in(location, node.key);
         LIMN_TRY(expect(node.value, JsonKind::Object, at, "an object: components by name"));
         for (const JsonMember& component : node.value.members) {
             NodeChange change{entity, node.key, node.at, nullptr, {}};
@@ -145,7 +146,7 @@ void apply_node_changes(
         const NodeChange* change;
         Entity entity;
     };
-    std::vector<Target> targets;  // all found before the first changes
+    std::vector<Target> targets;  // all are found before the first is changed
     std::vector<Entity> nodes;
     for (std::size_t i = 0; i < changes.size(); ++i) {
         if (i == 0 || changes[i].entity != changes[i - 1].entity) {

@@ -15,8 +15,8 @@ namespace limn {
 class World;
 struct Level;
 
-// What a level changes of the nodes of a glTF file that it places: "nodes" of the entity with
-// "gltf", by the names of the nodes.
+// Changes that a level makes to the nodes of a glTF file: "nodes" of the entity with "gltf", by the
+// names of the nodes.
 //
 //     {
 //       "name": "left lamp", "gltf": "lamp.glb",
@@ -24,13 +24,13 @@ struct Level;
 //         "Bulb": {"point_light": {"intensity": 40}},  // other fields keep the file's values
 //         "Glass": {"mesh_instance": {"material": "amber"}, "no_shadow": {}},
 //         "Sun": {"directional_light": null},          // removes it
-//         "skin": {"wrinkle_surface": {}}              // of a node's parts, that of this material
+//         "skin": {"wrinkle_surface": {}}              // the part of a node with this material
 //       }
 //     }
 
 /// Sets fields of a component of a node, or removes it.
 struct NodeChange {
-    std::uint32_t entity = 0;  ///< that places the file: index into the level's entities
+    std::uint32_t entity = 0;  ///< that references the file: index into the level's entities
     std::string node;
     SourcePosition at;                    ///< of the name
     const ComponentInfo* info = nullptr;  ///< of the component
@@ -40,15 +40,15 @@ struct NodeChange {
 /// Appends the changes of the object `json`, the "nodes" of `entity`. Names of entities cannot be
 /// used.
 [[nodiscard]] Status read_node_changes(
-    const JsonValue& json, std::uint32_t entity, const JsonPlace& place, const NameResolver& names,
-    std::vector<NodeChange>& changes);
+    const JsonValue& json, std::uint32_t entity, const JsonLocation& location,
+    const NameResolver& names, std::vector<NodeChange>& changes);
 
-/// Fails where a file has no node of that name; others become entities, even joints.
+/// Fails if a file has no node of that name. Changed nodes become entities, even joints.
 [[nodiscard]] Status find_changed_nodes(Level& level);
 
-/// Changes the nodes below `entities`, which spawn_level has created. All nodes of a name change,
-/// and all parts, of nodes of several, whose material has that name. A mesh_instance of a node of
-/// several parts is that of each part.
+/// Changes the nodes below `entities`, which spawn_level has created. Changes all nodes of a name,
+/// and all parts of multi-part nodes whose material has that name. A mesh_instance of a multi-part
+/// node applies to each part.
 void apply_node_changes(
     World& world, std::span<const NodeChange> changes, std::span<const Entity> entities);
 

@@ -22,25 +22,25 @@ constexpr std::string_view kVariationKeys[] = {"by", "from", "to", "pick", "nois
 /// of the component.
 Result<std::vector<double>> read_lanes(
     const JsonValue& json, const Variation& variation, const AnyComponent& component,
-    const JsonPlace& place, const NameResolver& names) {
+    const JsonLocation& location, const NameResolver& names) {
     const FieldInfo& field = *variation.field;
     std::vector<double> lanes;
     if (field.type == FieldType::Quat) {
         if (json.items.size() != 3) {
-            return unexpected(json, place, "angles [yaw, pitch, roll] in degrees");
+            return unexpected(json, location, "angles [yaw, pitch, roll] in degrees");
         }
         FieldInfo angle;
         angle.meta = {.unit = "deg", .min = -1e6, .max = 1e6};
         angle.type = FieldType::Double;
         lanes.resize(json.items.size());
         for (std::size_t i = 0; i < lanes.size(); ++i) {
-            LIMN_TRY(read_field(json.items[i], angle, &lanes[i], item_in(place, i), names));
+            LIMN_TRY(read_field(json.items[i], angle, &lanes[i], item_in(location, i), names));
         }
         return lanes;
     }
     AnyComponent scratch = component;
     void* const data = static_cast<std::byte*>(scratch.data()) + variation.offset;
-    LIMN_TRY(read_field(json, field, data, place, names));
+    LIMN_TRY(read_field(json, field, data, location, names));
     for (int lane = 0; lane < number_count(field.type); ++lane) {
         lanes.push_back(get_number(field, data, lane));
     }
@@ -48,43 +48,43 @@ Result<std::vector<double>> read_lanes(
 }
 
 Status read_picks(
-    const JsonValue& json, const AnyComponent& component, const JsonPlace& place,
+    const JsonValue& json, const AnyComponent& component, const JsonLocation& location,
     const NameResolver& names, Variation& variation) {
     if (json.kind != JsonKind::Array || json.items.empty()) {
-        return unexpected(json, place, "an array of values");
+        return unexpected(json, location, "an array of values");
     }
     for (const JsonValue& item : json.items) {
         AnyComponent& pick = variation.picks.emplace_back(component);
         void* const data = static_cast<std::byte*>(pick.data()) + variation.offset;
-        LIMN_TRY(read_field(item, *variation.field, data, place, names));
+        LIMN_TRY(read_field(item, *variation.field, data, location, names));
     }
     return Done{};
 }
 
-Status read_options(const JsonValue& json, const JsonPlace& place, Variation& variation) {
+Status read_options(const JsonValue& json, const JsonLocation& location, Variation& variation) {
     if (const JsonValue* const by = json.find("by")) {
         const auto name = std::find(std::begin(kByNames), std::end(kByNames), by->text);
         if (by->kind != JsonKind::String || name == std::end(kByNames)) {
             return unexpected(
-                *by, place,
+                *by, location,
                 fmt::format("one of {}", fmt::join(kByNames, " "))
                     + did_you_mean(by->text, kByNames));
         }
         variation.by = static_cast<VaryBy>(name - std::begin(kByNames));
     }
     if (const JsonValue* const noise = json.find("noise")) {
-        variation.noise = static_cast<float>(LIMN_TRY(expect_number(*noise, 0.0, 1.0, place)));
+        variation.noise = static_cast<float>(LIMN_TRY(expect_number(*noise, 0.0, 1.0, location)));
     }
     if (const JsonValue* const times = json.find("times")) {
-        variation.times = static_cast<float>(LIMN_TRY(expect_number(*times, 0.001, 1e6, place)));
+        variation.times = static_cast<float>(LIMN_TRY(expect_number(*times, 0.001, 1e6, location)));
     }
     return Done{};
 }
 
 /// Resolves "sway.phase" to a component and its field.
 Status find_varied_field(
-    const JsonMember& member, std::span<const AnyComponent> components, const JsonPlace& place,
-    Variation& variation, const AnyComponent*& component) {
+    const JsonMember& member, std::span<const AnyComponent> components,
+    const JsonLocation& location, Variation& variation, const AnyComponent*& component) {
     const std::size_t dot = std::min(member.key.find('.'), member.key.size());
     const std::string_view name = std::string_view(member.key).substr(0, dot);
     std::vector<std::string_view> present;
@@ -96,7 +96,7 @@ Status find_varied_field(
     }
     if (component == nullptr) {
         return error_at(
-            place, member.at, "the component " + in_quotes(name),
+            location, member.at, "the component " + in_quotes(name),
             fmt::format("one that the entity has: {}", fmt::join(present, " "))
                 + did_you_mean(name, present));
     }
@@ -106,7 +106,7 @@ Status find_varied_field(
         std::string_view(member.key).substr(std::min(dot + 1, member.key.size())));
     if (!field || field->field->shape != FieldShape::One) {
         return error_at(
-            place, member.at, "the field " + in_quotes(member.key),
+            location, member.at, "the field " + in_quotes(member.key),
             field ? "a field that is not a list"
                   : "a field of the component: " + field.error().message);
     }
@@ -119,31 +119,31 @@ Status find_varied_field(
 }
 
 Result<Variation> read_variation(
-    const JsonMember& member, std::span<const AnyComponent> components, const JsonPlace& outer,
+    const JsonMember& member, std::span<const AnyComponent> components, const JsonLocation& outer,
     const NameResolver& names) {
-    const JsonPlace place = place_in(outer, member.key);
+    const JsonLocation location = location_in(outer, member.key);
     Variation variation;
     const AnyComponent* component = nullptr;
-    LIMN_TRY(find_varied_field(member, components, place, variation, component));
-    LIMN_TRY(expect_keys(member.value, place, kVariationKeys));
-    LIMN_TRY(read_options(member.value, place, variation));
+    LIMN_TRY(find_varied_field(member, components, location, variation, component));
+    LIMN_TRY(expect_keys(member.value, location, kVariationKeys));
+    LIMN_TRY(read_options(member.value, location, variation));
     const JsonValue* const pick = member.value.find("pick");
     const JsonValue* const from = member.value.find("from");
     const JsonValue* const to = member.value.find("to");
     if ((pick != nullptr) == (from != nullptr) || (from != nullptr) != (to != nullptr)) {
-        return error_at(place, member.value.at, "other keys", "either pick, or from and to");
+        return error_at(location, member.value.at, "other keys", "either pick, or from and to");
     }
     if (pick != nullptr) {
-        LIMN_TRY(read_picks(*pick, *component, place, names, variation));
+        LIMN_TRY(read_picks(*pick, *component, location, names, variation));
         return variation;
     }
     if (number_count(variation.field->type) == 0) {
         return error_at(
-            place, member.value.at, "from and to", "pick, since the field is not numeric");
+            location, member.value.at, "from and to", "pick, since the field is not numeric");
     }
     for (const auto& [json, lanes] :
          {std::pair(from, &variation.from), std::pair(to, &variation.to)}) {
-        *lanes = LIMN_TRY(read_lanes(*json, variation, *component, place, names));
+        *lanes = LIMN_TRY(read_lanes(*json, variation, *component, location, names));
     }
     return variation;
 }
@@ -151,7 +151,7 @@ Result<Variation> read_variation(
 /// Position of a copy in the grid.
 struct Cell {
     IVec3 at;
-    Vec3 share;  ///< 0 .. 1 along each axis; 0 where there is one copy only
+    Vec3 parameter;  ///< 0 .. 1 along each axis; 0 if there is only one copy
 };
 
 Cell cell_of(const RepeatGrid& grid, std::uint64_t index) {
@@ -160,7 +160,7 @@ Cell cell_of(const RepeatGrid& grid, std::uint64_t index) {
         const auto count = static_cast<std::uint64_t>(grid.count[axis]);
         cell.at[axis] = static_cast<int>(index % count);
         index /= count;
-        cell.share[axis] =
+        cell.parameter[axis] =
             count > 1 ? static_cast<float>(cell.at[axis]) / static_cast<float>(count - 1) : 0.0f;
     }
     return cell;
@@ -179,11 +179,11 @@ float parameter_of(
     case VaryBy::Random:
         return random;
     case VaryBy::X:
-        return cell.share.x;
+        return cell.parameter.x;
     case VaryBy::Y:
-        return cell.share.y;
+        return cell.parameter.y;
     case VaryBy::Z:
-        return cell.share.z;
+        return cell.parameter.z;
     case VaryBy::Radius: {
         const Vec3 extent = 0.5f * Vec3(grid.count - IVec3(1)) * grid.spacing;
         const float farthest = glm::length(extent);
@@ -234,8 +234,8 @@ void apply_variation(
     const bool is_per_lane = variation.by == VaryBy::Random && !field.meta.color;
     std::vector<double> lanes(variation.from.size());
     for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
-        const double share = static_cast<double>(lane > 0 && is_per_lane ? draw() : t);
-        lanes[lane] = variation.from[lane] + (variation.to[lane] - variation.from[lane]) * share;
+        const double weight = static_cast<double>(lane > 0 && is_per_lane ? draw() : t);
+        lanes[lane] = variation.from[lane] + (variation.to[lane] - variation.from[lane]) * weight;
     }
     if (field.type == FieldType::Quat) {
         *static_cast<Quat*>(data) = rotation_from_degrees(Vec3(lanes[0], lanes[1], lanes[2]));
@@ -250,7 +250,7 @@ void apply_variation(
     }
 }
 
-void move_to_place(const Repeat& repeat, std::uint64_t index, std::span<AnyComponent> components) {
+void move_copy(const Repeat& repeat, std::uint64_t index, std::span<AnyComponent> components) {
     auto* const transform = find_in<Transform>(components);
     if (transform == nullptr) {
         return;
@@ -284,18 +284,18 @@ std::uint64_t repeat_count(const Repeat& repeat) {
 }
 
 Result<Repeat> read_repeat(
-    const JsonValue& json, std::span<const AnyComponent> components, const JsonPlace& place,
+    const JsonValue& json, std::span<const AnyComponent> components, const JsonLocation& location,
     const NameResolver& names) {
     Repeat repeat;
-    LIMN_TRY(expect(json, JsonKind::Object, place, "an object"));
+    LIMN_TRY(expect(json, JsonKind::Object, location, "an object"));
     JsonValue grid = json;
     std::erase_if(grid.members, [](const JsonMember& member) { return member.key == "vary"; });
-    LIMN_TRY(read_struct(grid, repeat.grid, place, names));
+    LIMN_TRY(read_struct(grid, repeat.grid, location, names));
     const JsonValue* const vary = json.find("vary");
     if (vary == nullptr) {
         return repeat;
     }
-    const JsonPlace inner = place_in(place, "vary");
+    const JsonLocation inner = location_in(location, "vary");
     LIMN_TRY(expect(*vary, JsonKind::Object, inner, "an object"));
     for (const JsonMember& member : vary->members) {
         repeat.variations.push_back(LIMN_TRY(read_variation(member, components, inner, names)));
@@ -309,7 +309,7 @@ void apply_repeat(const Repeat& repeat, std::uint64_t index, std::span<AnyCompon
             apply_variation(variation, repeat, index, *component);
         }
     }
-    move_to_place(repeat, index, components);
+    move_copy(repeat, index, components);
 }
 
 }  // namespace limn

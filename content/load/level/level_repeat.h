@@ -36,11 +36,10 @@ namespace limn {
 // interpolates the field between `from` and `to`, or selects an item of `pick`. `by` chooses the
 // parameter:
 //
-//     random  a random number (the default); each element of a vector that is no color has its own
-//     x y z   from the first to the last copy along that axis
-//     radius  from the center to the farthest copy
-//     angle   about +y, from -z over -x, +z and +x
-//     index   from the first to the last copy
+//     random  a random number (the default); each element of a vector other than a color gets its
+//     own x y z   from the first to the last copy along that axis radius  from the center to the
+//     farthest copy angle   about +y, from -z over -x, +z and +x index   from the first to the last
+//     copy
 //
 // `noise` adds a random number of that width; `times` repeats the range 0 .. 1 that many times.
 // Rotations are [yaw, pitch, roll] in degrees.
@@ -90,7 +89,7 @@ struct Repeat {
 
 /// `components` are those of the entity, including those of its prefab.
 [[nodiscard]] Result<Repeat> read_repeat(
-    const JsonValue& json, std::span<const AnyComponent> components, const JsonPlace& place,
+    const JsonValue& json, std::span<const AnyComponent> components, const JsonLocation& location,
     const NameResolver& names);
 
 /// Moves copy `index` to its position and varies its fields. A Sway moves with the Transform.

@@ -24,7 +24,7 @@ namespace {
 
 using Members = std::vector<JsonMember>;
 
-constexpr const char* kColorName = "name of a color";  // a definition
+constexpr const char* kColorName = "name of a color";  // name of a definition
 
 JsonMember schema_member(std::string key, JsonValue value) {
     return {std::move(key), {}, std::move(value)};
@@ -38,7 +38,7 @@ JsonValue number(double x) {
     return json_of(x);
 }
 
-/// A limit of a field: 0.1 where it is the float nearest to that.
+/// A limit of a field, with the fewest digits: 0.1 for the float nearest to it.
 JsonValue limit(double x) {
     const float as_float = static_cast<float>(x);
     return as_float == x ? json_of(as_float) : json_of(x);
@@ -88,7 +88,7 @@ JsonValue constant(std::string_view word) {
     return json_object({schema_member("const", schema_text(word))});
 }
 
-/// The schema with what an editor shows of it.
+/// The schema with a description for editors.
 JsonValue described(JsonValue schema, std::string_view words) {
     schema.members.push_back(schema_member("description", schema_text(words)));
     return schema;
@@ -137,14 +137,14 @@ JsonValue schema_of_number(const FieldInfo& field) {
     return schema;
 }
 
-/// Seconds 0 .. max, which may have a unit.
+/// Seconds 0 .. max, optionally with a unit.
 JsonValue schema_of_time(double max) {
     FieldInfo time;
     time.meta = {.unit = "s", .min = 0, .max = max};
     return schema_of_number(time);
 }
 
-/// `defaults` is a struct with these fields, or null where there is none.
+/// `defaults` is a struct with these fields, or null if there are none.
 JsonValue schema_of_fields(const std::vector<FieldInfo>& fields, const void* defaults);
 
 JsonValue schema_of_element(const FieldInfo& field, const void* defaults) {
@@ -249,7 +249,7 @@ JsonValue schema_of_images() {
              "file", described(of_type("string"), "a PNG, JPEG, EXR, HDR ... beside the level")),
          schema_member(
              "srgb", described(
-                         of_type("boolean"), "whether it holds colors; false for normals and masks",
+                         of_type("boolean"), "true for colors; false for normals and masks",
                          json_of(true)))},
         {schema_text("file")}));
     return map_of(any_of(std::move(schemas)));
@@ -280,7 +280,7 @@ JsonValue schema_of_repeat() {
         {schema_member(
              "by", described(
                        one_of_words({"random", "x", "y", "z", "radius", "angle", "index"}),
-                       "what of a copy decides", schema_text("random"))),
+                       "property of the copy that chooses the value", schema_text("random"))),
          schema_member(
              "from", described(json_object(), "value of the first copy, or smallest value")),
          schema_member("to", described(json_object(), "value of the last copy, or largest value")),
@@ -289,12 +289,12 @@ JsonValue schema_of_repeat() {
                          of_type("array", {schema_member("minItems", count(1))}),
                          "one of these values for each copy, instead of from and to")),
          schema_member(
-             "noise", described(
-                          of_type(
-                              "number", {schema_member("minimum", number(0)),
-                                         schema_member("maximum", number(1))}),
-                          "width of a random number that is added to the place between from and to",
-                          number(0))),
+             "noise",
+             described(
+                 of_type(
+                     "number",
+                     {schema_member("minimum", number(0)), schema_member("maximum", number(1))}),
+                 "width of a random offset of the parameter between from and to", number(0))),
          schema_member(
              "times", described(
                           of_type("number", {schema_member("exclusiveMinimum", number(0))}),
@@ -302,7 +302,7 @@ JsonValue schema_of_repeat() {
     properties.push_back(schema_member(
         "vary", described(
                     map_of(std::move(variation)),
-                    "fields that differ from copy to copy, by component.field: \"sway.phase\"")));
+                    "fields that vary from copy to copy, by component.field: \"sway.phase\"")));
     return described(
         closed_object(std::move(properties)), "copies of the node in a grid or a ring");
 }
@@ -324,16 +324,19 @@ JsonValue schema_of_components(Members more, bool may_be_null) {
 JsonValue schema_of_node() {
     return schema_of_components(
         {schema_member(
-             "name", described(
-                         of_type("string", {schema_member("pattern", schema_text("^[^.]+$"))}),
-                         "by which events, targets and --set find it; without dots, unique among "
-                         "siblings")),
-         schema_member(
-             "prefab",
+             "name",
              described(
-                 of_type("string"), "a node of \"prefabs\", whose fields this one overrides")),
+                 of_type("string", {schema_member("pattern", schema_text("^[^.]+$"))}),
+                 "by which events, targets and --set refer to it; without dots, unique among "
+                 "siblings")),
          schema_member(
-             "gltf", described(of_type("string"), "a .gltf or .glb beside the level, placed here")),
+             "prefab", described(
+                           of_type("string"),
+                           "a node of \"prefabs\" to start from; other fields override its own")),
+         schema_member(
+             "gltf", described(
+                         of_type("string"),
+                         "a .gltf or .glb file beside the level, whose roots become children")),
          schema_member(
              "nodes",
              described(
@@ -345,8 +348,7 @@ JsonValue schema_of_node() {
                            "copies of it in a grid or a ring")),
          schema_member(
              "children",
-             described(
-                 array_of(reference("node")), "nodes that move along, placed relative to it"))},
+             described(array_of(reference("node")), "child nodes, in its local space"))},
         true);
 }
 
@@ -366,17 +368,20 @@ JsonValue schema_of_event() {
     return closed_object(
         {schema_member("at", time("since the start of the level [s]")),
          schema_member(
-             "key",
-             described(one_of_words(key_names()), "when this key is pressed, instead of a time")),
+             "key", described(
+                        one_of_words(key_names()),
+                        "happens when this key is pressed, instead of at a time")),
          schema_member(
-             "released", described(one_of_words(key_names()), "when this key is released")),
+             "released", described(one_of_words(key_names()), "happens when this key is released")),
          schema_member(
-             "text", described(of_type("string"), "what the key does, for the help of the window")),
-         schema_member("every", time("period of repetitions [s]; without, it occurs once")),
+             "text",
+             described(of_type("string"), "what the key does, shown in the help of the window")),
+         schema_member(
+             "every", time("period of repetition [s]; without it, the event happens once")),
          schema_member(
              "times", described(
                           of_type("integer", {schema_member("minimum", number(1))}),
-                          "how often it occurs, with \"every\"; without, for ever")),
+                          "number of repetitions of \"every\"; without it, unlimited")),
          schema_member(
              "set", described(
                         map_of(schema_of_components({}, false)),
@@ -387,19 +392,19 @@ JsonValue schema_of_event() {
          schema_member(
              "impulse", described(
                             map_of(map_of(of_type("object"))),
-                            "what is added to fields, by entity, component and field")),
+                            "amounts added to fields, by entity, component and field")),
          schema_member(
              "impulse_resources",
              described(
-                 map_of(of_type("object")), "what is added to fields, by resource and field")),
+                 map_of(of_type("object")), "amounts added to fields, by resource and field")),
          schema_member(
              "spawn", described(
                           array_of(reference("node")),
-                          "nodes that appear, of prefabs or with the level's meshes")),
+                          "new nodes, from prefabs or with the level's meshes")),
          schema_member(
-             "destroy", described(
-                            array_of(of_type("string")),
-                            "entities that vanish, with their children, by name"))},
+             "destroy",
+             described(
+                 array_of(of_type("string")), "entities to remove, with their children, by name"))},
         {});
 }
 
@@ -410,14 +415,14 @@ JsonValue schema_of_show() {
          schema_member("set", described(of_type("object"), "JSON merge patch of the level, on")),
          schema_member(
              "off", described(of_type("object"), "JSON merge patch of the level, without it")),
-         schema_member("time", described(schema_of_time(3600), "when it is seen best [s]")),
+         schema_member("time", described(schema_of_time(3600), "when it shows best [s]")),
          schema_member(
              "camera", described(
                            any_of({of_type("string"), closed_object(properties_of<ShowCamera>())}),
-                           "an entity by name, or where the camera stands")),
+                           "a camera by name, or a camera position")),
          schema_member(
              "equal",
-             described(of_type("boolean"), "with and without must look the same", json_of(false)))},
+             described(of_type("boolean"), "on and off must look the same", json_of(false)))},
         {schema_text("technique"), schema_text("text")});
 }
 
@@ -443,19 +448,20 @@ JsonValue definitions() {
 JsonValue level_schema() {
     JsonValue schema = closed_object(
         {schema_member(
-             "$schema", described(of_type("string"), "for editors: where this schema lies")),
+             "$schema", described(of_type("string"), "for editors: the path of this schema")),
          schema_member(
              "title", described(of_type("string"), "shown in the window and by limn levels")),
          schema_member(
-             "description", described(of_type("string"), "what it is, in a few sentences")),
+             "description", described(of_type("string"), "a few sentences about the level")),
          schema_member(
              "resources",
-             described(schema_of_resources(), "what the level has one of: sky, exposure, weather")),
+             described(
+                 schema_of_resources(), "of which there is one each: sky, exposure, weather")),
          schema_member(
              "include",
              described(
                  array_of(of_type("string")), "files whose prefabs, images, materials and meshes "
-                                              "can be used, as fire.effect.json")),
+                                              "can be used, such as fire.effect.json")),
          schema_member(
              "images", described(schema_of_images(), "files and generated patterns, by name")),
          schema_member("materials", described(schema_of_materials(), "by name, in order of use")),
@@ -468,11 +474,14 @@ JsonValue level_schema() {
              described(
                  map_of(any_of(schemas_of_kinds(mesh_kinds()))), "generated shapes, by name")),
          schema_member(
-             "prefabs", described(map_of(reference("node")), "nodes to use many times, by name")),
+             "prefabs",
+             described(map_of(reference("node")), "nodes to instantiate many times, by name")),
+         schema_member("entities", described(array_of(reference("node")), "initial entities")),
          schema_member(
-             "entities", described(array_of(reference("node")), "what is there from the start")),
-         schema_member("events", described(array_of(reference("event")), "what happens later")),
-         schema_member("shows", described(array_of(schema_of_show()), "the techniques it shows")),
+             "events", described(array_of(reference("event")), "timed or triggered changes")),
+         schema_member(
+             "shows",
+             described(array_of(schema_of_show()), "techniques that the level shows, on and off")),
          schema_member(
              "bindings",
              described(

@@ -22,47 +22,49 @@ constexpr std::string_view kShowKeys[] = {"technique", "text",   "set",  "off",
                                           "time",      "camera", "equal"};
 
 Status
-read_text(const JsonValue& json, const char* key, const JsonPlace& place, std::string& text) {
-    LIMN_TRY(expect(json[key], JsonKind::String, place_in(place, key), "a string"));
+read_text(const JsonValue& json, const char* key, const JsonLocation& location, std::string& text) {
+    LIMN_TRY(expect(json[key], JsonKind::String, location_in(location, key), "a string"));
     text = json[key].text;
     return Done{};
 }
 
 Status
-read_patch(const JsonValue& json, const char* key, const JsonPlace& place, JsonValue& patch) {
+read_patch(const JsonValue& json, const char* key, const JsonLocation& location, JsonValue& patch) {
     if (const JsonValue* const value = json.find(key)) {
-        LIMN_TRY(expect(*value, JsonKind::Object, place_in(place, key), "a patch (an object)"));
+        LIMN_TRY(
+            expect(*value, JsonKind::Object, location_in(location, key), "a patch (an object)"));
         patch = *value;
     }
     return Done{};
 }
 
-Status read_camera(const JsonValue& json, const JsonPlace& place, LevelShow& show) {
+Status read_camera(const JsonValue& json, const JsonLocation& location, LevelShow& show) {
     if (json.kind == JsonKind::String) {
         show.camera_name = json.text;
         return Done{};
     }
-    return read_struct(json, show.camera.emplace(), place, {});
+    return read_struct(json, show.camera.emplace(), location, {});
 }
 
-Result<LevelShow> read_show(const JsonValue& json, const JsonPlace& place) {
-    LIMN_TRY(expect_keys(json, place, kShowKeys, "a show (an object)"));
+Result<LevelShow> read_show(const JsonValue& json, const JsonLocation& location) {
+    LIMN_TRY(expect_keys(json, location, kShowKeys, "a show (an object)"));
     LevelShow show;
-    LIMN_TRY(read_text(json, "technique", place, show.technique));
-    LIMN_TRY(read_text(json, "text", place, show.text));
-    LIMN_TRY(read_patch(json, "set", place, show.set));
-    LIMN_TRY(read_patch(json, "off", place, show.off));
+    LIMN_TRY(read_text(json, "technique", location, show.technique));
+    LIMN_TRY(read_text(json, "text", location, show.text));
+    LIMN_TRY(read_patch(json, "set", location, show.set));
+    LIMN_TRY(read_patch(json, "off", location, show.off));
     if (show.set.kind == JsonKind::Null && show.off.kind == JsonKind::Null) {
-        return unexpected(json, place, "\"set\", \"off\" or both");
+        return unexpected(json, location, "\"set\", \"off\" or both");
     }
     if (const JsonValue* const time = json.find("time")) {
-        show.time = LIMN_TRY(expect_number(*time, 0, kMaxShowTime, place_in(place, "time"), "s"));
+        show.time =
+            LIMN_TRY(expect_number(*time, 0, kMaxShowTime, location_in(location, "time"), "s"));
     }
     if (const JsonValue* const camera = json.find("camera")) {
-        LIMN_TRY(read_camera(*camera, place_in(place, "camera"), show));
+        LIMN_TRY(read_camera(*camera, location_in(location, "camera"), show));
     }
     if (const JsonValue* const equal = json.find("equal")) {
-        LIMN_TRY(expect(*equal, JsonKind::Bool, place_in(place, "equal"), "true or false"));
+        LIMN_TRY(expect(*equal, JsonKind::Bool, location_in(location, "equal"), "true or false"));
         show.equal = equal->truth;
     }
     return show;
@@ -76,9 +78,9 @@ JsonMember* find_show_member(JsonValue& json, std::string_view key) {
     return found != json.members.end() ? &*found : nullptr;
 }
 
-Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& place);
+Status patch_object(JsonValue& target, const JsonValue& patch, const JsonLocation& location);
 
-/// The first of the nodes and their descendants with that name. Collects the names it passes.
+/// The first of the nodes and their descendants with that name. Collects visited names.
 JsonValue*
 find_node(JsonValue& nodes, std::string_view name, std::vector<std::string_view>& names) {
     for (JsonValue& node : nodes.items) {
@@ -98,13 +100,13 @@ find_node(JsonValue& nodes, std::string_view name, std::vector<std::string_view>
 }
 
 /// Changes nodes by name; the key "+" adds nodes.
-Status patch_nodes(JsonValue& nodes, const JsonValue& patch, const JsonPlace& place) {
-    LIMN_TRY(expect(patch, JsonKind::Object, place, "the names of entities (an object)"));
+Status patch_nodes(JsonValue& nodes, const JsonValue& patch, const JsonLocation& location) {
+    LIMN_TRY(expect(patch, JsonKind::Object, location, "the names of entities (an object)"));
     for (const JsonMember& member : patch.members) {
         if (member.key == "+") {
             const std::vector<JsonValue>& added = member.value.items;
-            LIMN_TRY(
-                expect(member.value, JsonKind::Array, place_in(place, "+"), "entities (an array)"));
+            LIMN_TRY(expect(
+                member.value, JsonKind::Array, location_in(location, "+"), "entities (an array)"));
             nodes.items.insert(nodes.items.end(), added.begin(), added.end());
             continue;
         }
@@ -112,7 +114,7 @@ Status patch_nodes(JsonValue& nodes, const JsonValue& patch, const JsonPlace& pl
         JsonValue* const node = find_node(nodes, member.key, names);
         if (node == nullptr) {
             return error_at(
-                place, member.at, "the entity " + in_quotes(member.key),
+                location, member.at, "the entity " + in_quotes(member.key),
                 "the name of one in this level" + did_you_mean(member.key, names));
         }
         if (member.value.kind == JsonKind::Null) {
@@ -121,17 +123,17 @@ Status patch_nodes(JsonValue& nodes, const JsonValue& patch, const JsonPlace& pl
             };
             if (std::erase_if(nodes.items, is_named) == 0) {
                 return error_at(
-                    place, member.at, "null for the child " + in_quotes(member.key),
-                    "an entity that has no parent, or a patch");
+                    location, member.at, "null for the child " + in_quotes(member.key),
+                    "an entity without a parent, or a patch");
             }
             continue;
         }
-        LIMN_TRY(patch_object(*node, member.value, place_in(place, member.key)));
+        LIMN_TRY(patch_object(*node, member.value, location_in(location, member.key)));
     }
     return Done{};
 }
 
-Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& place) {
+Status patch_object(JsonValue& target, const JsonValue& patch, const JsonLocation& location) {
     if (target.kind != JsonKind::Object) {
         target = json_object();
         target.at = patch.at;
@@ -145,7 +147,7 @@ Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& 
         }
         const bool is_list = member.key == "entities" || member.key == "children";
         if (own == nullptr) {
-            // A null where nothing is: it removes a prefab's component.
+            // A null for a missing member stays: it removes a prefab's component.
             const JsonKind kind =
                 member.value.kind == JsonKind::Object ? JsonKind::Object : member.value.kind;
             target.members.push_back({member.key, member.at, {}});
@@ -153,7 +155,7 @@ Status patch_object(JsonValue& target, const JsonValue& patch, const JsonPlace& 
             own->value.kind = is_list ? JsonKind::Array : kind;
             own->value.at = member.value.at;
         }
-        const JsonPlace inner = place_in(place, member.key);
+        const JsonLocation inner = location_in(location, member.key);
         if (is_list) {
             LIMN_TRY(patch_nodes(own->value, member.value, inner));
         } else if (member.value.kind == JsonKind::Object) {
@@ -172,8 +174,8 @@ read_shows(const JsonValue& level, std::string_view file, ErrorList& errors) {
     std::vector<LevelShow> shows;
     const JsonValue& list = level["shows"];
     for (std::size_t i = 0; i < list.items.size() && errors.has_room(); ++i) {
-        const JsonPlace place{file, fmt::format("shows[{}]", i)};
-        Result<LevelShow> show = read_show(list.items[i], place);
+        const JsonLocation location{file, fmt::format("shows[{}]", i)};
+        Result<LevelShow> show = read_show(list.items[i], location);
         if (!show) {
             errors.keep(show.error());
             continue;
@@ -183,7 +185,7 @@ read_shows(const JsonValue& level, std::string_view file, ErrorList& errors) {
         });
         if (!is_new) {
             errors.keep(error_at(
-                place, list.items[i].at, "a second show of " + show->technique,
+                location, list.items[i].at, "a second show of " + show->technique,
                 "one of each technique"));
             continue;
         }
@@ -200,13 +202,13 @@ Result<std::vector<LevelShow>> read_shows(const JsonValue& level, std::string_vi
 }
 
 Status apply_show(const LevelShow& show, bool off, std::string_view file, JsonValue& level) {
-    const JsonPlace place{file, "show " + show.technique};
+    const JsonLocation location{file, "show " + show.technique};
     const bool has_off = show.off.kind == JsonKind::Object;
     if (show.set.kind == JsonKind::Object && (!off || has_off)) {
-        LIMN_TRY(patch_object(level, show.set, place_in(place, "set")));
+        LIMN_TRY(patch_object(level, show.set, location_in(location, "set")));
     }
     if (off && has_off) {
-        LIMN_TRY(patch_object(level, show.off, place_in(place, "off")));
+        LIMN_TRY(patch_object(level, show.off, location_in(location, "off")));
     }
     return Done{};
 }

@@ -17,8 +17,8 @@ namespace limn {
 
 class World;
 
-// What a level shows: for each technique (an id of TECHNIQUES.md) how to see it, and how the level
-// looks without it.
+// Shows of a level: for each technique (an id of TECHNIQUES.md) a patch that shows it, and one that
+// shows the level without it.
 //
 //     "shows": [
 //       {
@@ -32,12 +32,12 @@ class World;
 //       }
 //     ]
 //
-// On is the level with `set`; off is the same with `off`, too, or the level alone where there is no
+// On is the level with `set`; off is that with `off` as well, or the plain level if there is no
 // `off`. Both are patches of the level (JSON merge patch, RFC 7386): objects merge, null removes
-// what is there, anything else replaces. An object under "entities" or "children" has the names of
+// a member, anything else replaces it. An object under "entities" or "children" has the names of
 // entities as keys, and under the key "+" an array of entities to add.
 
-/// A place to look from, with the lens of the level's camera.
+/// A camera position, with the lens of the level's camera.
 struct ShowCamera {
     Vec3 position = {0, 1, 4};
     Vec3 look_at = {0, 0, 0};
@@ -45,9 +45,9 @@ struct ShowCamera {
 };
 
 LIMN_FIELDS(ShowCamera) {
-    LIMN_FIELD(position, "where it is", "m");
-    LIMN_FIELD(look_at, "point in the middle of the image", "m");
-    LIMN_FIELD(fov_y, "full vertical field of view; 0 = of the level's camera", "rad", 0, 3.1);
+    LIMN_FIELD(position, "position", "m");
+    LIMN_FIELD(look_at, "point at the center of the image", "m");
+    LIMN_FIELD(fov_y, "full vertical field of view; 0 = that of the level's camera", "rad", 0, 3.1);
 }
 
 struct LevelShow {
@@ -61,26 +61,26 @@ struct LevelShow {
     std::optional<ShowCamera> camera;  ///< instead of a name
 };
 
-/// What to show of a level; nothing where `technique` is empty.
+/// The chosen show of a level; none if `technique` is empty.
 struct ShowChoice {
     std::string technique;
     bool off = false;
 };
 
-/// The shows of a level, in file order; no two of one technique. `file` is for messages.
+/// The shows of a level, in file order; at most one per technique. `file` is for messages.
 [[nodiscard]] Result<std::vector<LevelShow>>
 read_shows(const JsonValue& level, std::string_view file);
-/// The same; those with errors are left out, and their errors kept.
+/// The same, but skips shows with errors and collects the errors.
 [[nodiscard]] std::vector<LevelShow>
 read_shows(const JsonValue& level, std::string_view file, ErrorList& errors);
 
-/// Changes the level to what `show` is when it is on, or off. Fails where a patch names an entity
+/// Applies the patches of `show` for on or off to the level. Fails if a patch names an entity
 /// that the level does not have.
 [[nodiscard]] Status
 apply_show(const LevelShow& show, bool off, std::string_view file, JsonValue& level);
 
-/// Finds the chosen show in the level and applies it; fails where the level does not show the
-/// technique. Nothing where none is chosen.
+/// Finds the chosen show in the level and applies it; fails if the level does not show the
+/// technique. Does nothing if none is chosen.
 [[nodiscard]] Result<std::optional<LevelShow>>
 choose_show(const ShowChoice& choice, std::string_view file, JsonValue& level);
 

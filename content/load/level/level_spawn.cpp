@@ -52,7 +52,7 @@ void localize(EventList& list, const AssetOffsets& offsets, const std::vector<En
     }
 }
 
-/// Creates all entities at once: Commands move each only once, however many components it gets.
+/// Creates all entities at once: Commands move each only once, whatever its number of components.
 std::vector<Entity> create_entities(World& world, Prefab& prefab, const AssetOffsets& offsets) {
     const std::vector<Entity> entities = world.create_many(prefab.entities.size());
     localize(prefab, offsets, entities, false);

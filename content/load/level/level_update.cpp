@@ -24,7 +24,7 @@ bool same_field(const FieldInfo& field, const void* a, const void* b) {
     return same;
 }
 
-/// The fields of `a` that are others in `b`.
+/// The fields of `a` that differ in `b`.
 std::vector<const FieldInfo*> changed_fields(const AnyComponent& a, const AnyComponent& b) {
     std::vector<const FieldInfo*> changed;
     for (const FieldInfo& field : a.info().fields) {
@@ -42,7 +42,7 @@ void add_change(std::vector<LevelChange>& changes, const AnyComponent& before, L
     }
 }
 
-/// What the files say of a resource; its defaults, where they say nothing.
+/// The value of a resource in the files, or its default.
 AnyComponent resource_in(const std::vector<AnyComponent>& resources, const ComponentInfo& info) {
     const auto found = std::ranges::find_if(
         resources, [&](const AnyComponent& one) { return &one.info() == &info; });
@@ -119,7 +119,7 @@ bool same_kinds(const std::vector<AnyComponent>& a, const std::vector<AnyCompone
     return same;
 }
 
-/// Of one type of component.
+/// Changes of one type of component.
 bool same_edits(const ScriptAction& a, const ScriptAction& b) {
     const auto offset = [](const FieldEdit& edit) { return edit.offset; };
     return a.value.is_empty() == b.value.is_empty()
@@ -131,7 +131,7 @@ bool same_change(const NodeChange& a, const NodeChange& b) {
     return a.entity == b.entity && a.node == b.node && a.info == b.info && same_edits(a.set, b.set);
 }
 
-/// Calls `visit` with what events set in components as the level starts.
+/// Calls `visit` with what events at the start of the level set in components.
 template <typename Visit>
 void each_first_set(const EventList& list, Visit&& visit) {
     for (const ScriptEvent& event : list.events) {
@@ -144,7 +144,7 @@ void each_first_set(const EventList& list, Visit&& visit) {
     }
 }
 
-/// What events set as the level starts that did not `before`: it has started.
+/// Applies what new or changed events set at the start of the level, which has passed already.
 std::vector<LevelChange> find_first_sets(const World& world, const EventList& before) {
     std::vector<LevelChange> changes;
     each_first_set(world.resource<EventList>(), [&](const ScriptAction& action) {
@@ -231,10 +231,10 @@ update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAs
     }
     if (!same) {
         return fail(
-            "{}: entities, components or assets were added or removed: load it again", path);
+            "{}: entities, components or assets were added or removed: reload the level", path);
     }
     if (!std::ranges::equal(now.node_changes, fields.node_changes, same_change)) {
-        return fail("{}: nodes of a glTF file are changed otherwise: load it again", path);
+        return fail("{}: changes of glTF nodes differ: reload the level", path);
     }
     std::vector<LevelChange> changes = find_changes(world, fields, now);
     for (LevelChange& change : changes) {

@@ -17,15 +17,15 @@ namespace limn {
 class MadeAssets;
 class World;
 
-// Effects that follow their files: when a level or what it includes has changed on disk, the living
-// entities get the fields that are different now, and keep all else, so that an emitter goes on
-// with the particles that it has.
+// Hot reload of fields: when a level or an included file has changed on disk, the running level's
+// entities get the fields that differ, and keep everything else, so that an emitter keeps its
+// particles.
 
-/// What the files of a level say of its entities. Empty for a level of more than 20,000 entities.
+/// The entities of a level as its files define them. Empty for levels of more than 20,000 entities.
 struct LevelFields {
-    std::vector<std::string> files;                     ///< the level first, then what it includes
+    std::vector<std::string> files;                     ///< the level first, then included files
     std::vector<Entity> entities;                       ///< in the level's order
-    std::vector<std::vector<AnyComponent>> components;  ///< of each, before it was spawned
+    std::vector<std::vector<AnyComponent>> components;  ///< of each, before spawning
     std::vector<std::string> assets;                    ///< names of all, which indices refer to
     std::vector<AnyComponent> resources;
     std::vector<Material> materials;
@@ -34,28 +34,27 @@ struct LevelFields {
 
 enum class LevelPart : std::uint8_t { Component, Resource, Material };
 
-/// Fields of a component, resource or material that the files have other values for than before.
+/// Fields of a component, resource or material whose values in the files have changed.
 struct LevelChange {
     LevelPart part = LevelPart::Component;
     Entity entity;                         ///< of a Component
     std::uint32_t material = 0;            ///< index into Assets
-    AnyComponent now;                      ///< what the files say
-    std::vector<const FieldInfo*> fields;  ///< those that are others, at least one
+    AnyComponent now;                      ///< the values in the files
+    std::vector<const FieldInfo*> fields;  ///< the changed ones, at least one
 };
 
-/// Loads the level anew and sets the fields of components, resources and materials whose values in
-/// the files are others than before, and the level's events; what new ones set at the start of the
-/// level is set as well. Returns what has changed. Fails, and
-/// changes nothing, with the loader's error, or where the level has other entities, kinds of
-/// components, changes of glTF nodes or assets now, which only loading it again can bring. `world`
-/// held nothing else when the level was spawned.
+/// Loads the level again and sets the fields of components, resources and materials whose values in
+/// the files have changed, and the level's events; also applies what new events set at the start of
+/// the level. Returns the changes. Fails, and changes nothing, with the loader's error, or if
+/// entities, kinds of components, changes of glTF nodes or assets differ, which needs a reload.
+/// `world` must have been empty when the level was spawned.
 [[nodiscard]] Result<std::vector<LevelChange>> update_level(
     World& world, LevelFields& fields, const ShowChoice& choice = {}, MadeAssets* made = nullptr);
 
 /// Copies the changed fields to `value`, of the same type.
 void adopt_change(const LevelChange& change, AnyComponent& value);
 
-/// Of one type.
+/// The same for one type.
 [[nodiscard]] bool same_value(const AnyComponent& a, const AnyComponent& b);
 
 }  // namespace limn

@@ -36,15 +36,15 @@ bool is_without_triangles(const World& world, Entity entity) {
            && assets->meshes[instance->mesh.index].indices.empty();
 }
 
-/// Emitters of which nothing is ever seen.
+/// Emitters that never show a particle.
 void check_emitters(const ParticleCheck& check) {
     check.world.query<const ParticleEmitter>().each(
         [&](Entity entity, const ParticleEmitter& emitter) {
             if (emitter.capacity == 0) {
-                check.warn(entity, "particle_emitter.capacity is 0, so that nothing is born");
+                check.warn(entity, "particle_emitter.capacity is 0: it emits nothing");
             }
             if (!(emitter.life + emitter.life_spread > 0)) {
-                check.warn(entity, "particle_emitter.life is 0 s, so that nothing is seen");
+                check.warn(entity, "particle_emitter.life is 0 s: nothing is visible");
             }
         });
 }
@@ -53,7 +53,7 @@ void check_sources(const ParticleCheck& check) {
     const World& world = check.world;
     world.query<const ParticleSource>().each([&](Entity entity, const ParticleSource& source) {
         if (source.emitter == entity) {
-            check.warn(entity, "particle_source names itself, so that nothing is born");
+            check.warn(entity, "particle_source names itself: it emits nothing");
             return;
         }
         if (!has_component(world, source.emitter, "particle_emitter")) {
@@ -69,12 +69,12 @@ void check_sources(const ParticleCheck& check) {
             next = before->emitter;
         }
         if (next == entity) {
-            check.warn(entity, "particle_source leads back to itself, so that nothing is born");
+            check.warn(entity, "particle_source is part of a cycle: it emits nothing");
         }
     });
 }
 
-/// Frames that are less than a pixel.
+/// Frames of less than a pixel.
 void check_flipbooks(const ParticleCheck& check) {
     const auto* const assets = check.world.find_resource<Assets>();
     check.world.query<const ParticleLook>().each([&](Entity entity, const ParticleLook& look) {
@@ -83,7 +83,7 @@ void check_flipbooks(const ParticleCheck& check) {
         }
         const ImageData& image = assets->images[look.image.index];
         if (image.width == 0) {
-            return;  // not made yet
+            return;  // not generated yet
         }
         if (look.columns > static_cast<std::uint32_t>(image.width)
             || look.rows > static_cast<std::uint32_t>(image.height)) {
@@ -134,7 +134,7 @@ void check_surfaces(const ParticleCheck& check) {
         } else if (on_mesh && !has_component(world, owner, "mesh_instance")) {
             check.warn(entity, "particle_surface on a mesh needs an entity with mesh_instance");
         } else if (on_mesh && is_without_triangles(world, owner)) {
-            check.warn(entity, "particle_surface is on a mesh without triangles: nothing is born");
+            check.warn(entity, "particle_surface is on a mesh without triangles: it emits nothing");
         } else if (
             surface.on == BirthSurface::Path
             && (assets == nullptr || surface.path.index >= assets->paths.size())) {
@@ -153,7 +153,7 @@ void check_gpu_particles(const ParticleCheck& check) {
             if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
                 check.warn(
                     entity, fmt::format(
-                                "{} has no effect on particles of the GPU; set "
+                                "{} has no effect on GPU particles; set "
                                 "particle_emitter.executor "
                                 "to cpu",
                                 one));
@@ -164,9 +164,8 @@ void check_gpu_particles(const ParticleCheck& check) {
         [&](Entity entity, const ParticleEmitter& emitter, const ParticleLook& look) {
             if (runs_on_gpu(emitter) && look.lit_at == ParticleLitAt::Middle) {
                 check.warn(
-                    entity,
-                    "particle_look.lit_at has no effect on particles of the GPU, whose light is "
-                    "evaluated at their corners; set particle_emitter.executor to cpu");
+                    entity, "particle_look.lit_at has no effect on GPU particles, whose light is "
+                            "evaluated at their corners; set particle_emitter.executor to cpu");
             }
         });
     bool for_cpu = false;
@@ -175,18 +174,17 @@ void check_gpu_particles(const ParticleCheck& check) {
     });
     world.query<const ParticleEmitter, const ParticleCollision>().each(
         [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision& collision) {
-            const bool meets_seen = collision.collide_depth > 0;
-            if (for_cpu && runs_on_gpu(emitter) && !meets_seen) {
+            const bool uses_depth_buffer = collision.collide_depth > 0;
+            if (for_cpu && runs_on_gpu(emitter) && !uses_depth_buffer) {
                 check.warn(
                     entity,
-                    "particles of the GPU meet planes, spheres and boxes alone; for meshes, "
+                    "GPU particles collide only with planes, spheres and boxes; for meshes, "
                     "height fields and water set particle_emitter.executor to cpu, or "
-                    "particle_collision.collide_depth to meet what is in view");
-            } else if (meets_seen && !runs_on_gpu(emitter)) {
+                    "particle_collision.collide_depth to collide with what is in view");
+            } else if (uses_depth_buffer && !runs_on_gpu(emitter)) {
                 check.warn(
-                    entity,
-                    "particle_collision.collide_depth has no effect on particles of the CPU; set "
-                    "particle_emitter.executor to gpu");
+                    entity, "particle_collision.collide_depth has no effect on CPU particles; set "
+                            "particle_emitter.executor to gpu");
             }
         });
 }
@@ -223,7 +221,7 @@ std::vector<SceneWarning> find_dropped_births(const World& world) {
         if (dropped > 0) {
             found.push_back(
                 {fmt::format(
-                     "{}: {} births were dropped; particle_emitter.capacity is {}",
+                     "{}: {} new particles were dropped; particle_emitter.capacity is {}",
                      label_of(world, entity), dropped, emitter.capacity),
                  entity});
         }

@@ -8,12 +8,11 @@
 
 namespace limn {
 
-/// Of find_scene_warnings: emitters from which nothing can come, sources and surfaces that are not
-/// there, flipbooks finer than their image, what particles of the GPU cannot do, bodies that cannot
-/// move.
+/// Part of find_scene_warnings: emitters that emit nothing, missing sources and surfaces, flipbooks
+/// finer than their image, features that GPU particles lack, bodies that cannot move.
 void find_particle_warnings(const World& world, std::vector<SceneWarning>& warnings);
 
-/// A line for each emitter that has had no room for births.
+/// A line for each emitter that dropped new particles because it was full.
 [[nodiscard]] std::vector<SceneWarning> find_dropped_births(const World& world);
 
 }  // namespace limn

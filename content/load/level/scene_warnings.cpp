@@ -39,11 +39,13 @@
 #include <type_traits>
 #include <utility>
 
+// Techniques: wrinkle.maps.texture-set
+
 namespace limn {
 namespace {
 
 /// `component` has no effect on an entity that has none of `needs`. Rows of one component are
-/// together.
+/// consecutive.
 struct Need {
     std::string_view component;
     std::array<std::string_view, 4> needs;
@@ -90,10 +92,10 @@ constexpr Need kNeeds[] = {
     {"wrinkle_track", {"wrinkle_weights", "", ""}},
 };
 
-constexpr double kInside = 0.5;       // winding number of what is rather closed
-constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
+constexpr double kInside = 0.5;       // winding number above which a point counts as inside
+constexpr float kMinSunSine = 0.02f;  // sine of the elevation of a sun that causes caustics
 
-/// The local +z axis in world space; scales count as uniform.
+/// The local +z axis in world space; assumes uniform scale.
 Vec3 back_of(const World& world, Entity entity) {
     Vec3 back(0, 0, 1);
     for (; !entity.is_null(); entity = parent_of(world, entity)) {
@@ -125,7 +127,7 @@ bool contains(const Bounds& box, const Vec3& point) {
     return glm::all(glm::greaterThan(point, box.min)) && glm::all(glm::lessThan(point, box.max));
 }
 
-/// Whether something opaque has an outside only: what is inside sees nothing of it.
+/// Whether an entity is opaque and single-sided, hence invisible from inside.
 bool is_solid(const Assets& assets, const MeshInstance& instance) {
     return instance.mesh.index < assets.meshes.size()
            && (instance.material.index >= assets.materials.size()
@@ -134,8 +136,8 @@ bool is_solid(const Assets& assets, const MeshInstance& instance) {
                    && !assets.materials[instance.material.index].double_sided));
 }
 
-// Illuminance [lx] times exposure: from which matte white is over thirty times as bright as an
-// image can show, and that suits.
+// Illuminance [lx] times exposure: above which matte white is over thirty times too bright to
+// display, and a suitable value.
 constexpr float kBurns = 100;
 constexpr float kSuits = 5;
 
@@ -148,7 +150,7 @@ struct SceneCheck {
     }
 
     void check_needs(Entity entity) {
-        std::string missing;  // what the component still needs, over its rows
+        std::string missing;  // missing requirements of the component, over its rows
         for (std::size_t i = 0; i < std::size(kNeeds); ++i) {
             const auto& [component, needs] = kNeeds[i];
             const bool lacks =
@@ -198,34 +200,34 @@ struct SceneCheck {
         }
     }
 
-    /// Cameras that start inside of a closed mesh, where they see neither it nor light.
-    void check_camera_places() {
+    /// Cameras that start inside a closed mesh, where they see neither it nor light.
+    void check_camera_positions() {
         const auto* const assets = world.find_resource<Assets>();
         world.query<const Camera, const Transform>().each([&](Entity camera, const Camera& settings,
                                                               const Transform&) {
             if (assets == nullptr || !settings.active || world.has<OrbitCamera>(camera)
-                || world.has<PathFollower>(camera)) {  // placed by the first step
+                || world.has<PathFollower>(camera)) {  // positioned by the first step
                 return;
             }
-            const Vec3 place = world_position(world, camera);
+            const Vec3 position = world_position(world, camera);
             world.query<const MeshInstance>().each([&](Entity entity,
                                                        const MeshInstance& instance) {
                 if (!is_solid(*assets, instance) || world.has<Deformed>(entity)) {
                     return;
                 }
                 const MeshData& mesh = assets->meshes[instance.mesh.index];
-                const Vec3 point = local_point(world, entity, place);
+                const Vec3 point = local_point(world, entity, position);
                 if (contains(mesh.bounds, point) && winding_number(mesh, point) > kInside) {
                     warn(
                         camera, fmt::format(
-                                    "the camera starts inside of {}, at [{:.3g}, {:.3g}, {:.3g}]",
-                                    label_of(world, entity), place.x, place.y, place.z));
+                                    "the camera starts inside {}, at [{:.3g}, {:.3g}, {:.3g}]",
+                                    label_of(world, entity), position.x, position.y, position.z));
                 }
             });
         });
     }
 
-    /// Caustics need a sun above the horizon, which may still be off.
+    /// Caustics need a sun above the horizon, which may be disabled at first.
     void check_caustics() {
         bool has_sun = false;
         world.query<const DirectionalLight>().each([&](Entity entity, const DirectionalLight&) {
@@ -238,7 +240,7 @@ struct SceneCheck {
         });
     }
 
-    /// Suns in lux as measured outdoors, in an image that is exposed for a few.
+    /// Suns with real outdoor illuminance, in an image exposed for a few lux.
     void check_exposure() {
         const auto* const found = world.find_resource<Exposure>();
         const Exposure exposure = found != nullptr ? *found : Exposure{};
@@ -251,7 +253,7 @@ struct SceneCheck {
             if (light.enabled && light.illuminance * factor > kBurns) {
                 warn(
                     entity, fmt::format(
-                                "{:.6g} lx are far too bright for the exposure, which suits about "
+                                "{:.6g} lx is far too bright for the exposure, which suits about "
                                 "{:.1g} lx, as skies and effects do; \"exposure\": {{\"metering\": "
                                 "\"auto\"}} follows any light",
                                 light.illuminance, kSuits / factor));
@@ -259,7 +261,7 @@ struct SceneCheck {
         });
     }
 
-    /// Lights whose color makes them brighter than their intensity says.
+    /// Lights whose color exceeds 1 and so scales their intensity.
     template <typename Light>
     void check_colors() {
         world.query<const Light>().each([&](Entity entity, const Light& light) {
@@ -284,7 +286,7 @@ struct SceneCheck {
                 if (!(track.keys[i].time > track.keys[i - 1].time)) {
                     warn(
                         entity, fmt::format(
-                                    "{}.keys[{}].time is {} s, not after the key before it ({} s)",
+                                    "{}.keys[{}].time is {} s, not after the previous key ({} s)",
                                     component_info<Track>().name, i, track.keys[i].time,
                                     track.keys[i - 1].time));
                     return;
@@ -317,7 +319,7 @@ struct SceneCheck {
     }
 };
 
-/// When an action first runs; events of one time run in their order.
+/// When an action first runs; simultaneous events run in file order.
 struct ActionTime {
     double time = 0;
     std::size_t event = 0;
@@ -326,7 +328,7 @@ struct ActionTime {
     [[nodiscard]] auto operator<=>(const ActionTime&) const = default;
 };
 
-/// Events that change a component which their entity does not have, or an entity that is gone.
+/// Events that change a component that their entity lacks, or an entity that was destroyed.
 void check_events(SceneCheck& check) {
     const World& world = check.world;
     const auto* const list = world.find_resource<EventList>();
@@ -361,7 +363,7 @@ void check_events(SceneCheck& check) {
                 warn(
                     time.event,
                     fmt::format(
-                        "{} does not exist any more: events[{}] destroys it at {} s",
+                        "{} no longer exists: events[{}] destroys it at {} s",
                         label_of(world, action.entity), found->second.event, found->second.time));
                 return true;
             }
@@ -377,7 +379,7 @@ void check_events(SceneCheck& check) {
             time.event,
             fmt::format(
                 "{} has no {}{}", label_of(world, action.entity), action.value.info().name,
-                action.action == EventAction::Set ? "; the event adds it, with defaults"
+                action.action == EventAction::Set ? "; the event adds it with defaults"
                                                   : "; the event does nothing"));
     });
 }
@@ -401,7 +403,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_followers();
     find_particle_warnings(world, check.warnings);
     check.check_cameras();
-    check.check_camera_places();
+    check.check_camera_positions();
     check.check_caustics();
     check.check_exposure();
     check.check_colors<PointLight>();

@@ -40,11 +40,11 @@ JsonValue parse_value(std::string_view text) {
 /// whole; its fields that the value does not name are kept.
 Status set_field(
     const ComponentInfo& info, void* object, std::string_view field_path, const JsonValue& value,
-    const JsonPlace& place, const NameResolver& names) {
+    const JsonLocation& location, const NameResolver& names) {
     AnyComponent copy(info, object);
     const Result<FieldRef> field = field_at(info, copy.data(), field_path);
     if (!field) {
-        return fail("{}: {}", place.file, field.error().message);
+        return fail("{}: {}", location.file, field.error().message);
     }
     FieldInfo target = *field->field;
     void* data = field->element;
@@ -52,62 +52,64 @@ Status set_field(
     if (target.shape == FieldShape::List && field_path == target.name) {
         data = field_ptr(copy.data(), target);  // the list itself, which may be empty
     } else if (target.shape == FieldShape::List && !is_indexed) {
-        return fail("{}: found a list inside a list, expected the index of an element", place.file);
+        return fail(
+            "{}: found a list inside a list, expected the index of an element", location.file);
     } else if (is_indexed) {
         target.shape = FieldShape::One;
     }
-    LIMN_TRY(read_field(value, target, data, place, names));
+    LIMN_TRY(read_field(value, target, data, location, names));
     for (const FieldInfo& changed : info.fields) {
         copy_field(changed, field_ptr(object, changed), field_ptr(copy.data(), changed));
     }
     return Done{};
 }
 
-/// To entities that lack the component: adds it first, with defaults.
+/// For entities that lack the component: adds it first, with defaults.
 Status add_to_entities(
     World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
-    std::string_view field_path, const JsonValue& value, const JsonPlace& place) {
+    std::string_view field_path, const JsonValue& value, const JsonLocation& location) {
     if (info.ops.construct_default == nullptr) {
-        return fail("{}: found no component {} on the entity, expected one", place.file, info.name);
+        return fail(
+            "{}: found no component {} on the entity, expected one", location.file, info.name);
     }
     AnyComponent fresh(info);
-    LIMN_TRY(set_field(info, fresh.data(), field_path, value, place, make_name_resolver(world)));
+    LIMN_TRY(set_field(info, fresh.data(), field_path, value, location, make_name_resolver(world)));
     for (const Entity entity : entities) {
         world.add(entity, info.id);
         world.write(entity, info.id, fresh.data());
     }
-    log_warn("{}: the entity has no {}; it is added, with defaults", place.file, info.name);
+    log_warn("{}: the entity has no {}; it is added with defaults", location.file, info.name);
     return Done{};
 }
 
 Status set_in_entities(
     World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
-    std::string_view field_path, const JsonValue& value, const JsonPlace& place) {
+    std::string_view field_path, const JsonValue& value, const JsonLocation& location) {
     bool is_set = false;
     for (const Entity entity : entities) {
         AnyComponent component = AnyComponent::read(world, entity, info);
         if (component.is_empty()) {
             continue;
         }
-        LIMN_TRY(
-            set_field(info, component.data(), field_path, value, place, make_name_resolver(world)));
+        LIMN_TRY(set_field(
+            info, component.data(), field_path, value, location, make_name_resolver(world)));
         world.write(entity, info.id, component.data());
         is_set = true;
     }
     return is_set ? Status(Done{})
-                  : add_to_entities(world, entities, info, field_path, value, place);
+                  : add_to_entities(world, entities, info, field_path, value, location);
 }
 
 /// Creates the resource with default values first if the scene has none.
 Status set_in_resource(
     World& world, const ComponentInfo& info, std::string_view field_path, const JsonValue& value,
-    const JsonPlace& place) {
+    const JsonLocation& location) {
     const NameResolver names = make_name_resolver(world);
     if (void* const object = world.find_resource(info.id)) {
-        return set_field(info, object, field_path, value, place, names);
+        return set_field(info, object, field_path, value, location, names);
     }
     AnyComponent fresh(info);
-    LIMN_TRY(set_field(info, fresh.data(), field_path, value, place, names));
+    LIMN_TRY(set_field(info, fresh.data(), field_path, value, location, names));
     void* const made = world.insert_default_resource(info.id);
     for (const FieldInfo& field : info.fields) {
         copy_field(field, field_ptr(made, field), field_ptr(fresh.data(), field));
@@ -116,14 +118,14 @@ Status set_in_resource(
 }
 
 Status set_in_material(
-    World& world, std::string_view rest, const JsonValue& value, const JsonPlace& place) {
+    World& world, std::string_view rest, const JsonValue& value, const JsonLocation& location) {
     Assets* const assets = world.find_resource<Assets>();
     std::vector<std::string_view> names;
     Material* named = nullptr;
     for (std::size_t i = 0; assets != nullptr && i < assets->materials.size(); ++i) {
         Material& material = assets->materials[i];
         names.emplace_back(material.name);
-        // Names of glTF materials may contain dots: the longest that fits is meant.
+        // Names of glTF materials may contain dots: the longest match is used.
         if (rest.starts_with(material.name + '.')
             && (named == nullptr || material.name.size() > named->name.size())) {
             named = &material;
@@ -132,18 +134,18 @@ Status set_in_material(
     if (named != nullptr) {
         ++assets->material_version;
         return set_field(
-            component_info<Material>(), named, rest.substr(named->name.size() + 1), value, place,
+            component_info<Material>(), named, rest.substr(named->name.size() + 1), value, location,
             make_name_resolver(world));
     }
     const std::string_view name = rest.substr(0, rest.find('.'));
     return fail(
-        "{}: found the material {}, expected one of the scene and a field{}", place.file,
+        "{}: found the material {}, expected one of the scene and a field{}", location.file,
         in_quotes(name), did_you_mean(name, names));
 }
 
-/// What to set, where no entity's name begins `path`: the longest of its beginnings that is similar
+/// The error if no entity's name begins `path`, with the longest prefix that is similar
 /// to a name.
-Error unknown_target(const World& world, std::string_view path, const JsonPlace& place) {
+Error unknown_target(const World& world, std::string_view path, const JsonLocation& location) {
     std::vector<std::string_view> known = make_name_resolver(world).all("entity");
     for (const ComponentInfo* const resource : all_resources()) {
         known.emplace_back(resource->name);
@@ -155,14 +157,14 @@ Error unknown_target(const World& world, std::string_view path, const JsonPlace&
         hint = did_you_mean(name, known);
     }
     return fail(
-        "{}: found {}, expected an entity, a resource or materials before a dot{}", place.file,
+        "{}: found {}, expected an entity, a resource or materials before a dot{}", location.file,
         in_quotes(name), hint);
 }
 
-/// Splits `path` at the last dot that an entity's name comes before: names of glTF nodes may
+/// Splits `path` at the last dot after an entity's name: names of glTF nodes may
 /// contain dots.
-Status
-set_in_named(World& world, std::string_view path, const JsonValue& value, const JsonPlace& place) {
+Status set_in_named(
+    World& world, std::string_view path, const JsonValue& value, const JsonLocation& location) {
     for (std::size_t dot = path.rfind('.'); dot != std::string_view::npos && dot > 0;
          dot = path.rfind('.', dot - 1)) {
         const std::vector<Entity> entities = find_entities(world, path.substr(0, dot));
@@ -175,25 +177,25 @@ set_in_named(World& world, std::string_view path, const JsonValue& value, const 
         const ComponentInfo* const info = find_component(component);
         if (info == nullptr) {
             return fail(
-                "{}: found the component {}, expected one of `limn components`{}", place.file,
+                "{}: found the component {}, expected one of `limn components`{}", location.file,
                 in_quotes(component), component_suggestion(component));
         }
         if (end + 1 >= rest.size()) {
-            return fail("{}: found no field after {}, expected one", place.file, info->name);
+            return fail("{}: found no field after {}, expected one", location.file, info->name);
         }
-        return set_in_entities(world, entities, *info, rest.substr(end + 1), value, place);
+        return set_in_entities(world, entities, *info, rest.substr(end + 1), value, location);
     }
     if (!find_entities(world, path).empty()) {
-        return fail("{}: found no component, expected ENTITY.COMPONENT.FIELD", place.file);
+        return fail("{}: found no component, expected ENTITY.COMPONENT.FIELD", location.file);
     }
-    return unknown_target(world, path, place);
+    return unknown_target(world, path, location);
 }
 
 }  // namespace
 
 Status set_value(World& world, std::string_view path, std::string_view value) {
     const std::string name = "--set " + std::string(path);
-    const JsonPlace place{name, ""};
+    const JsonLocation location{name, ""};
     JsonValue json = parse_value(value);
     json.at = {};
     const std::size_t dot = path.find('.');
@@ -202,13 +204,13 @@ Status set_value(World& world, std::string_view path, std::string_view value) {
     }
     const std::string_view first = path.substr(0, dot);
     if (first == "materials") {
-        return set_in_material(world, path.substr(dot + 1), json, place);
+        return set_in_material(world, path.substr(dot + 1), json, location);
     }
     const ComponentInfo* const resource = find_resource(first);
     if (resource != nullptr && find_entities(world, first).empty()) {
-        return set_in_resource(world, *resource, path.substr(dot + 1), json, place);
+        return set_in_resource(world, *resource, path.substr(dot + 1), json, location);
     }
-    return set_in_named(world, path, json, place);
+    return set_in_named(world, path, json, location);
 }
 
 NameResolver make_name_resolver(const World& world) {

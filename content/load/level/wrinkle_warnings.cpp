@@ -31,7 +31,7 @@ struct WrinkleCheck {
         warnings.push_back({fmt::format("{}: {}", label_of(world, entity), what), entity});
     }
 
-    /// `field` has the name of something of the mesh, as all of `known` are.
+    /// Warns if `field` names nothing of the mesh; `known` are the valid names.
     void check_name(
         Entity entity, const MeshData& mesh, const std::string& field, const std::string& name,
         std::string_view what, const std::vector<std::string_view>& known) {
@@ -75,7 +75,7 @@ struct WrinkleCheck {
         }
     }
 
-    /// Every method draws its folds from the material's map, but the one that shows the strain.
+    /// Every method but strain_view draws folds from the material's map.
     void check_map(Entity entity, const WrinkleSurface& surface, const MeshInstance& instance) {
         if (surface.method == WrinkleMethod::None || surface.method == WrinkleMethod::StrainView) {
             return;
@@ -85,10 +85,10 @@ struct WrinkleCheck {
             && assets.materials[material].wrinkle_texture.image.index < assets.images.size()) {
             return;
         }
-        warn(entity, "wrinkle_surface draws nothing without a wrinkle_texture of its material");
+        warn(entity, "wrinkle_surface draws nothing unless its material has a wrinkle_texture");
     }
 
-    /// Images of a face that do not lie over each other.
+    /// Images of a face that do not align with each other.
     void check_maps() {
         world.query<const WrinkleMaps>().each([&](Entity entity, const WrinkleMaps& maps) {
             const auto find = [&](ImageId id) {

@@ -6,8 +6,8 @@
 
 namespace limn {
 
-/// Of find_scene_warnings: regions and shapes of a wrinkle_surface that its mesh does not have, and
-/// wrinkle maps and masks that do not lie over each other.
+/// Part of find_scene_warnings: regions and shapes of a wrinkle_surface that its mesh lacks, and
+/// wrinkle maps and masks that do not align.
 void find_wrinkle_warnings(const World& world, std::vector<SceneWarning>& warnings);
 
 }  // namespace limn

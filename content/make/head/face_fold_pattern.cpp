@@ -11,6 +11,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: wrinkle.dimples
+
 namespace limn {
 
 namespace {

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: wrinkle.compression.face-model
+
 namespace limn {
 
 namespace {

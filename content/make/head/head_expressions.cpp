@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.compression.face-model
+
 namespace limn {
 
 namespace {

@@ -17,6 +17,8 @@
 #include <span>
 #include <vector>
 
+// Techniques: skin.pipeline
+
 namespace limn {
 
 namespace {

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+// Techniques: face.bids-surface
+
 namespace limn {
 
 namespace {

@@ -1,5 +1,7 @@
 #include "content/make/head/head_visemes.h"
 
+// Techniques: face.viseme
+
 namespace limn {
 
 namespace {

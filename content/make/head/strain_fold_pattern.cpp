@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: face.wrinkle-model
+
 namespace limn {
 
 namespace {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: char.skin-defects
+
 namespace limn {
 namespace {
 
@@ -15,19 +17,19 @@ constexpr float kTwist = radians(170.0f);
 constexpr float kBend = radians(110.0f);
 constexpr float kClipTime = 4.0f;  // [s]
 
-/// Weight of the upper joint at this share of the height: smooth over the middle half.
-float tip_weight(float share) {
-    const float u = std::clamp((share - 0.25f) / 0.5f, 0.0f, 1.0f);
+/// Weight of the upper joint at this fraction of the height: smooth over the central half.
+float tip_weight(float fraction) {
+    const float u = std::clamp((fraction - 0.25f) / 0.5f, 0.0f, 1.0f);
     return u * u * (3.0f - 2.0f * u);
 }
 
 ClipData make_clip(const char* name, const Vec3& axis, float angle) {
     ClipSheet sheet;
     sheet.rotating = {1};
-    // Halfway keys: beyond 90 degrees between keys the shorter way would be unsure.
-    for (const float share : {0.0f, 0.5f, 1.0f, 0.5f, 0.0f}) {
+    // Halfway keys: beyond 90 degrees between keys the shortest arc would be ambiguous.
+    for (const float fraction : {0.0f, 0.5f, 1.0f, 0.5f, 0.0f}) {
         sheet.times.push_back(kClipTime * static_cast<float>(sheet.times.size()) / 4.0f);
-        sheet.rotations.push_back(glm::angleAxis(share * angle, axis));
+        sheet.rotations.push_back(glm::angleAxis(fraction * angle, axis));
     }
     ClipData clip;
     clip.name = name;
@@ -36,7 +38,7 @@ ClipData make_clip(const char* name, const Vec3& axis, float angle) {
     return clip;
 }
 
-/// One flat side, with vertices of its own.
+/// One flat side with its own vertices.
 void add_side(MeshData& mesh, const BarShape& shape, int side) {
     const auto corner = [&](int i) {
         const float angle =
@@ -48,17 +50,17 @@ void add_side(MeshData& mesh, const BarShape& shape, int side) {
     const Vec2 out = glm::normalize(from + to);
     const float lean = shape.radius * (1 - shape.taper) / shape.height;  // of a cone's normal
     for (int ring = 0; ring <= shape.rings; ++ring) {
-        const float share = static_cast<float>(ring) / static_cast<float>(shape.rings);
+        const float fraction = static_cast<float>(ring) / static_cast<float>(shape.rings);
         for (const Vec2& at : {from, to}) {
-            const Vec2 place = at * std::lerp(1.0f, shape.taper, share);
+            const Vec2 point = at * std::lerp(1.0f, shape.taper, fraction);
             const Vec2 normal = shape.smooth ? glm::normalize(at) : out;
             const float u = at == from ? 0.0f : 1.0f;
-            mesh.positions.emplace_back(place.x, share * shape.height, place.y);
+            mesh.positions.emplace_back(point.x, fraction * shape.height, point.y);
             mesh.normals.push_back(glm::normalize(Vec3(normal.x, lean, normal.y)));
             mesh.uvs.emplace_back(
                 shape.smooth ? (static_cast<float>(side) + u) / static_cast<float>(shape.sides) : u,
-                1.0f - share);
-            const float tip = tip_weight(share);
+                1.0f - fraction);
+            const float tip = tip_weight(fraction);
             mesh.skin.first.push_back(static_cast<std::uint32_t>(mesh.skin.joints.size()));
             for (const auto& [joint, weight] : {std::pair(0, 1.0f - tip), std::pair(1, tip)}) {
                 if (weight > 0) {

@@ -6,9 +6,9 @@
 
 namespace limn {
 
-// A flexible bar around +y, from y = 0 to its height, with two joints and a smooth change from one
-// to the other: what skinning does to a volume, in its simplest form. Clips turn the upper joint:
-// "twist" about the bar, "bend" across it. Skin wrinkles where it is shortened along the bar in
+// A flexible bar around +y, from y = 0 to its height, with two joints and a smooth transition of
+// weights: the simplest demonstration of how skinning deforms a volume. Clips turn the upper joint:
+// "twist" about the bar, "bend" across it. Skin wrinkles where it is compressed along the bar in
 // its region "along", around it in "around".
 
 struct BarShape {
@@ -21,17 +21,17 @@ struct BarShape {
 };
 
 LIMN_FIELDS(BarShape) {
-    LIMN_FIELD(radius, "of the cross section's corners", "m", 1e-4, 1e5);
+    LIMN_FIELD(radius, "distance of the cross section's corners from the axis", "m", 1e-4, 1e5);
     LIMN_FIELD(height, "along y", "m", 1e-4, 1e5);
     LIMN_FIELD(sides, "of the cross section", "", 3, 256);
     LIMN_FIELD(rings, "quads along the height", "", 2, 1024);
-    LIMN_FIELD(taper, "radius at the top, as a share of that at the bottom", "", 0.01, 10);
-    LIMN_FIELD(smooth, "round, with one image around it; otherwise with flat sides, an image each");
+    LIMN_FIELD(taper, "radius at the top / radius at the bottom", "", 0.01, 10);
+    LIMN_FIELD(smooth, "round, with one image around it; otherwise flat sides with an image each");
 }
 
 [[nodiscard]] MeshData make_bar(const BarShape& shape);
 
-/// Joints "base" at y = 0 and "tip" in the middle; clips of 4 s, there and back.
+/// Joints "base" at y = 0 and "tip" at half the height; clips of 4 s, there and back.
 [[nodiscard]] MeshRig make_bar_rig(const BarShape& shape);
 
 }  // namespace limn

@@ -8,6 +8,9 @@
 #include <map>
 #include <set>
 
+// Techniques: anim.bezier-eval, anim.bezier-patch, anim.bezier-patch-frame, anim.bezier-patch-lod,
+//     anim.bezier-patch-tessellate, bump.tangent-bezier
+
 namespace limn {
 
 namespace {
@@ -26,9 +29,9 @@ void split_curve(const Curve& p, Curve& low, Curve& high) {
     const Vec3 c = 0.5f * (p[2] + p[3]);
     const Vec3 ab = 0.5f * (a + b);
     const Vec3 bc = 0.5f * (b + c);
-    const Vec3 middle = 0.5f * (ab + bc);
-    low = {p[0], a, ab, middle};
-    high = {middle, bc, c, p[3]};
+    const Vec3 midpoint = 0.5f * (ab + bc);
+    low = {p[0], a, ab, midpoint};
+    high = {midpoint, bc, c, p[3]};
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ PatchFrame patch_frame(const BezierPatch& patch, float u, float v) {
     Vec3 dv = patch_dv(patch, u, v);
 
     // The tangent plane is degenerate if the sine of the angle between the two, or their lengths
-    // relative to the patch, are too small. If so, step toward the middle of the patch.
+    // relative to the patch, are too small. If so, step toward the center of the patch.
     Bounds box;
     for (const Curve& row : patch.p) {
         for (const Vec3& point : row) {
@@ -75,9 +78,9 @@ PatchFrame patch_frame(const BezierPatch& patch, float u, float v) {
         if (lengths > 1e-6f * size * size && glm::length(cross) > 1e-3f * lengths) {
             break;
         }
-        const float share = step == 0 ? 1e-3f : 0.25f;
-        inner_u += share * (0.5f - inner_u);
-        inner_v += share * (0.5f - inner_v);
+        const float step_fraction = step == 0 ? 1e-3f : 0.25f;
+        inner_u += step_fraction * (0.5f - inner_u);
+        inner_v += step_fraction * (0.5f - inner_v);
         du = patch_du(patch, inner_u, inner_v);
         dv = patch_dv(patch, inner_u, inner_v);
     }
@@ -157,7 +160,7 @@ PatchTriangles tessellate_uniform(std::size_t patch_count, int divisions) {
 namespace {
 
 /// A square of the parameter plane: corner and side in steps of the finest grid, which is one level
-/// finer than the smallest leaf, so that the middle of every leaf is on it.
+/// finer than the smallest leaf, so that the center of every leaf is on it.
 struct Leaf {
     std::uint32_t patch;
     int u;
@@ -229,8 +232,8 @@ class VertexGrid {
     std::vector<char> used_;
 };
 
-/// Gives both patches at a boundary the vertices that either has.
-void share_boundaries(std::span<const BezierPatch> patches, int steps, VertexGrid& grid) {
+/// Gives both patches at a boundary the union of their vertices.
+void match_boundaries(std::span<const BezierPatch> patches, int steps, VertexGrid& grid) {
     const auto on_edge = [&](std::uint32_t patch, int edge, int t) -> char& {
         switch (edge) {
         case 0:
@@ -243,17 +246,17 @@ void share_boundaries(std::span<const BezierPatch> patches, int steps, VertexGri
             return grid.at(patch, 0, t);
         }
     };
-    std::map<std::array<float, 12>, std::set<int>> shared;
+    std::map<std::array<float, 12>, std::set<int>> points_of_curve;
     for (int round = 0; round < 2; ++round) {
         for (std::uint32_t patch = 0; patch < patches.size(); ++patch) {
             for (int edge = 0; edge < 4; ++edge) {
                 const BoundaryKey key = boundary_key(boundary_curve(patches[patch], edge));
-                std::set<int>& points = shared[key.numbers];
+                std::set<int>& points = points_of_curve[key.numbers];
                 for (int t = 0; t <= steps; ++t) {
-                    const int place = key.reversed ? steps - t : t;
+                    const int point = key.reversed ? steps - t : t;
                     if (round == 0 && on_edge(patch, edge, t) != 0) {
-                        points.insert(place);
-                    } else if (round == 1 && points.contains(place)) {
+                        points.insert(point);
+                    } else if (round == 1 && points.contains(point)) {
                         on_edge(patch, edge, t) = 1;
                     }
                 }
@@ -266,13 +269,13 @@ void share_boundaries(std::span<const BezierPatch> patches, int steps, VertexGri
 std::vector<IVec2> leaf_outline(const Leaf& leaf, VertexGrid& grid) {
     std::vector<IVec2> outline;
     const IVec2 direction[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-    IVec2 place = {leaf.u, leaf.v};
+    IVec2 point = {leaf.u, leaf.v};
     for (const IVec2& along : direction) {
         for (int step = 0; step < leaf.side; ++step) {
-            if (grid.at(leaf.patch, place.x, place.y) != 0) {
-                outline.push_back(place);
+            if (grid.at(leaf.patch, point.x, point.y) != 0) {
+                outline.push_back(point);
             }
-            place += along;
+            point += along;
         }
     }
     return outline;
@@ -299,16 +302,16 @@ tessellate_adaptive(std::span<const BezierPatch> patches, float tolerance, int m
                 1;
         }
     }
-    share_boundaries(patches, steps, grid);
+    match_boundaries(patches, steps, grid);
 
     PatchTriangles out;
     std::map<std::array<std::uint32_t, 3>, std::uint32_t> numbered;
-    const auto vertex = [&](std::uint32_t patch, const IVec2& place) {
+    const auto vertex = [&](std::uint32_t patch, const IVec2& point) {
         const auto [entry, fresh] = numbered.try_emplace(
-            {patch, static_cast<std::uint32_t>(place.x), static_cast<std::uint32_t>(place.y)},
+            {patch, static_cast<std::uint32_t>(point.x), static_cast<std::uint32_t>(point.y)},
             static_cast<std::uint32_t>(out.samples.size()));
         if (fresh) {
-            const Vec2 uv = Vec2(place) / static_cast<float>(steps);
+            const Vec2 uv = Vec2(point) / static_cast<float>(steps);
             out.samples.push_back({patch, uv.x, uv.y});
         }
         return entry->second;
@@ -316,8 +319,8 @@ tessellate_adaptive(std::span<const BezierPatch> patches, float tolerance, int m
     for (const Leaf& leaf : leaves) {
         const std::vector<IVec2> outline = leaf_outline(leaf, grid);
         std::vector<std::uint32_t> ring;
-        for (const IVec2& place : outline) {
-            ring.push_back(vertex(leaf.patch, place));
+        for (const IVec2& point : outline) {
+            ring.push_back(vertex(leaf.patch, point));
         }
         if (ring.size() == 4) {
             for (const std::size_t corner : {0, 1, 2, 0, 2, 3}) {
@@ -325,10 +328,10 @@ tessellate_adaptive(std::span<const BezierPatch> patches, float tolerance, int m
             }
             continue;
         }
-        const std::uint32_t middle =
+        const std::uint32_t center =
             vertex(leaf.patch, {leaf.u + leaf.side / 2, leaf.v + leaf.side / 2});
         for (std::size_t i = 0; i < ring.size(); ++i) {
-            out.indices.insert(out.indices.end(), {middle, ring[i], ring[(i + 1) % ring.size()]});
+            out.indices.insert(out.indices.end(), {center, ring[i], ring[(i + 1) % ring.size()]});
         }
     }
     return out;

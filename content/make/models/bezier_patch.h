@@ -17,7 +17,7 @@ namespace limn {
 //
 // Tangent T along u, bitangent B along v, normal N = T x B (one convention for the whole engine;
 // the appendix of the book swaps the first two). Meshes made here store the texture coordinates (u,
-// 1 - v): seen from the front the image stands upright and unmirrored, so w = +1.
+// 1 - v): viewed from the front the image is upright and unmirrored, so w = +1.
 //
 // Sums are ordered so that a boundary curve read from its other end gives the same bits: patches
 // that share a boundary have no cracks.
@@ -45,8 +45,8 @@ struct PatchFrame {
 /// the limit from inside the patch; a patch that is one point has the frame of the x-y plane.
 [[nodiscard]] PatchFrame patch_frame(const BezierPatch& patch, float u, float v);
 
-/// De Casteljau at the middle of both directions: children at 0 (low u, low v), 1 (high u, low v),
-/// 2 (low u, high v), 3 (high u, high v). child(s, t) = parent(s / 2, t / 2) for child 0.
+/// De Casteljau at the midpoint of both directions: children at 0 (low u, low v), 1 (high u, low
+/// v), 2 (low u, high v), 3 (high u, high v). child(s, t) = parent(s / 2, t / 2) for child 0.
 [[nodiscard]] std::array<BezierPatch, 4> split_patch(const BezierPatch& patch);
 
 /// Largest distance of the control points from the bilinear patch through the corners [m], which
@@ -60,7 +60,7 @@ struct PatchSample {
     float v = 0;
 };
 
-/// Triangles over patches, counter-clockwise seen from the side that du x dv points to.
+/// Triangles over patches, counter-clockwise when viewed from the side that du x dv points to.
 struct PatchTriangles {
     std::vector<PatchSample> samples;
     std::vector<std::uint32_t> indices;  ///< three per triangle, into `samples`

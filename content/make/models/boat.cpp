@@ -14,19 +14,21 @@ namespace {
 
 constexpr float kDifference = 1e-3f;  // step in u and v for normals
 
-/// A patch of the surface place(u, v); seen from the front, u runs to the right and v downwards.
-template <typename Place, typename Paint>
+/// A patch of the surface position_at(u, v); viewed from the front, u runs to the right and v
+/// downwards.
+template <typename Position, typename Paint>
 void add_patch(
-    MeshData& mesh, int columns, int rows, const Vec2& uv_scale, Place&& place, Paint&& paint) {
+    MeshData& mesh, int columns, int rows, const Vec2& uv_scale, Position&& position_at,
+    Paint&& paint) {
     append_grid(mesh, columns, rows, {}, [&](int i, int j) {
         const float u = part(i, columns);
         const float v = part(j, rows);
         const float d = kDifference;
         const float inside = std::clamp(v, 0.02f, 0.98f);  // not at the tip of a cone
-        const Vec3 along = place(u + d, inside) - place(u - d, inside);
-        const Vec3 down = place(u, v + d) - place(u, v - d);
+        const Vec3 along = position_at(u + d, inside) - position_at(u - d, inside);
+        const Vec3 down = position_at(u, v + d) - position_at(u, v - d);
         GridVertex vertex;
-        vertex.position = place(u, v);
+        vertex.position = position_at(u, v);
         vertex.normal = normalize_or(glm::cross(down, along), Vec3(0, 1, 0));
         const Vec3 flat = along - glm::dot(along, vertex.normal) * vertex.normal;
         const Vec3 aside = std::abs(vertex.normal.x) < 0.9f ? Vec3(1, 0, 0) : Vec3(0, 0, 1);
@@ -37,9 +39,10 @@ void add_patch(
     });
 }
 
-template <typename Place>
-void add_patch(MeshData& mesh, int columns, int rows, const Vec2& uv, Place&& place, Vec4 color) {
-    add_patch(mesh, columns, rows, uv, place, [&](const Vec3&) { return color; });
+template <typename Position>
+void add_patch(
+    MeshData& mesh, int columns, int rows, const Vec2& uv, Position&& position_at, Vec4 color) {
+    add_patch(mesh, columns, rows, uv, position_at, [&](const Vec3&) { return color; });
 }
 
 /// A tube from `a` to `b`, capped at both ends by cones as long as its radius.
@@ -88,7 +91,7 @@ float half_breadth(float t) {
 }
 
 /// The port side: s from the keel (0) to the sheer (1).
-Vec3 side_place(float t, float s) {
+Vec3 side_point(float t, float s) {
     const float angle = std::clamp(s, 0.0f, 1.0f) * 0.5f * kPi;
     const float fore = glm::smoothstep(0.55f, 1.0f, t);
     const float out = std::pow(std::sin(angle), glm::mix(0.72f, 1.35f, fore));
@@ -104,8 +107,8 @@ Vec3 side_place(float t, float s) {
 
 Vec3 side_normal(float t, float s) {
     const float d = 0.01f;
-    const Vec3 along = side_place(std::min(t + d, 1.0f), s) - side_place(std::max(t - d, 0.0f), s);
-    const Vec3 up = side_place(t, std::min(s + d, 1.0f)) - side_place(t, std::max(s - d, 0.0f));
+    const Vec3 along = side_point(std::min(t + d, 1.0f), s) - side_point(std::max(t - d, 0.0f), s);
+    const Vec3 up = side_point(t, std::min(s + d, 1.0f)) - side_point(t, std::max(s - d, 0.0f));
     return normalize_or(glm::cross(up, along), Vec3(1, 0, 0));
 }
 
@@ -118,18 +121,18 @@ void add_hull_side(MeshData& mesh, const BoatShape& shape, float side) {
     for (int k = 0; k < shape.strakes; ++k) {
         const float low = part(k, shape.strakes);
         const float high = part(k + 1, shape.strakes);
-        // Seen from outside, the bow is to the left on the port side, to the right on the other.
+        // Viewed from outside, the bow is to the left on the port side, to the right on the other.
         const auto plank = [&](float u, float v) {
             const float t = std::clamp(side > 0 ? 1 - u : u, 0.0f, 1.0f);
             const float s = glm::mix(high, low, v);
-            return mirrored(side_place(t, s) + boat::kLap * v * side_normal(t, s));
+            return mirrored(side_point(t, s) + boat::kLap * v * side_normal(t, s));
         };
         add_patch(mesh, shape.stations, 1, {boat::kLength, 0.25f}, plank, [&](const Vec3& p) {
             return p.y < 0.03f ? boat::kBottom : boat::kPaint;
         });
         const auto edge = [&](float u, float v) {
             const float t = std::clamp(side > 0 ? 1 - u : u, 0.0f, 1.0f);
-            return mirrored(side_place(t, low) + boat::kLap * (1 - v) * side_normal(t, low));
+            return mirrored(side_point(t, low) + boat::kLap * (1 - v) * side_normal(t, low));
         };
         add_patch(mesh, shape.stations, 1, {boat::kLength, 0.01f}, edge, boat::kShade);
     }
@@ -137,7 +140,7 @@ void add_hull_side(MeshData& mesh, const BoatShape& shape, float side) {
     const auto rail = [&](float u, float v) {
         const float t = std::clamp(u, 0.0f, 1.0f);
         const float angle = 2 * kPi * (side > 0 ? v : 1 - v);
-        return mirrored(side_place(t, 1) + boat::kRail * Vec3(std::cos(angle), std::sin(angle), 0));
+        return mirrored(side_point(t, 1) + boat::kRail * Vec3(std::cos(angle), std::sin(angle), 0));
     };
     add_patch(mesh, shape.stations, 8, {boat::kLength, 0.2f}, rail, boat::kTrim);
 }
@@ -146,8 +149,8 @@ MeshData make_hull(const BoatShape& shape) {
     MeshData mesh;
     add_hull_side(mesh, shape, 1);
     add_hull_side(mesh, shape, -1);
-    const auto transom = [](float u, float v) {  // seen from astern, port is to the left
-        const Vec3 edge = side_place(0, 1 - std::clamp(v, 0.0f, 1.0f));
+    const auto transom = [](float u, float v) {  // viewed from astern, port is to the left
+        const Vec3 edge = side_point(0, 1 - std::clamp(v, 0.0f, 1.0f));
         return Vec3((1 - 2 * u) * edge.x, edge.y, edge.z);
     };
     add_patch(mesh, 8, 8, {1.4f, 0.6f}, transom, hull_paint);
@@ -157,7 +160,7 @@ MeshData make_hull(const BoatShape& shape) {
             const float along = std::clamp(side > 0 ? 1 - u : u, 0.0f, 1.0f);
             const float t = std::min(along / 0.8f, 1.0f);
             const float s = along > 0.8f ? (along - 0.8f) / 0.2f : 0.0f;
-            const Vec3 p = side_place(t, s);
+            const Vec3 p = side_point(t, s);
             const Vec3 out = normalize_or(
                 Vec3(0, -1 + s, 0.9f * glm::smoothstep(0.7f, 1.0f, along)), {0, -1, 0});
             return Vec3(side * 0.03f, p.y, p.z) + out * (0.09f * v - 0.02f);
@@ -191,29 +194,29 @@ MeshData make_hull(const BoatShape& shape) {
 // ---- the deck -----------------------------------------------------------------------------------
 
 /// Point of the deck at t, `across` = -1 .. 1 half-breadths: slightly below the rail, cambered.
-Vec3 deck_place(float t, float across) {
-    const Vec3 edge = side_place(std::clamp(t, 0.0f, 1.0f), 1);
+Vec3 deck_point(float t, float across) {
+    const Vec3 edge = side_point(std::clamp(t, 0.0f, 1.0f), 1);
     return {across * edge.x, edge.y - 0.015f + 0.06f * edge.x * (1 - across * across), edge.z};
 }
 
 MeshData make_deck(const BoatShape& shape) {
     MeshData mesh;
     const int n = shape.stations;
-    // Seen from above with the bow up, +x is to the left.
+    // Viewed from above with the bow up, +x is to the left.
     for (const boat::DeckStrip& strip : boat::kDeck) {
-        const auto place = [&](float u, float v) {
-            return deck_place(
+        const auto position_at = [&](float u, float v) {
+            return deck_point(
                 glm::mix(strip.end, strip.begin, v), glm::mix(strip.left, strip.right, u));
         };
-        const float share = strip.end - strip.begin;
-        const int rows = std::max(2, static_cast<int>(static_cast<float>(n) * share));
-        const Vec2 uv = {std::abs(strip.left - strip.right), share * boat::kLength};
-        add_patch(mesh, strip.columns, rows, uv, place, boat::kPaint);
+        const float length_fraction = strip.end - strip.begin;
+        const int rows = std::max(2, static_cast<int>(static_cast<float>(n) * length_fraction));
+        const Vec2 uv = {std::abs(strip.left - strip.right), length_fraction * boat::kLength};
+        add_patch(mesh, strip.columns, rows, uv, position_at, boat::kPaint);
     }
 
     // The coaming, an upright board around the well, and the walls of the well below it.
     const auto rim = [](float t, float side, float height) {
-        const Vec3 p = deck_place(t, side * boat::kWell);
+        const Vec3 p = deck_point(t, side * boat::kWell);
         return Vec3(p.x, height < 0 ? boat::kSole : p.y + height, p.z);
     };
     for (const float side : {1.0f, -1.0f}) {
@@ -250,17 +253,17 @@ MeshData make_deck(const BoatShape& shape) {
         add_patch(mesh, 8, 1, {3, 0.25f}, front, boat::kShade);
     }
     for (const float t : {boat::kWellBegin, boat::kWellEnd}) {
-        const float way = t == boat::kWellEnd ? 1.0f : -1.0f;
+        const float sign = t == boat::kWellEnd ? 1.0f : -1.0f;
         const auto wall = [&](float u, float v) {
-            const float across = way * glm::mix(1.0f, -1.0f, u) * boat::kWell;
-            const Vec3 p = deck_place(t, across);
+            const float across = sign * glm::mix(1.0f, -1.0f, u) * boat::kWell;
+            const Vec3 p = deck_point(t, across);
             return Vec3(p.x, glm::mix(p.y + 0.09f, boat::kSole, v), p.z);
         };
         add_patch(mesh, 4, 1, {1.3f, 0.5f}, wall, boat::kPaint);
         const auto back = [&](float u, float v) {
-            const float across = -way * glm::mix(1.0f, -1.0f, u) * boat::kWell;
-            const Vec3 p = deck_place(t, across);
-            return Vec3(p.x, p.y + 0.09f * (1 - v), p.z + way * 0.02f);
+            const float across = -sign * glm::mix(1.0f, -1.0f, u) * boat::kWell;
+            const Vec3 p = deck_point(t, across);
+            return Vec3(p.x, p.y + 0.09f * (1 - v), p.z + sign * 0.02f);
         };
         add_patch(mesh, 4, 1, {1.3f, 0.1f}, back, boat::kTrim);
     }
@@ -283,7 +286,7 @@ MeshData make_spars() {
 }
 
 /// Point of the sail: u from luff to leech, v from head to foot.
-Vec3 sail_place(float u, float v) {
+Vec3 sail_point(float u, float v) {
     const Vec2 head = glm::mix(Vec2(-0.07f, boat::kThroat), boat::kPeak, u);
     const Vec2 foot = glm::mix(
         Vec2(-0.07f, boat::kBoomHeight + 0.1f),
@@ -304,10 +307,10 @@ Vec3 sail_place(float u, float v) {
 MeshData make_rig() {
     MeshData mesh;
     for (const float side : {1.0f, -1.0f}) {
-        // Seen from port (+x), u runs to the right, toward the stern.
+        // Viewed from port (+x), u runs to the right, toward the stern.
         const auto cloth = [side](float u, float v) {
             const float along = side > 0 ? u : 1 - u;
-            return sail_place(along, v) + Vec3(side * boat::kSailGap, 0, 0);
+            return sail_point(along, v) + Vec3(side * boat::kSailGap, 0, 0);
         };
         add_patch(mesh, 14, 14, {1, 7}, cloth, boat::kPaint);
     }

@@ -31,10 +31,10 @@ ImplicitGrid body_grid(const CreatureShape& shape) {
 using Weights = std::array<float, kCreatureJoints>;
 
 /// Weights by distance to the parts of each joint; sum to 1.
-Weights joint_shares(const Vec3& p) {
-    constexpr float kReach = 0.021f;  // of a joint beyond its own parts [m]; by eye
-    Weights shares;
-    shares.fill(0.0f);
+Weights joint_weights(const Vec3& p) {
+    constexpr float kJointFalloff = 0.021f;  // distance over which weights fall off [m]; by eye
+    Weights weights;
+    weights.fill(0.0f);
     const std::array<float, kCreatureJoints> distances = creature_part_distances(p);
     float nearest = distances[0];
     for (const float distance : distances) {
@@ -42,43 +42,43 @@ Weights joint_shares(const Vec3& p) {
     }
     float sum = 0;
     for (std::size_t i = 0; i < kCreatureJoints; ++i) {
-        shares[i] = std::exp(-square((distances[i] - nearest) / kReach));
-        sum += shares[i];
+        weights[i] = std::exp(-square((distances[i] - nearest) / kJointFalloff));
+        sum += weights[i];
     }
-    for (float& share : shares) {
-        share /= sum;
+    for (float& weight : weights) {
+        weight /= sum;
     }
-    return shares;
+    return weights;
 }
 
-std::vector<Weights> smooth_shares(const ImplicitMesh& body) {
-    std::vector<Weights> shares;
-    shares.reserve(body.positions.size());
+std::vector<Weights> smooth_weights(const ImplicitMesh& body) {
+    std::vector<Weights> weights;
+    weights.reserve(body.positions.size());
     for (const Vec3& p : body.positions) {
-        shares.push_back(joint_shares(p));
+        weights.push_back(joint_weights(p));
     }
     constexpr int kRounds = 6;
     for (int round = 0; round < kRounds; ++round) {
-        std::vector<Weights> sums = shares;
-        std::vector<float> counts(shares.size(), 1.0f);
+        std::vector<Weights> sums = weights;
+        std::vector<float> counts(weights.size(), 1.0f);
         for (std::size_t i = 0; i < body.indices.size(); ++i) {
             const std::uint32_t a = body.indices[i];
             const std::uint32_t b = body.indices[i % 3 == 2 ? i - 2 : i + 1];
             for (std::size_t j = 0; j < kCreatureJoints; ++j) {
-                sums[a][j] += shares[b][j];
+                sums[a][j] += weights[b][j];
             }
             counts[a] += 1.0f;
         }
-        for (std::size_t v = 0; v < shares.size(); ++v) {
+        for (std::size_t v = 0; v < weights.size(); ++v) {
             for (std::size_t j = 0; j < kCreatureJoints; ++j) {
-                shares[v][j] = sums[v][j] / counts[v];
+                weights[v][j] = sums[v][j] / counts[v];
             }
         }
     }
-    return shares;
+    return weights;
 }
 
-void append_influences(SkinWeights& skin, const Weights& shares) {
+void append_influences(SkinWeights& skin, const Weights& weights) {
     if (skin.first.empty()) {
         skin.first.push_back(0);
     }
@@ -87,27 +87,27 @@ void append_influences(SkinWeights& skin, const Weights& shares) {
         order[i] = i;
     }
     std::stable_sort(order.begin(), order.end(), [&](std::uint16_t a, std::uint16_t b) {
-        return shares[a] > shares[b];
+        return weights[a] > weights[b];
     });
     std::size_t kept = 1;
-    while (kept < kMaxInfluences && shares[order[kept]] > kMinCreatureWeight) {
+    while (kept < kMaxInfluences && weights[order[kept]] > kMinCreatureWeight) {
         ++kept;
     }
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));
     float sum = 0;
     for (std::size_t i = 0; i < kept; ++i) {
-        sum += shares[order[i]];
+        sum += weights[order[i]];
     }
     for (std::size_t i = 0; i < kept; ++i) {
         skin.joints.push_back(order[i]);
-        skin.weights.push_back(shares[order[i]] / sum);
+        skin.weights.push_back(weights[order[i]] / sum);
     }
     skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
 }
 
 // ---- texture coordinates ------------------------------------------------------------------------
 
-/// A vertex of a chart: a vertex of the body may be in several charts, and at both ends of one.
+/// A vertex of a chart: a vertex of the body may be in several charts, and at both ends of a chart.
 struct ChartVertex {
     std::uint32_t vertex;
     int chart;
@@ -118,14 +118,14 @@ struct ChartVertex {
 
 /// Cuts the body into charts, one around each chain of bones: u goes around, v along.
 void add_body(const ImplicitMesh& body, MeshData& mesh) {
-    const std::vector<Weights> shares = smooth_shares(body);
+    const std::vector<Weights> weights = smooth_weights(body);
     std::map<ChartVertex, std::uint32_t> numbers;
     for (std::size_t t = 0; t + 2 < body.indices.size(); t += 3) {
         const std::uint32_t* corners = &body.indices[t];
-        const Vec3 middle =
+        const Vec3 center =
             (body.positions[corners[0]] + body.positions[corners[1]] + body.positions[corners[2]])
             / 3.0f;
-        const int chart = creature_chart(middle);
+        const int chart = creature_chart(center);
         float first = 0;
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t vertex = corners[k];
@@ -142,7 +142,7 @@ void add_body(const ImplicitMesh& body, MeshData& mesh) {
                 mesh.uvs.push_back(atlas_uv(chart, uv));
                 mesh.colors.emplace_back(
                     creature_color(body.positions[vertex], body.normals[vertex]), 1.0f);
-                append_influences(mesh.skin, shares[vertex]);
+                append_influences(mesh.skin, weights[vertex]);
             }
             mesh.indices.push_back(found->second);
         }
@@ -164,14 +164,14 @@ Eye make_eye(float side) {
     constexpr float kDepth = 0.0092f;  // of its center below the face
     const Vec3 from = creature_joint(CreatureJoint::Head) + Vec3(0, 0.03f, 0.03f);
     const Vec3 direction = glm::normalize(Vec3(side * 0.78f, 0.16f, 0.72f));
-    float way = 0.02f;
-    while (creature_distance(from + way * direction) < 0.0f && way < 0.2f) {
-        way += 0.0005f;
+    float depth = 0.02f;
+    while (creature_distance(from + depth * direction) < 0.0f && depth < 0.2f) {
+        depth += 0.0005f;
     }
     Eye eye;
     eye.radius = kEyeRadius;
     eye.forward = glm::normalize(Vec3(side * 0.66f, 0.05f, 0.75f));
-    eye.center = from + (way - kDepth) * direction;
+    eye.center = from + (depth - kDepth) * direction;
     eye.right = glm::normalize(glm::cross(eye.forward, Vec3(0, 1, 0)));
     eye.up = glm::cross(eye.right, eye.forward);
     return eye;
@@ -233,7 +233,7 @@ void add_lid(MeshData& mesh, const Eye& eye, float side, MorphTarget& blink) {
         return std::cos(across) * out + std::sin(across) * eye.right;
     };
     const float radius =
-        (side > 0 ? 1.13f : 1.1f) * eye.radius;  // the upper one closes over the lower
+        (side > 0 ? 1.13f : 1.1f) * eye.radius;  // the upper lid closes over the lower
     const Vec3 fur = creature_color(eye.center + 1.5f * eye.radius * eye.up, eye.up);
     const auto append = [&](float turn, float across, float size, const Vec3& color, bool is_cap) {
         const Vec3 rest = at(open + turn, across);
@@ -291,11 +291,11 @@ MorphTarget make_breath(const MeshData& mesh, std::size_t body_vertices) {
     const Vec3 lungs(0, 0.41f, 0.06f);
     for (std::uint32_t v = 0; v < body_vertices; ++v) {
         const Vec3 away = mesh.positions[v] - lungs;
-        const float share = std::exp(-glm::dot(away, away) / square(0.115f));
+        const float weight = std::exp(-glm::dot(away, away) / square(0.115f));
         const float legs = glm::smoothstep(0.27f, 0.36f, mesh.positions[v].y);
-        if (share * legs > 0.02f) {
+        if (weight * legs > 0.02f) {
             breath.vertices.push_back(v);
-            breath.positions.push_back(0.011f * (share * legs - 0.02f) * mesh.normals[v]);
+            breath.positions.push_back(0.011f * (weight * legs - 0.02f) * mesh.normals[v]);
         }
     }
     return breath;
@@ -315,7 +315,7 @@ void scale_mesh(MeshData& mesh, float scale) {
 }  // namespace
 
 Vec3 creature_joint(CreatureJoint joint) {
-    return fox::kJoints[static_cast<std::size_t>(joint)].place;
+    return fox::kJoints[static_cast<std::size_t>(joint)].position;
 }
 
 std::int32_t creature_parent(CreatureJoint joint) {
@@ -353,16 +353,17 @@ MeshRig make_creature_rig(const CreatureShape& shape) {
     MeshRig rig;
     for (std::size_t i = 0; i < kCreatureJoints; ++i) {
         const fox::JointInfo& joint = fox::kJoints[i];
-        const Vec3 parent =
-            joint.parent < 0 ? Vec3(0) : fox::kJoints[static_cast<std::size_t>(joint.parent)].place;
+        const Vec3 parent = joint.parent < 0
+                                ? Vec3(0)
+                                : fox::kJoints[static_cast<std::size_t>(joint.parent)].position;
         rig.skeleton.joints.emplace_back(joint.name);
         rig.skeleton.parents.push_back(joint.parent);
-        rig.skeleton.rest.translations.push_back(scale * (joint.place - parent));
+        rig.skeleton.rest.translations.push_back(scale * (joint.position - parent));
         rig.skeleton.rest.rotations.emplace_back(1, 0, 0, 0);
         rig.skeleton.rest.scales.emplace_back(1);
         rig.skin.joints.push_back(static_cast<std::uint16_t>(i));
         rig.skin.joint_from_mesh.push_back(
-            affine_from(-scale * joint.place, Quat(1, 0, 0, 0), Vec3(1)));
+            affine_from(-scale * joint.position, Quat(1, 0, 0, 0), Vec3(1)));
     }
     for (const Gait& gait : creature_gaits()) {
         rig.clips.push_back(make_gait_clip(gait, scale));

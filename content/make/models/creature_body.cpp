@@ -116,8 +116,8 @@ int creature_chart(const Vec3& p) {
     return nearest < first_leg ? 0 : static_cast<int>((nearest - first_leg) / 4) + 1;
 }
 
-Vec2 creature_chart_uv(int chart, const Vec3& place) {
-    const Vec3 p = is_right(chart) ? mirrored(place) : place;
+Vec2 creature_chart_uv(int chart, const Vec3& position) {
+    const Vec3 p = is_right(chart) ? mirrored(position) : position;
     const std::span<const Vec3> bones = chart_bones(chart);
     float best = 1e9f;
     float along = 0;

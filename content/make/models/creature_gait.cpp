@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: char.foot-flight
+
 namespace limn {
 
 namespace {
@@ -24,8 +26,8 @@ using Point = Vec2;
 using enum CreatureJoint;
 
 Point in_plane(CreatureJoint joint) {
-    const Vec3 place = creature_joint(joint);
-    return {place.z, place.y};
+    const Vec3 position = creature_joint(joint);
+    return {position.z, position.y};
 }
 
 Point turned(const Point& p, float pitch) {
@@ -38,8 +40,8 @@ Point hanging(float angle) {
     return {std::sin(angle), -std::cos(angle)};
 }
 
-float angle_of(const Point& way) {
-    return std::atan2(way.x, -way.y);
+float angle_of(const Point& direction) {
+    return std::atan2(direction.x, -direction.y);
 }
 
 float wave(float phase) {
@@ -52,19 +54,19 @@ float wrapped(float phase) {
 }
 
 /// A joint of the posed trunk.
-struct Placed {
-    Point place;
+struct PosedJoint {
+    Point position;
     float pitch = 0.0f;
 };
 
-Placed after(const Placed& parent, CreatureJoint from, CreatureJoint to, float pitch) {
-    return {parent.place + turned(in_plane(to) - in_plane(from), parent.pitch), pitch};
+PosedJoint after(const PosedJoint& parent, CreatureJoint from, CreatureJoint to, float pitch) {
+    return {parent.position + turned(in_plane(to) - in_plane(from), parent.pitch), pitch};
 }
 
 struct Trunk {
-    Placed hips;
-    Placed spine;
-    Placed chest;
+    PosedJoint hips;
+    PosedJoint spine;
+    PosedJoint chest;
 };
 
 Trunk pose_trunk(const Gait& gait, float phase) {
@@ -80,14 +82,14 @@ Trunk pose_trunk(const Gait& gait, float phase) {
 
 /// Position of the foot, and the angle of the last bone before smoothing.
 struct FootPath {
-    Point place;
+    Point position;
     float slope = 0.0f;
     float pitch = 0.0f;
 };
 
 FootPath foot_at(const Gait& gait, Leg leg, float phase) {
     const fox::LegInfo& info = fox::kLegInfos[static_cast<std::size_t>(leg)];
-    const float reach = 0.5f * gait.duty * gait.stride;
+    const float half_step = 0.5f * gait.duty * gait.stride;
     const float height = in_plane(info.joints[3]).y;
     if (gait.duty >= 1.0f) {
         const Point rest = in_plane(info.joints[3]);
@@ -95,7 +97,7 @@ FootPath foot_at(const Gait& gait, Leg leg, float phase) {
     }
     if (const float stand = stance_progress(gait, leg, phase); stand >= 0.0f) {
         return {
-            {info.center + reach * (1.0f - 2.0f * stand), height},
+            {info.center + half_step * (1.0f - 2.0f * stand), height},
             glm::mix(info.set_down, info.push_off, stand),
             0};
     }
@@ -106,10 +108,10 @@ FootPath foot_at(const Gait& gait, Leg leg, float phase) {
     const float slope = -gait.stride * air;
     const float s2 = s * s;
     const float s3 = s2 * s;
-    const float z = info.center - reach + slope * (s3 - 2.0f * s2 + s)
-                    + 2.0f * reach * (3.0f * s2 - 2.0f * s3) + slope * (s3 - s2);
+    const float z = info.center - half_step + slope * (s3 - 2.0f * s2 + s)
+                    + 2.0f * half_step * (3.0f * s2 - 2.0f * s3) + slope * (s3 - s2);
     FootPath path;
-    path.place = {z, height + 0.5f * gait.lift * swing_height(s)};
+    path.position = {z, height + 0.5f * gait.lift * swing_height(s)};
     path.slope = glm::mix(info.push_off, info.set_down, glm::smoothstep(0.2f, 1.0f, s))
                  + info.fold * square(std::sin(kPi * std::pow(s, 0.8f)));
     path.pitch = 1.5f * std::sin(kPi * s) * (1.0f - s);
@@ -140,8 +142,8 @@ float& of(Pitches& pitches, CreatureJoint joint) {
 
 /// Solves the pitches of a leg for the given foot position.
 void solve_leg(const fox::LegInfo& leg, const Trunk& trunk, FootPath foot, Pitches& pitches) {
-    const Placed& parent = leg.parent == Chest ? trunk.chest : trunk.hips;
-    const Point top = after(parent, leg.parent, leg.joints[0], 0).place;
+    const PosedJoint& parent = leg.parent == Chest ? trunk.chest : trunk.hips;
+    const Point top = after(parent, leg.parent, leg.joints[0], 0).position;
     Point rest[4];
     for (int i = 0; i < 4; ++i) {
         rest[i] = in_plane(leg.joints[i]);
@@ -151,12 +153,12 @@ void solve_leg(const fox::LegInfo& leg, const Trunk& trunk, FootPath foot, Pitch
     const float last = glm::distance(rest[2], rest[3]);
 
     // If out of reach of the two upper bones, the last one rotates toward the body.
-    const float straight = angle_of(foot.place - top);
+    const float straight = angle_of(foot.position - top);
     const float longest = 0.995f * (upper + middle);
-    Point ankle = foot.place - last * hanging(foot.slope);
+    Point ankle = foot.position - last * hanging(foot.slope);
     for (int i = 1; i <= 16 && glm::distance(top, ankle) > longest; ++i) {
         const float slope = glm::mix(foot.slope, straight, static_cast<float>(i) / 16.0f);
-        ankle = foot.place - last * hanging(slope);
+        ankle = foot.position - last * hanging(slope);
     }
     const float far =
         glm::clamp(glm::distance(top, ankle), std::abs(upper - middle) * 1.01f, longest);
@@ -166,7 +168,7 @@ void solve_leg(const fox::LegInfo& leg, const Trunk& trunk, FootPath foot, Pitch
     const Point knee = top + upper * hanging(first);
     of(pitches, leg.joints[0]) = angle_of(rest[1] - rest[0]) - first;
     of(pitches, leg.joints[1]) = angle_of(rest[2] - rest[1]) - angle_of(ankle - knee);
-    of(pitches, leg.joints[2]) = angle_of(rest[3] - rest[2]) - angle_of(foot.place - ankle);
+    of(pitches, leg.joints[2]) = angle_of(rest[3] - rest[2]) - angle_of(foot.position - ankle);
     of(pitches, leg.joints[3]) = foot.pitch;
 }
 
@@ -186,9 +188,9 @@ float yaw_at(const Gait& gait, CreatureJoint joint, float phase) {
 }
 
 float blink_at(const Gait& gait, float phase) {
-    const float when = (gait.stride > 0 ? 24.0f : 15.0f) / kKeys;  // at a key, since it is short
+    const float when = (gait.stride > 0 ? 24.0f : 15.0f) / kKeys;  // on a key, since it is short
     const float width = 0.16f / gait.period;
-    const bool has_blink = gait.period > 0.6f;  // a run is too short for one
+    const bool has_blink = gait.period > 0.6f;  // the cycle of a run is too short for one
     return has_blink ? std::max(1.0f - std::abs(phase - when) / width, 0.0f) : 0.0f;
 }
 
@@ -258,7 +260,7 @@ ClipData make_gait_clip(const Gait& gait, float scale) {
             sheet.rotations.push_back(
                 rotation_about({0, 1, 0}, yaw) * rotation_about({1, 0, 0}, pitches[joint] - above));
         }
-        sheet.translations.push_back(scale * Vec3(0, trunk.hips.place.y, trunk.hips.place.x));
+        sheet.translations.push_back(scale * Vec3(0, trunk.hips.position.y, trunk.hips.position.x));
         sheet.weights.push_back(blink_at(gait, phase));
         sheet.weights.push_back(
             0.5f - 0.5f * std::cos(2.0f * kPi * static_cast<float>(gait.breaths) * phase));

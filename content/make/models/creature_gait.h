@@ -24,7 +24,7 @@ struct Gait {
     const char* name;
     float period;                        ///< duration of a cycle [s]
     float stride;                        ///< distance per cycle [m]
-    float duty;                          ///< share of the cycle that a foot stands; 1: always
+    float duty;                          ///< fraction of the cycle in stance; 1: always
     std::array<float, kLegs> touchdown;  ///< phase at which each foot touches down, 0 .. 1
     float lift;                          ///< maximum height of a foot in the air [m]
     float drop;                          ///< of the body below its rest height [m]

@@ -16,19 +16,21 @@
 #include <utility>
 #include <vector>
 
+// Techniques: engine.explode, particle.mesh-particles
+
 namespace limn {
 namespace {
 
 constexpr std::uint32_t kNoFragment = 0xffffffffu;
-constexpr int kGroupRounds = 4;  // of moving the middles of the groups
+constexpr int kGroupRounds = 4;  // iterations of moving the centers of the groups
 
 /// A triangle with an area.
 struct FragmentFace {
     std::array<std::uint32_t, 3> corner;  ///< vertices
-    std::array<std::uint32_t, 3> point;   ///< the same, but one for each position
+    std::array<std::uint32_t, 3> point;   ///< welded: one index per position
     std::array<std::uint32_t, 3> beside = {
         kNoFragment, kNoFragment, kNoFragment};  ///< faces across the edges
-    Vec3 middle;
+    Vec3 centroid;
     float area;
 };
 
@@ -50,8 +52,8 @@ Shell find_faces(const MeshData& mesh) {
         }
         const Vec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
         face.area = 0.5f * glm::length(normal);
-        face.middle = (p[0] + p[1] + p[2]) / 3.0f;
-        if (!(face.area > 0) || !is_finite(face.middle)) {
+        face.centroid = (p[0] + p[1] + p[2]) / 3.0f;
+        if (!(face.area > 0) || !is_finite(face.centroid)) {
             continue;
         }
         const auto index = static_cast<std::uint32_t>(shell.faces.size());
@@ -80,8 +82,8 @@ Shell find_faces(const MeshData& mesh) {
     return shell;
 }
 
-/// Which of `seeds` each face belongs to: groups grow from face to face, those nearest to their
-/// seeds first, so that they are compact and connected. Of a part of the mesh without a seed, the
+/// The seed that each face belongs to: groups grow from face to face in order of distance to their
+/// seeds, so that they are compact and connected. Parts of the mesh without a seed join the
 /// nearest.
 std::vector<std::uint32_t> group_faces(
     const std::vector<FragmentFace>& faces, std::span<const std::uint32_t> seeds, float roughness,
@@ -106,15 +108,15 @@ std::vector<std::uint32_t> group_faces(
             Random random(seed, next, name_hash("fragment edges"), k);
             const float factor = 1 + roughness * random.uniform(-0.5f, 0.5f);
             open.emplace(
-                factor * glm::distance(faces[seeds[k]].middle, faces[next].middle), next, k);
+                factor * glm::distance(faces[seeds[k]].centroid, faces[next].centroid), next, k);
         }
     }
     for (std::size_t f = 0; f < faces.size(); ++f) {
         if (group[f] == kNoFragment) {
             const auto nearest =
                 std::min_element(seeds.begin(), seeds.end(), [&](std::uint32_t a, std::uint32_t b) {
-                    return glm::distance(faces[a].middle, faces[f].middle)
-                           < glm::distance(faces[b].middle, faces[f].middle);
+                    return glm::distance(faces[a].centroid, faces[f].centroid)
+                           < glm::distance(faces[b].centroid, faces[f].centroid);
                 });
             group[f] = static_cast<std::uint32_t>(nearest - seeds.begin());
         }
@@ -122,13 +124,13 @@ std::vector<std::uint32_t> group_faces(
     return group;
 }
 
-/// Mean of the middles in each group, by area.
+/// Area-weighted mean of the centroids in each group.
 std::vector<Vec3> find_centers(
     const std::vector<FragmentFace>& faces, const std::vector<std::uint32_t>& group,
     std::size_t count) {
     std::vector<Vec4> sums(count, Vec4(0));
     for (std::size_t f = 0; f < faces.size(); ++f) {
-        sums[group[f]] += Vec4(faces[f].middle, 1) * faces[f].area;
+        sums[group[f]] += Vec4(faces[f].centroid, 1) * faces[f].area;
     }
     std::vector<Vec3> centers(count, Vec3(0));
     for (std::size_t k = 0; k < count; ++k) {
@@ -137,7 +139,7 @@ std::vector<Vec3> find_centers(
     return centers;
 }
 
-/// Evenly spread by area: Lloyd's algorithm from faces by chance.
+/// Seeds spread evenly by area: Lloyd's algorithm from random faces.
 std::vector<std::uint32_t>
 spread_seeds(const std::vector<FragmentFace>& faces, const FragmentsShape& shape) {
     const std::size_t count =
@@ -158,7 +160,7 @@ spread_seeds(const std::vector<FragmentFace>& faces, const FragmentsShape& shape
         const std::vector<Vec3> centers = find_centers(faces, group, count);
         std::vector<float> least(count, std::numeric_limits<float>::max());
         for (std::uint32_t f = 0; f < faces.size(); ++f) {
-            const float away = glm::distance(faces[f].middle, centers[group[f]]);
+            const float away = glm::distance(faces[f].centroid, centers[group[f]]);
             if (away < least[group[f]]) {
                 least[group[f]] = away;
                 seeds[group[f]] = f;
@@ -168,13 +170,13 @@ spread_seeds(const std::vector<FragmentFace>& faces, const FragmentsShape& shape
     return seeds;
 }
 
-/// Appends to `mesh` what is needed of `whole`.
+/// Appends parts of `whole` to `mesh`.
 class PieceBuilder {
   public:
     PieceBuilder(const MeshData& whole, const Shell& shell, float thickness, MeshData& mesh)
         : whole_(whole), shell_(shell), thickness_(thickness), mesh_(mesh) {}
 
-    /// Its outside, its inside and, where its neighbors are not in `group`, walls.
+    /// Outside and inside of a face and, toward neighbors outside `group`, walls.
     void add(std::span<const std::uint32_t> members, const std::vector<std::uint32_t>& group) {
         for (const bool inside : {false, true}) {
             corners_.clear();
@@ -247,7 +249,7 @@ class PieceBuilder {
     const Shell& shell_;
     float thickness_;
     MeshData& mesh_;
-    std::map<std::uint32_t, std::uint32_t> corners_;  ///< vertices of the whole that it has
+    std::map<std::uint32_t, std::uint32_t> corners_;  ///< vertices of the whole that were copied
 };
 
 }  // namespace

@@ -8,9 +8,9 @@
 namespace limn {
 
 // Breaks a mesh into pieces, as for objects that burst (engine.explode, particle.mesh-particles).
-// Triangles are grouped around evenly spread ones, growing from neighbor to neighbor, with noise so
-// that edges are irregular. So the pieces are connected, unless the mesh is not, and edges run
-// along those of triangles: the finer the mesh, the finer the fracture. Each piece gets an inside
+// Triangles are grouped around evenly spread seeds, growing from neighbor to neighbor, with noise
+// so that edges are irregular. Pieces are connected if the mesh is, and their edges follow those of
+// triangles: the finer the mesh, the finer the fracture. Each piece gets an inside
 // and walls, at a depth below the surface.
 
 struct FragmentsShape {
@@ -22,18 +22,18 @@ struct FragmentsShape {
 };
 
 LIMN_FIELDS(FragmentsShape) {
-    LIMN_FIELD(mesh, "the mesh to break, by name; before this one in the file");
-    LIMN_FIELD(count, "pieces at most, no more than triangles", "", 1, 1024);
+    LIMN_FIELD(mesh, "the mesh to break, by name; must come earlier in the file");
+    LIMN_FIELD(count, "maximum number of pieces; at most that of triangles", "", 1, 1024);
     LIMN_FIELD(thickness, "depth of the pieces below the surface; 0: sheets", "m", 0, 1e4);
     LIMN_FIELD(roughness, "noise of the edges between pieces", "", 0, 1);
     LIMN_FIELD(seed, "random seed");
 }
 
-/// All pieces in their places, one after the other. Empty without a mesh or triangles with area.
-/// Skin, morph targets, colors and second uvs are left out.
+/// All pieces at their original positions, in sequence. Empty without a mesh or triangles with
+/// area. Skin, morph targets, colors and second uvs are left out.
 [[nodiscard]] MeshData make_fragments(const FragmentsShape& shape, const Assets& assets);
 
-/// Appends a mesh for each piece of `mesh`, about its center, and tells `mesh` its id.
+/// Appends a mesh for each piece of `mesh`, centered at its origin, and stores the ids in `mesh`.
 void add_piece_meshes(Assets& assets, MeshId mesh);
 
 }  // namespace limn

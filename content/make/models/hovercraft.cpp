@@ -40,7 +40,7 @@ void add_canopy(MeshData& mesh) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (std::size_t i = 0; i < ball.positions.size(); ++i) {
         mesh.positions.push_back(
-            hovercraft::kCanopyMiddle + hovercraft::kCanopyRadii * ball.positions[i]);
+            hovercraft::kCanopyCenter + hovercraft::kCanopyRadii * ball.positions[i]);
         mesh.normals.push_back(glm::normalize(ball.normals[i] / hovercraft::kCanopyRadii));
         mesh.colors.push_back(hovercraft::kCanopy);
         mesh.uvs.push_back(ball.uvs[i]);

@@ -48,24 +48,24 @@ class Samples {
                + static_cast<std::size_t>(at.x);
     }
     [[nodiscard]] float value(const IVec3& at) const { return values_[index(at)]; }
-    [[nodiscard]] Vec3 place(const IVec3& at) const {
+    [[nodiscard]] Vec3 position(const IVec3& at) const {
         return grid_.box.min + grid_.cell * Vec3(at);
     }
 
   private:
     void fill_block(const SignedDistance& distance, const IVec3& first) {
         const IVec3 end = glm::min(first + kBlock, count_);
-        const Vec3 middle = 0.5f * (place(first) + place(end - 1));
-        const float reach = 0.5f * glm::length(place(end - 1) - place(first)) + grid_.cell;
-        const float around = distance(middle);
+        const Vec3 center = 0.5f * (position(first) + position(end - 1));
+        const float radius = 0.5f * glm::length(position(end - 1) - position(first)) + grid_.cell;
+        const float around = distance(center);
         // The block does not contain the surface. Only blocks outside are skipped, since inside the
         // distance may be too large.
-        const bool is_far = around > 1.05f * reach;
+        const bool is_far = around > 1.05f * radius;
         for (int z = first.z; z < end.z; ++z) {
             for (int y = first.y; y < end.y; ++y) {
                 for (int x = first.x; x < end.x; ++x) {
                     const IVec3 at(x, y, z);
-                    values_[index(at)] = is_far ? around : distance(place(at));
+                    values_[index(at)] = is_far ? around : distance(position(at));
                 }
             }
         }
@@ -95,15 +95,15 @@ bool find_vertex(const Samples& samples, const IVec3& cell, Vec3& vertex) {
             if (j == i || (values[i] < 0.0f) == (values[j] < 0.0f)) {
                 continue;
             }
-            const float share = values[i] / (values[i] - values[j]);
+            const float fraction = values[i] / (values[i] - values[j]);
             const Vec3 a(i & 1, (i >> 1) & 1, i >> 2);
             const Vec3 b(j & 1, (j >> 1) & 1, j >> 2);
-            sum += glm::mix(a, b, share);
+            sum += glm::mix(a, b, fraction);
             crossings += 1.0f;
         }
     }
-    const Vec3 low = samples.place(cell);
-    const Vec3 high = samples.place(cell + 1);
+    const Vec3 low = samples.position(cell);
+    const Vec3 high = samples.position(cell + 1);
     vertex = glm::mix(low, high, sum / crossings);
     return true;
 }
@@ -178,10 +178,10 @@ void relax(const SignedDistance& distance, const ImplicitGrid& grid, ImplicitMes
         }
         parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t v = begin; v < end; ++v) {
-                const Vec3 middle =
+                const Vec3 centroid =
                     neighbors[v] > 0.0f ? sums[v] / neighbors[v] : mesh.positions[v];
                 mesh.positions[v] = project_to_surface(
-                    distance, glm::mix(mesh.positions[v], middle, 0.5f), grid.cell);
+                    distance, glm::mix(mesh.positions[v], centroid, 0.5f), grid.cell);
             }
         });
     }

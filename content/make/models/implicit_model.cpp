@@ -36,9 +36,9 @@ float combine(float distance, const ModelPart& part, const Vec3& p) {
 
 /// A cone with rounded ends about the line from `a` to `b`.
 float cone(const ModelPart& part, const Vec3& p) {
-    const Vec3 way = part.b - part.a;
-    const float along = std::clamp(glm::dot(p - part.a, way) / glm::dot(way, way), 0.0f, 1.0f);
-    return glm::length(p - (part.a + along * way)) - glm::mix(part.radius_a, part.radius_b, along);
+    const Vec3 axis = part.b - part.a;
+    const float along = std::clamp(glm::dot(p - part.a, axis) / glm::dot(axis, axis), 0.0f, 1.0f);
+    return glm::length(p - (part.a + along * axis)) - glm::mix(part.radius_a, part.radius_b, along);
 }
 
 float squashed_cone(const ModelPart& part, const Vec3& p) {

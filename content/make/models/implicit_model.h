@@ -13,8 +13,8 @@ namespace limn {
 enum class PartShape : std::uint8_t {
     Cone,       ///< from `a` to `b`, with rounded ends
     Squashed,   ///< the same, scaled about `a` by `squash`
-    Ellipsoid,  ///< `a`: middle, `b`: radii
-    Box,        ///< `a`: middle, `b`: half size; edges rounded by `radius_a`
+    Ellipsoid,  ///< `a`: center, `b`: radii
+    Box,        ///< `a`: center, `b`: half size; edges rounded by `radius_a`
     Above,      ///< the half space above `a`
     Before,     ///< the half space before `a`, toward +z
     Custom,     ///< `distance`
@@ -30,19 +30,19 @@ enum class PartUse : std::uint8_t {
 struct ModelPart {
     PartShape shape = PartShape::Cone;
     PartUse use = PartUse::Join;
-    float blend = 0;  ///< width of the blend with the parts before it; 0 = a sharp edge
+    float blend = 0;  ///< width of the blend with previous parts; 0 = a sharp edge
     Vec3 a = {0, 0, 0};
     Vec3 b = {0, 0, 0};
     float radius_a = 0;
     float radius_b = 0;
     Vec3 squash = {1, 1, 1};
     float (*distance)(const Vec3& p) = nullptr;
-    std::uint16_t joint = 0;  ///< of a skeleton, that the part follows
+    std::uint16_t joint = 0;  ///< joint of a skeleton that the part follows
 };
 
-/// Parts that are combined with each other before they join the groups before them.
+/// Parts that are combined with each other first, then with previous groups.
 struct ModelGroup {
-    float blend;  ///< width of the blend with those groups
+    float blend;  ///< width of the blend with previous groups
     std::span<const ModelPart> parts;
 };
 

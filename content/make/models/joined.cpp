@@ -16,7 +16,8 @@ constexpr std::size_t kMaxVertices = 1000000;
 void append_part(MeshData& mesh, const MeshData& source, const JoinedPart& part) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     const Quat turn = glm::normalize(part.rotation);
-    const Vec3 scale = glm::max(part.scale, Vec3(1e-3f));  // positive: no part is turned inside out
+    const Vec3 scale =
+        glm::max(part.scale, Vec3(1e-3f));  // positive, so that no part is turned inside out
     for (std::size_t v = 0; v < source.positions.size(); ++v) {
         const Vec3 normal = normalize_or(source.normals[v] / scale, source.normals[v]);
         const Vec4 old = source.tangents[v];
@@ -33,7 +34,7 @@ void append_part(MeshData& mesh, const MeshData& source, const JoinedPart& part)
     }
 }
 
-/// With all that is copied of a vertex.
+/// Copies all attributes of a vertex.
 bool is_whole(const MeshData& mesh) {
     const std::size_t count = mesh.positions.size();
     return mesh.normals.size() == count && mesh.tangents.size() == count

@@ -8,7 +8,7 @@
 
 namespace limn {
 
-/// A mesh within another: its vertices are scaled, then rotated, then moved.
+/// A part of a joined mesh: its vertices are scaled, then rotated, then translated.
 struct JoinedPart {
     MeshId mesh;
     Vec3 position = {0, 0, 0};
@@ -18,7 +18,7 @@ struct JoinedPart {
 };
 
 LIMN_FIELDS(JoinedPart) {
-    LIMN_FIELD(mesh, "a mesh of the level, by name; before this one in the file");
+    LIMN_FIELD(mesh, "a mesh of the level, by name; must come earlier in the file");
     LIMN_FIELD(position, "of its origin", "m");
     LIMN_FIELD(rotation, "unit quaternion x y z w, or Euler angles [yaw, pitch, roll] in degrees");
     LIMN_FIELD(scale, "along each axis of the mesh", "", 0.001, 1000);
@@ -33,8 +33,8 @@ LIMN_FIELDS(JoinedShape) {
     LIMN_FIELD(parts, "in any order");
 }
 
-/// Other meshes of the level as one, at rest: for what draws a single mesh, as particles do. Skins
-/// and morph targets are left out, and parts without a mesh or beyond a million vertices.
+/// Several meshes of the level as one, at rest: for what can only draw a single mesh, such as
+/// particles. Omits skins and morph targets, and parts without a mesh or beyond a million vertices.
 [[nodiscard]] MeshData make_joined(const JoinedShape& shape, const Assets& assets);
 
 }  // namespace limn

@@ -26,36 +26,37 @@ void append_flat(
 }
 
 /// A point of a curve in the x-y plane along which a section is swept.
-struct WayPoint {
-    Vec2 place;
+struct SweepPoint {
+    Vec2 position;
     Vec2 normal;       ///< to the left of the curve, unit
     float miter = 1;   ///< factor of offsets at a corner
     float length = 0;  ///< arc length from its start [m]
 };
 
-/// The left half of a curve up to the top (mirrored), or the right one down from it; `right_half`
+/// The left half of a curve up to the top (mirrored), or the right half down from it; `right_half`
 /// runs from the bottom to the top.
-std::vector<WayPoint> half_way(std::span<const CurvePoint> right_half, bool is_left, float begin) {
-    std::vector<WayPoint> way;
+std::vector<SweepPoint>
+half_curve(std::span<const CurvePoint> right_half, bool is_left, float begin) {
+    std::vector<SweepPoint> path;
     for (const CurvePoint& point : right_half) {
-        way.push_back({point.place, point.normal});
+        path.push_back({point.position, point.normal});
     }
     // The two halves meet in a corner, where offsets go straight up.
-    way.back().miter = 1.0f / way.back().normal.y;
+    path.back().miter = 1.0f / path.back().normal.y;
     if (is_left) {
-        for (WayPoint& point : way) {
-            point.place.x = -point.place.x;
+        for (SweepPoint& point : path) {
+            point.position.x = -point.position.x;
             point.normal.x = -point.normal.x;
         }
     } else {
-        std::reverse(way.begin(), way.end());
+        std::reverse(path.begin(), path.end());
     }
     float length = begin;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        length += i > 0 ? glm::distance(way[i - 1].place, way[i].place) : 0.0f;
-        way[i].length = length;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        length += i > 0 ? glm::distance(path[i - 1].position, path[i].position) : 0.0f;
+        path[i].length = length;
     }
-    return way;
+    return path;
 }
 
 /// A corner of the swept section: its offset along the curve's normal, and along z.
@@ -64,21 +65,21 @@ struct SectionPoint {
     float z;
 };
 
-Vec3 swept(const WayPoint& point, const SectionPoint& corner) {
+Vec3 swept(const SweepPoint& point, const SectionPoint& corner) {
     const bool is_top = point.miter != 1.0f;
     const Vec2 direction = is_top ? Vec2(0, point.miter) : point.normal;
-    return {point.place + corner.offset * direction, corner.z};
+    return {point.position + corner.offset * direction, corner.z};
 }
 
 /// Sweeps one side of a section, from corner `a` to corner `b`.
 void append_side(
-    MeshData& mesh, std::span<const WayPoint> way, const SectionPoint& a, const SectionPoint& b,
+    MeshData& mesh, std::span<const SweepPoint> path, const SectionPoint& a, const SectionPoint& b,
     float v) {
     const Vec2 step = Vec2(b.offset - a.offset, b.z - a.z);
     const float width = glm::length(step);
     const Vec2 normal = Vec2(step.y, -step.x) / width;  // along the curve's normal, and along z
-    append_grid(mesh, static_cast<int>(way.size()) - 1, 1, {}, [&](int i, int j) {
-        const WayPoint& point = way[static_cast<std::size_t>(i)];
+    append_grid(mesh, static_cast<int>(path.size()) - 1, 1, {}, [&](int i, int j) {
+        const SweepPoint& point = path[static_cast<std::size_t>(i)];
         GridVertex vertex;
         vertex.position = swept(point, j == 0 ? a : b);
         vertex.normal = {normal.x * point.normal, normal.y};
@@ -88,7 +89,7 @@ void append_side(
     });
 }
 
-/// A convex polygon, counter-clockwise seen from the front.
+/// A convex polygon, counter-clockwise when viewed from the front.
 void append_polygon(
     MeshData& mesh, std::span<const Vec3> points, const Vec3& normal, const Vec3& tangent) {
     const Vec3 up = glm::cross(normal, tangent);
@@ -111,7 +112,7 @@ std::vector<CurvePoint> opening_outline(const MasonryWall& shape, const Vec3& si
     const float span = std::min(shape.span, (1.0f - kMinMargin) * size.x);
     if (shape.round) {
         const float radius = std::min(0.5f * span, (0.5f - kMinMargin) * size.y);
-        const float middle = std::clamp(
+        const float center = std::clamp(
             shape.spring, radius + kMinMargin * size.y, (1.0f - kMinMargin) * size.y - radius);
         std::vector<CurvePoint> outline;
         const int steps = 2 * shape.segments;
@@ -120,7 +121,7 @@ std::vector<CurvePoint> opening_outline(const MasonryWall& shape, const Vec3& si
             const Vec2 out = {
                 i % steps == 0 ? 0.0f : static_cast<float>(std::cos(angle)),
                 static_cast<float>(std::sin(angle))};
-            outline.push_back({Vec2(0, middle) + radius * out, out});
+            outline.push_back({Vec2(0, center) + radius * out, out});
         }
         return outline;
     }
@@ -130,10 +131,10 @@ std::vector<CurvePoint> opening_outline(const MasonryWall& shape, const Vec3& si
     const float sill = std::min(shape.sill, spring);
     std::vector<CurvePoint> outline = pointed_curve(span, rise, shape.radius, shape.segments);
     for (CurvePoint& point : outline) {
-        point.place.y += spring;
+        point.position.y += spring;
     }
     if (sill < spring) {
-        outline.insert(outline.begin(), CurvePoint{{outline.front().place.x, sill}, {1, 0}});
+        outline.insert(outline.begin(), CurvePoint{{outline.front().position.x, sill}, {1, 0}});
     }
     return outline;
 }
@@ -143,7 +144,7 @@ void append_beside_opening(
     MeshData& mesh, std::span<const CurvePoint> outline, float facing, float half_x, float half_z) {
     for (const float side : {-1.0f, 1.0f}) {
         append_grid(mesh, 1, static_cast<int>(outline.size()) - 1, {}, [&](int i, int j) {
-            const Vec2 edge = outline[outline.size() - 1 - static_cast<std::size_t>(j)].place;
+            const Vec2 edge = outline[outline.size() - 1 - static_cast<std::size_t>(j)].position;
             const bool is_outside = (i == 0) == (side < 0);
             const float x = side * (is_outside ? half_x : edge.x);
             return GridVertex{
@@ -160,7 +161,7 @@ std::vector<CurvePoint> vault_curve(const VaultShape& shape) {
     return pointed_curve(2.0f, shape.rise, std::max(shape.radius, 0.5f), shape.segments);
 }
 
-/// Lower and upper side of half a web of a vault, from the middle to one corner; the web is level
+/// Lower and upper side of half a web of a vault, from the center to one corner; the web is level
 /// along `level` and falls along `fall`.
 void append_web(
     MeshData& mesh, const VaultShape& shape, float half_level, float half_fall, const Vec3& level,
@@ -168,29 +169,31 @@ void append_web(
     const std::vector<CurvePoint> curve = vault_curve(shape);
     const int n = shape.segments;
     const auto down = [&](int j) { return curve[static_cast<std::size_t>(n - j)]; };
-    std::vector<float> way = {0};
+    std::vector<float> arc_lengths = {0};
     for (int j = 1; j <= n; ++j) {
-        const Vec2 step = down(j).place - down(j - 1).place;
-        way.push_back(way.back() + glm::length(step * Vec2(half_fall, 1)));
+        const Vec2 step = down(j).position - down(j - 1).position;
+        arc_lengths.push_back(arc_lengths.back() + glm::length(step * Vec2(half_fall, 1)));
     }
     for (const float facing : {-1.0f, 1.0f}) {
         const float lift = facing > 0 ? shape.thickness : 0.0f;
-        // Seen from the front, columns run to the right: from the groin to the wall, or reversed.
+        // Viewed from the front, columns run to the right: from the groin to the wall, or reversed.
         const bool outwards = facing * glm::dot(glm::cross(level, Vec3(0, 1, 0)), fall) > 0;
         append_grid(mesh, n, n, {false, true}, [&](int i, int j) {
             const CurvePoint at = down(j);
             const int column = outwards ? i : n - i;
-            // At the groin both webs have the same height and equal shares.
+            // At the groin both webs have the same height and the same relative position.
             const float between = static_cast<float>(column) / static_cast<float>(n);
-            const float share = column == n ? 1.0f : at.place.x + (1.0f - at.place.x) * between;
+            const float level_fraction =
+                column == n ? 1.0f : at.position.x + (1.0f - at.position.x) * between;
             GridVertex vertex;
-            vertex.position = half_level * share * level + half_fall * at.place.x * fall
-                              + Vec3(0, at.place.y + lift, 0);
+            vertex.position = half_level * level_fraction * level + half_fall * at.position.x * fall
+                              + Vec3(0, at.position.y + lift, 0);
             vertex.normal =
                 facing * glm::normalize(at.normal.x / half_fall * fall + Vec3(0, at.normal.y, 0));
             vertex.tangent = outwards ? level : -level;
             vertex.uv = {
-                (outwards ? half_level : -half_level) * share, way[static_cast<std::size_t>(j)]};
+                (outwards ? half_level : -half_level) * level_fraction,
+                arc_lengths[static_cast<std::size_t>(j)]};
             return vertex;
         });
     }
@@ -203,7 +206,7 @@ void append_vault_side(
     const int n = shape.segments;
     const Vec3 right = glm::cross(Vec3(0, 1, 0), out);
     append_grid(mesh, 2 * n, 1, {}, [&](int i, int j) {
-        const Vec2 at = curve[static_cast<std::size_t>(i < n ? i : 2 * n - i)].place;
+        const Vec2 at = curve[static_cast<std::size_t>(i < n ? i : 2 * n - i)].position;
         const float x = half_along * (i < n ? -at.x : at.x);
         const float y = at.y + (j == 0 ? shape.thickness : 0.0f);
         return GridVertex{half_out * out + x * right + Vec3(0, y, 0), out, right, {x, -y}};
@@ -225,12 +228,12 @@ std::vector<CurvePoint> pointed_curve(float span, float rise, float radius, int 
     for (int i = 0; i <= segments; ++i) {
         const double angle = last * i / segments;
         const glm::dvec2 arc = {std::cos(angle), std::sin(angle)};
-        const glm::dvec2 place = {half * (1.0 - r + r * arc.x), half * stretch * r * arc.y};
+        const glm::dvec2 position = {half * (1.0 - r + r * arc.x), half * stretch * r * arc.y};
         const glm::dvec2 normal = glm::normalize(glm::dvec2(arc.x * stretch, arc.y));
-        points.push_back({Vec2(place), Vec2(normal)});
+        points.push_back({Vec2(position), Vec2(normal)});
     }
     points.front() = {{0.5f * span, 0}, {1, 0}};
-    points.back().place = {0, rise};
+    points.back().position = {0, rise};
     if (r <= 1.0) {
         points.back().normal = {0, 1};
     }
@@ -257,14 +260,14 @@ MeshData make_arch(const ArchShape& shape) {
     section.push_back({thickness, -half});
 
     MeshData mesh;
-    const std::vector<WayPoint> left = half_way(curve, true, 0);
-    const std::vector<WayPoint> right = half_way(curve, false, left.back().length);
-    for (const std::vector<WayPoint>& way : {left, right}) {
+    const std::vector<SweepPoint> left = half_curve(curve, true, 0);
+    const std::vector<SweepPoint> right = half_curve(curve, false, left.back().length);
+    for (const std::vector<SweepPoint>& path : {left, right}) {
         float v = 0;
         for (std::size_t i = 0; i < section.size(); ++i) {
             const SectionPoint& a = section[i];
             const SectionPoint& b = section[(i + 1) % section.size()];
-            append_side(mesh, way, a, b, v);
+            append_side(mesh, path, a, b, v);
             v += glm::distance(Vec2(a.offset, a.z), Vec2(b.offset, b.z));
         }
     }
@@ -287,8 +290,8 @@ MeshData make_wall(const MasonryWall& shape) {
     const float half_x = 0.5f * size.x;
     const float half_z = 0.5f * size.z;
     const std::vector<CurvePoint> outline = opening_outline(shape, size);
-    const float bottom = outline.front().place.y;
-    const float bottom_half = outline.front().place.x;
+    const float bottom = outline.front().position.y;
+    const float bottom_half = outline.front().position.x;
     const bool on_ground = bottom <= 0;
 
     // Every row of the wall crosses the opening at two points, so that the triangles beside it need
@@ -296,13 +299,13 @@ MeshData make_wall(const MasonryWall& shape) {
     std::vector<float> floor = {-half_x, -bottom_half, bottom_half, half_x};
     floor.erase(std::unique(floor.begin(), floor.end()), floor.end());
     const float ridge[] = {-half_x, 0, half_x};
-    const float head[] = {size.y, outline.back().place.y};
+    const float head[] = {size.y, outline.back().position.y};
     const float base[] = {bottom, 0};
     const float through[] = {-half_z, half_z};
     const float through_down[] = {half_z, -half_z};
     std::vector<float> heights = {size.y};
     for (auto point = outline.rbegin(); point != outline.rend(); ++point) {
-        heights.push_back(point->place.y);
+        heights.push_back(point->position.y);
     }
     if (!on_ground) {
         heights.push_back(0);
@@ -327,8 +330,8 @@ MeshData make_wall(const MasonryWall& shape) {
     } else {
         append_flat(mesh, x, z, floor, through_down, 0);
     }
-    const std::vector<WayPoint> left = half_way(outline, true, 0);
-    const std::vector<WayPoint> right = half_way(outline, false, left.back().length);
+    const std::vector<SweepPoint> left = half_curve(outline, true, 0);
+    const std::vector<SweepPoint> right = half_curve(outline, false, left.back().length);
     append_side(mesh, left, {0, half_z}, {0, -half_z}, 0);
     append_side(mesh, right, {0, half_z}, {0, -half_z}, 0);
     if (!on_ground && bottom_half > 0) {

@@ -80,10 +80,10 @@ struct VaultShape {
 
 LIMN_FIELDS(VaultShape) {
     LIMN_FIELD(size, "along x and z", "m", 1e-2, 1e4);
-    LIMN_FIELD(rise, "from the corners to the middle", "m", 1e-3, 1e4);
+    LIMN_FIELD(rise, "from the corners to the center", "m", 1e-3, 1e4);
     LIMN_FIELD(radius, "of the arcs / span, then stretched: 0.5 round, 1 equilateral", "", 0.5, 4);
     LIMN_FIELD(thickness, "upwards", "m", 1e-3, 1e4);
-    LIMN_FIELD(segments, "from a corner to the middle", "", 1, 256);
+    LIMN_FIELD(segments, "from a corner to the center", "", 1, 256);
 }
 
 [[nodiscard]] MeshData make_arch(const ArchShape& shape);
@@ -92,8 +92,8 @@ LIMN_FIELDS(VaultShape) {
 
 /// A point on the right half of a curve that is symmetric about x = 0.
 struct CurvePoint {
-    Vec2 place;   ///< [m]
-    Vec2 normal;  ///< outwards, unit
+    Vec2 position;  ///< [m]
+    Vec2 normal;    ///< outwards, unit
 };
 
 /// `segments` + 1 points from (span / 2, 0) to (0, rise), at equal angles of the arc.

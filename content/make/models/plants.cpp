@@ -11,23 +11,26 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: particle.volume-fill
+
 namespace limn {
 namespace {
 
-constexpr float kMinShare = 0.05f;  // of a length, however wide the spread
+constexpr float kMinLengthFraction =
+    0.05f;  // minimum fraction of the mean length, for wide spreads
 
 /// Length of a chain of mean branches from the root to the tip of the last level [m].
-float reach_of(const PlantShape& shape) {
-    float reach = 0;
+float total_length(const PlantShape& shape) {
+    float length_sum = 0;
     float length = shape.length;
     for (int level = 0; level <= shape.levels; ++level) {
-        reach += length;
+        length_sum += length;
         length *= shape.shrink;
     }
-    return reach;
+    return length_sum;
 }
 
-/// Evenly by solid angle within `spread` of `axis`.
+/// A random direction, uniform by solid angle, within `spread` of `axis`.
 Vec3 direction_about(const Vec3& axis, float spread, Random& random) {
     const float y = std::lerp(std::cos(spread), 1.0f, random.uniform());
     const float angle = 2 * kPi * random.uniform();
@@ -39,19 +42,19 @@ Vec3 direction_about(const Vec3& axis, float spread, Random& random) {
 
 /// A particle at `root`, `scale` times as large as a stem.
 PlantParticle grow_one(
-    const PlantShape& shape, const Vec3& root, const Vec3& axis, float scale, float share,
+    const PlantShape& shape, const Vec3& root, const Vec3& axis, float scale, float fraction,
     Random& random) {
     const float vary = shape.length_spread * random.uniform(-1.0f, 1.0f);
-    const float length = scale * std::max(shape.length + vary, kMinShare * shape.length);
+    const float length = scale * std::max(shape.length + vary, kMinLengthFraction * shape.length);
     return {
         .root = root,
         .along = length * direction_about(axis, shape.spread, random),
         .width = scale * shape.width,
-        .share_root = share,
-        .share_tip = share + scale * shape.length / reach_of(shape)};
+        .root_fraction = fraction,
+        .tip_fraction = fraction + scale * shape.length / total_length(shape)};
 }
 
-/// Unit, across the blade: level where it can be, any way about a stem that stands upright.
+/// Unit vector across the blade: horizontal if possible, in any direction for an upright stem.
 Vec3 blade_side(const PlantParticle& particle, std::size_t number) {
     const Vec3 along = normalize_or(particle.along, Vec3(0, 1, 0));
     const Vec3 any = any_perpendicular(along);
@@ -102,7 +105,7 @@ std::vector<PlantParticle> grow_plants(const PlantShape& shape) {
         particles.push_back(grow_one(shape, {x, 0, z}, {0, 1, 0}, 1, 0, random));
     }
     const auto branches = static_cast<std::size_t>(shape.branches);
-    std::size_t first = 0;  // of the level that branches
+    std::size_t first = 0;  // first particle of the level that branches
     float scale = 1;
     for (int level = 1; level <= shape.levels; ++level) {
         const std::size_t end = particles.size();
@@ -116,8 +119,8 @@ std::vector<PlantParticle> grow_plants(const PlantShape& shape) {
             const Vec3 axis = normalize_or(from.along, Vec3(0, 1, 0));
             for (std::size_t i = 0; i < branches; ++i) {
                 Random random(shape.seed, particles.size(), name_hash("grow_plants"), 0);
-                particles.push_back(
-                    grow_one(shape, from.root + from.along, axis, scale, from.share_tip, random));
+                particles.push_back(grow_one(
+                    shape, from.root + from.along, axis, scale, from.tip_fraction, random));
             }
         }
         first = end;
@@ -126,8 +129,9 @@ std::vector<PlantParticle> grow_plants(const PlantShape& shape) {
 }
 
 Vec3 plant_point(const PlantShape& shape, const PlantParticle& particle, float at) {
-    const float share = std::lerp(particle.share_root, particle.share_tip, at);
-    return particle.root + at * particle.along + shape.wind * (reach_of(shape) * share * share);
+    const float fraction = std::lerp(particle.root_fraction, particle.tip_fraction, at);
+    return particle.root + at * particle.along
+           + shape.wind * (total_length(shape) * fraction * fraction);
 }
 
 MeshData make_plants(const PlantShape& shape) {
@@ -140,9 +144,9 @@ MeshData make_plants(const PlantShape& shape) {
     mesh.positions.reserve(particles.size() * vertices);
     mesh.normals.reserve(particles.size() * vertices);
     mesh.uvs.reserve(particles.size() * vertices);
-    const float last_level = particles.back().share_tip;
+    const float last_level = particles.back().tip_fraction;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        const bool pointed = particles[i].share_tip >= last_level;
+        const bool pointed = particles[i].tip_fraction >= last_level;
         add_blade(mesh, shape, particles[i], blade_side(particles[i], i), segments, pointed);
     }
     for (const Vec3& position : mesh.positions) {

@@ -15,19 +15,21 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.displacement
+
 namespace limn {
 
 namespace {
 
 constexpr std::size_t kMaxRefinedVertices = 1000000;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr float kMaxBulge = 0.2f;  ///< of a middle, of the edge's length
+constexpr float kMaxBulge = 0.2f;  ///< offset of a midpoint, relative to the edge's length
 
 std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-/// What vertices at one position share, by the first of them.
+/// Data shared by vertices at one position, indexed by the first of them.
 struct Points {
     std::vector<std::uint32_t> welded;  ///< per vertex the first at its position
     std::vector<Vec3> normals;          ///< means
@@ -45,8 +47,8 @@ Points find_points(const MeshData& mesh) {
     return points;
 }
 
-/// Whether an edge between two such vertices may be halved: those of regions that fold, and their
-/// neighbors; all if the mesh has no regions.
+/// Vertices whose edges may be halved: those of regions that fold, and their neighbors; all if the
+/// mesh has no regions.
 std::vector<char> find_foldable(const MeshData& mesh) {
     if (mesh.regions.empty()) {
         return std::vector<char>(mesh.positions.size(), 1);
@@ -76,7 +78,7 @@ std::vector<char> find_foldable(const MeshData& mesh) {
 }
 
 /// The same for both directions of an edge, and for all its copies.
-Vec3 middle_of(const MeshData& mesh, const Points& points, std::uint32_t a, std::uint32_t b) {
+Vec3 edge_midpoint(const MeshData& mesh, const Points& points, std::uint32_t a, std::uint32_t b) {
     const std::uint32_t low = std::min(points.welded[a], points.welded[b]);
     const std::uint32_t high = std::max(points.welded[a], points.welded[b]);
     const Vec3 p = mesh.positions[low];
@@ -89,12 +91,12 @@ Vec3 middle_of(const MeshData& mesh, const Points& points, std::uint32_t a, std:
     return 0.5f * (p + q) + (length > most ? bulge * (most / length) : bulge);
 }
 
-/// The ends of the edge whose middle a new vertex is.
+/// The ends of the edge that a new vertex halves.
 using Ends = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Appends f(end, end) for each new vertex to values that all vertices have.
 template <typename T, typename F>
-void append_middles(std::vector<T>& values, std::size_t old, const std::vector<Ends>& made, F f) {
+void append_midpoints(std::vector<T>& values, std::size_t old, const std::vector<Ends>& made, F f) {
     if (values.size() == old) {
         values.reserve(old + made.size());
         for (const auto& [a, b] : made) {
@@ -129,13 +131,13 @@ void append_refined_influences(SkinWeights& skin, const std::vector<Ends>& made)
 }
 
 void append_offsets(MorphTarget& morph, std::size_t old, const std::vector<Ends>& made) {
-    std::vector<std::uint32_t> place(old, kNone);
+    std::vector<std::uint32_t> index_of(old, kNone);
     for (std::uint32_t i = 0; i < morph.vertices.size(); ++i) {
-        place[morph.vertices[i]] = i;
+        index_of[morph.vertices[i]] = i;
     }
     for (std::size_t m = 0; m < made.size(); ++m) {
-        const std::uint32_t a = place[made[m].first];
-        const std::uint32_t b = place[made[m].second];
+        const std::uint32_t a = index_of[made[m].first];
+        const std::uint32_t b = index_of[made[m].second];
         if (a == kNone && b == kNone) {
             continue;
         }
@@ -153,80 +155,80 @@ void append_offsets(MorphTarget& morph, std::size_t old, const std::vector<Ends>
     }
 }
 
-/// All that vertices have but their positions.
+/// All vertex attributes except positions.
 void append_attributes(MeshData& mesh, std::size_t old, const std::vector<Ends>& made) {
     const auto mean = [](const auto& a, const auto& b) { return 0.5f * (a + b); };
     const auto unit = [](const Vec3& a, const Vec3& b) { return normalize_or(a + b, a); };
-    append_middles(mesh.normals, old, made, unit);
-    append_middles(mesh.tangents, old, made, [&](const Vec4& a, const Vec4& b) {
+    append_midpoints(mesh.normals, old, made, unit);
+    append_midpoints(mesh.tangents, old, made, [&](const Vec4& a, const Vec4& b) {
         return Vec4(unit(Vec3(a), Vec3(b)), a.w);
     });
-    append_middles(mesh.uvs, old, made, mean);
-    append_middles(mesh.uvs1, old, made, mean);
-    append_middles(mesh.colors, old, made, mean);
+    append_midpoints(mesh.uvs, old, made, mean);
+    append_midpoints(mesh.uvs1, old, made, mean);
+    append_midpoints(mesh.colors, old, made, mean);
     append_refined_influences(mesh.skin, made);
     for (MorphTarget& morph : mesh.morphs) {
         append_offsets(morph, old, made);
     }
     for (VertexRegion& region : mesh.regions) {
-        append_middles(region.weights, old, made, mean);
-        append_middles(region.across, old, made, [](const Vec3& a, const Vec3& b) {
+        append_midpoints(region.weights, old, made, mean);
+        append_midpoints(region.across, old, made, [](const Vec3& a, const Vec3& b) {
             return normalize_or(glm::dot(a, b) < 0 ? a - b : a + b, a);  // of either sign
         });
     }
 }
 
-/// Appends the parts of a triangle with these middles, kNone where an edge stays whole.
+/// Appends the parts of a triangle with these midpoints, kNone for unsplit edges.
 void append_parts(
-    const MeshData& mesh, std::array<std::uint32_t, 3> v, std::array<std::uint32_t, 3> middle,
+    const MeshData& mesh, std::array<std::uint32_t, 3> v, std::array<std::uint32_t, 3> midpoint,
     std::vector<std::uint32_t>& indices) {
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         indices.insert(indices.end(), {a, b, c});
     };
-    const auto halved = 3 - std::ranges::count(middle, kNone);
+    const auto halved = 3 - std::ranges::count(midpoint, kNone);
     // Turned so that, of one or two halved edges, the last one is whole and the first one halved.
-    while ((halved == 1 || halved == 2) && (middle[0] == kNone || middle[2] != kNone)) {
+    while ((halved == 1 || halved == 2) && (midpoint[0] == kNone || midpoint[2] != kNone)) {
         std::rotate(v.begin(), v.begin() + 1, v.end());
-        std::rotate(middle.begin(), middle.begin() + 1, middle.end());
+        std::rotate(midpoint.begin(), midpoint.begin() + 1, midpoint.end());
     }
     if (halved == 0) {
         add(v[0], v[1], v[2]);
     } else if (halved == 1) {
-        add(v[0], middle[0], v[2]);
-        add(middle[0], v[1], v[2]);
+        add(v[0], midpoint[0], v[2]);
+        add(midpoint[0], v[1], v[2]);
     } else if (halved == 2) {
-        add(middle[0], v[1], middle[1]);
+        add(midpoint[0], v[1], midpoint[1]);
         const auto distance = [&](std::uint32_t a, std::uint32_t b) {
             return glm::distance(mesh.positions[a], mesh.positions[b]);
         };
-        if (distance(v[0], middle[1]) <= distance(middle[0], v[2])) {
-            add(v[0], middle[0], middle[1]);
-            add(v[0], middle[1], v[2]);
+        if (distance(v[0], midpoint[1]) <= distance(midpoint[0], v[2])) {
+            add(v[0], midpoint[0], midpoint[1]);
+            add(v[0], midpoint[1], v[2]);
         } else {
-            add(v[0], middle[0], v[2]);
-            add(middle[0], middle[1], v[2]);
+            add(v[0], midpoint[0], v[2]);
+            add(midpoint[0], midpoint[1], v[2]);
         }
     } else {
-        add(v[0], middle[0], middle[2]);
-        add(middle[0], v[1], middle[1]);
-        add(middle[2], middle[1], v[2]);
-        add(middle[0], middle[1], middle[2]);
+        add(v[0], midpoint[0], midpoint[2]);
+        add(midpoint[0], v[1], midpoint[1]);
+        add(midpoint[2], midpoint[1], v[2]);
+        add(midpoint[0], midpoint[1], midpoint[2]);
     }
 }
 
-/// Halves all edges that are too long once; false if there are none.
+/// Halves all edges that are too long, once; false if there are none.
 bool halve_edges(MeshData& mesh, float edge, std::vector<char>& foldable) {
     const Points points = find_points(mesh);
     const std::size_t old = mesh.positions.size();
-    std::unordered_map<std::uint64_t, std::uint32_t> middles;  // by vertices, copies apart
+    std::unordered_map<std::uint64_t, std::uint32_t> midpoints;  // by vertices, without welding
     std::vector<Ends> made;
-    const auto middle_vertex = [&](std::uint32_t a, std::uint32_t b) {
+    const auto midpoint_vertex = [&](std::uint32_t a, std::uint32_t b) {
         const bool folds = foldable[a] != 0 && foldable[b] != 0;
         if (!folds || !(glm::distance(mesh.positions[a], mesh.positions[b]) > edge)) {
             return kNone;
         }
         const auto [found, added] =
-            middles.try_emplace(edge_key(a, b), static_cast<std::uint32_t>(old + made.size()));
+            midpoints.try_emplace(edge_key(a, b), static_cast<std::uint32_t>(old + made.size()));
         if (added) {
             made.emplace_back(a, b);
         }
@@ -237,7 +239,7 @@ bool halve_edges(MeshData& mesh, float edge, std::vector<char>& foldable) {
         const std::uint32_t* const v = &mesh.indices[t];
         std::array<std::uint32_t, 3>& corners = halved.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = middle_vertex(v[k], v[(k + 1) % 3]);
+            corners[k] = midpoint_vertex(v[k], v[(k + 1) % 3]);
         }
     }
     if (made.empty() || old + made.size() > kMaxRefinedVertices) {
@@ -247,7 +249,7 @@ bool halve_edges(MeshData& mesh, float edge, std::vector<char>& foldable) {
     foldable.resize(old + made.size(), 1);
     mesh.positions.reserve(old + made.size());
     for (const auto& [a, b] : made) {
-        mesh.positions.push_back(middle_of(mesh, points, a, b));
+        mesh.positions.push_back(edge_midpoint(mesh, points, a, b));
     }
     std::vector<std::uint32_t> indices;
     indices.reserve(4 * mesh.indices.size());

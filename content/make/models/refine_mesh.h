@@ -5,15 +5,15 @@
 
 namespace limn {
 
-// Triangles small enough for folds of skin to move them (wrinkle.displacement). Edges that are too
+// Triangles small enough to displace by folds of skin (wrinkle.displacement). Edges that are too
 // long are halved, all at once, so that triangles with one, two or three such edges become two,
-// three or four. Middles lie on the cubic curve along both normals (Vlachos, Peters, Boyd and
-// Mitchell, "Curved PN Triangles", 2001); all else is the mean of both ends. Vertices at one
-// position count as one: UV seams stay closed.
+// three or four. Midpoints lie on the cubic curve along both normals (Vlachos, Peters, Boyd and
+// Mitchell, "Curved PN Triangles", 2001); other attributes are the mean of both ends. Vertices at
+// one position count as one: UV seams stay closed.
 
 /// Halves edges longer than `edge` [m] of regions that fold and of the ring of triangles around
 /// them (any edge if the mesh has no regions), at most `times` times and until there are a million
-/// vertices. A mesh with a position that is not finite stays as it is.
+/// vertices. A mesh with non-finite positions is left unchanged.
 void refine_mesh(MeshData& mesh, float edge, int times);
 
 struct RefinedShape {
@@ -23,14 +23,14 @@ struct RefinedShape {
 };
 
 LIMN_FIELDS(RefinedShape) {
-    LIMN_FIELD(mesh, "the mesh to refine, by name; before this one in the file");
+    LIMN_FIELD(mesh, "the mesh to refine, by name; must come earlier in the file");
     LIMN_FIELD(
         edge, "longer edges are halved; a quarter of the width of a fold or less", "m", 1e-5, 10);
-    LIMN_FIELD(times, "at most", "", 0, 5);
+    LIMN_FIELD(times, "maximum number of subdivisions", "", 0, 5);
 }
 
-/// Another mesh of the level, refined, with its skin weights, morph targets and regions. Empty
-/// without a mesh.
+/// A refined copy of another mesh of the level, with its skin weights, morph targets and regions.
+/// Empty without a mesh.
 [[nodiscard]] MeshData make_refined(const RefinedShape& shape, const Assets& assets);
 
 }  // namespace limn

@@ -11,23 +11,25 @@
 #include <algorithm>
 #include <cstddef>
 
+// Techniques: face.retarget-fit, face.retarget-warp
+
 namespace limn {
 namespace {
 
 constexpr int kIterations = 20;
-/// Half of the width of the midline, whose vertices belong to neither side, as a share of the
-/// width: rounding would put them on either.
+/// Half width of the midline band relative to the width of the mesh. Its vertices belong to neither
+/// side, since rounding would assign them arbitrarily.
 constexpr float kMidline = 0.005f;
 
-/// Mean of the positions on the left (side 1) or right (side -1) of the middle, by weights. False
+/// Mean of the positions on the left (side 1) or right (side -1) of the center, by weights. False
 /// without any.
 bool find_center(const MeshData& mesh, const VertexRegion& region, float side, Vec3& center) {
     Vec3 sum(0);
     float weights = 0.0f;
-    const float middle = 0.5f * (mesh.bounds.min.x + mesh.bounds.max.x);
+    const float center_x = 0.5f * (mesh.bounds.min.x + mesh.bounds.max.x);
     const float clear = kMidline * (mesh.bounds.max.x - mesh.bounds.min.x);
     for (std::size_t v = 0; v < region.weights.size() && v < mesh.positions.size(); ++v) {
-        if (side * (mesh.positions[v].x - middle) > clear) {
+        if (side * (mesh.positions[v].x - center_x) > clear) {
             sum += region.weights[v] * mesh.positions[v];
             weights += region.weights[v];
         }
@@ -114,7 +116,7 @@ MeshData make_retargeted(const RetargetedShape& shape, const Assets& assets) {
         surface, assets.meshes[shape.from.index], assets.meshes[shape.onto.index], shape.gain,
         shape.stiffness);
     if (!fitted) {
-        log_warn("retargeted {}: {}; it stays as it is", surface.name, fitted.error().message);
+        log_warn("retargeted {}: {}; it is left unchanged", surface.name, fitted.error().message);
         return surface;
     }
     return *std::move(fitted);

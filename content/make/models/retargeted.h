@@ -10,9 +10,9 @@
 
 namespace limn {
 
-// Puts the coarse surface of one face on another one (face.retarget-fit) and takes its motion, the
-// morph targets, along (face.retarget-warp): a performance of one head moves another that is bound
-// to the result. Joints stay those of the first head.
+// Fits the coarse surface of one face to another (face.retarget-fit) and transfers its motion, the
+// morph targets (face.retarget-warp): a performance of one head drives another that is bound
+// to the result. Joints are kept from the first head.
 
 struct RetargetedShape {
     MeshId mesh;
@@ -23,7 +23,8 @@ struct RetargetedShape {
 };
 
 LIMN_FIELDS(RetargetedShape) {
-    LIMN_FIELD(mesh, "surface of the first face, by name; the meshes are before this one");
+    LIMN_FIELD(
+        mesh, "surface of the first face, by name; all meshes must come earlier in the file");
     LIMN_FIELD(from, "the first face, with regions");
     LIMN_FIELD(onto, "the other face, with the same regions");
     LIMN_FIELD(gain, "exaggeration of the motion", "", 0, 10);
@@ -32,18 +33,18 @@ LIMN_FIELDS(RetargetedShape) {
         0, 100);
 }
 
-/// Points that correspond: of each region that both meshes have the centers of its left and right
+/// Corresponding points: for each region that both meshes have, the centers of its left and right
 /// half, and the extremes along the axes.
 [[nodiscard]] std::pair<std::vector<Vec3>, std::vector<Vec3>>
 corresponding_points(const MeshData& from, const MeshData& onto);
 
-/// `surface` of the face `from` on the face `onto`. Fails with one line when the meshes have too
-/// few regions in common.
+/// `surface` of the face `from`, fitted to the face `onto`. Fails with one line when the meshes
+/// have too few regions in common.
 [[nodiscard]] Result<MeshData> retarget_surface(
     const MeshData& surface, const MeshData& from, const MeshData& onto, float gain,
     float stiffness);
 
-/// The same of meshes of a level. A failure is logged, and the surface stays as it is. Empty
+/// The same for meshes of a level. A failure is logged, and the surface left unchanged. Empty
 /// without a mesh.
 [[nodiscard]] MeshData make_retargeted(const RetargetedShape& shape, const Assets& assets);
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: fakephong.scenes
+
 namespace limn {
 
 namespace {
@@ -71,7 +73,7 @@ void append_lathe(
     const GridPoles poles = {rings.front().radius == 0.0f, rings.back().radius == 0.0f};
     append_grid(mesh, segments, rows, poles, [&](int i, int j) {
         const LatheRing& ring = rings[static_cast<std::size_t>(j)];
-        // At a pole, the middle azimuth of the triangle that ends there.
+        // At a pole, the central azimuth of the triangle that ends there.
         const int shift = ring.radius > 0 ? 0 : (j == 0 ? 1 : -1);
         const int column = std::clamp(2 * i + shift, 0, 2 * segments);
         const Turn& turn = around[static_cast<std::size_t>(column)];
@@ -103,8 +105,8 @@ void append_disc(
     int divisions, const Lobes& lobes = {}) {
     const std::vector<Turn> around = turns(segments);
     append_grid(mesh, segments, divisions, {false, hole == 0.0f}, [&](int i, int j) {
-        // With columns to the right and rows toward the center, the outline runs clockwise seen
-        // from the front; seen from above, turns() runs counter-clockwise.
+        // With columns to the right and rows toward the center, the outline runs clockwise viewed
+        // from the front; viewed from above, turns() runs counter-clockwise.
         const int column = facing > 0 ? segments - i : i;
         const Turn& turn = around[static_cast<std::size_t>(column)];
         const float r =
@@ -124,7 +126,7 @@ void append_disc(
 /// spaced so that normals turn by equal angles.
 std::vector<float> rounded_lines(float half, float bevel, const BoxShape& shape) {
     const float inner = half - bevel;
-    std::vector<float> upper;  // from the middle of the edge inwards
+    std::vector<float> upper;  // from the center of the edge inwards
     if (bevel > 0) {
         upper.push_back(half);
         for (int i = 1; i < shape.bevel_segments; ++i) {
@@ -224,8 +226,9 @@ MeshData make_plane(const PlaneShape& shape) {
     MeshData mesh;
     append_grid(mesh, shape.divisions, shape.divisions, {}, [&](int i, int j) {
         const Vec2 uv = {part(i, shape.divisions), part(j, shape.divisions)};
-        const Vec2 place = (uv - 0.5f) * shape.size;
-        return GridVertex{{place.x, 0, place.y}, {0, 1, 0}, {1, 0, 0}, shape.metric ? place : uv};
+        const Vec2 position = (uv - 0.5f) * shape.size;
+        return GridVertex{
+            {position.x, 0, position.y}, {0, 1, 0}, {1, 0, 0}, shape.metric ? position : uv};
     });
     return mesh;
 }
@@ -324,10 +327,10 @@ MeshData make_lathe(const LatheShape& shape) {
 
     MeshData mesh;
     std::vector<LatheRing> run;
-    float way = 0;
+    float arc_length = 0;
     for (std::size_t i = 0; i <= last; ++i) {
-        way += i > 0 ? glm::distance(points[i - 1], points[i]) : 0.0f;
-        const float v = way / length;
+        arc_length += i > 0 ? glm::distance(points[i - 1], points[i]) : 0.0f;
+        const float v = arc_length / length;
         const Vec2 before = edge_normal(i > 0 ? i - 1 : 0);
         const Vec2 after = edge_normal(std::min(i, last - 1));
         const bool is_edge = i > 0 && i < last && glm::dot(before, after) < std::cos(shape.crease);

@@ -8,11 +8,11 @@ namespace limn {
 
 // Analytic meshes. Each shape is a struct of parameters that a level file may set, and a function
 // that makes the mesh: unit normals and tangents in closed form, not from differences; images
-// upright and unmirrored seen from outside (w = +1, see surface_grid.h); +y up; centered at the
-// origin. Closed shapes are watertight: vertices at seams have bit-identical positions.
+// upright and unmirrored when viewed from outside (w = +1, see surface_grid.h); +y up; centered at
+// the origin. Closed shapes are watertight: vertices at seams have bit-identical positions.
 
-/// A ball with longitude and latitude as texture coordinates; the seam is at -z, the image's top at
-/// +y.
+/// A sphere with longitude and latitude as texture coordinates; the seam is at -z, the image's top
+/// at +y.
 struct SphereShape {
     float radius = 0.5f;
     int segments = 64;
@@ -42,7 +42,7 @@ LIMN_FIELDS(BoxShape) {
     LIMN_FIELD(metric, "the image repeats every meter");
 }
 
-/// A ring around +y; u runs around the axis, v around the tube, the image's middle row outside.
+/// A ring around +y; u runs around the axis, v around the tube, the image's central row outside.
 struct TorusShape {
     float radius = 0.35f;
     float tube = 0.15f;
@@ -51,7 +51,7 @@ struct TorusShape {
 };
 
 LIMN_FIELDS(TorusShape) {
-    LIMN_FIELD(radius, "from the center to the middle of the tube", "m", 1e-4, 1e5);
+    LIMN_FIELD(radius, "from the center to the center line of the tube", "m", 1e-4, 1e5);
     LIMN_FIELD(tube, "radius of the tube, at most radius", "m", 1e-4, 1e5);
     LIMN_FIELD(segments, "around the axis", "", 3, 2048);
     LIMN_FIELD(sides, "around the tube", "", 3, 1024);
@@ -129,7 +129,7 @@ LIMN_FIELDS(DiscShape) {
     LIMN_FIELD(radius, "of the outline", "m", 1e-4, 1e5);
     LIMN_FIELD(inner_radius, "of the hole, less than radius", "m", 0, 1e5);
     LIMN_FIELD(segments, "around the axis", "", 3, 2048);
-    LIMN_FIELD(divisions, "from the middle outwards", "", 1, 1024);
+    LIMN_FIELD(divisions, "from the center outwards", "", 1, 1024);
 }
 
 /// A profile revolved around +y: balusters, columns, bowls, flames. Lobes make clustered columns:
@@ -144,7 +144,7 @@ struct LatheShape {
 };
 
 LIMN_FIELDS(LatheShape) {
-    LIMN_FIELD(profile, "points (radius, height), from below upwards", "m", -1e5, 1e5);
+    LIMN_FIELD(profile, "points (radius, height), from bottom to top", "m", -1e5, 1e5);
     LIMN_FIELD(segments, "around the axis", "", 3, 2048);
     LIMN_FIELD(crease, "a sharp edge where the profile turns by more", "rad", 0, 3.1416);
     LIMN_FIELD(lobes, "around the axis; 0 = round", "", 0, 256);

@@ -18,12 +18,12 @@ struct SimplifiedShape {
 };
 
 LIMN_FIELDS(SimplifiedShape) {
-    LIMN_FIELD(mesh, "the mesh to simplify, by name; before this one in the file");
-    LIMN_FIELD(triangles, "about as many are left", "", 4, 1000000);
+    LIMN_FIELD(mesh, "the mesh to simplify, by name; must come earlier in the file");
+    LIMN_FIELD(triangles, "approximate number of triangles to keep", "", 4, 1000000);
 }
 
-/// Another mesh of the level, simplified: for a surface that moves it (surface_binding), with its
-/// skin weights and morph targets. Empty without a mesh.
+/// A simplified copy of another mesh of the level, as a control surface for it (surface_binding),
+/// with its skin weights and morph targets. Empty without a mesh.
 [[nodiscard]] MeshData make_simplified(const SimplifiedShape& shape, const Assets& assets);
 
 }  // namespace limn

@@ -6,10 +6,10 @@
 
 namespace limn {
 
-// Parametric surfaces are grids of vertices. Seen from the front, columns run to the right and rows
-// downwards, like the pixels of an image; so an image lies on the surface upright and unmirrored,
-// and the bitangent, which points to the top of the image, is + cross(normal, tangent): w = +1
-// everywhere.
+// Parametric surfaces are grids of vertices. Viewed from the front, columns run to the right and
+// rows downwards, like the pixels of an image; so an image lies on the surface upright and
+// unmirrored, and the bitangent, which points to the top of the image, is + cross(normal, tangent):
+// w = +1 everywhere.
 
 /// i / count.
 [[nodiscard]] inline float part(int i, int count) {

@@ -14,7 +14,7 @@ constexpr int kMaxRows = 1 << 16;
 
 /// A point of the profile with its normal; duplicated at a sharp edge.
 struct ProfileVertex {
-    Vec2 place;
+    Vec2 position;
     Vec2 normal;
     float along = 0;  ///< arc length along the profile [m]
 };
@@ -28,9 +28,9 @@ struct SweepFrame {
     float distance = 0;  ///< [m]
 };
 
-Vec2 left_of(const Vec2& way) {
-    const float length = glm::length(way);
-    return length > 0.0f ? Vec2(-way.y, way.x) / length : Vec2(0, 1);
+Vec2 left_of(const Vec2& direction) {
+    const float length = glm::length(direction);
+    return length > 0.0f ? Vec2(-direction.y, direction.x) / length : Vec2(0, 1);
 }
 
 std::vector<Vec2> profile_points(const SweepShape& shape) {
@@ -97,8 +97,8 @@ find_frames(const SweepShape& shape, const PathData& path, float from, float to)
     const int rows = std::clamp(static_cast<int>(std::min(wanted, 1e6f)), 1, kMaxRows);
     std::vector<SweepFrame> frames;
     for (int i = 0; i <= rows; ++i) {
-        const float share = static_cast<float>(i) / static_cast<float>(rows);
-        const float distance = i == rows ? to : from + share * (to - from);
+        const float fraction = static_cast<float>(i) / static_cast<float>(rows);
+        const float distance = i == rows ? to : from + fraction * (to - from);
         const PathFrame frame = path_frame_at(path, distance);
         frames.push_back({frame.position, glm::cross(frame.ahead, frame.up), frame.up, distance});
         if (shape.upright || i == 0) {
@@ -108,13 +108,13 @@ find_frames(const SweepShape& shape, const PathData& path, float from, float to)
         // reflect from row to row, then onto the new direction.
         const SweepFrame& last = frames[frames.size() - 2];
         const Vec3 last_ahead = glm::cross(last.up, last.right);
-        const Vec3 way = frame.position - last.position;
-        const float squared = glm::dot(way, way);
+        const Vec3 direction = frame.position - last.position;
+        const float squared = glm::dot(direction, direction);
         const auto mirror = [](const Vec3& v, const Vec3& across, float length) {
             return length > 0.0f ? v - across * (2.0f * glm::dot(across, v) / length) : v;
         };
-        const Vec3 up = mirror(last.up, way, squared);
-        const Vec3 turn = frame.ahead - mirror(last_ahead, way, squared);
+        const Vec3 up = mirror(last.up, direction, squared);
+        const Vec3 turn = frame.ahead - mirror(last_ahead, direction, squared);
         frames.back().up = glm::normalize(mirror(up, turn, glm::dot(turn, turn)));
         frames.back().right = glm::cross(frame.ahead, frames.back().up);
     }
@@ -128,9 +128,9 @@ void append_cap(
     const Vec3 normal = is_front ? ahead : -ahead;
     const Vec3 tangent = is_front ? -frame.right : frame.right;
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    Vec2 middle = {0, 0};
+    Vec2 centroid = {0, 0};
     for (const Vec2& point : points) {
-        middle += point / static_cast<float>(points.size());
+        centroid += point / static_cast<float>(points.size());
     }
     const auto add = [&](const Vec2& point) {
         mesh.positions.push_back(frame.position + frame.right * point.x + frame.up * point.y);
@@ -138,7 +138,7 @@ void append_cap(
         mesh.tangents.emplace_back(tangent, 1.0f);
         mesh.uvs.emplace_back(is_front ? -point.x : point.x, -point.y);
     };
-    add(middle);
+    add(centroid);
     for (const Vec2& point : points) {
         add(point);
     }
@@ -162,7 +162,7 @@ void append_piece(
             const SweepFrame& frame = frames[static_cast<std::size_t>(rows - j)];
             const Vec2 along = {vertex.normal.y, -vertex.normal.x};
             return GridVertex{
-                frame.position + frame.right * vertex.place.x + frame.up * vertex.place.y,
+                frame.position + frame.right * vertex.position.x + frame.up * vertex.position.y,
                 frame.right * vertex.normal.x + frame.up * vertex.normal.y,
                 frame.right * along.x + frame.up * along.y,
                 {vertex.along, frames.back().distance - frame.distance}};

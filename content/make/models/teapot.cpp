@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: anim.bezier-patch-lod, bump.tangent-bezier, bump.teapot, fakephong.scenes
+
 namespace limn {
 
 namespace {
@@ -103,7 +105,7 @@ float texture_density(TeapotPart part) {
 
 // ---- patches -----------------------------------------------------------------------------------
 
-/// Quarter `quarter` of a revolved profile: u runs counter-clockwise seen from above, v up.
+/// Quarter `quarter` of a revolved profile: u runs counter-clockwise when viewed from above, v up.
 BezierPatch turn_profile(const TurnedProfile& profile, int quarter) {
     BezierPatch patch;
     for (std::size_t j = 0; j < 4; ++j) {

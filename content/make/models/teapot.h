@@ -11,7 +11,7 @@ namespace limn {
 // about the vertical axis, with quarter circles whose handle factor is 0.56 (0.41 % off a circle;
 // the knob of the lid has 0.5625 in the public data); handle and spout are ducts, mirrored left and
 // right. The original had no bottom: its 4 patches are the later addition, on by default so that
-// the pot may be seen from below.
+// the pot may be viewed from below.
 //
 // Here +y is up, the spout points along +x, and u x v points outwards everywhere. Handle and spout
 // end inside the body and are not stitched to it.
@@ -51,7 +51,7 @@ LIMN_FIELDS(TeapotShape) {
 /// 28 patches, or 32 with the bottom: rim 4, body 8, lid 8, handle 4, spout 4, bottom 4.
 [[nodiscard]] std::vector<TeapotPatch> teapot_patches(bool bottom);
 
-/// Stands on y = 0. Uniform: divisions^2 quads per patch, two triangles each; those at the middle
+/// Stands on y = 0. Uniform: divisions^2 quads per patch, two triangles each; those at the center
 /// of lid and bottom, where a side of a patch is a point, have no area but do have normals. The
 /// texture goes four times around the body and once around handle and spout.
 [[nodiscard]] MeshData make_teapot(const TeapotShape& shape);

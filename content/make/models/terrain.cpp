@@ -34,7 +34,7 @@ float landscape(const TerrainShape& shape, float x, float z) {
     const Vec2 p = Vec2(x, z) / shape.feature_size;
     const Vec2 bend = {gradient_noise(0.7f * p, seed + 40), gradient_noise(0.7f * p, seed + 41)};
     const Vec2 bent = p + shape.warp * bend;
-    // Transition from hills to mountains: `ridges` sets the share of mountains.
+    // Transition from hills to mountains: `ridges` sets the fraction of mountains.
     const float region = 0.5f + 0.7f * gradient_noise(0.6f * p + 31.5f, seed + 42);
     const float mountains =
         shape.ridges >= 1 ? 1.0f : glm::smoothstep(0.9f, 1.5f, region + 1.2f * shape.ridges);
@@ -96,9 +96,9 @@ Vec4 ground_color(const TerrainShape& shape, const Vec3& at, float level) {
     constexpr Vec3 kDarkRock = {0.11f, 0.095f, 0.085f};
     constexpr Vec3 kScrub = {0.075f, 0.085f, 0.035f};
     constexpr Vec3 kSand = {0.40f, 0.33f, 0.24f};
-    const Vec2 place = Vec2(at.x, at.z) / shape.feature_size;
+    const Vec2 position = Vec2(at.x, at.z) / shape.feature_size;
     const auto seed = static_cast<std::uint32_t>(shape.seed);
-    const float patches = gradient_noise(9.0f * place, seed);
+    const float patches = gradient_noise(9.0f * position, seed);
     const float layers = std::sin(0.9f * at.y + 3.0f * patches);
     const Vec3 rock = glm::mix(kDarkRock, kRock, 0.5f + 0.35f * layers + 0.3f * patches);
     const float grows = glm::smoothstep(0.70f, 0.88f, level + 0.12f * patches);
@@ -130,7 +130,7 @@ MeshData make_terrain(const TerrainShape& shape) {
     const int n = shape.divisions;
     const int width = n + 3;
     const Vec2 step = shape.size / static_cast<float>(n);
-    const auto place = [&](int i, int j) { return Vec2(i, j) * step - 0.5f * shape.size; };
+    const auto grid_point = [&](int i, int j) { return Vec2(i, j) * step - 0.5f * shape.size; };
     std::vector<float> heights(static_cast<std::size_t>(width) * static_cast<std::size_t>(width));
     const auto at = [&](int i, int j) -> float& {
         return heights
@@ -140,7 +140,7 @@ MeshData make_terrain(const TerrainShape& shape) {
     parallel_for(static_cast<std::size_t>(width), 8, [&](std::size_t begin, std::size_t end) {
         for (int j = static_cast<int>(begin) - 1; j < static_cast<int>(end) - 1; ++j) {
             for (int i = -1; i <= n + 1; ++i) {
-                const Vec2 p = place(i, j);
+                const Vec2 p = grid_point(i, j);
                 at(i, j) = height_at(shape, level, p.x, p.y);
             }
         }
@@ -148,7 +148,7 @@ MeshData make_terrain(const TerrainShape& shape) {
 
     MeshData mesh;
     append_grid(mesh, n, n, {}, [&](int i, int j) {
-        const Vec2 p = place(i, j);
+        const Vec2 p = grid_point(i, j);
         const float rise_x = (at(i + 1, j) - at(i - 1, j)) / (2.0f * step.x);
         const float rise_z = (at(i, j + 1) - at(i, j - 1)) / (2.0f * step.y);
         GridVertex vertex;

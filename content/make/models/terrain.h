@@ -38,8 +38,8 @@ LIMN_FIELDS(TerrainShape) {
     LIMN_FIELD(height, "from valleys to crests", "m", 0, 1e4);
     LIMN_FIELD(feature_size, "distance between hills", "m", 0.01, 1e5);
     LIMN_FIELD(octaves, "of noise: each halves the feature size", "", 1, 16);
-    LIMN_FIELD(ridges, "share of the land that is mountains, not hills", "", 0, 1);
-    LIMN_FIELD(erosion, "how much slopes lose detail", "", 0, 4);
+    LIMN_FIELD(ridges, "fraction of the land with mountains instead of hills", "", 0, 1);
+    LIMN_FIELD(erosion, "loss of detail on slopes", "", 0, 4);
     LIMN_FIELD(warp, "domain warp in feature sizes", "", 0, 2);
     LIMN_FIELD(
         clearing, "radius of a flat area in the center, whose height limn check prints; 0 = none",

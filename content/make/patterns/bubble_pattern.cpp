@@ -8,10 +8,11 @@ namespace {
 
 constexpr float kRadius = 0.8f;   // of half a frame
 constexpr float kIndex = 1.333f;  // of water
-constexpr float kSkyFrom = 0.2f;  // upward share of a direction in which it gets bright, by eye
+constexpr float kSkyFrom =
+    0.2f;  // upward component of a direction at which the sky brightens, by eye
 constexpr float kSkyTo = 0.8f;
 
-/// Share of unpolarized light that goes from water to air and is reflected, by the sine of its
+/// Fresnel reflectance of unpolarized light from water to air, by the sine of its
 /// angle of incidence.
 float reflectance(float sine) {
     const float leaving = kIndex * sine;
@@ -25,10 +26,10 @@ float reflectance(float sine) {
     return 0.5f * (s * s + p * p);
 }
 
-/// Brightness of what is seen at `place` on the unit disc, by reflection.
-float mirrored_sky(const Vec2& place) {
-    const float sine = glm::length(place);
-    const float upward = 2.0f * std::sqrt(std::max(1.0f - sine * sine, 0.0f)) * place.y;
+/// Brightness of the reflection at `point` on the unit disc.
+float mirrored_sky(const Vec2& point) {
+    const float sine = glm::length(point);
+    const float upward = 2.0f * std::sqrt(std::max(1.0f - sine * sine, 0.0f)) * point.y;
     return glm::mix(0.12f, 1.0f, glm::smoothstep(kSkyFrom, kSkyTo, upward));
 }
 
@@ -40,12 +41,12 @@ PatternMaps make_bubble(const BubblePattern& pattern) {
         2.0f * static_cast<float>(pattern.frames) / static_cast<float>(pattern.image.size);
     return make_shaded_flipbook(pattern.image, pattern.frames, [&](const FramePoint& at) {
         const float flat = pattern.flatness * frame_random(at, pattern.frames, seed, 0);
-        const Vec2 place = at.p / (kRadius * Vec2(1.0f, 1.0f - flat));
-        const float sine = glm::length(place);
+        const Vec2 point = at.p / (kRadius * Vec2(1.0f, 1.0f - flat));
+        const float sine = glm::length(point);
         PatternTexel t;
-        t.color = Vec3(mirrored_sky(place));
+        t.color = Vec3(mirrored_sky(point));
         t.opacity = reflectance(std::min(sine, 1.0f));
-        // Grazing light hardly changes its direction: there one sees what is behind.
+        // Near grazing incidence light is hardly refracted: the background shows through.
         t.opacity *= glm::smoothstep(1.0f + soft, 0.86f, sine);
         return t;
     });

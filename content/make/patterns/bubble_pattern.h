@@ -4,9 +4,9 @@
 
 namespace limn {
 
-/// Air bubbles in water, each frame another one: clear in the middle; beyond 3/4 of the radius, the
-/// inverse of the index of refraction, a ring of total reflection (Marston 1979). It is bright
-/// where it shows what is above. Lit by a sky that is overhead; y upwards.
+/// Air bubbles in water, a different one per frame: clear in the center; beyond 3/4 of the radius,
+/// the inverse of the index of refraction, a ring of total reflection (Marston 1979). It is bright
+/// where it reflects the sky above; y upwards.
 struct BubblePattern {
     PatternSize image;
     int frames = 4;
@@ -15,8 +15,8 @@ struct BubblePattern {
 
 LIMN_FIELDS(BubblePattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(flatness, "by how much they are lower than wide, at most", "", 0, 0.6);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(flatness, "largest flattening: 1 - height / width", "", 0, 0.6);
 }
 
 [[nodiscard]] PatternMaps make_bubble(const BubblePattern& pattern);

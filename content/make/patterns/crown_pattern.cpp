@@ -8,14 +8,14 @@
 namespace limn {
 namespace {
 
-constexpr float kFoot = -0.8f;    // in the frame, -1 .. 1
-constexpr float kGravity = 4.4f;  // [half frames / duration^2]
-constexpr float kSeen = 0.22f;    // share of its depth that shows as height, from slightly above
+constexpr float kFoot = -0.8f;        // in the frame, -1 .. 1
+constexpr float kGravity = 4.4f;      // [half frames / duration^2]
+constexpr float kDepthScale = 0.22f;  // height in the image per depth: viewed from slightly above
 
-/// Water that left at one moment in one direction.
+/// Water ejected at one time in one direction.
 struct Jet {
     Vec2 around;    ///< on the unit circle: x to the right, y toward the back
-    float out = 0;  ///< speed away from the middle
+    float out = 0;  ///< outward speed
     float up = 0;
     float thick = 0;
 };
@@ -38,11 +38,12 @@ std::vector<Jet> jets_of(const CrownPattern& pattern) {
     return jets;
 }
 
-/// Where water is after `time` that left with a share of the jet's speed.
-Vec2 place_of(const Jet& jet, float share, float time) {
-    const float away = 0.08f + share * jet.out * time;
-    const float height = std::max(share * jet.up * time - 0.5f * kGravity * time * time, 0.0f);
-    return {away * jet.around.x, kFoot + height + kSeen * away * jet.around.y};
+/// Position after `time` of water that left with this fraction of the jet's speed.
+Vec2 water_position(const Jet& jet, float speed_fraction, float time) {
+    const float away = 0.08f + speed_fraction * jet.out * time;
+    const float height =
+        std::max(speed_fraction * jet.up * time - 0.5f * kGravity * time * time, 0.0f);
+    return {away * jet.around.x, kFoot + height + kDepthScale * away * jet.around.y};
 }
 
 }  // namespace
@@ -54,26 +55,27 @@ PatternMaps make_crown(const CrownPattern& pattern) {
         3.0f * static_cast<float>(pattern.frames) / static_cast<float>(pattern.image.size);
     return make_shaded_flipbook(pattern.image, pattern.frames, [&](const FramePoint& at) {
         const float time = 0.08f + 0.87f * at.time;
-        const float whole = glm::smoothstep(0.62f, 0.2f, at.time);  // of threads, before they tear
+        const float whole =
+            glm::smoothstep(0.62f, 0.2f, at.time);  // weight of threads, until they tear
         float water = 0;
         for (std::size_t i = 0; i < jets.size(); ++i) {
             const Jet& jet = jets[i];
-            const Vec2 tip = place_of(jet, 1.0f, time);
-            const Vec2 middle = place_of(jet, 0.8f, time);
-            const Vec2 root = place_of(jet, 0.55f, time);
+            const Vec2 tip = water_position(jet, 1.0f, time);
+            const Vec2 halfway = water_position(jet, 0.8f, time);
+            const Vec2 root = water_position(jet, 0.55f, time);
             const float drop = glm::length(at.p - tip) - 1.5f * jet.thick;
-            const float second = glm::length(at.p - middle) - jet.thick;
+            const float second = glm::length(at.p - halfway) - jet.thick;
             water = std::max(water, glm::smoothstep(soft, -soft, std::min(drop, second)));
             const float thread =
-                std::min(line_distance(at.p, tip, middle), line_distance(at.p, middle, root));
+                std::min(line_distance(at.p, tip, halfway), line_distance(at.p, halfway, root));
             const float thin = jet.thick * (0.35f + 0.65f * whole);
             water =
                 std::max(water, 0.8f * whole * glm::smoothstep(thin + soft, thin - soft, thread));
-            // The wall between this jet and the next, seen through.
+            // The translucent wall between this jet and the next.
             const Jet& next = jets[(i + 1) % jets.size()];
-            const Vec2 next_root = place_of(next, 0.6f, time);
+            const Vec2 next_root = water_position(next, 0.6f, time);
             const float wall = std::min(
-                line_distance(at.p, root, next_root), line_distance(at.p, middle, next_root));
+                line_distance(at.p, root, next_root), line_distance(at.p, halfway, next_root));
             water = std::max(water, 0.45f * whole * glm::smoothstep(0.13f, 0.0f, wall));
         }
         const float torn = fbm(5.0f * at.p, seed + 7, {0, 0}, 3);

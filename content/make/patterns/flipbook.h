@@ -14,7 +14,8 @@ namespace limn {
 
 // Images of `frames` x `frames` shapes, each transparent at its border, in order from the top left.
 
-/// A point of a flipbook: -1 .. 1 in its frame, y upwards, and the frame's share of the sequence.
+/// A point of a flipbook: -1 .. 1 in its frame, y upwards, and the frame's time in the sequence, 0
+/// .. 1.
 struct FramePoint {
     Vec2 p;
     float time;
@@ -30,7 +31,7 @@ make_shaded_flipbook(const PatternSize& image, int frames, Texel&& texel) {
         const Vec2 inside = 2.0f * (uv * side - cell) - 1.0f;
         const FramePoint at = {
             {inside.x, -inside.y}, (cell.y * side + cell.x) / std::max(side * side - 1.0f, 1.0f)};
-        // Nothing at the border, over which filters read the neighboring frames.
+        // Transparent at the border, since filtering reads texels of neighboring frames.
         const float edge = std::max(std::abs(inside.x), std::abs(inside.y));
         PatternTexel t = texel(at);
         t.opacity = std::clamp(t.opacity, 0.0f, 1.0f) * glm::smoothstep(0.97f, 0.85f, edge);
@@ -38,7 +39,7 @@ make_shaded_flipbook(const PatternSize& image, int frames, Texel&& texel) {
     });
 }
 
-/// White, by its opacity alone.
+/// White with this opacity.
 template <typename Opacity>
 [[nodiscard]] PatternMaps make_flipbook(const PatternSize& image, int frames, Opacity&& opacity) {
     return make_shaded_flipbook(image, frames, [&](const FramePoint& at) {
@@ -64,7 +65,7 @@ frame_random(const FramePoint& at, int frames, std::uint32_t seed, std::uint32_t
     return static_cast<float>((h ^ (h >> 16)) >> 8) * 0x1p-24f;
 }
 
-/// From a point to the line between two.
+/// Distance from a point to the line segment between two others.
 [[nodiscard]] inline float line_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
     const Vec2 along = b - a;
     const float t = std::clamp(glm::dot(p - a, along) / glm::dot(along, along), 0.0f, 1.0f);

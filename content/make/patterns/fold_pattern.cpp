@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: wrinkle.compression.map
+
 namespace limn {
 
 PatternMaps make_folds(const FoldsPattern& pattern) {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+// Techniques: wrinkle.furrow.polygon-models
+
 namespace limn {
 namespace {
 
@@ -19,7 +21,7 @@ constexpr int kDivisions = 32;       // quads along each side of a surface
 constexpr float kPadHeight = 0.22f;  // [m]; by eye
 constexpr float kPadRadius = 0.46f;  // [m]
 
-/// Height and slopes of the elevation at a point: a smooth bump that ends flat.
+/// Height and slopes of the elevation at a point: a smooth bump that flattens out at its rim.
 Vec3 pad_at(const Vec2& p) {
     const float q = 1.0f - glm::dot(p, p) / square(kPadRadius);
     if (q <= 0) {

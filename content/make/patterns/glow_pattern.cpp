@@ -10,17 +10,18 @@ PatternMaps make_glow(const GlowPattern& pattern) {
     const float core = std::max(pattern.core, 0.01f);
     return make_shaded_flipbook(pattern.image, pattern.frames, [&](const FramePoint& at) {
         const float away = glm::length(at.p);
-        // Halves at the core, falls with the square of the distance, and ends without a slope.
+        // Half intensity at the core, inverse-square falloff, and a smooth end.
         const float spread = 1.0f / (1.0f + square(away / core));
         const float end = square(std::max(1.0f - square(away), 0.0f));
-        // Noise around the middle, sampled on a circle and so without a seam. Rays end at other
+        // Noise around the center, sampled on a circle to avoid a seam. Rays end at different
         // distances.
         const Vec2 around = at.p / std::max(away, 1e-3f);
         const Vec2 other = {23.0f * static_cast<float>(frame_number(at, pattern.frames)), 5.0f};
         const float noise_around = fbm(7.0f * around + other, seed, {0, 0}, 3);
         const float ray = 6.0f * square(glm::smoothstep(-0.15f + 0.35f * away, 0.6f, noise_around));
-        const float share = pattern.rays * glm::smoothstep(0.0f, 2.0f * core, away);
-        const float root = std::sqrt(spread * end * glm::mix(1.0f, std::min(ray, 4.0f), share));
+        const float ray_weight = pattern.rays * glm::smoothstep(0.0f, 2.0f * core, away);
+        const float root =
+            std::sqrt(spread * end * glm::mix(1.0f, std::min(ray, 4.0f), ray_weight));
         PatternTexel t;
         t.color = Vec3(std::min(root, 1.0f));
         t.opacity = root;

@@ -4,10 +4,10 @@
 
 namespace limn {
 
-/// Light that spreads in air and lens around what is too small and too bright to see: brightest in
-/// the middle and without a rim. The intensity is the product of color and opacity, which are
-/// equal, so that eight bits of each hold the faint parts too: for particles that only add light
-/// (`cover` 0).
+/// Glow in air and lens around a source that is too small and bright to resolve: brightest in
+/// the center and without a rim. The intensity is the product of color and opacity, which are
+/// equal, so that eight bits of each resolve the faint parts too: for additive particles (`cover`
+/// 0).
 struct GlowPattern {
     PatternSize image;
     int frames = 1;
@@ -17,9 +17,9 @@ struct GlowPattern {
 
 LIMN_FIELDS(GlowPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other, each with other rays", "", 1, 16);
-    LIMN_FIELD(core, "radius at half the intensity, as a share of half the frame", "", 0.01, 0.5);
-    LIMN_FIELD(rays, "share of the light in rays out of the middle", "", 0, 1);
+    LIMN_FIELD(frames, "frames along each side of the image, each with different rays", "", 1, 16);
+    LIMN_FIELD(core, "radius at half the intensity, in half frames", "", 0.01, 0.5);
+    LIMN_FIELD(rays, "fraction of the light in rays from the center", "", 0, 1);
 }
 
 [[nodiscard]] PatternMaps make_glow(const GlowPattern& pattern);

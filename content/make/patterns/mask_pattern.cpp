@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cstddef>
 
+// Techniques: wrinkle.maps.masks
+
 namespace limn {
 namespace {
 

@@ -19,8 +19,8 @@ LIMN_FIELDS(MaskRegion) {
     LIMN_FIELD(radius, "along u and v", "", 1e-3, 2);
 }
 
-/// Where up to four regions of a surface are, a channel each, as wrinkle_maps uses them: its base
-/// color is linear. Where soft borders overlap all are dimmed so that their sum is at most 1.
+/// Masks of up to four regions of a surface, one per channel, as used by wrinkle_maps: the base
+/// color is linear. Overlapping soft borders are scaled down so that their sum is at most 1.
 struct MasksPattern {
     PatternSize image;
     std::vector<MaskRegion> regions = {
@@ -31,9 +31,9 @@ struct MasksPattern {
 
 LIMN_FIELDS(MasksPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(regions, "ellipses; those of one channel add up");
-    LIMN_FIELD(softness, "width of their borders, inwards, as a share of the radius", "", 0.01, 1);
-    LIMN_FIELD(wander, "of their borders, as a share of the radius", "", 0, 1);
+    LIMN_FIELD(regions, "ellipses; those of the same channel add up");
+    LIMN_FIELD(softness, "width of their borders, inwards / radius", "", 0.01, 1);
+    LIMN_FIELD(wander, "irregularity of their borders / radius", "", 0, 1);
 }
 
 [[nodiscard]] PatternMaps make_masks(const MasksPattern& pattern);

@@ -10,14 +10,14 @@ namespace limn {
 namespace {
 
 /// A block of a course.
-struct BlockPlace {
+struct CourseBlock {
     int column;
     float edge;  ///< distance to its ends, in blocks
 };
 
 /// `x` is in units of blocks; a course has `columns` of them. Joints are moved by up to a third of
 /// a block, so blocks keep their order.
-BlockPlace find_block(float x, int columns, int row, float irregular, std::uint32_t seed) {
+CourseBlock find_block(float x, int columns, int row, float irregular, std::uint32_t seed) {
     const auto joint = [&](int k) {
         const int own = (k % columns + columns) % columns;
         return static_cast<float>(k) + 0.66f * irregular * (lattice_random(own, row, seed) - 0.5f);
@@ -65,9 +65,9 @@ struct RoseLayout {
     float petal_end;
     float begin_radius;
     float end_radius;
-    float roundel_place;
+    float roundel_distance;
     float roundel_radius;
-    float bead_place;
+    float bead_distance;
     float bead_radius;
 };
 
@@ -85,13 +85,13 @@ RoseLayout lay_out(const RoseWindowPattern& pattern) {
     rose.begin_radius = std::max(rose.petal_begin * sine - rose.bar, 0.01f);
     rose.end_radius = std::clamp(rose.petal_end * sine - rose.bar, 0.01f, 0.3f);
     rose.hub = std::max(rose.petal_begin - rose.begin_radius - 2.0f * rose.bar, 0.02f);
-    rose.roundel_place = 0.82f;
-    const float gap =
-        glm::length(Vec2(rose.roundel_place * cosine - rose.petal_end, rose.roundel_place * sine));
+    rose.roundel_distance = 0.82f;
+    const float gap = glm::length(
+        Vec2(rose.roundel_distance * cosine - rose.petal_end, rose.roundel_distance * sine));
     rose.roundel_radius =
         std::clamp(gap - rose.end_radius - 2.0f * rose.bar, 0.01f, 0.98f - 2.0f * rose.bar - 0.82f);
-    rose.bead_place = 0.89f;
-    rose.bead_radius = std::max(0.98f - rose.bead_place - 2.0f * rose.bar, 0.01f);
+    rose.bead_distance = 0.89f;
+    rose.bead_radius = std::max(0.98f - rose.bead_distance - 2.0f * rose.bar, 0.01f);
     return rose;
 }
 
@@ -177,10 +177,11 @@ PatternMaps make_ashlar(const AshlarPattern& pattern) {
         const int row = (course % rows + rows) % rows;
         const float shift = 0.5f * static_cast<float>(row % 2)
                             + 0.3f * pattern.irregular * lattice_random(row, 7, seed);
-        const BlockPlace place = find_block(p.x + shift, columns, row, pattern.irregular, seed + 1);
+        const CourseBlock found =
+            find_block(p.x + shift, columns, row, pattern.irregular, seed + 1);
         const float local = p.y - static_cast<float>(course);
-        const float edge = std::min(place.edge * block, std::min(local, 1.0f - local));
-        const std::uint32_t random = lattice_hash(place.column, row, seed + 2);
+        const float edge = std::min(found.edge * block, std::min(local, 1.0f - local));
+        const std::uint32_t random = lattice_hash(found.column, row, seed + 2);
         const float own = static_cast<float>(random & 255u) / 255.0f;
 
         const float half = 0.5f * pattern.joint;
@@ -221,14 +222,14 @@ PatternMaps make_rose_window(const RoseWindowPattern& pattern) {
         const float sectors = (std::atan2(q.x, -q.y) / (2.0f * rose.half_sector));
         const float petal = std::floor(sectors + 0.5f);
         const float gap = std::floor(sectors);
-        const auto in_sector = [&](float middle) {
-            const float angle = 2.0f * rose.half_sector * (sectors - middle);
+        const auto in_sector = [&](float center) {
+            const float angle = 2.0f * rose.half_sector * (sectors - center);
             return radius * Vec2(std::cos(angle), std::sin(angle));
         };
         const Vec2 by_petal = in_sector(petal);
         const Vec2 by_gap = in_sector(gap + 0.5f);
-        const Vec2 in_roundel = by_gap - Vec2(rose.roundel_place, 0);
-        const Vec2 in_bead = by_petal - Vec2(rose.bead_place, 0);
+        const Vec2 in_roundel = by_gap - Vec2(rose.roundel_distance, 0);
+        const Vec2 in_bead = by_petal - Vec2(rose.bead_distance, 0);
 
         Nearest nearest;
         nearest.take(radius - rose.hub, 0);

@@ -69,14 +69,14 @@ CellSample cell_noise(const Vec2& p, std::uint32_t seed, float jitter, const IVe
             const int y = wrap(y0 + dy, period.y);
             const Vec2 random = {
                 lattice_random(x, y, seed), lattice_random(x, y, seed ^ 0x68bc21ebu)};
-            const Vec2 place = Vec2(x0 + dx, y0 + dy) + 0.5f + jitter * (random - 0.5f) - p;
-            points[count++] = place;
-            const float distance = glm::length(place);
+            const Vec2 offset = Vec2(x0 + dx, y0 + dy) + 0.5f + jitter * (random - 0.5f) - p;
+            points[count++] = offset;
+            const float distance = glm::length(offset);
             if (distance < sample.nearest) {
                 sample.second = sample.nearest;
                 sample.nearest = distance;
                 sample.cell = lattice_hash(x, y, seed ^ 0x2545f491u);
-                nearest = place;
+                nearest = offset;
             } else if (distance < sample.second) {
                 sample.second = distance;
             }

@@ -55,7 +55,7 @@ void for_pixels(int size, Body&& body) {
 
 using Texels = std::function<PatternTexel(const Vec2& uv)>;
 
-/// All but the normals; `heights`: in pixels, row by row.
+/// All maps except the normals; `heights`: in pixels, row by row.
 PatternMaps make_surface_maps(int size, const Texels& texel, std::vector<float>& heights) {
     LIMN_CHECK(size >= 1);
     PatternMaps maps;

@@ -14,7 +14,7 @@ struct PatternTexel {
     float height = 0;                 ///< in units of the image width
     float roughness = 0.5f;           ///< perceptual, 0 .. 1
     float metalness = 0;              ///< 0 .. 1
-    float occlusion = 1;              ///< visible share of the sky, 0 .. 1
+    float occlusion = 1;              ///< visible fraction of the sky, 0 .. 1
     float opacity = 1;                ///< 0 .. 1
 };
 
@@ -23,9 +23,9 @@ struct PatternMaps {
     ImageData base_color;  ///< sRGB, and opacity
     ImageData normal;      ///< tangent space, green up, from the heights
     ImageData orm;         ///< r occlusion, g roughness, b metalness, as glTF packs them
-    ImageData motion;      ///< of flipbooks, as ParticleLook::motion; empty of others
-    /// Of flipbooks of volumes, empty of others: what they scatter of light from the right, above
-    /// and behind, with their opacity; ParticleLook::negative_light.
+    ImageData motion;      ///< for flipbooks, as ParticleLook::motion; else empty
+    /// For flipbooks of volumes, else empty: the light that they scatter from the right, above
+    /// and behind, with their opacity; see ParticleLook::negative_light.
     ImageData positive_light, negative_light;
 };
 

@@ -26,7 +26,7 @@ namespace limn {
 namespace {
 
 /// A point in a grid of rectangles.
-struct CellPlace {
+struct GridCell {
     int column;
     int row;
     Vec2 local;  ///< 0 .. 1 inside the rectangle
@@ -34,7 +34,7 @@ struct CellPlace {
 };
 
 /// `aspect`: width of a rectangle over its height.
-CellPlace place_in_grid(const Vec2& cells, float aspect) {
+GridCell find_grid_cell(const Vec2& cells, float aspect) {
     const Vec2 whole = glm::floor(cells);
     const Vec2 local = cells - whole;
     const float across = std::min(local.x, 1.0f - local.x) * aspect;
@@ -49,7 +49,7 @@ PatternMaps make_checker(const CheckerPattern& pattern) {
     const int cells = even(pattern.cells);
     const float width = 1.0f / static_cast<float>(cells);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
-        const CellPlace cell = place_in_grid(uv * static_cast<float>(cells), 1);
+        const GridCell cell = find_grid_cell(uv * static_cast<float>(cells), 1);
         const bool first = (cell.column + cell.row) % 2 == 0;
         const float groove = glm::smoothstep(0.0f, 0.035f, cell.edge);
         const float wear = fbm(uv, 6, seed);
@@ -67,7 +67,7 @@ PatternMaps make_tiles(const TilesPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     const float width = 1.0f / static_cast<float>(pattern.cells);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
-        const CellPlace cell = place_in_grid(uv * static_cast<float>(pattern.cells), 1);
+        const GridCell cell = find_grid_cell(uv * static_cast<float>(pattern.cells), 1);
         const std::uint32_t random = lattice_hash(cell.column, cell.row, seed);
         const float grout = 0.5f * pattern.grout;
         const float glaze = glm::smoothstep(grout, grout + 0.02f, cell.edge);
@@ -104,7 +104,7 @@ PatternMaps make_bricks(const BricksPattern& pattern) {
         Vec2 cells = uv * Vec2(columns, rows) + 0.02f * Vec2(0.5f, 1.0f) * ragged;
         const bool shifted = static_cast<int>(std::floor(cells.y)) % 2 != 0;
         cells.x += shifted ? 0.5f : 0.0f;
-        const CellPlace cell = place_in_grid(cells, 2);
+        const GridCell cell = find_grid_cell(cells, 2);
         const int column = (cell.column + columns) % columns;
         const int row = (cell.row + rows) % rows;
         const std::uint32_t random = lattice_hash(column, row, seed);
@@ -288,7 +288,7 @@ PatternMaps make_fabric(const FabricPattern& pattern) {
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
         // Plain weave: in every other square the thread along v lies on top. A thread is arched
         // across its width and dips at the ends of its square.
-        const CellPlace cell = place_in_grid(uv * static_cast<float>(threads), 1);
+        const GridCell cell = find_grid_cell(uv * static_cast<float>(threads), 1);
         const bool warp_on_top = (cell.column + cell.row) % 2 == 0;
         const Vec2 off = 2.0f * cell.local - 1.0f;
         const float across = warp_on_top ? off.x : off.y;
@@ -315,8 +315,8 @@ PatternMaps make_windows(const WindowsPattern& pattern) {
     const Vec2 cells = {pattern.columns, pattern.rows};
     const float soft = 0.7f * std::max(cells.x, cells.y) / static_cast<float>(pattern.image.size);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
-        const Vec2 place = uv * cells;
-        const Vec2 cell = glm::min(glm::floor(place), cells - 1.0f);
+        const Vec2 position = uv * cells;
+        const Vec2 cell = glm::min(glm::floor(position), cells - 1.0f);
         const int column = static_cast<int>(cell.x);
         const int row = static_cast<int>(cell.y);
         // Groups of four windows tend to be lit or dark together.
@@ -325,13 +325,13 @@ PatternMaps make_windows(const WindowsPattern& pattern) {
         const bool is_lit =
             0.5f * (stretch + own) < 0.5f * (pattern.lit + pattern.lit * pattern.lit)
             || own < 0.3f * pattern.lit;
-        const Vec2 from_middle = glm::abs(place - cell - 0.5f);
+        const Vec2 from_center = glm::abs(position - cell - 0.5f);
         const Vec2 half = 0.5f - 0.5f * pattern.frame * Vec2(1.0f, 1.4f);
-        const Vec2 inside = 1.0f - glm::smoothstep(half - soft, half + soft, from_middle);
+        const Vec2 inside = 1.0f - glm::smoothstep(half - soft, half + soft, from_center);
         const float glass = inside.x * inside.y;
         const float bright = 1.0f - pattern.variation * lattice_random(column, row, seed + 2);
         // Lamps are at the ceiling; blinds cover part of the window.
-        const float height = 1.0f - (place.y - cell.y);
+        const float height = 1.0f - (position.y - cell.y);
         const float blind = 0.9f * lattice_random(column, row, seed + 3) - 0.3f;
         const float light = height > 1.0f - blind ? 0.35f : 0.55f + 0.45f * height;
         const bool accent = lattice_random(column / 4, row, seed + 4) < 0.25f;
@@ -391,7 +391,7 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<ConfettiPattern, make_confetti>(
             "confetti", "a flipbook of cut paper in bright colors"),
         pattern_kind<CrownPattern, make_crown>(
-            "crown", "a flipbook of what a drop throws up where it hits, from the side"),
+            "crown", "a flipbook of the crown splash of a drop, from the side"),
         pattern_kind<FaceFoldsPattern, make_face_folds>(
             "face_folds", "folds of a face, as a wrinkle map for the skin of a head"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
@@ -407,35 +407,33 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<FurrowsPattern, make_furrows>(
             "furrows", "skin with wrinkle furrows that grow along two vector fields"),
         pattern_kind<GlowPattern, make_glow>(
-            "glow",
-            "light without a rim around what is too bright to see, for what only adds light"),
+            "glow", "a soft glow around a small bright source, for additive particles"),
         pattern_kind<HairPattern, make_hair>(
             "hair", "strands of hair along v with gaps, for the cards of a head"),
         pattern_kind<HeadFurrowsPattern, make_head_furrows>(
             "head_furrows", "furrows along the folds of a head, at rest or as wrinkle maps"),
-        pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
+        pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of different leaves"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<MasksPattern, make_masks>(
-            "masks", "where four regions are, one in each channel, for wrinkle_maps"),
+            "masks", "masks of four regions, one per channel, for wrinkle_maps"),
         pattern_kind<PuffPattern, make_puff>(
-            "puff", "a flipbook of a cloud, with what it scatters of light from six sides",
+            "puff", "a flipbook of a cloud, with the light that it scatters from six sides",
             PatternKindMaps::Light),
         pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),
         pattern_kind<RoseWindowPattern, make_rose_window>(
-            "rose_window", "a round window of stained glass; black outside of the glass"),
+            "rose_window", "a round window of stained glass; black outside the glass"),
         pattern_kind<RustPattern, make_rust>("rust", "scratched metal under patches of rust"),
-        pattern_kind<ShardPattern, make_shard>(
-            "shard", "a flipbook of splinters, each another one"),
+        pattern_kind<ShardPattern, make_shard>("shard", "a flipbook of different splinters"),
         pattern_kind<SmokePattern, make_smoke>("smoke", "a flipbook of a puff"),
         pattern_kind<SnowflakePattern, make_snowflake>(
-            "snowflake", "a flipbook of crystals, each another one"),
+            "snowflake", "a flipbook of different snow crystals"),
         pattern_kind<SplashPattern, make_splash>("splash", "a flipbook of water that breaks up"),
         pattern_kind<StainedGlassPattern, make_stained_glass>(
             "stained_glass", "leaded diamonds between two borders; black at the lead"),
         pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),
         pattern_kind<StonePattern, make_stone>("stone", "irregular flagstones"),
         pattern_kind<StrainFoldsPattern, make_strain_folds>(
-            "strain_folds", "folds of a face as a model of its strain, for a wrinkle_surface"),
+            "strain_folds", "folds of a face as a function of its strain, for a wrinkle_surface"),
         pattern_kind<StudioPattern, make_studio>(
             "studio", "a panorama of soft boxes and windows around a model"),
         pattern_kind<TilesPattern, make_tiles>("tiles", "glazed tiles in grout"),

@@ -13,11 +13,11 @@ namespace limn {
 // the same pixels. Values are chosen by eye, to look right under the gallery's lights, not
 // measured. Parameters are read as those of meshes, see make_mesh.h.
 
-/// Which of PatternMaps a kind makes: base color, normal, occlusion-roughness-metalness, and
+/// Which maps a kind makes: base color, normal, occlusion-roughness-metalness, and
 enum class PatternKindMaps {
-    Surface,  ///< no others
-    Motion,   ///< of a flipbook whose shapes are known to move
-    Light,    ///< of a flipbook of volumes, both
+    Surface,  ///< nothing else
+    Motion,   ///< the motion map of a flipbook
+    Light,    ///< both light maps of a flipbook of volumes
 };
 
 struct PatternKind {
@@ -133,7 +133,7 @@ struct BrushedMetalPattern {
 
 LIMN_FIELDS(BrushedMetalPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(color, .doc = "reflectance seen head-on", .min = 0, .max = 1, .color = true);
+    LIMN_FIELD(color, .doc = "reflectance at normal incidence", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(roughness, "perceptual roughness", "", 0, 1);
     LIMN_FIELD(streaks, "strength of the brushing along u", "", 0, 1);
 }
@@ -163,7 +163,7 @@ struct ConcretePattern {
 LIMN_FIELDS(ConcretePattern) {
     visit_fields(self.image, visit);
     LIMN_FIELD(color, .doc = "when dry", .min = 0, .max = 1, .color = true);
-    LIMN_FIELD(pores, "how many", "", 0, 1);
+    LIMN_FIELD(pores, "density of pores", "", 0, 1);
 }
 
 struct RustPattern {
@@ -177,7 +177,7 @@ LIMN_FIELDS(RustPattern) {
     visit_fields(self.image, visit);
     LIMN_FIELD(metal_color, .doc = "of the bare metal", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(rust_color, .doc = "of the rust", .min = 0, .max = 1, .color = true);
-    LIMN_FIELD(rust, "share of the surface", "", 0, 1);
+    LIMN_FIELD(rust, "fraction of the surface", "", 0, 1);
 }
 
 struct FabricPattern {
@@ -211,7 +211,7 @@ LIMN_FIELDS(WindowsPattern) {
     visit_fields(self.image, visit);
     LIMN_FIELD(columns, "windows along u", "", 1, 256);
     LIMN_FIELD(rows, "storeys", "", 1, 256);
-    LIMN_FIELD(lit, "share of the windows", "", 0, 1);
+    LIMN_FIELD(lit, "fraction of the windows that are lit", "", 0, 1);
     LIMN_FIELD(frame, "gap between windows / cell size", "", 0, 0.9);
     LIMN_FIELD(variation, "of brightness from window to window", "", 0, 1);
     LIMN_FIELD(color, .doc = "of lit windows", .min = 0, .max = 1, .color = true);
@@ -228,7 +228,7 @@ struct AsphaltPattern {
 
 LIMN_FIELDS(AsphaltPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(wet, "share covered by puddles", "", 0, 1);
+    LIMN_FIELD(wet, "fraction covered by puddles", "", 0, 1);
     LIMN_FIELD(roughness, "outside of puddles", "", 0, 1);
     LIMN_FIELD(color, .doc = "dry", .min = 0, .max = 1, .color = true);
 }

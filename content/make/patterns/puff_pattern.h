@@ -5,7 +5,7 @@
 namespace limn {
 
 /// A flipbook of a cloud that swells and frays, rendered from a volume: white with its opacity, and
-/// what it scatters toward the viewer of light from six sides (PatternMaps::positive_light), for
+/// the light that it scatters toward the viewer from six sides (PatternMaps::positive_light), for
 /// ParticleLook::negative_light.
 struct PuffPattern {
     PatternSize image;
@@ -17,10 +17,10 @@ struct PuffPattern {
 
 LIMN_FIELDS(PuffPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(lumps, "height of the lumps that it is made of, as a share of its radius", "", 0, 1);
-    LIMN_FIELD(density, "optical depth of half a frame of it", "", 0.1, 100);
-    LIMN_FIELD(fray, "how much of it has dissolved in the last frame", "", 0, 1);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(lumps, "height of its lumps / radius", "", 0, 1);
+    LIMN_FIELD(density, "optical depth across half a frame", "", 0.1, 100);
+    LIMN_FIELD(fray, "how much has dissolved in the last frame", "", 0, 1);
 }
 
 [[nodiscard]] PatternMaps make_puff(const PuffPattern& pattern);

@@ -9,7 +9,7 @@ namespace {
 constexpr int kPressureSweeps = 40;
 constexpr float kRelaxation = 1.7f;  // of the sweeps
 
-/// Values outside are those at the edge.
+/// Clamps to the edge outside the grid.
 float sample_fluid(const FluidGrid& fluid, const std::vector<float>& field, float x, float y) {
     const float top = static_cast<float>(fluid.side - 1);
     x = std::clamp(x, 0.0f, top);
@@ -25,7 +25,7 @@ float sample_fluid(const FluidGrid& fluid, const std::vector<float>& field, floa
     return low + (high - low) * fy;
 }
 
-/// Calls `cell(x, y)` for all cells that are not at the edge.
+/// Calls `cell(x, y)` for all interior cells.
 template <typename Cell>
 void each_inner(const FluidGrid& fluid, Cell&& cell) {
     for (int y = 1; y + 1 < fluid.side; ++y) {
@@ -37,16 +37,16 @@ void each_inner(const FluidGrid& fluid, Cell&& cell) {
 
 void advect(FluidGrid& fluid, float dt) {
     const FluidGrid before = fluid;
-    const float reach = dt * static_cast<float>(fluid.side);
+    const float cells_per_speed = dt * static_cast<float>(fluid.side);
     each_inner(fluid, [&](int x, int y) {
         const std::size_t i = fluid.at(x, y);
-        // By the velocity halfway back.
-        const float half_x = static_cast<float>(x) - 0.5f * reach * before.u[i];
-        const float half_y = static_cast<float>(y) - 0.5f * reach * before.v[i];
-        const float from_x =
-            static_cast<float>(x) - reach * sample_fluid(before, before.u, half_x, half_y);
-        const float from_y =
-            static_cast<float>(y) - reach * sample_fluid(before, before.v, half_x, half_y);
+        // Midpoint method: the velocity halfway back.
+        const float half_x = static_cast<float>(x) - 0.5f * cells_per_speed * before.u[i];
+        const float half_y = static_cast<float>(y) - 0.5f * cells_per_speed * before.v[i];
+        const float from_x = static_cast<float>(x)
+                             - cells_per_speed * sample_fluid(before, before.u, half_x, half_y);
+        const float from_y = static_cast<float>(y)
+                             - cells_per_speed * sample_fluid(before, before.v, half_x, half_y);
         fluid.u[i] = sample_fluid(before, before.u, from_x, from_y);
         fluid.v[i] = sample_fluid(before, before.v, from_x, from_y);
         fluid.heat[i] = sample_fluid(before, before.heat, from_x, from_y);
@@ -54,7 +54,7 @@ void advect(FluidGrid& fluid, float dt) {
     });
 }
 
-/// Strengthens whirls where the grid has blurred them: a force around where they are strongest.
+/// Vorticity confinement: restores vortices that the grid has blurred.
 void confine(FluidGrid& fluid, float strength, float dt) {
     const auto row = static_cast<std::size_t>(fluid.side);
     std::vector<float> curl(fluid.u.size(), 0.0f);
@@ -79,7 +79,7 @@ float divergence(const FluidGrid& fluid, std::size_t i) {
            * (fluid.u[i + 1] - fluid.u[i - 1] + fluid.v[i + row] - fluid.v[i - row]);
 }
 
-/// Makes the divergence that of the expansion, by pressure: 0 at the open edges.
+/// Projects the divergence to that of the expansion; the pressure is 0 at open edges.
 void project_velocity(FluidGrid& fluid, const FluidStep& step) {
     const int side = fluid.side;
     const auto row = static_cast<std::size_t>(side);
@@ -91,7 +91,7 @@ void project_velocity(FluidGrid& fluid, const FluidStep& step) {
         asked[i] = cell * cell * (divergence(fluid, i) - step.expansion * fluid.heat[i]);
     });
     for (int sweep = 0; sweep < kPressureSweeps; ++sweep) {
-        for (int parity = 0; parity < 2; ++parity) {  // of x + y: neighbors are of the other one
+        for (int parity = 0; parity < 2; ++parity) {  // of x + y: red-black ordering
             for (int y = 1; y + 1 < side; ++y) {
                 for (int x = 1 + (y + parity) % 2; x + 1 < side; x += 2) {
                     const std::size_t i = fluid.at(x, y);

@@ -7,15 +7,15 @@
 
 namespace limn {
 
-// A small flow in the plane, from which flipbooks of fire are rendered: heat that rises, cools and
+// A small 2D fluid simulation for flipbooks of fire: heat that rises, cools and
 // carries soot (J. Stam, "Stable Fluids", 1999; R. Fedkiw et al., "Visual Simulation of Smoke",
-// 2001, for the whirls). Rows run upwards. Lengths are sides of the square, so that a flow looks
-// alike in every resolution. No libm beyond sqrt and floor: the same on every machine.
+// 2001, for vorticity confinement). Rows run upwards. Lengths are in sides of the square, so that a
+// flow looks alike at every resolution. No libm beyond sqrt and floor: identical on every machine.
 
 struct FluidGrid {
     int side = 0;             ///< cells
     std::vector<float> u, v;  ///< velocity [sides/s], at the cells' centers
-    std::vector<float> heat;  ///< 1: as hot as the source
+    std::vector<float> heat;  ///< 1: the temperature of the source
     std::vector<float> soot;
 
     [[nodiscard]] std::size_t at(int x, int y) const {
@@ -27,7 +27,7 @@ struct FluidGrid {
 struct FluidStep {
     float dt = 1.0f / 60;
     float rise = 8;         ///< acceleration by heat 1 [sides/s^2]
-    float whirls = 0.3f;    ///< confinement of vorticity, 0 .. 1
+    float whirls = 0.3f;    ///< vorticity confinement, 0 .. 1
     float cooling = 1.5f;   ///< of heat 1 [1/s]; hot cools fast, as radiation does
     float soot_decay = 0;   ///< [1/s]
     float drag = 0.2f;      ///< [1/s]

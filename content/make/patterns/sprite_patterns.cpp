@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <vector>
 
+// Techniques: particle.motion-vectors
+
 namespace limn {
 namespace {
 
@@ -41,18 +43,18 @@ Vec3 heat_color(float heat) {
         {1.0f, {1.0f, 0.88f, 0.55f}}};
     for (std::size_t i = 1; i < std::size(kKeys); ++i) {
         if (heat <= kKeys[i].at) {
-            const float share = (heat - kKeys[i - 1].at) / (kKeys[i].at - kKeys[i - 1].at);
-            return glm::mix(kKeys[i - 1].color, kKeys[i].color, std::max(share, 0.0f));
+            const float fraction = (heat - kKeys[i - 1].at) / (kKeys[i].at - kKeys[i - 1].at);
+            return glm::mix(kKeys[i - 1].color, kKeys[i].color, std::max(fraction, 0.0f));
         }
     }
     return kKeys[std::size(kKeys) - 1].color;
 }
 
 float sample_field(const std::vector<float>& field, int side, const Vec2& at) {
-    const Vec2 place = glm::clamp(
+    const Vec2 position = glm::clamp(
         at * static_cast<float>(side) - 0.5f, Vec2(0.0f), Vec2(static_cast<float>(side - 1)));
-    const IVec2 cell = glm::min(IVec2(place), IVec2(side - 2));
-    const Vec2 f = place - Vec2(cell);
+    const IVec2 cell = glm::min(IVec2(position), IVec2(side - 2));
+    const Vec2 f = position - Vec2(cell);
     const float* const p = field.data() + static_cast<std::ptrdiff_t>(cell.y) * side + cell.x;
     return glm::mix(glm::mix(p[0], p[1], f.x), glm::mix(p[side], p[side + 1], f.x), f.y);
 }
@@ -60,7 +62,7 @@ float sample_field(const std::vector<float>& field, int side, const Vec2& at) {
 struct FluidFrame {
     std::vector<float> heat;
     std::vector<float> soot;
-    std::vector<float> right, up;  ///< what moves until the next frame [sides]
+    std::vector<float> right, up;  ///< displacement until the next frame [sides]
 };
 
 FluidFrame frame_of(const FluidGrid& fluid) {
@@ -68,7 +70,7 @@ FluidFrame frame_of(const FluidGrid& fluid) {
     return {fluid.heat, fluid.soot, nothing, nothing};
 }
 
-/// Adds what a step has moved.
+/// Adds the displacement of a step.
 void add_motion(const FluidGrid& fluid, float dt, FluidFrame& frame) {
     for (std::size_t i = 0; i < fluid.u.size(); ++i) {
         frame.right[i] += dt * fluid.u[i];
@@ -77,8 +79,8 @@ void add_motion(const FluidGrid& fluid, float dt, FluidFrame& frame) {
 }
 
 /// As a byte of a motion map, 0 .. 1.
-float encode_motion(float share) {
-    return (128.0f + 127.0f * std::clamp(share / kMotionReach, -1.0f, 1.0f)) / 255.0f;
+float encode_motion(float fraction) {
+    return (128.0f + 127.0f * std::clamp(fraction / kMotionRange, -1.0f, 1.0f)) / 255.0f;
 }
 
 /// `texel(heat, soot, frame point)`, bilinear between the cells of the frame.
@@ -116,7 +118,7 @@ int fluid_side(const PatternSize& image, int frames) {
     return std::clamp(image.size / std::max(frames, 1), 8, kMaxFluidSide);
 }
 
-/// What burns at the foot of the frame: heat that flickers, and a draft from the sides.
+/// The source at the foot of the frame: flickering heat, and an inflow from the sides.
 void heat_foot(const FirePattern& pattern, float time, float dt, FluidGrid& fluid) {
     const std::uint32_t seed = seed_of(pattern.image);
     const int side = fluid.side;
@@ -137,16 +139,18 @@ void heat_foot(const FirePattern& pattern, float time, float dt, FluidGrid& flui
     }
 }
 
-/// Frames [count, count + overlap), which come after the last, fade into the first ones.
+/// Cross-fades frames [count, count + overlap), beyond the last, into the first ones.
 void close_loop(std::vector<FluidFrame>& film, int count, int overlap) {
     for (int i = 0; i < overlap; ++i) {
-        const float share = (static_cast<float>(i) + 1.0f) / (static_cast<float>(overlap) + 1.0f);
+        const float fraction =
+            (static_cast<float>(i) + 1.0f) / (static_cast<float>(overlap) + 1.0f);
         const auto first = static_cast<std::size_t>(i);
         const FluidFrame& late = film[first + static_cast<std::size_t>(count)];
         FluidFrame& early = film[first];
         for (const auto field : {&FluidFrame::heat, &FluidFrame::right, &FluidFrame::up}) {
             for (std::size_t cell = 0; cell < early.heat.size(); ++cell) {
-                (early.*field)[cell] = glm::mix((late.*field)[cell], (early.*field)[cell], share);
+                (early.*field)[cell] =
+                    glm::mix((late.*field)[cell], (early.*field)[cell], fraction);
             }
         }
     }
@@ -214,7 +218,7 @@ PatternMaps make_fireball(const FireballPattern& pattern) {
             const float body = glm::smoothstep(0.16f, 0.06f, away);
             fluid.heat[cell] = body * (1.0f + 1.2f * fbm(12.0f * at, seed + 9, {0, 0}, 3));
             fluid.soot[cell] = body;
-            // Whirls without sources: the curl of noise.
+            // Divergence-free vortices: the curl of noise.
             const auto stream = [&](const Vec2& p) { return fbm(10.0f * p, seed + 30, {0, 0}, 3); };
             constexpr float kStep = 0.01f;
             const float here = stream(at);
@@ -313,7 +317,7 @@ float length_of(const Vec2& p) {
     return glm::length(p);
 }
 
-/// The point folded into one of twelve mirrored wedges about the middle, that along +x.
+/// Folds the point into the wedge along +x, of twelve mirrored wedges around the center.
 Vec2 fold_sixfold(Vec2 p) {
     p = glm::abs(p);
     constexpr Vec2 kNormal = {0.5f, -0.8660254f};  // of the line at 30 degrees
@@ -365,15 +369,15 @@ PatternMaps make_leaf(const LeafPattern& pattern) {
 
 namespace {
 
-/// A clump of leaves: a ball in front of the image plane.
+/// A clump of leaves: a sphere in front of the image plane.
 struct LeafClump {
-    Vec3 middle;
+    Vec3 center;
     float radius;
 };
 
 struct TreeForm {
     std::vector<LeafClump> clumps;
-    Vec2 crown;  ///< its middle
+    Vec2 crown;  ///< its center
     Vec2 extent;
 };
 
@@ -393,14 +397,14 @@ TreeForm grow_tree(const TreePattern& pattern, std::uint32_t number) {
         const float away = std::cbrt(0.25f + 0.75f * random(4 * i + 4));
         const Vec3 unit = away * Vec3(ring * std::cos(angle), ring * std::sin(angle), z);
         const float widest = 1.0f - 0.25f * unit.y;  // narrower at the top
-        const Vec2 place = tree.crown + 0.8f * tree.extent * Vec2(unit.x * widest, unit.y);
+        const Vec2 position = tree.crown + 0.8f * tree.extent * Vec2(unit.x * widest, unit.y);
         const float radius = (0.13f + 0.10f * random(4 * i + 5)) * (1.0f - 0.35f * slim);
-        tree.clumps.push_back({{place, 0.8f * tree.extent.x * unit.z}, radius});
+        tree.clumps.push_back({{position, 0.8f * tree.extent.x * unit.z}, radius});
     }
     return tree;
 }
 
-/// Trunk and boughs: how far `p` is within them, in units of the image; negative outside.
+/// Trunk and boughs: depth of `p` inside them, in units of the image; negative outside.
 float bark_depth(const TreeForm& tree, const Vec2& p) {
     const float wobble = 0.02f * std::sin(7.0f * p.y);
     const float up = std::clamp((p.y + 1.0f) / 1.3f, 0.0f, 1.0f);
@@ -408,7 +412,7 @@ float bark_depth(const TreeForm& tree, const Vec2& p) {
     float depth =
         p.y < 0.3f ? 0.055f * (1.0f - 0.75f * up) + flare - std::abs(p.x - wobble) : -1.0f;
     for (std::size_t i = 0; i < tree.clumps.size(); i += 6) {
-        const Vec2 end = Vec2(tree.clumps[i].middle);
+        const Vec2 end = Vec2(tree.clumps[i].center);
         const Vec2 foot = {0.01f, std::min(-0.45f + 0.5f * (end.y + 0.4f), end.y - 0.1f)};
         depth = std::max(depth, 0.014f - line_distance(p, foot, end));
     }
@@ -443,14 +447,14 @@ PatternMaps make_tree(const TreePattern& pattern) {
         float cover = 0;
         Vec3 normal(0, 0, 1);
         for (const LeafClump& clump : tree.clumps) {
-            const Vec2 offset = (moved - Vec2(clump.middle)) / clump.radius;
+            const Vec2 offset = (moved - Vec2(clump.center)) / clump.radius;
             const float inward =
                 1.0f - glm::dot(offset, offset) + 1.3f * pattern.gaps * (leaf - 0.05f);
             if (inward <= 0) {
                 continue;
             }
             const float z = std::sqrt(std::max(1.0f - glm::dot(offset, offset), 0.0f));
-            const float depth = clump.middle.z + clump.radius * z + 0.05f * leaf;
+            const float depth = clump.center.z + clump.radius * z + 0.05f * leaf;
             cover = std::max(cover, glm::smoothstep(0.0f, 0.08f + 3.0f * texel, inward));
             if (depth > front) {
                 front = depth;
@@ -519,10 +523,11 @@ PatternMaps make_snowflake(const SnowflakePattern& pattern) {
         float nearest = line_distance(p, {0, 0}, {0.8f, 0}) - thick;
         for (std::uint32_t i = 0; i < 4; ++i) {  // side branches, at 60 degrees
             const float from = 0.16f + 0.17f * static_cast<float>(i) + 0.08f * random(1 + i);
-            const float reach = (0.10f + 0.22f * random(6 + i)) * (1.0f - 0.6f * from);
+            const float branch = (0.10f + 0.22f * random(6 + i)) * (1.0f - 0.6f * from);
             const Vec2 foot = {from, 0};
             nearest = std::min(
-                nearest, line_distance(p, foot, foot + reach * Vec2(0.5f, 0.866f)) - 0.75f * thick);
+                nearest,
+                line_distance(p, foot, foot + branch * Vec2(0.5f, 0.866f)) - 0.75f * thick);
         }
         const float core = away - 0.10f - 0.12f * random(11);
         nearest = std::min(nearest, core);
@@ -538,7 +543,7 @@ PatternMaps make_shard(const ShardPattern& pattern) {
     const float soft = 2.5f * static_cast<float>(frames) / static_cast<float>(pattern.image.size);
     return make_shaded_flipbook(pattern.image, frames, [&](const FramePoint& at) {
         const auto random = [&](std::uint32_t i) { return frame_random(at, frames, seed, i); };
-        // The polygon between six lines, with facets that meet at a point off the middle.
+        // A polygon bounded by six lines, with facets that meet at an off-center point.
         const Vec2 peak = 0.3f * Vec2(random(30) - 0.5f, random(31) - 0.5f);
         float outside = -1;
         float facet = -1;
@@ -548,9 +553,9 @@ PatternMaps make_shard(const ShardPattern& pattern) {
             constexpr Vec2 kAround[] = {{1, 0},  {0.5f, 0.87f},   {-0.5f, 0.87f},
                                         {-1, 0}, {-0.5f, -0.87f}, {0.5f, -0.87f}};
             normal = glm::normalize(normal * 0.55f + kAround[i]);
-            const float reach = 0.36f + 0.34f * random(3 * i + 2);
-            outside = std::max(outside, glm::dot(at.p, normal) - reach);
-            const float height = glm::dot(at.p - peak, normal) / reach;
+            const float radius = 0.36f + 0.34f * random(3 * i + 2);
+            outside = std::max(outside, glm::dot(at.p, normal) - radius);
+            const float height = glm::dot(at.p - peak, normal) / radius;
             if (height > facet) {
                 facet = height;
                 light = 0.62f + 0.38f * normal.y - 0.15f * normal.x;
@@ -597,13 +602,13 @@ PatternMaps make_ring(const RingPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     return make_flipbook(pattern.image, pattern.frames, [&](const FramePoint& at) {
         const float away = length_of(at.p);
-        // Noise around the middle that turns: sampled on the unit circle, so without a seam.
+        // Rotating noise around the center, sampled on the unit circle to avoid a seam.
         const Vec2 around = at.p / std::max(away, 1e-3f);
         const float wisps = fbm(
             3.0f * around + Vec2(2.5f * away - 1.2f * at.time, 0.8f * at.time), seed, {0, 0}, 4);
-        const float place = (away - 0.72f - 0.10f * wisps) / std::max(pattern.width, 0.01f);
-        const float ring = 1.0f / (1.0f + 9.0f * place * place);
-        const float inner = place < 0 ? 0.35f * glm::smoothstep(-3.0f, 0.0f, place) : 0.0f;
+        const float offset = (away - 0.72f - 0.10f * wisps) / std::max(pattern.width, 0.01f);
+        const float ring = 1.0f / (1.0f + 9.0f * offset * offset);
+        const float inner = offset < 0 ? 0.35f * glm::smoothstep(-3.0f, 0.0f, offset) : 0.0f;
         const float torn = glm::mix(1.0f, glm::smoothstep(-0.4f, 0.4f, wisps), pattern.detail);
         return (ring * torn + inner * torn * torn) * glm::smoothstep(0.98f, 0.8f, away);
     });

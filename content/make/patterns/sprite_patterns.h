@@ -8,7 +8,8 @@ namespace limn {
 // from the top left. Every frame is transparent at its border. Those from simulations come with a
 // motion map, for the default of particle_look's motion_strength.
 
-inline constexpr float kMotionReach = 0.25f;  ///< what 255 in it means, as a share of a frame
+inline constexpr float kMotionRange =
+    0.25f;  ///< displacement encoded by 255, as a fraction of a frame
 
 /// A puff that swirls and frays.
 struct SmokePattern {
@@ -21,10 +22,10 @@ struct SmokePattern {
 
 LIMN_FIELDS(SmokePattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(detail, "share of the opacity that varies within", "", 0, 1);
-    LIMN_FIELD(billow, "height of the lumps that it is made of; 0: a veil", "", 0, 2);
-    LIMN_FIELD(shade, "how much lumps are lit from above, in the color", "", 0, 1);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(detail, "contrast of the opacity inside", "", 0, 1);
+    LIMN_FIELD(billow, "height of its lumps; 0: a veil", "", 0, 2);
+    LIMN_FIELD(shade, "how much the color shades lumps as if lit from above", "", 0, 1);
 }
 
 /// A tongue of fire that rises and breaks apart.
@@ -37,12 +38,12 @@ struct FlamePattern {
 
 LIMN_FIELDS(FlamePattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(detail, "share of the opacity that varies within", "", 0, 1);
-    LIMN_FIELD(sway, "to the sides at the tip, as a share of half the frame", "", 0, 2);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(detail, "contrast of the opacity inside", "", 0, 1);
+    LIMN_FIELD(sway, "sideways at the tip, in half frames", "", 0, 2);
 }
 
-/// Fire from a simulation, in its own colors: a loop. Its foot is at the lower edge.
+/// Simulated fire in color, a loop. Its foot is at the lower edge.
 struct FirePattern {
     PatternSize image;
     int frames = 4;
@@ -54,14 +55,14 @@ struct FirePattern {
 
 LIMN_FIELDS(FirePattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(width, "of the source, as a share of the frame", "", 0.02, 0.9);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(width, "width of the source, in frames", "", 0.02, 0.9);
     LIMN_FIELD(rise, "acceleration of the hottest gas", "frames/s^2", 0, 100);
-    LIMN_FIELD(cooling, "how fast heat is lost: how short the flames are", "1/s", 0.1, 20);
-    LIMN_FIELD(whirls, "strength of small whirls", "", 0, 1);
+    LIMN_FIELD(cooling, "rate of heat loss; higher makes shorter flames", "1/s", 0.1, 20);
+    LIMN_FIELD(whirls, "strength of small vortices", "", 0, 1);
 }
 
-/// A ball of fire that bursts, rises and turns to soot: from the first frame to the last.
+/// A fireball that bursts, rises and turns to soot; plays once from the first frame to the last.
 struct FireballPattern {
     PatternSize image;
     int frames = 4;
@@ -72,13 +73,13 @@ struct FireballPattern {
 
 LIMN_FIELDS(FireballPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
     LIMN_FIELD(burst, "expansion of the hottest gas", "1/s", 0, 100);
-    LIMN_FIELD(cooling, "how fast heat is lost", "1/s", 0.1, 20);
-    LIMN_FIELD(whirls, "strength of small whirls", "", 0, 1);
+    LIMN_FIELD(cooling, "rate of heat loss", "1/s", 0.1, 20);
+    LIMN_FIELD(whirls, "strength of small vortices", "", 0, 1);
 }
 
-/// Leaves of a tree in autumn, another one in each frame.
+/// Autumn leaves, a different one per frame.
 struct LeafPattern {
     PatternSize image;
     int frames = 4;
@@ -88,12 +89,12 @@ struct LeafPattern {
 
 LIMN_FIELDS(LeafPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(color, "linear RGB of some, mixed by chance", "", 0, 1);
-    LIMN_FIELD(second_color, "of the others", "", 0, 1);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(color, "linear RGB of some leaves; randomly mixed", "", 0, 1);
+    LIMN_FIELD(second_color, "linear RGB of the others", "", 0, 1);
 }
 
-/// Trees that stand on the lower edge of their frame, another one in each: for billboards.
+/// Trees that stand on the lower edge of their frame, a different one per frame: for billboards.
 struct TreePattern {
     PatternSize image;
     int frames = 4;
@@ -105,14 +106,14 @@ struct TreePattern {
 
 LIMN_FIELDS(TreePattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(color, "linear RGB of the leaves in the light", "", 0, 1);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(color, "linear RGB of lit leaves", "", 0, 1);
     LIMN_FIELD(bark_color, "linear RGB of trunk and branches", "", 0, 1);
     LIMN_FIELD(slimness, "0: a round crown, 1: a poplar", "", 0, 1);
-    LIMN_FIELD(gaps, "how far one sees through the rim of the crown", "", 0, 1);
+    LIMN_FIELD(gaps, "transparency of the rim of the crown", "", 0, 1);
 }
 
-/// Cut paper in bright colors, another piece in each frame.
+/// Paper confetti in bright colors, a different piece per frame.
 struct ConfettiPattern {
     PatternSize image;
     int frames = 4;
@@ -120,10 +121,10 @@ struct ConfettiPattern {
 
 LIMN_FIELDS(ConfettiPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
 }
 
-/// Crystals of snow, another one in each frame.
+/// Snow crystals, a different one per frame.
 struct SnowflakePattern {
     PatternSize image;
     int frames = 4;
@@ -131,10 +132,10 @@ struct SnowflakePattern {
 
 LIMN_FIELDS(SnowflakePattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
 }
 
-/// Splinters of stone, another one in each frame.
+/// Splinters of stone, a different one per frame.
 struct ShardPattern {
     PatternSize image;
     int frames = 4;
@@ -143,11 +144,11 @@ struct ShardPattern {
 
 LIMN_FIELDS(ShardPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
     LIMN_FIELD(color, "linear RGB", "", 0, 1);
 }
 
-/// Water that breaks into drops, from the first frame to the last.
+/// Water that breaks up into drops; plays once from the first frame to the last.
 struct SplashPattern {
     PatternSize image;
     int frames = 4;
@@ -155,7 +156,7 @@ struct SplashPattern {
 
 LIMN_FIELDS(SplashPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
 }
 
 /// A torn ring: shock waves, portals.
@@ -168,9 +169,9 @@ struct RingPattern {
 
 LIMN_FIELDS(RingPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
-    LIMN_FIELD(width, "of the ring, as a share of half the frame", "", 0.01, 0.5);
-    LIMN_FIELD(detail, "share of the opacity that varies within", "", 0, 1);
+    LIMN_FIELD(frames, "frames along each side of the image", "", 1, 16);
+    LIMN_FIELD(width, "width of the ring, in half frames", "", 0.01, 0.5);
+    LIMN_FIELD(detail, "contrast of the opacity inside", "", 0, 1);
 }
 
 [[nodiscard]] PatternMaps make_leaf(const LeafPattern& pattern);

@@ -12,7 +12,7 @@
 namespace limn {
 namespace {
 
-/// In the order of rows and columns of an equirectangular image, with -z in its middle.
+/// In the order of rows and columns of an equirectangular image, with -z at its center.
 Vec3 direction_at(const Vec2& uv) {
     const float longitude = (uv.x - 0.5f) * glm::two_pi<float>();
     const float latitude = (0.5f - uv.y) * glm::pi<float>();
@@ -21,32 +21,33 @@ Vec3 direction_at(const Vec2& uv) {
         -std::cos(latitude) * std::cos(longitude)};
 }
 
-/// 1 on the panes of a window, 0 on the bars between them; `place` is -1 .. 1 across the window.
-float pane_share(const StudioLight& light, const Vec2& place, float blur) {
+/// 1 on the panes of a window, 0 on the bars between them; `point` is -1 .. 1 across the window.
+float pane_coverage(const StudioLight& light, const Vec2& point, float blur) {
     const Vec2 panes = glm::max(light.panes, IVec2(1));
-    const Vec2 at = (0.5f + 0.5f * place) * panes;
+    const Vec2 at = (0.5f + 0.5f * point) * panes;
     const Vec2 to_bar = 0.5f - glm::abs(at - glm::floor(at) - 0.5f);  // in panes
-    Vec2 share = glm::smoothstep(Vec2(0.5f * light.bars), 0.5f * light.bars + blur * panes, to_bar);
-    share = glm::mix(Vec2(1), share, glm::greaterThan(panes, Vec2(1)));
-    return share.x * share.y;
+    Vec2 coverage =
+        glm::smoothstep(Vec2(0.5f * light.bars), 0.5f * light.bars + blur * panes, to_bar);
+    coverage = glm::mix(Vec2(1), coverage, glm::greaterThan(panes, Vec2(1)));
+    return coverage.x * coverage.y;
 }
 
-/// How much of the light shows in a direction; `pixel`: extent of one there [rad].
-float light_share(const StudioLight& light, const Vec3& direction, float pixel) {
-    const Vec3 middle = light.toward / std::max(glm::length(light.toward), 1e-6f);
-    const float ahead = glm::dot(direction, middle);
+/// Coverage of a direction by the light; `pixel`: extent of a pixel there [rad].
+float light_coverage(const StudioLight& light, const Vec3& direction, float pixel) {
+    const Vec3 center = light.toward / std::max(glm::length(light.toward), 1e-6f);
+    const float ahead = glm::dot(direction, center);
     if (!(ahead > 1e-3f)) {
         return 0;
     }
-    const Vec3 up = std::abs(middle.y) > 0.95f ? Vec3(0, 0, -1) : Vec3(0, 1, 0);
-    const Vec3 right = glm::normalize(glm::cross(up, middle));
+    const Vec3 up = std::abs(center.y) > 0.95f ? Vec3(0, 0, -1) : Vec3(0, 1, 0);
+    const Vec3 right = glm::normalize(glm::cross(up, center));
     const Vec2 at =
-        Vec2(glm::dot(direction, right), glm::dot(direction, glm::cross(middle, right)));
-    const Vec2 place = at / (0.5f * ahead * light.size);
+        Vec2(glm::dot(direction, right), glm::dot(direction, glm::cross(center, right)));
+    const Vec2 point = at / (0.5f * ahead * light.size);
     const Vec2 blur = 2.0f * pixel / light.size;
     const Vec2 border = glm::max(Vec2(light.edge), blur);
-    const Vec2 inside = 1.0f - glm::smoothstep(1.0f - border, Vec2(1), glm::abs(place));
-    return inside.x * inside.y * pane_share(light, place, 0.5f * std::max(blur.x, blur.y));
+    const Vec2 inside = 1.0f - glm::smoothstep(1.0f - border, Vec2(1), glm::abs(point));
+    return inside.x * inside.y * pane_coverage(light, point, 0.5f * std::max(blur.x, blur.y));
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ PatternMaps make_studio(const StudioPattern& pattern) {
         PatternTexel t;
         t.color = glm::mix(uneven * pattern.wall, pattern.floor, down);
         for (const StudioLight& light : pattern.lights) {
-            t.color += light.color * light_share(light, direction, pixel);
+            t.color += light.color * light_coverage(light, direction, pixel);
         }
         t.color = glm::min(t.color, Vec3(1));
         return t;

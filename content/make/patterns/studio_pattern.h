@@ -6,7 +6,7 @@
 
 namespace limn {
 
-/// A rectangle of light, a soft box or a window, that faces the middle of a room.
+/// A rectangular light, a soft box or a window, that faces the center of a room.
 struct StudioLight {
     Vec3 toward = {0.6f, 0.5f, 0.6f};
     Vec2 size = {0.8f, 1.0f};
@@ -17,17 +17,17 @@ struct StudioLight {
 };
 
 LIMN_FIELDS(StudioLight) {
-    LIMN_FIELD(toward, "where its middle is as seen from that of the room; -z is straight ahead");
-    LIMN_FIELD(size, "width and height, as seen at a distance of 1", "", 0.01, 10);
+    LIMN_FIELD(toward, "direction to its center from the center of the room; -z is straight ahead");
+    LIMN_FIELD(size, "width and height at a distance of 1", "", 0.01, 10);
     LIMN_FIELD(color, .doc = "its light", .min = 0, .max = 1, .color = true);
-    LIMN_FIELD(edge, "width of its blurred border, as a share of half its size", "", 0, 1);
+    LIMN_FIELD(edge, "width of its blurred border / half its size", "", 0, 1);
     LIMN_FIELD(panes, "of a window, across and upward", "", 1, 32);
-    LIMN_FIELD(bars, "between panes: their width, as a share of a pane's", "", 0, 0.9);
+    LIMN_FIELD(bars, "width of the bars between panes / width of a pane", "", 0, 0.9);
 }
 
 /// The surroundings of a model in a studio, as an equirectangular panorama for the environment:
-/// eyes and gloss then mirror soft boxes, not points of light. The sky `studio` is a room whose
-/// lamps are fixed; this one has those of a level.
+/// eyes and glossy surfaces then reflect soft boxes instead of point lights. The sky `studio` has
+/// fixed lamps; this one has those that a level defines.
 struct StudioPattern {
     PatternSize image;
     Vec3 wall = {0.02f, 0.02f, 0.021f};
@@ -46,10 +46,10 @@ struct StudioPattern {
 LIMN_FIELDS(StudioPattern) {
     visit_fields(self.image, visit);
     LIMN_FIELD(
-        wall, .doc = "light of the walls at eye level, which is uneven", .min = 0, .max = 1,
+        wall, .doc = "radiance of the walls at eye level, slightly uneven", .min = 0, .max = 1,
         .color = true);
     LIMN_FIELD(floor, .doc = "of the floor", .min = 0, .max = 1, .color = true);
-    LIMN_FIELD(lights, "soft boxes and windows; nearer ones hide none");
+    LIMN_FIELD(lights, "soft boxes and windows; they do not occlude each other");
 }
 
 [[nodiscard]] PatternMaps make_studio(const StudioPattern& pattern);

@@ -1,4 +1,5 @@
 // The quad of a billboard that turns about an axis (engine.billboard, engine.billboard-composite).
+// Techniques: engine.billboard, engine.billboard-composite
 
 // Toward its right: perpendicular to the unit vector `axis` and to `to_camera`, so that the quad faces the camera as far
 // as the axis lets it. Where the camera is on the axis, nothing tells a direction: then `otherwise`, the camera's own

@@ -1,4 +1,5 @@
 // Where light refracted by water lands; derived in ecs/base/caustic_optics.h.
+// Techniques: caustic.reflection-plane, caustic.refraction-pool
 
 // Where light refracted by flat water would have entered to reach the same point at `depth`. Light that enters the
 // rest plane at `entry` deviates by `deviation` [m] per meter down from that of flat water.

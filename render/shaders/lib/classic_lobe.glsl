@@ -1,5 +1,7 @@
 // The response of Blinn, Phong and Skin to one light. They share it, since a software OpenGL would evaluate the power
 // of each of them for every pixel. Reflector::own: x = shininess, yzw = added to n.l.
+// Techniques: fakephong.illum-blinn, fakephong.illum-phong, fakephong.vectors, skin.blinn,
+//     wrinkle.compression.lighting
 
 #include "lib/brdf.glsl"
 #include "lib/material_record.glsl"

@@ -1,4 +1,5 @@
 // Directions of a cube map's texels; render/environment/cube_map.h has the table in C++.
+// Techniques: env.cube-addressing
 
 // Direction of (s, t) of a face, on the cube of half side 1.
 vec3 cube_direction(int face, vec2 st) {

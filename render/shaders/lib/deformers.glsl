@@ -1,5 +1,6 @@
 // Muscles, lattices and tugs that move vertices: ecs/components/deformers.h has the layout of the packed controls,
 // systems/animation/deformer_kernels.cpp the same on the CPU. Needs `samplerBuffer controls`.
+// Techniques: face.ffd, face.pull, face.waters-muscle
 
 const float kMuscle = 1.0;
 const float kSphincter = 2.0;

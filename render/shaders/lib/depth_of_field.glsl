@@ -1,4 +1,5 @@
 // Circles of confusion and the layers that they are sorted into.
+// Techniques: post.circle-of-confusion
 
 #include "depth_of_field_gpu.h"
 #include "lib/numbers.glsl"

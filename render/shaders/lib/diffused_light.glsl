@@ -1,4 +1,5 @@
 // Diffuse light that leaves a surface around the point where it entered (render/light/subsurface_pass.h).
+// Techniques: skin.diffusion
 
 #include "lib/diffusion.glsl"
 #include "lib/material_record.glsl"

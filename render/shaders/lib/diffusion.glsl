@@ -1,4 +1,5 @@
 // The normalized diffusion profile (material_subsurface_gpu.h).
+// Techniques: skin.transmission
 
 const float kMinDiffusion = 1e-6;  // d below which nothing spreads [m]
 

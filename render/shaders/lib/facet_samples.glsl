@@ -1,5 +1,6 @@
 // A geometry shader that lights FACET_SAMPLES points of each triangle, 6 or 10, by all lights that reach its object (fakephong.quadratic,
 // fakephong.cubic).
+// Techniques: fakephong.cubic, fakephong.gouraud-subdivided, fakephong.quadratic
 #include "lib/facet_point.glsl"
 
 layout(location = 9) flat out vec3 sampled[2 * FACET_SAMPLES];  // diffuse, specular of each point

@@ -3,6 +3,7 @@
 // systems/water/fft_kernels.h.
 //
 //     line(x) = sum over n of line(n) e^(2 pi i n x / SIZE)
+// Techniques: water.fft-synthesis
 
 const uint kLineGroup = SIZE / 4u;
 const float kFullTurn = 6.28318530718;

@@ -4,6 +4,7 @@
 // evenly lit, by exact means; folds are assumed to be V-shaped, with the slope of the shaded point.
 // Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994; infinite bounces as in Jimenez et al.,
 // "Practical Real-Time Strategies for Accurate Indirect Occlusion", 2016.
+// Techniques: wrinkle.fold-light
 
 // Mean cosines of a light at a wall and at the opposite one. Light that passes the mouth of the groove falls on both
 // together: a wall that receives less than it faces the light is in the shadow of the other. `n_l`: of the wall, `m_l`:

@@ -2,6 +2,7 @@
 // of a light, the density that it meets as a Fourier series of three harmonics over the range of depths that particles
 // are in. The integral of that series up to a point, negated, is the logarithm of the transmittance there. Beyond the
 // range it is exact, within it is as blurred as the series is short. (render/particles/particle_shadow_pass.h)
+// Techniques: particle.shadow
 
 const float kTurn = 6.28318530718;
 const float kMaxOpacity = 0.98;  // of a particle: what is opaque would have infinite optical depth

@@ -19,6 +19,7 @@
 // All zero: no surface here. The index of the
 // material is in a target of its own, which exists only where shading models read their material's record when lit
 // (lib/stored_surface.glsl).
+// Techniques: deferred.gbuffer
 
 #include "generated/model_numbers.glsl"
 #include "lib/octahedral.glsl"

@@ -9,6 +9,8 @@
 // Vectors of three hold R, TT and TRT. Inclinations are from the plane across the strand toward its tip. Attenuations
 // are those at the viewer's inclination, so that under light from all sides the lobes together reflect what is not
 // absorbed; between different inclinations, reciprocity holds only if attenuations agree.
+// Techniques: hair.shading
+// Source of hair.shading: Marschner et al. 2003; d'Eon et al. 2011; Karis 2016; Chiang et al. 2016
 
 #include "lib/brdf.glsl"
 

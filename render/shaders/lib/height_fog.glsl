@@ -1,4 +1,5 @@
 // Fog that thins with height, from the camera on (render/environment/fog_block.h). Include after lib/view.glsl.
+// Techniques: light.height-fog
 
 const float kMaxOpticalDepth = 80.0;
 

@@ -1,5 +1,6 @@
 // Where light is read in textures over the unit disc, whose address is 0.5 + 0.5 (x, y). Definition:
 //   WORST_AXIS  axes along the projected normal itself, with which all of v is 0, in place of view.blinn_axis
+// Techniques: fakephong.blinn-axis, fakephong.hw-blinn
 
 #include "lib/view.glsl"
 

@@ -1,5 +1,7 @@
 // Attenuation of point and spot lights, branch-free so that every option costs the same. The same as
 // bench/oracles/light_oracle.h in double precision.
+// Techniques: engine.light-falloff, light.attenuation, light.interface, light.spot-cone,
+//     light.spot-falloff
 
 // Irradiance factor of a point or spot light at squared distance d2 [m^2], 1 cd unattenuated.
 //   inv_radius2   1 / radius^2; 0: unbounded

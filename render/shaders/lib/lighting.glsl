@@ -10,6 +10,8 @@
 //   WATERS              there is water; ON_WATER: and its surface is being shaded
 //   MIRRORS             some water reflects the sun's light upward
 //   PARTICLE_SHADOWS    particles cast shadows: 1: in the first directional light, 2: in a spot with a shadow
+// Techniques: env.reflect, shade.lighting-space, skin.transmission, wrinkle.compression.bump-blend,
+//     wrinkle.fold-light
 
 #include "lib/diffusion.glsl"
 #include "lib/light.glsl"

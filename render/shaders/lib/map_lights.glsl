@@ -4,6 +4,7 @@
 //   MAP_DIFFUSE     the texture holds diffuse light in place of highlights, which there are none of
 //   BLINN_DIFFUSE   diffuse light, too, is read in a texture: the normal on the plane orthogonal to L
 //   HW_FIRST_LIGHT  no lights but the first
+// Techniques: fakephong.blinn-map
 void main() {
     LitPoint p = put_vertex();
     int end = kEveryLight;

@@ -22,6 +22,13 @@
 //   WRINKLE_COLUMNS  each column of the image has a method of its own (ViewBlock): wrinkle_strength is that of isometric
 //                  folds, and that of all others. After lib/view.glsl
 //   WRINKLE_FLAT   strengths are those of one vertex of each triangle
+// Techniques: env.control-map, face.wrinkle-model, face.wrinkle-options, light.phong-pixel,
+//     shade.derivatives, skin.detail, wrinkle.comparison, wrinkle.compression.alpha-directional,
+//     wrinkle.compression.alpha-shading, wrinkle.compression.bump-blend,
+//     wrinkle.compression.interp-bump, wrinkle.compression.interpolation, wrinkle.compression.map,
+//     wrinkle.compression.normal-fit, wrinkle.compression.overlap,
+//     wrinkle.compression.tangent-frame
+// Source of skin.detail: Barré-Brisebois and Hill 2012
 
 #include "lib/gbuffer.glsl"
 #include "lib/interpolation.glsl"

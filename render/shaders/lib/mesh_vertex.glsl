@@ -1,6 +1,7 @@
 // Inputs and transforms of vertex shaders of mesh instances. Definition:
 //   INFLATE  vertices move along their normals
 //   WRINKLE_DISPLACED  vertices of skin move with its folds
+// Techniques: shade.lighting-space, wrinkle.displacement
 
 #include "lib/inflate.glsl"
 

@@ -1,4 +1,5 @@
 // Motion of pixels while the shutter is open.
+// Techniques: post.motion-blur-camera-psf
 
 #include "lib/numbers.glsl"
 

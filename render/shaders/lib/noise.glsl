@@ -1,5 +1,6 @@
 // Gradient noise in one, two or three dimensions, equal to ecs/base/gradient_noise.h (which explains it) to 1e-5; and
 // per-pixel noise.
+// Techniques: shade.noise, shade.stdlib
 
 #include "lib/numbers.glsl"
 

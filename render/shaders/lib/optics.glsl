@@ -1,5 +1,6 @@
 // Reflection and refraction at the boundary of two clear media; see ecs/base/optics.h. to_light points away from the
 // surface; eta is the refractive index on that side over the one beyond, index is the inverse.
+// Techniques: water.fresnel, water.fresnel-approx, water.snell-vectors
 
 // Direction in which reflected light leaves.
 vec3 reflect_ray(vec3 normal, vec3 to_light) {

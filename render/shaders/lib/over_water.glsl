@@ -1,5 +1,6 @@
 // Sunlight reflected by waters onto surfaces above them (caustics_pass.h). Include after lib/caustic_place.glsl, the
 // lights and lib/shadow.glsl of lib/lighting.glsl.
+// Techniques: caustic.projected-vertices
 
 const float kNormalOffset = 1.5;  // offset along the normal for lookups, against self-occlusion [texels of the map]
 

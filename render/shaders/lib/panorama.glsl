@@ -1,6 +1,7 @@
 // Maps a direction of any length to (u, v) in [0, 1]^2 of a panorama, v upward. The same as render/environment/panorama.h, which
 // explains the three mappings. An arc cosine would lose the last degrees near the poles to rounding; the arc tangents
 // here do not.
+// Techniques: env.angular-map
 
 const float kTwoPi = 6.28318530718;
 

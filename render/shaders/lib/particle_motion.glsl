@@ -1,4 +1,5 @@
 // Where a particle was in the previous frame, for motion vectors.
+// Techniques: particle.velocity
 
 uniform vec2 since_previous;  // time since the previous frame [s]; what an acceleration bends the way by [s^2]
 

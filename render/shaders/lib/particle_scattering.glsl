@@ -1,5 +1,6 @@
 // Light that particles scatter: after lib/particle.glsl and lib/lighting.glsl. Definitions: those of that file, and
 //   MEAN_OF_CORNERS  as the mean of a quad's corners, whose normals are columns of a matrix
+// Techniques: particle.lit-in-middle
 
 #ifdef MEAN_OF_CORNERS
 #define NORMALS mat4x3

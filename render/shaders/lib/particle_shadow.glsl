@@ -1,5 +1,6 @@
 // What particles leave of a light. Definition:
 //   PARTICLE_SHADOWS  1: they shadow the directional light, 2: a spot
+// Techniques: particle.shadow
 
 #include "lib/fourier_opacity.glsl"
 #include "particle_gpu.h"

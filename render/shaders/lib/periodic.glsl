@@ -1,4 +1,5 @@
 // Periodic functions (engine.periodic), as ecs/components/periodic.cpp for times that floats tell apart.
+// Techniques: engine.periodic
 #include "lib/noise.glsl"
 
 const int kWaveTriangle = 1;

@@ -1,4 +1,5 @@
 // Cookies: images projected by lights (shadow.projector).
+// Techniques: shadow.projector
 
 #include "lib/view.glsl"
 #include "projector_gpu.h"

@@ -9,6 +9,7 @@
 // use the model; that only saves a software OpenGL needless work. SHADING_LOBE, a lobe_number(), is defined if all
 // surfaces have this lobe. SMOOTH_NORMALS is defined if some skin is lit by its
 // normal without wrinkles, too; BLENDED_SKIN, if light of both is blended; FOLD_LIGHT, if it bounces within folds.
+// Techniques: light.interface, light.phong-pixel, wrinkle.compression.lighting, wrinkle.fold-light
 
 #include "lib/brdf.glsl"
 #include "lib/fold_light.glsl"

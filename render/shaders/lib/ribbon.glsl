@@ -1,4 +1,5 @@
 // The edges of ribbons that face the camera.
+// Techniques: engine.trail
 
 const float kMaxMiter = 2.0;  // half widths to an edge at most
 const float kEndOn = 1e-5;    // pieces appear shorter than this share of their length only by rounding

@@ -13,6 +13,9 @@
 //   SHADOW_CONTACT   some filter is contact-hardening; with SHADOW_SOFT
 //   SHADOW_MAPS      some light has a map
 //   SHADOW_MASKS     some light has a layer of the shadow mask: shadow volumes
+// Techniques: shadow.map, shadow.map-omni, shadow.pcf, shadow.penumbra, shadow.soft-pcf,
+//     shadow.stencil-frame, skin.transmission
+// Source of skin.transmission: Jimenez et al. 2010
 
 #include "lib/noise.glsl"
 #include "shadow_gpu.h"

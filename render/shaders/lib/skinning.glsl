@@ -1,5 +1,6 @@
 // Skinning by linear blending of matrices (char.skin-bone-offset), or of dual quaternions (L. Kavan et al., "Geometric
 // Skinning with Approximate Dual Quaternion Blending", 2008).
+// Techniques: char.skin-bone-offset
 
 // The three upper rows of an affine matrix.
 struct Rows {

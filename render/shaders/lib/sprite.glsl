@@ -5,6 +5,7 @@
 //   POINTS   all are discs, drawn as points
 //   MOTION   some flipbook has a motion map: both frames are fetched where it has been or will be what is seen between
 //            them, so that shapes move instead of cross-fading (particle.motion-vectors)
+// Techniques: particle.motion-vectors
 
 #ifdef IMAGES
 layout(binding = 0) uniform sampler2DArray images;

@@ -1,4 +1,5 @@
 // Environment light on a surface: from the sky or, with definition PROBES and within their influence, from probes.
+// Techniques: env.capture, env.reflect
 
 #include "lib/irradiance.glsl"
 #include "lib/reflection_map.glsl"

@@ -1,4 +1,5 @@
 // From scene radiance to the display: luminance, curves, encodings and the dither before 8 bits.
+// Techniques: hdr.compress, hdr.gamma, hdr.luminance, hdr.tonemap-shader
 
 #include "lib/noise.glsl"
 #include "lib/numbers.glsl"

@@ -1,5 +1,6 @@
 // Underwater light: refracted by the surface at rest, absorbed on its way down, focused by waves where there is a
 // caustic map (caustics_pass.h). Include after lib/optics.glsl.
+// Techniques: caustic.projected-vertices
 
 #include "lib/caustic_place.glsl"
 

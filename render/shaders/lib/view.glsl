@@ -1,4 +1,5 @@
 // From pixels to the world and back.
+// Techniques: light.infinite-approx, post.linear-to-window-depth
 
 #include "view_gpu.h"
 

@@ -1,5 +1,6 @@
 // Water detail too fine for displacement, which only tilts normals: scrolling layers of a normal map, and waves in a
 // texture. Include after lib/water_surface.glsl. Definitions DETAIL and, with a normal map, DETAIL_MAP.
+// Techniques: water.geometric-texture-split, water.scrolling-normal-map
 
 #ifdef DETAIL
 #include "water_detail_gpu.h"

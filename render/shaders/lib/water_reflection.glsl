@@ -3,6 +3,7 @@
 //   LOOKS     some body of water is not rendered by default
 //   PLANAR    some has a planar reflection
 //   NO_SCREEN_REFLECTION  none has screen-space reflections
+// Techniques: water.fresnel-approx, water.reflection-refraction-maps
 
 const int kSchlick = 1;
 const int kByAngle = 2;

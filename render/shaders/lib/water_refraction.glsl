@@ -3,6 +3,7 @@
 //   LOOKS      some body of water is not rendered by default
 //   FLOOR_MAP  some has a map of its floor
 //   NO_TRACED_REFRACTION     none has screen-space traced refraction from above
+// Techniques: water.reflection-refraction-maps, water.refraction-map
 
 const int kTracedRefraction = 0;
 const int kShiftedRefraction = 1;

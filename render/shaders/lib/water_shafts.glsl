@@ -1,6 +1,7 @@
 // Light shafts of the sun in water, focused by its waves and shadowed by objects in and above it. Include after
 // lib/noise.glsl and lib/lighting.glsl. Light refracted by flat water keeps its place in the map of caustics_pass.h, so
 // a view ray crosses the map on a straight line; light counts as focused along its path as where it lands.
+// Techniques: caustic.projected-vertices
 
 const float kForward = 0.5;  // mean cosine of scattering; by eye, that of the sea is 0.9
 

@@ -1,4 +1,7 @@
 // How strong wrinkles are where skin is compressed, as systems/faces computes it (wrinkle.compression.*).
+// Techniques: face.strain, face.wrinkle-options, wrinkle.compression.alpha-directional,
+//     wrinkle.compression.alpha-shading, wrinkle.compression.intensity,
+//     wrinkle.compression.normal-fit, wrinkle.compression.overlap
 
 #include "wrinkle_gpu.h"
 

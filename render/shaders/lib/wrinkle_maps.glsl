@@ -1,5 +1,6 @@
 // Normals of skin and of two wrinkle maps, composed by masks and weights (wrinkle.maps.*). After Oat, "Animated Wrinkle
 // Maps", 2007; normals are in tangent space.
+// Techniques: wrinkle.maps.composite, wrinkle.maps.influence, wrinkle.maps.normal-add
 
 // Adds x and y, and so the slopes: neither normal loses its detail.
 vec3 add_normals(vec3 n, vec3 w) {

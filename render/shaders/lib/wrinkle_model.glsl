@@ -1,4 +1,5 @@
 // Polynomials of the strain of skin, fitted by content/bake/wrinkle_model.h (face.wrinkle-model).
+// Techniques: face.wrinkle-model
 
 // The strain (tt, bb, tb) clamped to its range in the poses of the fit, and divided by its largest magnitude there.
 // `range`: minimum and maximum of tt, then of bb; `range_tb`: of tb.
