@@ -330,7 +330,7 @@ TEST_CASE("head markers: a bust follows them too; its shoulders stay, and its ne
     CHECK(stretch < 0.002f);  // half an edge of the skin there
 }
 
-TEST_CASE("head markers: a recording of other markers is refused with the nearest name") {
+TEST_CASE("head markers: a recording of other markers is rejected with the nearest name") {
     const MarkerSurface known = make_head_marker_surface();
     MarkerMotion motion;
     motion.names = {"mouth11_90_M", "mouth9_90_X"};

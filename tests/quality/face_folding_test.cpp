@@ -61,7 +61,7 @@ void check_face(const MeshData& face, std::size_t count) {
 }
 
 TEST_CASE(
-    "face folding: the head's own skin folds where anatomy says, five times as much as beside") {
+    "face folding: the generated head folds where anatomy says, five times as much as elsewhere") {
     check_face(make_head({}), 10);
 }
 

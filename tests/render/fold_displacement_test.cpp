@@ -162,7 +162,7 @@ TEST_CASE_FIXTURE(FoldScene, "fold displacement: the folded surface is as long a
     CHECK(length == near(kHeight).epsilon(0.02));
 }
 
-TEST_CASE_FIXTURE(FoldScene, "fold displacement: vertices that a seam doubles move alike") {
+TEST_CASE_FIXTURE(FoldScene, "fold displacement: vertices duplicated at a seam move together") {
     const Entity entity = tube(1, 1);
     const oracle::SkinReadbackVertices found = read(entity);
     REQUIRE(found.folds.size() == found.positions.size());
@@ -173,8 +173,8 @@ TEST_CASE_FIXTURE(FoldScene, "fold displacement: vertices that a seam doubles mo
 }
 
 TEST_CASE_FIXTURE(
-    FoldScene,
-    "fold displacement: at rest every bit is as without" * technique("wrinkle.displacement")) {
+    FoldScene, "fold displacement: at rest it is bit-identical to no displacement"
+                   * technique("wrinkle.displacement")) {
     shine(SpotLight{.intensity = 30, .radius = 20, .outer_angle = 0.8f}, at({0.4f, 0.3f, 4}));
     const RenderView front = look({0, 0, 1.6f}, {0, 0, 0}, 96, 96);
     for (const float weight : {0.0f, -0.5f}) {  // at rest and stretched
@@ -264,7 +264,8 @@ TEST_CASE_FIXTURE(
     CHECK(before == near(whole).epsilon(0.02));
 }
 
-TEST_CASE_FIXTURE(FoldScene, "fold displacement: what only shades, or covers, moves nothing") {
+TEST_CASE_FIXTURE(
+    FoldScene, "fold displacement: methods that only shade, or cover, displace nothing") {
     const auto folds = [&](const WrinkleSurface& surface) {
         const Entity entity = skin(make_seamed_tube(), surface, 1);
         const std::size_t count = read(entity).folds.size();

@@ -85,7 +85,7 @@ const WrinkleSurface kSingleSlopes = {.bounce = false, .share = 1};
 }  // namespace
 
 TEST_CASE(
-    "fold light: the light on each wall of a groove, in its shadow too, is the oracle's"
+    "fold light: the light on each wall of a groove, even in shadow, is the oracle's"
     * technique("wrinkle.fold-light")) {
     std::vector<Vec4> inputs;
     for (const GrooveLight& light : groove_lights()) {
@@ -208,7 +208,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FoldLightScene, "fold light: every way to add lights up draws the same folds"
+    FoldLightScene, "fold light: every method of summing lights draws the same folds"
                         * technique("wrinkle.fold-light")) {
     turn_light(glm::normalize(Vec3{0, -0.7f, 0.5f}));
     const Vec3 clustered = center_pixel(kFolds);

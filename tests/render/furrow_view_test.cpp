@@ -84,7 +84,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FurrowScene, "furrow view: what grows anew is seen in the next frame"
+    FurrowScene, "furrow view: regrown furrows are visible in the next frame"
                      * technique("wrinkle.furrow.view-modes")) {
     const gpu::ByteImage furrowed = shot();
     world.get<Furrows>(square).style.seed = 5;
@@ -174,7 +174,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FurrowScene, "furrow view: what stands before the mesh hides its view"
+    FurrowScene, "furrow view: objects in front of the mesh hide its view"
                      * technique("wrinkle.furrow.view-modes")) {
     show({.mode = FurrowMode::Vectors});
     Material gray = {.shading = ShadingModel::Unlit, .base_color = {0.2f, 0.2f, 0.2f, 1}};

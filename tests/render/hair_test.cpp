@@ -141,7 +141,7 @@ Vec3 lit_square(const Material& material, const Vec3& to_light, const MeshData& 
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: white strands give back all light, and none gives more"
+    RenderTest, "hair lobes: white strands reflect all light, and none reflects more"
                     * technique("hair.shading")) {
     for (const float roughness : {0.1f, 0.3f, 0.7f}) {
         for (const float scatter : {0.0f, 1.0f}) {
@@ -181,7 +181,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: light and viewer at equal inclinations may change places"
+    RenderTest, "hair lobes: light and viewer at equal inclinations are interchangeable"
                     * technique("hair.shading")) {
     const Material hair = hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, 0);
     std::vector<Vec4> inputs;
@@ -334,7 +334,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hair: strands of a dense body throw no shadow on each other, what is farther away does"
+    "hair: strands of a dense body cast no shadow on each other, distant casters do"
     * technique("hair.shading")) {
     const auto lit = [](float density, float distance, bool shadowed) {
         Scene scene;

@@ -162,7 +162,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "diffusion profile: the first of rings seen from far away stands for many"
+    "diffusion profile: at a distance the first ring stands for many"
     * technique("skin.diffusion")) {
     const Vec3 d = {0.98f, 0.39f, 0.19f};
     std::array<Vec4, 20> many;
@@ -182,7 +182,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "diffusion profile: a ring's share is the integral of the profile over it"
+    "diffusion profile: a ring's weight is the integral of the profile over it"
     * technique("skin.diffusion")) {
     const double d = 0.39;
     double sum = 0;
@@ -249,7 +249,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "subsurface: no light comes from what does not scatter, nor leaves for it"
+    "subsurface: no light diffuses from or to surfaces that do not scatter"
     * technique("skin.diffusion")) {
     LitPlane scene(wax());
     scene.darken(-30, 0);
@@ -269,7 +269,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("subsurface: light spreads wherever a surface is seen, also at the image's edges") {
+TEST_CASE("subsurface: light diffuses wherever a surface is visible, also at the image's edges") {
     for (const Vec3& position : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
         std::array<gpu::FloatImage, 2> images[2];
         for (const bool another_behind : {false, true}) {
@@ -447,7 +447,7 @@ void check_slab(const Vec3& found, double irradiance, double path) {
 }  // namespace
 
 TEST_CASE(
-    "subsurface: a slab lit from behind lets through what the profile holds beyond it"
+    "subsurface: a slab lit from behind transmits the integral of the profile beyond it"
     * technique("skin.transmission")) {
     const DirectionalLight sun = {.illuminance = 3};
     for (const float thickness : {0.01f, 0.03f, 0.08f}) {

@@ -204,7 +204,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: what is drawn is the composite of every texel"
+    WrinkledFace, "wrinkle maps: the image shows the composite of every texel"
                       * technique("wrinkle.maps.composite")) {
     for (const WrinkleBlend blend : {WrinkleBlend::Lerp, WrinkleBlend::Slopes}) {
         world.get<WrinkleMaps>(face).blend = blend;

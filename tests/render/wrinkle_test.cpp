@@ -320,7 +320,7 @@ ImageData layered_map() {
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene, "wrinkle overlap: slopes of both layers add up, each by its own strength"
+    WrinkleScene, "wrinkle overlap: slopes of both layers add up, each scaled by its strength"
                       * technique("wrinkle.compression.overlap")) {
     MeshData mesh = make_square();
     MorphTarget& smaller = mesh.morphs.emplace_back();

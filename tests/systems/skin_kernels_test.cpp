@@ -314,8 +314,7 @@ TEST_CASE("skin: scaled and mirrored joints keep normals perpendicular to the su
 }
 
 TEST_CASE(
-    "skin: vectors of the machine and plain C++ give the same bits, cut anywhere"
-    * technique("char.skin-cpu")) {
+    "skin: SIMD and plain C++ are bit-identical, split anywhere" * technique("char.skin-cpu")) {
     for (const std::size_t count : {1, 15, 16, 17, 203}) {
         Puppet puppet = make_puppet(30, count, 5);
         puppet.pose(random_pose(puppet.skeleton, 3));
@@ -533,7 +532,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin: a palette of three rows a joint does what 4x4 matrices do, in three quarters of it"
+    "skin: a palette of three rows per joint equals 4x4 matrices in three quarters of the space"
     * technique("char.skin-limits")) {
     Puppet puppet = make_puppet(98, 200, 4);
     puppet.pose(random_pose(puppet.skeleton, 0.2f));
@@ -546,7 +545,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin: weights that sum to a half pull a vertex half way to the origin") {
+TEST_CASE("skin: weights that sum to a half pull a vertex halfway to the origin") {
     // Which is why what is loaded is scaled to a sum of 1.
     Puppet puppet = make_puppet(5, 60, 3);
     puppet.pose(random_pose(puppet.skeleton, 0.7f));

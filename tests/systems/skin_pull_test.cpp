@@ -139,7 +139,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin pull: pulls keep their direction and never exceed the reach") {
+TEST_CASE("skin pull: pulls keep their direction and never exceed the limit") {
     const Vec3 direction = glm::normalize(Vec3(1, -2, 3));
     CHECK(glm::distance(limited_pull(1e-4f * direction, 0.02f), 1e-4f * direction) < 1e-8f);
     float last = 0;
@@ -156,7 +156,7 @@ TEST_CASE("skin pull: pulls keep their direction and never exceed the reach") {
     CHECK(limited_pull(Vec3(1), 0) == Vec3(0));
 }
 
-TEST_CASE("skin pull: the nearest front face is taken, and no back") {
+TEST_CASE("skin pull: the nearest front face is grabbed, and no back face") {
     MeshData mesh = make_skin(2, 1);
     const std::size_t count = mesh.positions.size();
     for (std::size_t v = 0; v < count; ++v) {  // a second layer, farther
@@ -181,7 +181,7 @@ TEST_CASE("skin pull: the nearest front face is taken, and no back") {
 }
 
 TEST_CASE(
-    "skin pull: the place under the pointer follows it, whatever its joint does"
+    "skin pull: the point under the pointer follows it, whatever its joint does"
     * technique("face.pull")) {
     const Affine turned =
         affine_from({0.01f, 0.02f, -0.03f}, glm::angleAxis(0.5f, Vec3(0, 1, 0)), Vec3(1));
@@ -205,7 +205,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin pull: what is let go springs back, and is at rest to the bit" * technique("face.pull")) {
+    "skin pull: released skin springs back, and is at rest to the bit" * technique("face.pull")) {
     PullScene scene(kFree);
     const std::vector<Vec3> rest = scene.drawn();
     scene.run(0.05f, {0, 0, 0}, true);

@@ -243,7 +243,7 @@ TEST_CASE("skin_strain: compression along a slanted direction keeps its angle") 
     }
 }
 
-TEST_CASE("skin_strain: degenerate and non-finite triangles are left out") {
+TEST_CASE("skin_strain: degenerate and non-finite triangles are skipped") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {nan, 0, 0}};
     const std::vector<std::uint32_t> indices = {0, 1, 3, 0, 1, 4, 0, 1, 9, 0, 0, 1, 0, 1, 2};
@@ -256,7 +256,7 @@ TEST_CASE("skin_strain: degenerate and non-finite triangles are left out") {
     check_strain(strain[0], 0, 0, 0);
 }
 
-TEST_CASE("skin_strain: triangles with an edge below the limit are left out") {
+TEST_CASE("skin_strain: triangles with an edge below the limit are skipped") {
     const std::vector<Vec3> sliver = {{0, 0, 0}, {1e-4f, 0, 0}, {0, 0.01f, 0}};
     CHECK(make_skin_triangles(sliver, kCorners).source.empty());
     CHECK(make_skin_triangles(sliver, kCorners, 5e-5f).source.size() == 1);

@@ -91,7 +91,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle driver: strain finds the shortest direction, whichever it is"
+    "wrinkle driver: strain finds the direction of least stretch, whichever it is"
     * technique("face.strain")) {
     const Sheet sheet = make_sheet();
     const std::vector<WrinkleRest> rests = strain_rests(sheet);

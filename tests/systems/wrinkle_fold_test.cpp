@@ -74,7 +74,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("wrinkle fold: flat texels do not count, and a flat map has no folds") {
+TEST_CASE("wrinkle fold: flat texels are ignored, and a flat map has no folds") {
     std::vector<Vec2> slopes = sine_slopes();
     const FoldTable alone = make_fold_table(slopes);
     slopes.resize(3 * slopes.size(), Vec2{0, 0});
@@ -87,7 +87,7 @@ TEST_CASE("wrinkle fold: flat texels do not count, and a flat map has no folds")
 }
 
 TEST_CASE(
-    "wrinkle fold: no shortening, no fold; stretch neither, nor what the slack takes"
+    "wrinkle fold: neither rest nor stretch folds, nor shortening within the slack"
     * technique("wrinkle.compression.skin-model")) {
     const FoldTable table = make_fold_table(sine_slopes());
     CHECK(fold_strength(table, fold_excess(1, 0, 1)) == 0);

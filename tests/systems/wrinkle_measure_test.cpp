@@ -101,7 +101,7 @@ float mean_at_center(const Fan& fan, WrinkleWeight weight) {
 }  // namespace
 
 TEST_CASE(
-    "wrinkle measure: the examples of chords, from the middle vertex to the edge before it"
+    "wrinkle measure: the examples of chords, from the vertex in between to the opposite edge"
     * technique("wrinkle.compression.rest-measure")) {
     const auto check = [](const Positions& p, Vec3 across, int apex, Vec3 end, float length2) {
         const Chord chord = find_chord(p, across);
@@ -230,7 +230,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle measure: by angles, how a fan is divided does not matter"
+    "wrinkle measure: weighted by angles, the subdivision of a fan does not matter"
     * technique("wrinkle.compression.vertex-weight")) {
     // Four right angles about a point, the last one compressed to a half.
     Fan four{
@@ -341,7 +341,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle measure: skin that is stretched along its folds gets narrower without folding"
+    "wrinkle measure: skin that is stretched along its folds narrows without folding"
     * technique("wrinkle.natural-width")) {
     constexpr float kPoisson = 0.5f;
     const std::vector<Vec3> across(3, Vec3{1, 0, 0});

@@ -69,7 +69,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle system: a state follows its mesh, its regions and what is asked for"
+    "wrinkle system: a state follows its mesh, its regions and its settings"
     * technique("wrinkle.compression.integration")) {
     World world;
     world.insert_resource(two_regions());
