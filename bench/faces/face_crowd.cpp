@@ -94,13 +94,13 @@ FaceCrowd make_crowd() {
         std::ranges::find(rig.clips, std::string_view("expressions"), &ClipData::name);
     for (std::size_t i = 0; i < kCrowd; ++i) {
         CrowdMember& member = crowd.members.emplace_back();
-        const float share = static_cast<float>(i) / kCrowd;
+        const float phase = static_cast<float>(i) / kCrowd;
         LocalPose pose = rig.skeleton.rest;
         member.morphs.weights.assign(crowd.mesh.morphs.size(), 0.0f);
-        sample_clip(*clip, share * clip->duration, pose, member.morphs.weights);
+        sample_clip(*clip, phase * clip->duration, pose, member.morphs.weights);
         member.pose.joints.resize(rig.skeleton.joints.size());
         compute_joint_matrices(rig.skeleton, pose, member.pose.joints);
-        member.deformers.now = pack_deformers(face_muscles(share));
+        member.deformers.now = pack_deformers(face_muscles(phase));
         member.markers = crowd.markers.positions;
         add_morphs(crowd.markers.morphs, member.morphs.weights, {member.markers, {}, {}});
         member.deformed = crowd.mesh.positions;

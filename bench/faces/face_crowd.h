@@ -22,42 +22,42 @@ namespace limn::bench {
 inline constexpr std::size_t kCrowd = 100;
 inline constexpr std::size_t kIdentities = 4;  ///< as many as in the level crowd-of-faces
 
-/// What moves one face, and where it went.
+/// The pose of one face, and its deformed vertices.
 struct CrowdMember {
     Pose pose;
     MorphWeights morphs;
     DeformerState deformers;
-    std::vector<Vec3> markers;  ///< of the surface that moves the face by patches, in its place
+    std::vector<Vec3> markers;  ///< of the surface that moves the face by patches
     std::vector<Vec4> patches;
     std::vector<Vec3> deformed;
     std::vector<float> intensity;
 };
 
-/// The project's own head, a hundred times, each in another moment of its expressions; and what
-/// measures its skin.
+/// A hundred copies of the generated head, each at another time of its expressions, and the rests
+/// that measure its skin.
 struct FaceCrowd {
     MeshData mesh;
     SkinData skin;
-    MeshData markers;                 ///< what moves the mesh by patches
-    SurfaceBindingState on_markers;   ///< the mesh on them
+    MeshData markers;                 ///< the surface that moves the mesh by patches
+    SurfaceBindingState on_markers;   ///< binding of the mesh to them
     std::vector<WrinkleRest> chord;   ///< one
     std::vector<WrinkleRest> strain;  ///< three
-    std::vector<float> resting;       ///< of the folds at rest of old faces
+    std::vector<float> resting;       ///< shortening of the folds at rest of old faces
     std::vector<CrowdMember> members;
 };
 
-/// The same for all callers; its members are deformed. Takes seconds.
+/// One crowd for all callers, with deformed members. Creating it takes seconds.
 [[nodiscard]] FaceCrowd& face_crowd();
 
-/// Of the first `count` members, each of another age.
+/// The first `count` members, each with another age.
 [[nodiscard]] std::vector<CrowdFace> crowd_faces(FaceCrowd& crowd, std::size_t count);
 
-/// All deformers, as deform_positions.
+/// Runs all deformers, like deform_positions.
 void deform_crowd(FaceCrowd& crowd, std::size_t count);
 /// The same by the scalar versions of all kernels.
 void deform_crowd_scalar(FaceCrowd& crowd, std::size_t count);
 
-/// Best times of two functions, in turns: other work on the machine disturbs both alike [ms].
+/// Best times [ms] of two functions, run alternately so that other load affects both equally.
 template <typename A, typename B>
 std::pair<double, double> race(int repeats, A a, B b) {
     using Clock = std::chrono::steady_clock;

@@ -15,9 +15,9 @@
 #include <memory>
 #include <string>
 
-// A cheek and a forehead that fill the image, as plain PBR and as skin that wrinkles. What a pixel
-// costs is the slope between two sizes of image: what is done once a frame, for vertices and
-// shadows, falls out of it. Times are of all threads, as a software OpenGL draws with several.
+// A cheek and a forehead that fill the image, as plain PBR and as skin that wrinkles. The cost of a
+// pixel is the slope between two image sizes, in which the cost per frame, for vertices and
+// shadows, cancels. Times are summed over all threads, since a software OpenGL uses several.
 
 namespace limn::bench {
 namespace {
@@ -34,7 +34,7 @@ struct Look {
     double limit;
 };
 
-/// The first is what others are compared with.
+/// The first is the reference for the others.
 const Look kLooks[] = {
     {"plain PBR with a normal map", ShadingModel::Pbr, false, false, 0},
     {"PBR that wrinkles", ShadingModel::Pbr, true, false, kPixelLimit},
@@ -63,7 +63,7 @@ struct Drawing {
     }
 };
 
-/// The skin of the level as `look` says.
+/// Sets the skin of the level to `look`.
 void dress(Stage& stage, const Look& look) {
     auto& assets = stage.world.resource<Assets>();
     for (Material& material : assets.materials) {

@@ -8,15 +8,15 @@
 
 namespace limn::bench {
 
-// What `limn bench faces` measures: a crowd of faces that move and wrinkle, beside scalar versions
-// in the same run.
+// Measurements of `limn bench faces`: a crowd of faces that move and wrinkle, next to scalar
+// versions in the same run.
 
-/// The best time of something beside that of a reference.
+/// The best time of a task next to that of a reference.
 struct FaceRow {
     std::string name;
     double ours = 0;        ///< [ms], of the whole crowd
     double reference = 0;   ///< [ms]; 0: there is none
-    std::string against{};  ///< what that is
+    std::string against{};  ///< name of the reference
     double limit = 0;       ///< of `ours` [ms], or of ours / reference; 0: none
     bool is_ratio = false;
 
@@ -24,7 +24,7 @@ struct FaceRow {
     [[nodiscard]] bool is_met() const { return limit == 0 || (is_ratio ? ratio() : ours) <= limit; }
 };
 
-/// Time per face of something done to so many of them.
+/// Time per face of a task for a number of faces.
 struct FaceGrowthPoint {
     std::string curve;
     std::size_t faces = 0;
@@ -37,7 +37,7 @@ struct FaceBench {
     std::vector<FaceRow> rows = {};
     std::vector<FaceGrowthPoint> growth = {};
 
-    /// Both print a line as soon as it is known.
+    /// Both print a line immediately.
     void add(FaceRow row);
     void add(FaceGrowthPoint point);
 };
@@ -47,7 +47,7 @@ struct FaceBench {
 /// {"threads", "rows": [{"name", "ours_ms", "reference_ms", "against", "ratio", "limit", "met"}],
 /// "growth": [{"curve", "faces", "ns"}]}
 [[nodiscard]] std::string face_bench_json(const FaceBench& bench);
-/// Time per face over their number, a curve each.
+/// Plots time per face over the number of faces.
 [[nodiscard]] std::string face_bench_svg(const FaceBench& bench);
 
 // The parts, in the order of the program.

@@ -104,13 +104,13 @@ void muscles_and_lattice(benchmark::State& state) {
 
 void patches_follow(benchmark::State& state) {
     const Face& at_rest = face();
-    const std::vector<SurfacePlace> places = bind_to_patches(
+    const std::vector<SurfaceAnchor> anchors = bind_to_patches(
         at_rest.positions, at_rest.normals, at_rest.tangents, at_rest.surface, at_rest.corners, 1);
     std::vector<Vec4> patches;
     make_patches(at_rest.surface, at_rest.corners, patches);
     Face moved = at_rest;
     for (auto _ : state) {
-        follow_patches(places, patches, moved.positions, moved.normals, moved.tangents);
+        follow_patches(anchors, patches, moved.positions, moved.normals, moved.tangents);
         benchmark::DoNotOptimize(moved.positions.data());
     }
     per_vertex(state);
@@ -120,14 +120,14 @@ void patches_follow(benchmark::State& state) {
 template <auto move>
 void patches_move(benchmark::State& state) {
     const Face& at_rest = face();
-    const std::vector<SurfacePlace> places = bind_to_patches(
+    const std::vector<SurfaceAnchor> anchors = bind_to_patches(
         at_rest.positions, at_rest.normals, at_rest.tangents, at_rest.surface, at_rest.corners, 1);
-    const std::vector<std::uint32_t> order = order_by_patch(places);
+    const std::vector<std::uint32_t> order = order_by_patch(anchors);
     std::vector<Vec4> patches;
     make_patches(at_rest.surface, at_rest.corners, patches);
     std::vector<Vec3> positions = at_rest.positions;
     for (auto _ : state) {
-        move({places, patches, order}, positions);
+        move({anchors, patches, order}, positions);
         benchmark::DoNotOptimize(positions.data());
     }
     per_vertex(state);

@@ -14,7 +14,7 @@ namespace limn::oracle {
 
 namespace {
 
-constexpr float kMiddle = 1e-5f;  ///< |x| of vertices on the middle of a face [m]
+constexpr float kMidline = 1e-5f;  ///< |x| of vertices on the midline of a face [m]
 
 const FoldingRule kRules[] = {
     {"brow raise",
@@ -68,8 +68,8 @@ std::string common_name(std::string_view name) {
 struct FaceFolding::Region {
     WrinkleRest rest;
     SkinTriangles skin;
-    std::vector<double> share;       ///< per vertex: its area times its weight
-    std::vector<double> skin_share;  ///< the same of the skin
+    std::vector<double> area;           ///< per vertex: its area times its weight
+    std::vector<double> triangle_area;  ///< per triangle of the skin, likewise
     std::vector<Vec3> skin_across;
 };
 
@@ -111,19 +111,19 @@ FaceFolding::FaceFolding(const MeshData& mesh) : mesh_(mesh) {
         region.rest = make_wrinkle_rest(
             mesh.positions, mesh.indices, across, WrinkleWeight::Angle,
             {.aside = aside, .narrowing = 0});
-        region.share.assign(mesh.positions.size(), 0.0);
+        region.area.assign(mesh.positions.size(), 0.0);
         for (std::size_t t = 0; t + 3 <= region.rest.corners.size(); t += 3) {
             const std::uint32_t* const v = &region.rest.corners[t];
             const Vec3& p = mesh.positions[v[0]];
             const Vec3 cross = glm::cross(mesh.positions[v[1]] - p, mesh.positions[v[2]] - p);
             for (std::size_t k = 0; k < 3; ++k) {
-                region.share[v[k]] += double{glm::length(cross)} * double{source.weights[v[k]]};
+                region.area[v[k]] += double{glm::length(cross)} * double{source.weights[v[k]]};
             }
         }
         region.skin = skin;
         for (std::size_t t = 0; t < skin.area.size(); ++t) {
             const std::uint32_t* const v = &skin.corners[3 * t];
-            region.skin_share.push_back(double{skin.area[t]} * mean_of(source.weights, v));
+            region.triangle_area.push_back(double{skin.area[t]} * mean_of(source.weights, v));
             region.skin_across.push_back(across[v[0]]);
         }
     }
@@ -144,26 +144,26 @@ FaceFolding::measure(std::span<const std::uint32_t> morphs, float weight) const 
     std::vector<SkinStrain> strain;
     for (const Region& region : regions_) {
         RegionFolding& folding = found.emplace_back();
-        if (region.share.empty()) {
+        if (region.area.empty()) {
             continue;  // without directions
         }
         const std::vector<float> ratio = vertex_compression({&region.rest, 1}, deformed);
         double sums[2] = {};
-        double shares[2] = {};
+        double areas[2] = {};
         for (std::size_t v = 0; v < ratio.size(); ++v) {
             const float x = mesh_.positions[v].x;
-            // Half of what lies in the middle is on either side.
-            const double left = x > kMiddle ? 1 : x < -kMiddle ? 0 : 0.5;
+            // Vertices on the midline count half for each side.
+            const double left = x > kMidline ? 1 : x < -kMidline ? 0 : 0.5;
             const double shortening = std::max(1 - std::sqrt(double{ratio[v]}), 0.0);
-            sums[0] += left * region.share[v] * shortening;
-            sums[1] += (1 - left) * region.share[v] * shortening;
-            shares[0] += left * region.share[v];
-            shares[1] += (1 - left) * region.share[v];
+            sums[0] += left * region.area[v] * shortening;
+            sums[1] += (1 - left) * region.area[v] * shortening;
+            areas[0] += left * region.area[v];
+            areas[1] += (1 - left) * region.area[v];
         }
-        const double total = shares[0] + shares[1];
+        const double total = areas[0] + areas[1];
         folding.shortening = total > 0 ? (sums[0] + sums[1]) / total : 0;
-        folding.left = shares[0] > 0 ? sums[0] / shares[0] : 0;
-        folding.right = shares[1] > 0 ? sums[1] / shares[1] : 0;
+        folding.left = areas[0] > 0 ? sums[0] / areas[0] : 0;
+        folding.right = areas[1] > 0 ? sums[1] / areas[1] : 0;
         if (strain.empty()) {
             strain.resize(region.skin.area.size());
             find_strain(region.skin, deformed, strain);
@@ -175,11 +175,11 @@ FaceFolding::measure(std::span<const std::uint32_t> morphs, float weight) const 
             const Vec3 direction =
                 std::cos(p.angle) * region.skin.u[t] + std::sin(p.angle) * region.skin.v[t];
             const float length = glm::length(region.skin_across[t]);
-            if (region.skin_share[t] > 0 && p.lower < 0 && length > 0.5f) {
-                const double share = region.skin_share[t] * double{-p.lower};
+            if (region.triangle_area[t] > 0 && p.lower < 0 && length > 0.5f) {
+                const double amount = region.triangle_area[t] * double{-p.lower};
                 const float cosine = std::abs(glm::dot(direction, region.skin_across[t])) / length;
-                turns += share * double{std::acos(std::min(cosine, 1.0f))};
-                weights += share;
+                turns += amount * double{std::acos(std::min(cosine, 1.0f))};
+                weights += amount;
             }
         }
         folding.turn = weights > 0 ? turns / weights : 0;

@@ -11,9 +11,9 @@
 
 namespace limn::oracle {
 
-// Where the skin of a face folds in each of its expressions, held against anatomy: an expression
-// shortens skin across the folds of its own regions, and leaves others as they are. Regions and
-// directions are those of the mesh (content/bake/face_regions.h).
+// Where the skin of a face folds in each of its expressions, compared with anatomy: an expression
+// shortens skin across the folds of its own regions, but not of others. Regions and directions are
+// those of the mesh (content/bake/face_regions.h).
 
 /// Morph targets that belong together: both halves of an action unit, or one target.
 struct FaceExpression {
@@ -22,16 +22,16 @@ struct FaceExpression {
     std::vector<std::uint32_t> morphs;
 };
 
-/// In the order of their first targets. Units are those of the targets, or follow from their names.
+/// In the order of their first targets. Units are those of the targets or derived from their names.
 [[nodiscard]] std::vector<FaceExpression> find_face_expressions(const MeshData& mesh);
 
-/// Skin of a region in an expression.
+/// Shortening of a region in an expression.
 struct RegionFolding {
     double shortening =
         0;            ///< across its folds: mean over vertices by area and weight, at least 0 each
     double left = 0;  ///< of x > 0
     double right = 0;
-    double turn = 0;  ///< mean angle between across and the direction of most shortening [rad]
+    double turn = 0;  ///< mean angle between `across` and the direction of maximum shortening [rad]
 };
 
 /// Shortening of every region of a mesh, prepared once.
@@ -52,22 +52,22 @@ class FaceFolding {
     std::vector<Region> regions_;
 };
 
-/// What anatomy says of an expression (shared facts of faces, sections D).
+/// What anatomy predicts for an expression (shared facts of faces, sections D).
 struct FoldingRule {
     std::string_view name;                 ///< "smile"
     std::vector<std::string_view> units;   ///< whose targets together are the expression
-    std::vector<std::string_view> folds;   ///< regions of which one folds at least
-    std::vector<std::string_view> smooth;  ///< that do not
+    std::vector<std::string_view> folds;   ///< regions of which at least one folds
+    std::vector<std::string_view> smooth;  ///< regions that do not fold
 };
 [[nodiscard]] std::span<const FoldingRule> folding_rules();
 
-/// A rule held against a face.
+/// A rule applied to a face.
 struct FoldingResult {
     double folding = 0;     ///< shortening of the region that folds most
-    double smooth = 0;      ///< of those that do not fold: the most
-    double difference = 0;  ///< between both sides of the one that folds, as a share
+    double smooth = 0;      ///< maximum over those that do not fold
+    double difference = 0;  ///< relative difference between the sides of the one that folds
 };
-/// False where the face lacks one of the units or all regions that fold.
+/// False if the face lacks one of the units or all regions that fold.
 [[nodiscard]] bool apply_rule(
     const FoldingRule& rule, const MeshData& mesh, const FaceFolding& folding,
     FoldingResult& result);

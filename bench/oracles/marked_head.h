@@ -5,8 +5,8 @@
 
 namespace limn::oracle {
 
-/// How patches over `markers` carry `head`: parts of one head (HeadPartKind). Without places: it
-/// could not be bound.
+/// Binds `head` to patches over `markers`, parts of one head (HeadPartKind). If it cannot be bound,
+/// the result has no `anchors`.
 [[nodiscard]] SurfaceBindingState bind_to_markers(const MeshData& head, const MeshData& markers);
 
 }  // namespace limn::oracle

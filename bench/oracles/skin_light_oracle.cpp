@@ -47,7 +47,7 @@ double diffusion_profile(double r, double d) {
     return (std::exp(-r / d) + std::exp(-r / (3 * d))) / (8 * kSkinPi * d * r);
 }
 
-double diffused_share(double r, double d) {
+double diffused_fraction(double r, double d) {
     return 1 - 0.25 * std::exp(-r / d) - 0.75 * std::exp(-r / (3 * d));
 }
 
@@ -62,15 +62,16 @@ DVec3 diffusion_scales(const DVec3& albedo, const DVec3& mean_free_path) {
 }
 
 double diffused_edge(double x, double d) {
-    // Of the ring r, the part on the lit side: all, none or an arc.
+    // The fraction of the ring r on the lit side: all, none or an arc.
     constexpr int kRings = 20000;
     const double step = 60 * d / kRings;
     double lit = 0;
     for (int i = 0; i < kRings; ++i) {
         const double r = (i + 0.5) * step;
-        const double share =
+        const double lit_arc =
             r <= std::abs(x) ? (x > 0 ? 1.0 : 0.0) : 1 - std::acos(x / r) / kSkinPi;
-        lit += share * (diffused_share(r + 0.5 * step, d) - diffused_share(r - 0.5 * step, d));
+        lit +=
+            lit_arc * (diffused_fraction(r + 0.5 * step, d) - diffused_fraction(r - 0.5 * step, d));
     }
     return lit;
 }
@@ -96,15 +97,15 @@ double diffused_patches(std::span<const LitPatch> patches, std::size_t at, doubl
                 inside += diffusion_profile(glm::length(point - here), d);
             }
         }
-        const double share = inside * area / square(points);
-        sum += share * patch.light;
-        total += share;
+        const double weight = inside * area / square(points);
+        sum += weight * patch.light;
+        total += weight;
     }
     return sum / total;
 }
 
 double transmitted(double thickness, double d) {
-    return 1 - diffused_share(thickness, d);
+    return 1 - diffused_fraction(thickness, d);
 }
 
 }  // namespace limn::oracle

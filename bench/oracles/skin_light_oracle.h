@@ -8,7 +8,7 @@
 namespace limn::oracle {
 
 // Light in and on skin in double precision: colors of pigments, a fitted BRDF, and the normalized
-// diffusion profile with what follows from it in closed form or by plain sums.
+// diffusion profile with its consequences in closed form or by plain sums.
 
 using DVec3 = glm::dvec3;
 
@@ -24,15 +24,15 @@ struct Lobe {
 /// In the frame whose z is the normal; `u` toward the light, `v` toward the viewer, unit.
 [[nodiscard]] double
 lafortune(double diffuse, std::span<const Lobe> lobes, const DVec3& u, const DVec3& v);
-/// Share of the light from `u` that such a surface reflects, D being the albedo of its diffuse
-/// part: (1 / pi) times the integral of f cos over the hemisphere.
+/// Fraction of the light from `u` that such a surface reflects, where D is the albedo of its
+/// diffuse part: (1 / pi) times the integral of f cos over the hemisphere.
 [[nodiscard]] double
 lafortune_albedo(double diffuse, std::span<const Lobe> lobes, const DVec3& u, int steps = 256);
 
 /// The profile of Christensen and Burley (2015): light that leaves per area at `r` [1/m^2].
 [[nodiscard]] double diffusion_profile(double r, double d);
 /// Its integral within r, 0 .. 1.
-[[nodiscard]] double diffused_share(double r, double d);
+[[nodiscard]] double diffused_fraction(double r, double d);
 /// d for an albedo and the mean free path of diffuse light ("searchlight" fit).
 [[nodiscard]] double diffusion_scale(double albedo, double mean_free_path);
 /// The same for red, green and blue.
@@ -53,7 +53,8 @@ struct LitPatch {
 /// profile.
 [[nodiscard]] double diffused_patches(std::span<const LitPatch> patches, std::size_t at, double d);
 
-/// Light that passes a slab lit by 1 all over its back: the profile's share beyond `thickness`.
+/// Light transmitted by a slab whose back is lit by 1: the integral of the profile beyond
+/// `thickness`.
 [[nodiscard]] double transmitted(double thickness, double d);
 
 }  // namespace limn::oracle

@@ -47,17 +47,17 @@ namespace limn::oracle {
 move_by_screws(const glm::dmat4& a, const glm::dmat4& b, double weight_b, const glm::dvec3& p) {
     const glm::dquat qa = glm::quat_cast(glm::dmat3(a));
     glm::dquat qb = glm::quat_cast(glm::dmat3(b));
-    const glm::dquat way_a = glm::dquat(0, glm::dvec3(a[3])) * qa;
-    glm::dquat way_b = glm::dquat(0, glm::dvec3(b[3])) * qb;
+    const glm::dquat dual_a = glm::dquat(0, glm::dvec3(a[3])) * qa;
+    glm::dquat dual_b = glm::dquat(0, glm::dvec3(b[3])) * qb;
     if (glm::dot(qa, qb) < 0) {
         qb = -qb;
-        way_b = -way_b;
+        dual_b = -dual_b;
     }
     const glm::dquat q = qa * (1 - weight_b) + qb * weight_b;
-    const glm::dquat way = way_a * (1 - weight_b) + way_b * weight_b;
+    const glm::dquat dual = dual_a * (1 - weight_b) + dual_b * weight_b;
     const double length = glm::length(q);
     const glm::dquat unit = q / length;
-    const glm::dquat shift = (way / length) * glm::conjugate(unit);
+    const glm::dquat shift = (dual / length) * glm::conjugate(unit);
     const glm::dquat turned = unit * glm::dquat(0, p) * glm::conjugate(unit);
     return glm::dvec3(turned.x, turned.y, turned.z) + glm::dvec3(shift.x, shift.y, shift.z);
 }

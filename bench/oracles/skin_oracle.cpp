@@ -46,18 +46,18 @@ glm::dmat4 mean_motion(std::span<const glm::dmat4> matrices, const std::vector<I
     for (std::size_t i = 0; i < by.size(); ++i) {
         const glm::dmat4& m = matrices[by[i].joint];
         const glm::dquat turn = glm::quat_cast(without_scale(glm::dmat3(m)));
-        const glm::dquat way = glm::dquat(0, glm::dvec3(m[3])) * turn * 0.5;
+        const glm::dquat part = glm::dquat(0, glm::dvec3(m[3])) * turn * 0.5;
         first = i == 0 ? turn : first;
         const double weight = glm::dot(turn, first) < 0 ? -by[i].weight : by[i].weight;
         real += turn * weight;
-        dual += way * weight;
+        dual += part * weight;
     }
     const double size = glm::length(real);
     real /= size;
     dual /= size;
-    const glm::dquat way = dual * glm::conjugate(real) * 2.0;
+    const glm::dquat translation = dual * glm::conjugate(real) * 2.0;
     glm::dmat4 m = glm::mat4_cast(real);
-    m[3] = glm::dvec4(way.x, way.y, way.z, 1);
+    m[3] = glm::dvec4(translation.x, translation.y, translation.z, 1);
     return m;
 }
 

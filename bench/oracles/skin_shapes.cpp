@@ -42,8 +42,8 @@ void add_weights(MeshData& mesh, int joints, int max_influences, Random& random)
     mesh.skin = {};
     mesh.skin.first.push_back(0);
     for (const Vec3& p : mesh.positions) {
-        const float share = (p.y - mesh.bounds.min.y) / (mesh.bounds.max.y - mesh.bounds.min.y);
-        const int middle = static_cast<int>(share * static_cast<float>(joints - 1) + 0.5f);
+        const float height = (p.y - mesh.bounds.min.y) / (mesh.bounds.max.y - mesh.bounds.min.y);
+        const int nearest = static_cast<int>(height * static_cast<float>(joints - 1) + 0.5f);
         const int count =
             1 + static_cast<int>(random.below(static_cast<std::uint32_t>(max_influences)));
         std::vector<float> weights;
@@ -54,7 +54,7 @@ void add_weights(MeshData& mesh, int joints, int max_influences, Random& random)
         }
         for (int i = 0; i < count; ++i) {
             const int joint =
-                std::clamp(middle + (i + 1) / 2 * (i % 2 == 0 ? 1 : -1), 0, joints - 1);
+                std::clamp(nearest + (i + 1) / 2 * (i % 2 == 0 ? 1 : -1), 0, joints - 1);
             mesh.skin.joints.push_back(static_cast<std::uint16_t>(joint));
             mesh.skin.weights.push_back(weights[static_cast<std::size_t>(i)] / sum);
         }
@@ -91,8 +91,8 @@ random_joints(int joints, float spacing, float max_angle, bool scaled, Random& r
     Affine below;
     for (int j = 0; j < joints; ++j) {
         const Quat turn = rotation_about(random.direction(), random.uniform(-max_angle, max_angle));
-        const Vec3 way = Vec3(0, j == 0 ? 0 : spacing, 0) + 0.02f * random.direction();
-        const Affine joint = below * affine_from(way, turn, Vec3(1));
+        const Vec3 offset = Vec3(0, j == 0 ? 0 : spacing, 0) + 0.02f * random.direction();
+        const Affine joint = below * affine_from(offset, turn, Vec3(1));
         const Vec3 scale = {
             random.uniform(0.5f, 1.6f), random.uniform(0.5f, 1.6f), random.uniform(0.5f, 1.6f)};
         pose.push_back(scaled ? joint * affine_from(Vec3(0), Quat(1, 0, 0, 0), scale) : joint);

@@ -7,12 +7,12 @@
 
 namespace limn {
 
-/// Adds to the report where the skin of a face folds in each of its expressions: a row and a bound
-/// for each rule of anatomy that the face has the shapes for, and a table of all expressions and
-/// regions. Fails where it has no regions with directions or no morph targets.
+/// Reports where the skin of a face folds in each of its expressions: a row and a bound for each
+/// rule of anatomy for which the face has the shapes, and a table of all expressions and regions.
+/// Fails if it has no regions with directions or no morph targets.
 Status measure_face(std::string_view name, const MeshData& face, QualityReport& report);
 
-/// The same of the mesh with the most named action units in a glTF file.
+/// The same for the mesh with the most named action units in a glTF file.
 Status measure_face_file(const std::string& path, QualityReport& report);
 
 }  // namespace limn

@@ -38,9 +38,9 @@
 #include <string>
 #include <vector>
 
-// Faces: what moves them and what measures their skin. Speech beside sums in double precision and a
-// search that tries all, deformers on both processors beside their definitions, a head that goes
-// with its markers beside its own shapes, strain beside the polar decomposition.
+// Faces: what moves them and what measures their skin. Compares speech with sums in double
+// precision and an exhaustive search, deformers on CPU and GPU with their definitions, a head that
+// follows its markers with its own shapes, strain with the polar decomposition.
 
 namespace limn::faces_quality {
 namespace {
@@ -49,7 +49,7 @@ using glm::dvec3;
 
 // ---- speech -------------------------------------------------------------------------------------
 
-/// How the mouth moves through a sentence, an axis each.
+/// Motion of the mouth during a sentence, per axis.
 std::string mouth_plot(const SpeechTrack& track, const MouthTrack& mouth) {
     struct Axis {
         MouthAxis axis;
@@ -141,7 +141,7 @@ bool fits(
 
 constexpr std::size_t kImpossible = 1000;
 
-/// The fewest units that cover the target from half sound `half` on, by trying all.
+/// The fewest units that cover the target from half sound `half` on, by exhaustive search.
 std::size_t fewest_units(
     const SpeechTrack& target, std::span<const SpeechUnit> units,
     std::span<const SpeechRecording> recordings, std::size_t half) {
@@ -225,7 +225,7 @@ double squared_cosine(double quarters) {
     return cosine * cosine;
 }
 
-/// Where the controls take a point, by their definitions (face.waters-muscle, face.ffd, face.pull).
+/// Moves a point by the controls' definitions (face.waters-muscle, face.ffd, face.pull).
 dvec3 exact_point(const Deformers& controls, dvec3 p) {
     dvec3 pull(0);
     double farthest = 0;
@@ -291,8 +291,8 @@ dvec3 exact_point(const Deformers& controls, dvec3 p) {
         p += points[0];
     }
     for (const Tug& tug : controls.tugs) {
-        const double share = glm::distance(p, dvec3(tug.at)) / double{tug.radius};
-        p += share < 1 ? std::pow(1 - share * share, 3) * dvec3(tug.offset) : dvec3(0);
+        const double r = glm::distance(p, dvec3(tug.at)) / double{tug.radius};
+        p += r < 1 ? std::pow(1 - r * r, 3) * dvec3(tug.offset) : dvec3(0);
     }
     return p;
 }
@@ -322,17 +322,19 @@ Status measure_deformers(gpu::Device& device, QualityReport& report) {
     }
     double error = 0;
     double gpu_error = 0;
-    double reach = 0;
+    double farthest = 0;
     std::size_t differ = 0;
     for (std::size_t v = 0; v < moved.size(); ++v) {
         const dvec3 exact = exact_point(controls, head.positions[v]);
         error = std::max(error, glm::distance(dvec3(moved[v]), exact));
         gpu_error =
             std::max(gpu_error, static_cast<double>(glm::distance(drawn.positions[v], moved[v])));
-        reach = std::max(reach, static_cast<double>(glm::distance(moved[v], head.positions[v])));
+        farthest =
+            std::max(farthest, static_cast<double>(glm::distance(moved[v], head.positions[v])));
         differ += moved[v] != one_by_one[v] ? 1 : 0;
     }
-    report.at_least("deformers: farthest that a vertex of the head moves", 1000 * reach, 5, "mm");
+    report.at_least(
+        "deformers: farthest that a vertex of the head moves", 1000 * farthest, 5, "mm");
     report.at_most("deformers: CPU against double precision", 1e6 * error, 0.5, "um");
     report.at_most("deformers: GPU against CPU", 1e6 * gpu_error, 1, "um");
     report.at_most(
@@ -345,8 +347,8 @@ Status measure_deformers(gpu::Device& device, QualityReport& report) {
 struct MarkedExpression {
     const char* name;
     std::array<std::string_view, 4> units;  ///< at weight 1; empty ones at the end
-    double most_mm;                         ///< RMS distance
-    double most_share;                      ///< of the RMS motion
+    double max_mm;                          ///< RMS distance
+    double max_relative;                    ///< to the RMS motion
 };
 
 constexpr MarkedExpression kMarked[] = {
@@ -386,7 +388,7 @@ Status measure_markers(QualityReport& report) {
     const MeshData head = make_head({});
     const MeshData markers = make_head({.part = HeadPartKind::Markers});
     const SurfaceBindingState state = oracle::bind_to_markers(head, markers);
-    if (state.places == nullptr) {
+    if (state.anchors == nullptr) {
         return fail("faces: the head is not bound to its markers");
     }
     std::vector<Vec4> patches;
@@ -413,10 +415,10 @@ Status measure_markers(QualityReport& report) {
         const double motion = rms_mm(truth, head.positions);
         report.at_most(
             fmt::format("markers: {}, head beside its own shapes, RMS", expression.name), error,
-            expression.most_mm, "mm");
+            expression.max_mm, "mm");
         report.at_most(
             fmt::format("markers: {}, of the RMS motion", expression.name), error / motion,
-            expression.most_share);
+            expression.max_relative);
     }
     return Done{};
 }

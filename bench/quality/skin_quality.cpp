@@ -14,7 +14,7 @@
 #include <numbers>
 #include <vector>
 
-// Light within skin: spread on a plane that is partly lit, and shining through a slab.
+// Light in skin: diffusion on a partly lit plane, and transmission through a slab.
 
 namespace limn::skin_quality {
 namespace {
@@ -22,11 +22,11 @@ namespace {
 using glm::dvec3;
 
 constexpr int kSide = 256;     ///< of the images [px]
-constexpr float kLarger = 40;  ///< than real skin, so that shadows end at pixels [times]
+constexpr float kLarger = 40;  ///< scale relative to real skin, so that shadows end at pixels
 constexpr Vec3 kFreePath = kLarger * Vec3(3.67e-3f, 1.37e-3f, 0.68e-3f);
-constexpr float kFewShare = 0.2f;       ///< of free paths whose last ring covers 22 px
-constexpr float kFewestShare = 0.107f;  ///< the same, 12 px
-constexpr double kHalf = 0.5;           ///< of the part of the plane that is compared [m]
+constexpr float kFewRings = 0.2f;       ///< factor of free paths whose last ring covers 22 px
+constexpr float kFewestRings = 0.107f;  ///< the same, 12 px
+constexpr double kHalf = 0.5;  ///< half the size of the part of the plane that is compared [m]
 const char* const kChannels[3] = {"red", "green", "blue"};
 
 Material skin(const Vec3& free_path = kFreePath) {
@@ -70,7 +70,7 @@ struct Compared {
     QualityImage image;
 };
 
-/// Seen head on: the image next to the albedo times `expected(x, d)`.
+/// Viewed head on: compares the image with the albedo times `expected(x, d)`.
 Compared compare(
     HeadlessRenderer& headless, QualityScene& scene, const Material& material,
     const std::function<double(double, double)>& expected) {
@@ -81,13 +81,13 @@ Compared compare(
     Compared result;
     std::vector<float> row;
     for (int x = 0; x < kSide; ++x) {
-        const double place = 2 * (x + 0.5) / kSide - 1;
+        const double position = 2 * (x + 0.5) / kSide - 1;
         for (int c = 0; c < 3; ++c) {
             const auto albedo = static_cast<double>(material.base_color[c]);
-            const double light = expected(place, d[c]);
+            const double light = expected(position, d[c]);
             row.push_back(static_cast<float>(albedo * light));
             const auto drawn = static_cast<double>(found.at(x, kSide / 2, c));
-            if (std::abs(place) < kHalf) {
+            if (std::abs(position) < kHalf) {
                 result.errors[c] = std::max(result.errors[c], std::abs(drawn / albedo - light));
             }
         }
@@ -119,11 +119,11 @@ Status measure_skin(HeadlessRenderer& headless, QualityReport& to) {
         report(to, "edge of light", compare(headless, scene, material, oracle::diffused_edge));
     }
     // Farther away, where fewer rings are summed.
-    for (const auto& [title, share] :
-         {std::pair("edge of light, far", kFewShare),
-          std::pair("edge of light, farther", kFewestShare)}) {
+    for (const auto& [title, factor] :
+         {std::pair("edge of light, far", kFewRings),
+          std::pair("edge of light, farther", kFewestRings)}) {
         QualityScene scene;
-        const Material small = skin(share * kFreePath);
+        const Material small = skin(factor * kFreePath);
         populate_plane(scene, small, 0, 30);
         report(to, title, compare(headless, scene, small, oracle::diffused_edge));
     }

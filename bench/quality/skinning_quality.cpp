@@ -239,7 +239,7 @@ void draw_tubes(HeadlessRenderer& headless, QualityReport& report) {
     const MaterialId clay = stage.add(
         Material{.double_sided = true, .base_color = {0.75f, 0.35f, 0.2f, 1}, .roughness = 0.6f});
     const SkinId skin = stage.add(oracle::make_chain(2, 0.5f));
-    constexpr float kPlaces[] = {-1.35f, -0.75f, -0.1f, 0.85f};
+    constexpr float kOffsets[] = {-1.35f, -0.75f, -0.1f, 0.85f};
     std::vector<Entity> tubes;
     for (int i = 0; i < 4; ++i) {
         const Skinning skinning = i % 2 == 0 ? Skinning::Linear : Skinning::DualQuaternion;
@@ -256,7 +256,7 @@ void draw_tubes(HeadlessRenderer& headless, QualityReport& report) {
         Pose pose;
         pose.joints = {Affine{}, affine_from({0, 0.5f, 0}, turn, Vec3(1))};
         pose.previous = pose.joints;
-        const Affine where = placed_at({kPlaces[i], 0, 0});
+        const Affine where = placed_at({kOffsets[i], 0, 0});
         tubes.push_back(
             stage.pose(stage.add(std::move(tube)), skin, std::move(pose), skinning, clay, where));
     }

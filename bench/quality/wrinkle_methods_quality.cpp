@@ -20,7 +20,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-/// The folds of a face compressed by 0 to 30 %: the length of their profile by that at rest.
+/// The folds of a face compressed by 0 to 30 %: the length of their profile relative to rest.
 void measure_length(QualityReport& report) {
     FaceFoldsPattern pattern;
     pattern.image.size = 512;
@@ -61,7 +61,7 @@ constexpr FitRow kFit[] = {
     {40, {2.600, 4.013, 3.361}},    {50, {5.550, 8.269, 6.724}},    {53.13, {6.898, 10.112, 8.130}},
     {60, {10.909, 15.234, 11.906}}, {70, {20.897, 25.923, 19.302}}, {80, {40.552, 41.076, 29.157}}};
 
-/// How much flatter than they should be the shader's normals are.
+/// By how much the shader's normals are too flat.
 Status measure_fit(gpu::Device& device, QualityReport& report) {
     std::vector<Vec4> inputs;
     for (const FitRow& row : kFit) {

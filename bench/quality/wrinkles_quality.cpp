@@ -78,7 +78,7 @@ void measure_field(QualityReport& report) {
     report.at_most("furrows: part of the field along the normal", lean, 1e-5);
 }
 
-/// Directions and lengths of furrows, against what the six functions say.
+/// Directions and lengths of furrows, compared with the six functions.
 void measure_furrows(QualityReport& report) {
     FurrowRecipe recipe = {.size = kSize, .tiles = true};
     recipe.arrows = {{.at = {0, 0, 0}, .first = {0, 1, 0}, .second = {1, 0, 0}}};

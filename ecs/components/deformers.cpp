@@ -11,7 +11,7 @@ namespace limn {
 
 namespace {
 
-/// Step of the differences that turn normals, as a fraction of the smallest control.
+/// Step of the finite differences for normals, relative to the smallest control.
 constexpr float kStep = 1.0f / 256.0f;
 constexpr float kMinSize = 1e-6f;  ///< of a control [m]
 

@@ -13,7 +13,7 @@ namespace limn {
 // in use, and springs back afterwards. Wrinkles then come from the compression of the pulled skin.
 // Techniques: face.pull
 // Source of face.pull: after the soft selection of modeling programs: a compact kernel (Wyvill et
-//     al. 1986) about the place that is held, a critically damped spring
+//     al. 1986) around the held point, a critically damped spring
 
 /// On a deformed mesh, to which Deformers are added. Other meshes of the same character that have
 /// Deformers, such as brows, are pulled along.

@@ -16,16 +16,16 @@ namespace limn {
 namespace {
 
 constexpr float kThreads = 64;           // of a work group
-constexpr float kMaxRounds = 32768;      // of loops in a dispatch; llvmpipe ends it after 65,535
-constexpr float kRoundsPerSegment = 48;  // besides those over the pixels around it
-constexpr int kMaxSegments = 1024;       // in a dispatch
+constexpr float kMaxRounds = 32768;      // of loops per dispatch; llvmpipe aborts it after 65,535
+constexpr float kRoundsPerSegment = 48;  // besides the loops over pixels around it
+constexpr int kMaxSegments = 1024;       // per dispatch
 constexpr unsigned kTriangles = 0;
 constexpr unsigned kCover = 1;
 constexpr unsigned kFurrowCells = 2;
 constexpr unsigned kHeights = 3;
 constexpr unsigned kProgress = 4;
 
-/// As in furrow_trace.comp.
+/// Layout of furrow_trace.comp.
 struct Progress {
     std::uint32_t next = 0;
     std::uint32_t furrow = 0;

@@ -10,9 +10,9 @@
 
 namespace limn {
 
-// Grows furrows on the GPU: the same as content/bake/furrow_height.h, bit for bit as far as heights
-// go. A furrow depends on all before it, so each field is one work group, whose invocations share
-// the pixels of a segment; noise and normals have one invocation per pixel.
+// Grows furrows on the GPU: like content/bake/furrow_height.h, with bit-identical heights. A furrow
+// depends on all previous ones, so each field is one work group, whose invocations divide the
+// pixels of a segment among them; noise and normals have one invocation per pixel.
 //
 // Shaders  furrow_trace.comp, furrow_maps.comp
 
@@ -24,14 +24,14 @@ struct FurrowMaker {
 /// Fails with the shader compiler's message.
 [[nodiscard]] Result<FurrowMaker> create_furrow_maker(gpu::Device& device);
 
-/// Row 0 is the upper one of the map, as in images that materials use.
+/// Row 0 is the top row of the map, as in images of materials.
 struct FurrowTextures {
-    gpu::Texture height;  ///< RGBA32F: field 0, field 1, the lesser with noise, 1
+    gpu::Texture height;  ///< RGBA32F: field 0, field 1, their minimum with noise, 1
     gpu::Texture normal;  ///< RGBA16F: unit; s to the right, t up, z outwards
 };
 
-/// `cover` has the triangle of each pixel, or -1 (cover_furrow_map). Waits for the GPU after some
-/// segments each, so that no dispatch runs long.
+/// `cover` has the triangle of each pixel, or -1 (cover_furrow_map). Waits for the GPU every few
+/// segments, so that no dispatch runs long.
 [[nodiscard]] FurrowTextures make_furrow_textures(
     gpu::Device& device, const FurrowMaker& maker, const FurrowMap& map,
     std::span<const std::int32_t> cover, const FurrowStyle& style);

@@ -29,7 +29,7 @@ constexpr unsigned kHeightsUnit = 2;
 constexpr unsigned kSceneUnit = 3;
 
 constexpr float kLineRadius = 0.75f;    // [px]
-constexpr float kEditedRadius = 1.25f;  // of the lines of edited vertices
+constexpr float kEditedRadius = 1.25f;  // radius of the lines of edited vertices
 constexpr float kVertexRadius = 1.5f;
 constexpr float kEditedVertexRadius = 3;
 constexpr float kHaloRadius = 6.5f;
@@ -55,7 +55,7 @@ std::vector<float> vertex_spacings(const MeshData& mesh) {
     return sums;
 }
 
-/// `spacing`: 0 for edited vertices, which are few.
+/// `spacing`: 0 for edited vertices, which are sparse.
 void append_vectors(
     const Vec3& at, const FurrowVectors& vectors, float length, float spacing,
     std::vector<FurrowMark>& marks) {
@@ -75,7 +75,7 @@ void append_dot(
     marks.push_back({.from = at, .radius = radius, .to = at, .spacing = spacing, .color = color});
 }
 
-/// Two texels a vertex: position and u; v.
+/// Two texels per vertex: position and u; v.
 std::vector<Vec4> vertex_records(const MeshData& mesh) {
     std::vector<Vec4> records;
     records.reserve(2 * mesh.positions.size());

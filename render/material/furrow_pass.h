@@ -13,30 +13,31 @@ namespace limn {
 
 struct MeshData;
 
-// Furrows of entities: brings their images to materials whenever they have grown anew, and shows
-// how they are made, on the mesh that they grow on (FurrowView, wrinkle.furrow.view-modes): white
-// faces with vertices and both fields, or the height of furrows. In the other modes materials show
-// skin, and nothing is drawn here.
+// Furrows of entities: updates the images of their materials whenever they are regrown, and
+// visualizes them on their mesh (FurrowView, wrinkle.furrow.view-modes): white faces with vertices
+// and both fields, or the height of furrows. In the other modes materials show skin, and nothing
+// is drawn here.
 //
-// Reads    FurrowSkin, FurrowView; depth of the scene, which hides what is drawn
+// Reads    FurrowSkin, FurrowView; depth of the scene, which occludes the view
 // Writes   the images of Furrows; display: colors are exact
 // Order    last
 // Shaders  furrow_face.vert .frag, furrow_mark.vert .frag
 //
 // Deformed meshes are shown at rest.
 
-/// A line with round ends, or a dot, in the space of the mesh. Layout of furrow_mark.vert: three
+/// A line with round caps, or a dot, in the space of the mesh. Layout of furrow_mark.vert: three
 /// texels.
 struct FurrowMark {
     Vec3 from = {0, 0, 0};
     float radius = 1;  ///< [px] of an image of 720 rows
     Vec3 to = {0, 0, 0};
-    float spacing = 0;  ///< of marks like it [m], into which the radius fits; 0: none is near
+    float spacing =
+        0;  ///< distance to similar marks [m], which limits the radius; 0: none are near
     Vec4 color = {1, 1, 1, 1};  ///< display values
 };
 static_assert(sizeof(FurrowMark) == 48);
 
-/// Of a mark in an image of this many rows [px].
+/// Radius of a mark in an image of this many rows [px].
 [[nodiscard]] inline float furrow_mark_pixels(int rows, float radius) {
     return radius * std::max(static_cast<float>(rows) / 720.0f, 0.5f);
 }
@@ -47,11 +48,11 @@ inline constexpr Vec4 kFurrowFieldColor[2] = {{1, 0, 0, 1}, {0, 1, 0, 1}};
 inline constexpr Vec4 kFurrowHaloColor = {1, 0.6f, 0, 1};  ///< around the selected vertex
 
 /// Two lines for each vertex, or each edited one, with dots at the tips of edited ones, and a dot
-/// for each vertex. What is drawn over other marks comes later.
+/// for each vertex, in drawing order.
 [[nodiscard]] std::vector<FurrowMark>
 furrow_marks(const MeshData& mesh, const FurrowSkin& skin, const FurrowView& view);
 
-/// A mesh that is shown, in this frame.
+/// A mesh that is visualized in this frame.
 struct ShownFurrows {
     FurrowMode mode = FurrowMode::Vectors;
     Affine world_from_mesh;
@@ -65,7 +66,7 @@ struct ShownFurrows {
     gpu::Texture heights;
 };
 
-/// Images that a skin was uploaded to.
+/// A skin whose images were uploaded.
 struct PlacedFurrows {
     Entity entity;
     std::uint32_t version = 0;  ///< of the FurrowSkin

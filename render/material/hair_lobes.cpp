@@ -10,11 +10,11 @@
 namespace limn {
 namespace {
 
-// Of a smooth strand with an index of refraction of 1.55, for inclinations up to 45 degrees and
-// colors from white to dark brown, within 0.05.
+// Fits for a smooth strand with an index of refraction of 1.55, for inclinations up to 45 degrees
+// and colors from white to dark brown, within 0.05.
 constexpr double kMeanCosineTt = 0.84;
 constexpr double kMeanCosineTrt = 0.975;
-/// Mean over the width of the length of TT's path inside, in radii across the strand.
+/// Length of TT's path inside the strand, projected across it and averaged over its width [radii].
 constexpr double kMeanPath = 1.851;
 
 /// Mean cosine of the logistic distribution that spreads the azimuths of a rough strand.
@@ -26,7 +26,8 @@ double roughness_cosine(double roughness) {
     return x < 1e-6 ? 1 : x / std::sinh(x);
 }
 
-/// Of the von Mises distribution with this mean cosine, 0 .. 1 (Best and Fisher 1981).
+/// Concentration of the von Mises distribution with this mean cosine, 0 .. 1 (Best and Fisher
+/// 1981).
 double concentration(double cosine) {
     if (cosine < 0.53) {
         return 2 * cosine + std::pow(cosine, 3) + 5.0 / 6 * std::pow(cosine, 5);

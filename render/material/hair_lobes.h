@@ -5,7 +5,7 @@
 
 namespace limn {
 
-// What lib/hair.glsl needs to know of a material, whatever the viewer.
+// View-independent parameters of a material for lib/hair.glsl.
 //
 // Over the width of a strand, light leaves it at different azimuths, and rough strands spread it
 // further by the logistic distribution of Chiang et al., "A Practical and Controllable Hair and Fur

@@ -13,7 +13,7 @@ struct Material;
 ///
 /// Density: a base times exp(-absorption). Melanin 0 .. 1 goes from the albedo of fair skin (types
 /// I and II) to that of dark skin (type VI); blood 0 is pale, 0.2 normal, 0.5 a blushing cheek, 1
-/// lips. Fitted to CIE L*a*b* of skin types; those between are met within 20 %.
+/// lips. Fitted to CIE L*a*b* of skin types; intermediate types agree within 20 %.
 [[nodiscard]] Vec3 skin_tone(const Material& material);
 
 }  // namespace limn

@@ -73,7 +73,7 @@ void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector
     }
 }
 
-/// `number(v)` goes with each vertex.
+/// `number(v)` is stored with each vertex.
 template <typename Number>
 void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number number) {
     const std::size_t begin = texels.size();
@@ -89,13 +89,13 @@ void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number num
     }
 }
 
-/// Of a vertex that wrinkles as far as its mask says, and how much of that at rest.
+/// The mask of a vertex, and its shortening at rest.
 std::uint32_t pack_mask(const WrinkleState& state, const std::vector<float>& mask, std::size_t v) {
     const float resting = v < state.resting.size() ? state.resting[v] : 0.0f;
     return v < mask.size() ? glm::packUnorm2x16({mask[v], resting}) : 0u;
 }
 
-/// All blocks; without any, one of vertices without triangles. Then the heights.
+/// All blocks, at least one of vertices without triangles; then the heights.
 std::vector<Texel> rest_texels(const WrinkleState& state) {
     std::vector<Texel> texels;
     const auto number = [&state](std::size_t block) {
@@ -166,7 +166,7 @@ void forget_unused(WrinkleRestPool& pool) {
     }
 }
 
-/// A source names a mesh by its index, which is another one among other assets.
+/// A source identifies a mesh by its index, which is ambiguous between Assets.
 void forget_others(WrinkleRestPool& pool, std::uint64_t assets) {
     if (pool.assets != assets) {
         forget_unused(pool);
@@ -174,7 +174,7 @@ void forget_others(WrinkleRestPool& pool, std::uint64_t assets) {
     }
 }
 
-/// Shares of a method of drawing and of what replaces it, alpha.
+/// Weights of a drawing method and of alpha, which replaces it.
 struct TierShares {
     float own = 1;
     float shade = 0;
@@ -194,7 +194,7 @@ TierShares tier_shares(const WrinkleSurface& surface, float distance, bool tange
     return {.own = any * own, .shade = any * (1 - own)};
 }
 
-/// From the camera to the middle of an instance [m].
+/// Distance from the camera to the center of an instance [m].
 float distance_to_shape(const FrameData& frame, Entity entity, const DeformedInstance& shape) {
     const auto* const place = frame.world->find<WorldTransform>(entity);
     const Vec3 middle = 0.5f * (shape.bounds.min + shape.bounds.max);
@@ -311,7 +311,7 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
             };
             bind(kWrinklePositionsBinding, vertices.positions(), sizeof(Vec3));
             bind(kWrinklesBinding, vertices.wrinkles(), stream_stride(VertexStream::Wrinkle));
-            // Without displaced skin none are written.
+            // Without displaced skin no heights are written.
             const VertexStream last = displaced ? VertexStream::FoldHeight : VertexStream::Wrinkle;
             bind(kFoldHeightsBinding, vertices.streams().buffer(last), stream_stride(last));
             program->set("group_count", group_count);

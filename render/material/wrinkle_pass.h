@@ -11,14 +11,14 @@
 
 namespace limn {
 
-// Measures where skin is compressed, at the vertices of every deformed instance that wrinkles, and
-// how strong its wrinkles are there (wrinkle.compression.*). lib/material.glsl draws them.
+// Measures the compression of skin at the vertices of every deformed instance that wrinkles, and
+// the strength of its wrinkles (wrinkle.compression.*). lib/material.glsl draws them.
 //
 // Reads    WrinkleState, WrinkleSurface; positions of DeformedVertices
 // Writes   DeformedVertices: strengths by kind of drawing; heights of folds that move the skin
 // Order    after deform_pass, before everything that draws meshes
-// Shaders  wrinkle.comp, lib/wrinkle.glsl; layout in wrinkle_gpu.h. lib/mesh_vertex.glsl moves the
-// vertices
+// Shaders  wrinkle.comp, lib/wrinkle.glsl; layout in wrinkle_gpu.h. lib/mesh_vertex.glsl displaces
+// the vertices
 
 /// Meshes at rest on the GPU, by WrinkleState::source.
 struct WrinkleRestPool {
@@ -27,7 +27,7 @@ struct WrinkleRestPool {
         std::uint32_t texel_count = 0;
         bool used = false;  ///< in this frame
     };
-    std::uint64_t assets = 0;  ///< FrameData::assets_identity of those that the sources are of
+    std::uint64_t assets = 0;  ///< FrameData::assets_identity to which the sources belong
     std::map<std::uint64_t, Range> ranges;
     SlotAllocator slots;  ///< texels
     gpu::Buffer texels;

@@ -12,7 +12,7 @@ layout(location = 0) out vec4 display;
 uniform vec3 eye;          // in the space of the mesh
 uniform int shows_height;  // 0: white
 
-const float kMinWhite = 0.45;  // of faces seen from the side; by eye
+const float kMinWhite = 0.45;  // of faces viewed edge-on; by eye
 
 void main() {
     if (scene_hides(gl_FragCoord.xyz)) {

@@ -1,4 +1,4 @@
-// Corners of a mesh that furrows are shown on (furrow_pass.h).
+// Corners of a mesh on which furrows are visualized (furrow_pass.h).
 #version 450
 
 layout(binding = 0) uniform samplerBuffer vertices;  // two texels each: position and u; v

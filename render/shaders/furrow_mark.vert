@@ -1,4 +1,4 @@
-// A line with round ends, or a dot, as a quad that faces the camera, from FurrowMark records of three texels
+// A line with round caps, or a dot, as a quad that faces the camera, from FurrowMark records of three texels
 // (furrow_pass.h).
 // Techniques: wrinkle.furrow.view-modes
 #version 450
@@ -17,9 +17,9 @@ uniform float pixels;  // factor of radii
 const vec2 kCorners[6] = vec2[](
     vec2(0.0, -1.0), vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(0.0, -1.0), vec2(1.0, 1.0), vec2(1.0, -1.0));
 const float kNear = 1e-4;   // [m]
-const float kOfSpacing = 0.2;  // that a radius may have of the spacing of marks; by eye
-const float kMinRadius = 0.5;  // [px]: thinner marks are paler instead
-const float kLift = 1.006;  // of depth, toward the camera: marks lie on faces
+const float kOfSpacing = 0.2;  // maximum radius relative to the spacing of marks; by eye
+const float kMinRadius = 0.5;  // [px]: thinner marks become transparent instead
+const float kLift = 1.006;  // factor of depth, toward the camera: marks lie on faces
 
 void main() {
     int mark = gl_VertexID / 6;
@@ -32,7 +32,7 @@ void main() {
     float radius = from_radius.w * pixels;
     float thinned = 1.0;
     if (to_spacing.w > 0.0) {
-        // Of a dense mesh marks become smaller than the gaps between them, and faces stay in sight.
+        // On a dense mesh marks become smaller than the gaps between them, and faces stay visible.
         float up = length(vec3(clip_from_mesh[0].y, clip_from_mesh[1].y, clip_from_mesh[2].y));
         float spacing_px = to_spacing.w * 0.5 * size.y * up / max(from.w, kNear);
         float fitting = min(radius, kOfSpacing * spacing_px);
@@ -50,7 +50,7 @@ void main() {
     vec2 to_px = 0.5 * size * to.xy / to.w;
     float length_px = distance(from_px, to_px);
     vec2 along = length_px > 1e-3 ? (to_px - from_px) / length_px : vec2(1.0, 0.0);
-    opacity = thinned * clamp(max(thinned, length_px), 0.0, 1.0);  // a dot is thinner in both directions
+    opacity = thinned * clamp(max(thinned, length_px), 0.0, 1.0);  // a dot fades in both directions
     float reach = radius + 1.0;
 
     place_px = vec2(corner.x * length_px + (2.0 * corner.x - 1.0) * reach, corner.y * reach);

@@ -1,6 +1,6 @@
-// Grows the furrows of one field per work group, one after another as content/bake/furrow_trace.cpp does, with the same
-// bits: the 64 invocations share the pixels along and around a segment, and look for the next start together. Stops
-// after `budget` segments, and the next dispatch goes on: software OpenGL ends a shader after 65,535 rounds of loops.
+// Grows the furrows of one field per work group, one after another, bit-identical to content/bake/furrow_trace.cpp:
+// the 64 invocations divide the pixels along and around a segment, and search for the next start together. Stops after
+// `budget` segments, and the next dispatch continues: software OpenGL aborts a shader after 65,535 loop iterations.
 // Techniques: wrinkle.furrow.trace
 #version 450
 #include "lib/furrow.glsl"
@@ -22,7 +22,7 @@ layout(std430, binding = 2) coherent buffer Cells {
 layout(std430, binding = 3) coherent buffer Heights {
     uint heights[];  // bits of floats that are not negative
 };
-// Where a field has got to.
+// Progress of a field.
 struct Progress {
     uint next;      // start to try: triangles, then pixels
     uint furrow;    // that grows, or 0
@@ -123,7 +123,7 @@ FurrowShape furrow_shape(float magnitude) {
         clamp(line_at(angle_length.xy, x), -kMaxTurn, kMaxTurn), max(length_px, kMinStep), max(density, 0.0), width, depth, limit > 0.0 ? int(limit) : 0);
 }
 
-// Distance along a segment to its first line between pixels across an axis, and between lines.
+// Distance along a segment to the first pixel border across an axis, and between borders.
 vec2 crossings(float at, int cell, float direction) {
     if (abs(direction) < 1e-6) {
         return vec2(kFar);
@@ -139,7 +139,7 @@ float crossing(vec2 across, int i) {
     return at;
 }
 
-// How many lines of one axis come before the distance `t`, or with `equal` at it.
+// Number of borders across one axis before the distance `t`, or with `equal` up to it.
 int lines_before(vec2 across, float t, bool equal) {
     int count = max(int((t - across.x) / across.y), 0);
     while (count > 0 && !(equal ? crossing(across, count - 1) <= t : crossing(across, count - 1) < t)) {
@@ -157,7 +157,7 @@ float line_coverage(float distance, float width) {
     return clamp(overlap, 0.0, 1.0);
 }
 
-// Owns the pixels along a segment up to the first obstacle; returns its length.
+// Claims the pixels along a segment up to the first obstacle; returns its length.
 float walk(vec2 from, vec2 direction, float length_px, uint furrow, out bool met) {
     ivec2 start = cell_of(from);
     ivec2 side = ivec2(direction.x > 0.0 ? 1 : -1, direction.y > 0.0 ? 1 : -1);
@@ -249,7 +249,7 @@ vec2 within(vec2 p) {
     return p;
 }
 
-// Draws the next segment; false where the half of the furrow ends.
+// Draws the next segment; false if the half of the furrow ends.
 bool grow(inout Progress now) {
     vec2 p = vec2(now.x, now.y);
     ivec2 cell = cell_of(p);

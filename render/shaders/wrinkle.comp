@@ -1,5 +1,5 @@
-// How strong wrinkles are at each vertex of deformed skin: measures how much shorter its triangles are across them, in
-// the buffers that deform.comp wrote, and how far folds move it. One invocation per vertex gathers its triangles in a fixed order.
+// Strength of wrinkles at each vertex of deformed skin: measures the shortening of its triangles across them, in the
+// buffers written by deform.comp, and the displacement by folds. One invocation per vertex gathers its triangles in a fixed order.
 // Techniques: face.strain, face.wrinkle-options, wrinkle.comparison, wrinkle.compression.factor,
 //     wrinkle.compression.fallback, wrinkle.compression.overlap, wrinkle.compression.skin-model,
 //     wrinkle.compression.square-length, wrinkle.displacement, wrinkle.natural-width,
@@ -18,7 +18,7 @@ layout(std430, binding = 1) writeonly buffer Wrinkles {
     uvec2 wrinkles[];  // four half floats, as mesh.vert reads them
 };
 layout(std430, binding = 2) writeonly buffer FoldHeights {
-    float fold_heights[];  // along the normal, in mesh space [m]; written for displaced skin alone
+    float fold_heights[];  // along the normal, in mesh space [m]; written only for displaced skin
 };
 
 uniform uint group_count;
@@ -28,7 +28,7 @@ vec3 position_of(uint vertex) {
     return vec3(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
 }
 
-// Square of the length across wrinkles by that at rest; 1 without a triangle, or where it is NaN or infinite.
+// Squared length ratio to rest across wrinkles; 1 without a triangle, or where it is NaN or infinite.
 float compression(int triangle, int end, uint vertex, uint first, bool mean_length) {
     vec3 at = position_of(vertex);
     float ratio = triangle == end ? 1.0 : 0.0;
@@ -52,7 +52,7 @@ float compression(int triangle, int end, uint vertex, uint first, bool mean_leng
     return ratio >= 0.0 && ratio < 1e30 ? ratio : 1.0;
 }
 
-// The same of a vertex in a block of the mesh at `rest_first`.
+// The same for a vertex in a block of the mesh at `rest_first`.
 float block_compression(uint rest_first, uint block, uint number, uint first, bool mean_length) {
     int at = int(rest_first + block + number);
     int begin = int(rest_first + texelFetch(rest, at).x);
@@ -60,7 +60,7 @@ float block_compression(uint rest_first, uint block, uint number, uint first, bo
     return compression(begin, end, first + number, first, mean_length);
 }
 
-// FoldTable of a job, straight between its steps.
+// FoldTable of a job, linearly interpolated.
 float fold_strength(int job, float e) {
     float place = clamp(e, 0.0, 1.0) * float(kFoldSteps - 1u);
     int i = min(int(place), int(kFoldSteps) - 2);
@@ -69,7 +69,7 @@ float fold_strength(int job, float e) {
     return mix(low, high, place - float(i)) * sqrt(clamp(e, 0.0, 1.0));
 }
 
-// Of the wrinkles at a vertex of this compression, without its mask: of isometric folds, and of all other methods.
+// Strength of the wrinkles at this compression, without the mask: of isometric folds, and of all other methods.
 float folded_strength(int job, uvec4 job1, float share, float ratio) {
     return fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), share));
 }
@@ -150,7 +150,7 @@ void main() {
     wrinkles[first + number] = uvec2(packHalf2x16(by_method.xy), packHalf2x16(by_method.zw));
 
     if (job8.x != 0u) {
-        // Slopes are of the skin as it is now, heights of skin at rest, where their folds are longer.
+        // Slopes refer to the deformed skin, heights to skin at rest, where folds are longer.
         vec2 heights = uintBitsToFloat(texelFetch(rest, int(job0.x + job8.x + number)).xy) * sqrt(own_ratio);
         fold_heights[first + number] = uintBitsToFloat(job8.y) * dot(heights, by_method.xy);
     }

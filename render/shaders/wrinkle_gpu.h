@@ -1,14 +1,14 @@
 // Input of wrinkle.comp. Shared by C++ and GLSL.
 //
-// A mesh at rest is a block of texels of two 32-bit numbers; three, one after the other, for strain. One per vertex and one more, which ends the last: its
-// first triangle as a texel of the first block, and its mask and the shortening at which
-// its folds stay, 16 bits each; in the second and third block the
-// angle and the side of its tangent instead (WrinkleState::frames; 0: none). A second layer is another block, with its own mask. Then two per triangle at a vertex, whose third corner
-// is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
-// root of the triangle's weight at the vertex (the weight itself where means are of lengths). Marks in the highest bits of
-// the first of them ask for one more texel, the weight and the third corner: of one that counts by its stretch, and of
-// one that is not at that vertex. Last, of displaced skin,
-// the heights of the folds of both layers per vertex.
+// A mesh at rest is a block of texels of two 32-bit numbers, or three consecutive blocks for strain. First one texel per
+// vertex plus the end: its first triangle as a texel of the first block, and its mask and its shortening at rest, 16
+// bits each; the second and third block have the angle and the side of its tangent instead (WrinkleState::frames; 0:
+// none). A second layer is another block, with its own mask. Then two texels per triangle at a vertex, whose third
+// corner is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the
+// square root of the triangle's weight at the vertex (the weight itself if lengths are averaged). Flags in the highest
+// bits of the first of them announce one more texel, with the weight and the third corner: for a triangle that counts by
+// its stretch, and for one that is not at that vertex. Last, for displaced skin, the fold heights of both layers per
+// vertex.
 
 #ifdef __cplusplus
 #pragma once
@@ -32,12 +32,12 @@ struct WrinkleJob {
     float activation;
     uint second;       // of strain: where its second and third block begin, from the first; else that of a second layer, or 0
     uint third;
-    float own_share;   // of the method, and of alpha in its place
+    float own_share;   // weights of the method, and of alpha which replaces it
     float shade_share;
     vec4 folds[4];     // FoldTable
-    uint heights;      // where the heights begin, from the first texel of the mesh; 0: none
-    float displacement; // share of them that moves vertices
-    float resting;      // share of the shortening at which folds stay
+    uint heights;      // offset of the heights from the first texel of the mesh; 0: none
+    float displacement; // fraction of them that displaces vertices
+    float resting;      // weight of the shortening at rest
     uint unused;
 };
 

@@ -24,7 +24,7 @@ DeformSource find_deform_source(
                                 : nullptr;
     source.morphs = alive ? world.find<MorphWeights>(settings.character) : nullptr;
     source.deformers = world.find<DeformerState>(entity);
-    source.surface = binding != nullptr && binding->places != nullptr ? binding : nullptr;
+    source.surface = binding != nullptr && binding->anchors != nullptr ? binding : nullptr;
     if (joint_count == 0 && assets.meshes[mesh.index].morphs.empty() && source.deformers == nullptr
         && source.surface == nullptr) {
         source.fault =

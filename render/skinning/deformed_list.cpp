@@ -123,11 +123,11 @@ std::vector<Vec4> make_patches(const SurfaceBindingState* state, const StepTime&
                : mix_texels(state->previous_patches, state->patches, time.alpha);
 }
 
-std::span<const SurfacePlace> places_of(const World& world, Entity entity) {
+std::span<const SurfaceAnchor> anchors_of(const World& world, Entity entity) {
     const auto* binding = world.find<SurfaceBindingState>(entity);
-    return binding != nullptr && binding->places != nullptr
-               ? std::span<const SurfacePlace>(*binding->places)
-               : std::span<const SurfacePlace>{};
+    return binding != nullptr && binding->anchors != nullptr
+               ? std::span<const SurfaceAnchor>(*binding->anchors)
+               : std::span<const SurfaceAnchor>{};
 }
 
 /// Of a shape, within 0 and 1; 1 without one.
@@ -192,7 +192,7 @@ void DeformedList::report(const std::string& fault) {
 
 bool DeformedList::resolve(
     const World& world, const Assets& assets, Entry& entry, std::string& fault) {
-    entry.rest = &rest_.get(assets, entry.mesh, places_of(world, entry.entity));
+    entry.rest = &rest_.get(assets, entry.mesh, anchors_of(world, entry.entity));
     if (!entry.rest->fault.empty()) {
         const std::string& name = assets.meshes[entry.mesh.index].name;
         fault = fmt::format("deformed mesh {} {}", name, entry.rest->fault);
@@ -342,7 +342,7 @@ void DeformedList::update(
         wrinkle_columns(world.find_resource<WrinkleComparison>());
     for (const std::uint32_t i : active_) {
         Entry& entry = entries_[i];
-        entry.rest = &rest_.get(*assets, entry.mesh, places_of(world, entry.entity));
+        entry.rest = &rest_.get(*assets, entry.mesh, anchors_of(world, entry.entity));
         find_wrinkles(world, columns, eye, entry);
     }
     for (std::uint32_t i = 0; i < entries_.size(); ++i) {

@@ -42,7 +42,7 @@ struct DeformedInstance {
     bool wrinkle_columns = false;        ///< by the methods of a WrinkleComparison
     std::uint32_t wrinkle_features = 0;  ///< of SurfaceFeature, if it is wrinkled
     float resting = 1;                   ///< share of WrinkleState::resting
-    float displacement = 0;              ///< share of their heights by which folds move the skin
+    float displacement = 0;  ///< fraction of their heights by which folds displace the skin
 };
 
 /// Jobs that share one dispatch: of the same kind, with their vertices within the range that a

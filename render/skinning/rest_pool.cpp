@@ -86,9 +86,9 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
     return texels;
 }
 
-Texels place_texels(std::span<const SurfacePlace> places) {
+Texels anchor_texels(std::span<const SurfaceAnchor> anchors) {
     Texels texels;
-    for (const SurfacePlace& at : places) {
+    for (const SurfaceAnchor& at : anchors) {
         texels.push_back({at.patch, bits_of(at.u), bits_of(at.v), bits_of(at.offset.x)});
         texels.push_back(
             {bits_of(at.offset.y), bits_of(at.offset.z), bits_of(at.normal.x),
@@ -103,20 +103,20 @@ Texels place_texels(std::span<const SurfacePlace> places) {
 }  // namespace
 
 const RestMesh&
-RestPool::get(const Assets& assets, MeshId mesh, std::span<const SurfacePlace> places) {
+RestPool::get(const Assets& assets, MeshId mesh, std::span<const SurfaceAnchor> anchors) {
     meshes_.resize(std::max<std::size_t>(meshes_.size(), mesh.index + 1));
     std::optional<RestMesh>& made = meshes_[mesh.index];
     if (!made || made->version != assets.meshes[mesh.index].version
-        || (!places.empty() && !made->has_places)) {
+        || (!anchors.empty() && !made->has_anchors)) {
         if (made && made->texel_count > 0) {
             slots_.release(made->first_texel, made->texel_count);
         }
-        made = upload(assets.meshes[mesh.index], places);
+        made = upload(assets.meshes[mesh.index], anchors);
     }
     return *made;
 }
 
-RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfacePlace> places) {
+RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfaceAnchor> anchors) {
     RestMesh made;
     made.version = mesh.version;
     made.fault = check_deformable(mesh);
@@ -131,10 +131,10 @@ RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfacePlace> pl
     std::vector<std::size_t> first_offset;
     const Texels influences = influence_texels(mesh.skin, mesh.positions.size(), first_influence);
     const Texels offsets = offset_texels(mesh, first_offset);
-    made.has_places = places.size() == mesh.positions.size();
-    const Texels placed = made.has_places ? place_texels(places) : Texels{};
-    const std::size_t places_at = layout::kRestTexels * (mesh.positions.size() + 1);
-    const std::size_t influences_at = places_at + placed.size();
+    made.has_anchors = anchors.size() == mesh.positions.size();
+    const Texels anchored = made.has_anchors ? anchor_texels(anchors) : Texels{};
+    const std::size_t anchors_at = layout::kRestTexels * (mesh.positions.size() + 1);
+    const std::size_t influences_at = anchors_at + anchored.size();
     const std::size_t offsets_at = influences_at + influences.size();
 
     Texels texels;
@@ -154,7 +154,7 @@ RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfacePlace> pl
         texels.push_back(
             {bits_of(t3.x), bits_of(t3.y), bits_of(t3.z), bits_of(t.w < 0 ? -1.0f : 1.0f)});
     }
-    texels.insert(texels.end(), placed.begin(), placed.end());
+    texels.insert(texels.end(), anchored.begin(), anchored.end());
     texels.insert(texels.end(), influences.begin(), influences.end());
     texels.insert(texels.end(), offsets.begin(), offsets.end());
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/components/surface.h"
-#include "ecs/components/surface_places.h"
+#include "ecs/components/surface_anchors.h"
 #include "render/geometry/slot_allocator.h"
 #include "render/gpu/buffer.h"
 #include "render/skinning/posed_bounds.h"
@@ -22,7 +22,7 @@ struct RestMesh {
     std::uint32_t joint_count = 0;  ///< required of its skin; 0: not skinned
     SkinBounds bounds;
     std::uint32_t version = 0;  ///< of the MeshData
-    bool has_places = false;    ///< on the patches of a surface
+    bool has_anchors = false;   ///< on the patches of a surface
     std::string fault;          ///< why it cannot be deformed; empty if it can
 };
 
@@ -30,9 +30,9 @@ struct RestMesh {
 /// uploaded when its first instance appears, and again after it was edited.
 class RestPool {
   public:
-    /// `places`: of its vertices on patches, one each, or empty.
+    /// `anchors`: of its vertices on patches, one each, or empty.
     [[nodiscard]] const RestMesh&
-    get(const Assets& assets, MeshId mesh, std::span<const SurfacePlace> places = {});
+    get(const Assets& assets, MeshId mesh, std::span<const SurfaceAnchor> anchors = {});
     void clear();
 
     [[nodiscard]] const gpu::Buffer& texels() const {
@@ -40,7 +40,7 @@ class RestPool {
     }  ///< null until the first mesh
 
   private:
-    RestMesh upload(const MeshData& mesh, std::span<const SurfacePlace> places);
+    RestMesh upload(const MeshData& mesh, std::span<const SurfaceAnchor> anchors);
 
     std::vector<std::optional<RestMesh>> meshes_;  ///< by mesh
     gpu::Buffer buffer_;

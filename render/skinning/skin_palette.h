@@ -23,7 +23,8 @@ void make_morph_weights(
     const MorphWeights* morphs, std::size_t first, std::size_t count, const StepTime& time,
     std::vector<float>& weights);
 
-/// As deform.comp reads them: per joint three matrix rows, or a unit dual quaternion in two texels.
+/// Appends the layout of deform.comp: per joint three matrix rows, or a unit dual quaternion in two
+/// texels.
 void append_texels(
     const std::vector<Affine>& palette, Skinning skinning, std::vector<Vec4>& texels);
 

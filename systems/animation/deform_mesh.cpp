@@ -43,7 +43,7 @@ bool deform_positions(
     thread_local Memory memory;
     positions = mesh.positions;
     const SkinnedVertices moved = {positions, {}, {}};
-    if (surface.places.size() == positions.size()) {
+    if (surface.anchors.size() == positions.size()) {
         move_by_patches(surface, positions);
     }
     find_weights(morphs, deformed.first_morph, memory.weights);

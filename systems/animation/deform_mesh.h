@@ -3,7 +3,7 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
-#include "ecs/components/surface_places.h"
+#include "ecs/components/surface_anchors.h"
 
 #include <vector>
 

@@ -23,7 +23,7 @@ namespace limn::deformer {
 
 // M. Abramowitz and I. Stegun, "Handbook of Mathematical Functions", 1964: the arc cosine within
 // 2e-8 (4.4.46; GLSL's own may be off by 1e-4), the sine of up to a right angle within 2e-9
-// (4.3.97), as functions of x and of x^2. Both versions evaluate them alike.
+// (4.3.97), as functions of x and of x^2. Both versions evaluate them identically.
 inline constexpr float kArcCosine[] = {-0.0012624911f, 0.0066700901f,  -0.0170881256f,
                                        0.0308918810f,  -0.0501743046f, 0.0889789874f,
                                        -0.2145988016f, 1.5707963050f};
@@ -266,7 +266,7 @@ HWY_EXPORT(deform_points_vector);
 
 namespace {
 
-/// Pulls of muscles, which add, and the most distant point that they pull to.
+/// Sum of the pulls of muscles, and the distance to the farthest point that they pull to.
 struct Pull {
     Vec3 sum{0};
     float farthest = 0.0f;

@@ -16,9 +16,9 @@ void add_deformer_states(
     Query<const Deformers, Without<DeformerState>> bare, Query<const Deformed> deformed,
     Commands commands);
 
-/// Packs the controls, and the pulls of the character's skin after them; keeps those of the
-/// previous step for velocities. In the first step, after a PoseCut, and where controls came or
-/// went, both are the same.
+/// Packs the controls, followed by the pulls of the character's skin; keeps those of the previous
+/// step for velocities. In the first step, after a PoseCut, and where controls were added or
+/// removed, both are the same.
 void update_deformers(
     Query<const Deformers, DeformerState> deformers, Query<const Deformed> deformed,
     Query<const SkinPulls, const Deformed> pulled, Query<const PoseCut> cuts);

@@ -11,7 +11,7 @@
 
 namespace limn {
 
-/// A mesh as an entity has it in this step, with what deforms it. Points to components and assets.
+/// The mesh of an entity in this step, with its deformers. Points to components and assets.
 struct MeshSource {
     MeshId mesh{};
     const MeshData* data = nullptr;  ///< null: no such mesh
@@ -29,7 +29,7 @@ struct MeshSource {
     const Query<const Pose>& poses, const Query<const MorphWeights>& morphs, const Assets& assets,
     const SurfaceBindingState* binding = nullptr);
 
-/// Its vertices as they are deformed, moved by `world`, to `positions`, which is resized.
+/// Writes its deformed vertices, transformed by `world`, to `positions`, which is resized.
 void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions);
 
 }  // namespace limn

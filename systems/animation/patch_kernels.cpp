@@ -73,7 +73,7 @@ HWY_INLINE V3 mix(const Share& at, const V3& a, const V3& b, const V3& c) {
     return add(add(scale(at.u, a), scale(at.v, b)), scale(at.w, c));
 }
 
-/// Places of some vertices, side by side.
+/// Anchors of some vertices, side by side.
 struct Lanes {
     HWY_ALIGN float u[kMaxLanes];
     HWY_ALIGN float v[kMaxLanes];
@@ -82,8 +82,8 @@ struct Lanes {
     HWY_ALIGN float z[kMaxLanes];
 };
 
-/// As evaluate_patch and the place on it. False where a vertex has no normal or no tangent, as
-/// markers have met: that is for the scalar version.
+/// As evaluate_patch and the point of the anchor. False where a vertex has no normal or no tangent,
+/// as markers have met: that is for the scalar version.
 HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
     Share at = {hn::Load(d, lanes.u), hn::Load(d, lanes.v), hn::Zero(d)};
     at.w = hn::Sub(hn::Sub(hn::Set(d, 1.0f), at.u), at.v);
@@ -107,7 +107,7 @@ HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
     V3 p = mix(at, r100, r010, r001);
     const V x = hn::Load(d, lanes.x);
     const V y = hn::Load(d, lanes.y);
-    // Most are straight above their places.
+    // Most are perpendicularly above the surface.
     if (!hn::AllTrue(d, hn::And(hn::Eq(x, hn::Zero(d)), hn::Eq(y, hn::Zero(d))))) {
         const V3 by_u = scale(hn::Set(d, 3.0f), subtract(r100, r001));
         const V3 along = subtract(by_u, scale(dot(by_u, normal), normal));
@@ -130,14 +130,14 @@ HWY_INLINE void move_vertices(
     const SurfaceShape& shape, std::span<const std::uint32_t> vertices, std::span<Vec3> positions) {
     Lanes lanes;
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {  // the last one again in lanes left over
-        const SurfacePlace& place = shape.places[vertices[std::min(i, vertices.size() - 1)]];
-        lanes.u[i] = place.u;
-        lanes.v[i] = place.v;
-        lanes.x[i] = place.offset.x;
-        lanes.y[i] = place.offset.y;
-        lanes.z[i] = place.offset.z;
+        const SurfaceAnchor& anchor = shape.anchors[vertices[std::min(i, vertices.size() - 1)]];
+        lanes.u[i] = anchor.u;
+        lanes.v[i] = anchor.v;
+        lanes.x[i] = anchor.offset.x;
+        lanes.y[i] = anchor.offset.y;
+        lanes.z[i] = anchor.offset.z;
     }
-    const std::size_t patch = shape.places[vertices[0]].patch;
+    const std::size_t patch = shape.anchors[vertices[0]].patch;
     const bool moved = move_lanes(&shape.patches[patch * kPatchTexels], lanes);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const std::uint32_t v = vertices[i];
@@ -145,7 +145,7 @@ HWY_INLINE void move_vertices(
             positions[v] = {lanes.x[i], lanes.y[i], lanes.z[i]};
         } else {
             follow_patches(
-                shape.places.subspan(v, 1), shape.patches, positions.subspan(v, 1), {}, {});
+                shape.anchors.subspan(v, 1), shape.patches, positions.subspan(v, 1), {}, {});
         }
     }
 }
@@ -155,10 +155,10 @@ HWY_INLINE void move_vertices(
 void move_by_patches_vector(const SurfaceShape& shape, std::span<Vec3> positions) {
     const std::span<const std::uint32_t> order = shape.order;
     for (std::size_t i = 0; i < order.size();) {
-        const std::uint32_t patch = shape.places[order[i]].patch;
+        const std::uint32_t patch = shape.anchors[order[i]].patch;
         std::size_t count = 1;
         while (count < hn::Lanes(d) && i + count < order.size()
-               && shape.places[order[i + count]].patch == patch) {
+               && shape.anchors[order[i + count]].patch == patch) {
             ++count;
         }
         move_vertices(shape, order.subspan(i, count), positions);
@@ -176,26 +176,26 @@ namespace limn {
 
 HWY_EXPORT(move_by_patches_vector);
 
-std::vector<std::uint32_t> order_by_patch(std::span<const SurfacePlace> places) {
+std::vector<std::uint32_t> order_by_patch(std::span<const SurfaceAnchor> anchors) {
     std::vector<std::uint32_t> order;
-    for (std::uint32_t v = 0; v < places.size(); ++v) {
-        if (places[v].patch != kNoPatch) {
+    for (std::uint32_t v = 0; v < anchors.size(); ++v) {
+        if (anchors[v].patch != kNoPatch) {
             order.push_back(v);
         }
     }
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return places[a].patch < places[b].patch;
+        return anchors[a].patch < anchors[b].patch;
     });
     return order;
 }
 
 void move_by_patches(const SurfaceShape& shape, std::span<Vec3> positions) {
-    LIMN_CHECK(shape.places.size() == positions.size());
+    LIMN_CHECK(shape.anchors.size() == positions.size());
     HWY_DYNAMIC_DISPATCH(move_by_patches_vector)(shape, positions);
 }
 
 void move_by_patches_scalar(const SurfaceShape& shape, std::span<Vec3> positions) {
-    follow_patches(shape.places, shape.patches, positions, {}, {});
+    follow_patches(shape.anchors, shape.patches, positions, {}, {});
 }
 
 }  // namespace limn

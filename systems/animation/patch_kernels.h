@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
-#include "ecs/components/surface_places.h"
+#include "ecs/components/surface_anchors.h"
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@ namespace limn {
 // moves many vertices of one patch at once, so they are visited patch by patch.
 
 /// Vertices that are bound, patch by patch.
-[[nodiscard]] std::vector<std::uint32_t> order_by_patch(std::span<const SurfacePlace> places);
+[[nodiscard]] std::vector<std::uint32_t> order_by_patch(std::span<const SurfaceAnchor> anchors);
 
 /// Positions of the vertices that are bound; the others stay. Both agree within 1e-6 of the size of
 /// the patches.

@@ -532,8 +532,8 @@ HWY_INLINE void find_means(
     const skin::Work<DualQuaternion>& work, const Influences& by, std::size_t at, Matrices& m) {
     Motions q;
     find_motions(work, by, q);
-    const V least = hn::Set(d, skin::kNoMotion);
-    if (!hn::AllTrue(d, hn::Gt(squared_length(q), least))) {
+    const V min_length2 = hn::Set(d, skin::kNoMotion);
+    if (!hn::AllTrue(d, hn::Gt(squared_length(q), min_length2))) {
         find_motions_again(work, at, q);
     }
     // 2 / |real|^2 normalizes all products.

@@ -18,8 +18,8 @@ namespace limn {
 //
 // Like those of pose_kernels.h, the inner loops have a SIMD version and a plain C++ one, `_scalar`,
 // with bit-identical results for any split into ranges. SIMD processes a batch of vertices at once:
-// fastest where neighbors have the same joints, at most four, slower where they have different
-// ones, and slowest where their number differs as well.
+// fastest if neighbors have the same joints, at most four, slower if their joints differ, and
+// slowest if the number of joints differs, too.
 
 /// Undeformed vertices; all spans have the same length, or only positions are not empty.
 struct RestVertices {
@@ -70,7 +70,7 @@ void add_morphs(
     std::span<const MorphTarget> morphs, std::span<const float> weights,
     const SkinnedVertices& vertices);
 
-/// Keeps the `most` largest influences of each vertex, renormalized (char.skin-limits).
-[[nodiscard]] SkinWeights limit_influences(const SkinWeights& skin, std::size_t most);
+/// Keeps the `count` largest influences of each vertex, renormalized (char.skin-limits).
+[[nodiscard]] SkinWeights limit_influences(const SkinWeights& skin, std::size_t count);
 
 }  // namespace limn

@@ -219,8 +219,8 @@ void add_morphs(
     }
 }
 
-SkinWeights limit_influences(const SkinWeights& skin, std::size_t most) {
-    LIMN_CHECK(most > 0);
+SkinWeights limit_influences(const SkinWeights& skin, std::size_t count) {
+    LIMN_CHECK(count > 0);
     SkinWeights limited;
     std::vector<std::uint32_t> kept;
     for (std::size_t v = 0; v + 1 < skin.first.size(); ++v) {
@@ -231,7 +231,7 @@ SkinWeights limit_influences(const SkinWeights& skin, std::size_t most) {
         std::stable_sort(kept.begin(), kept.end(), [&](std::uint32_t a, std::uint32_t b) {
             return skin.weights[a] > skin.weights[b];
         });
-        kept.resize(std::min(kept.size(), most));
+        kept.resize(std::min(kept.size(), count));
         std::sort(kept.begin(), kept.end());  // by joint again
         float sum = 0.0f;
         for (const std::uint32_t i : kept) {

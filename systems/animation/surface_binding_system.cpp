@@ -50,7 +50,7 @@ Entity find_surface(const SurfaceQuery& surfaces, Entity named) {
     return found;
 }
 
-/// How each vertex is moved by joints and morph targets, as a hash: those of a seam are alike.
+/// Hash of how each vertex is moved by joints and morph targets: equal on both sides of a seam.
 std::vector<std::uint64_t> motion_kinds(const MeshData& mesh) {
     std::vector<std::uint64_t> kinds(mesh.positions.size(), 0);
     const auto add = [&](std::size_t v, std::uint64_t which, const auto& how) {
@@ -111,7 +111,7 @@ class Binder {
             }
             state.bound = equal->bound;
             state.skin = equal->skin;
-            state.places = equal->places;
+            state.anchors = equal->anchors;
             state.order = equal->order;
             state.largest_offset = equal->largest_offset;
             return Done{};
@@ -142,7 +142,7 @@ class Binder {
     static void bind_to_patches_of(
         const MeshData& surface, const PatchFaces& faces, const MeshData& bound,
         SurfaceBindingState& state) {
-        const float reach = state.settings.reach;
+        const float max_distance = state.settings.reach;
         std::vector<Vec2> corner_uvs;
         PatchChart chart;
         if (state.settings.by_uvs) {
@@ -151,15 +151,15 @@ class Binder {
             }
             chart = {bound.uvs, corner_uvs};
         }
-        std::vector<SurfacePlace> places = bind_to_patches(
+        std::vector<SurfaceAnchor> anchors = bind_to_patches(
             bound.positions, bound.normals, bound.tangents, surface.positions, faces.corners,
-            std::isfinite(reach) ? reach : 0.0f, chart);
+            std::isfinite(max_distance) ? max_distance : 0.0f, chart);
         state.largest_offset = 0.0f;
-        for (const SurfacePlace& place : places) {
-            state.largest_offset = std::max(state.largest_offset, glm::length(place.offset));
+        for (const SurfaceAnchor& anchor : anchors) {
+            state.largest_offset = std::max(state.largest_offset, glm::length(anchor.offset));
         }
-        state.order = std::make_shared<const std::vector<std::uint32_t>>(order_by_patch(places));
-        state.places = std::make_shared<const std::vector<SurfacePlace>>(std::move(places));
+        state.order = std::make_shared<const std::vector<std::uint32_t>>(order_by_patch(anchors));
+        state.anchors = std::make_shared<const std::vector<SurfaceAnchor>>(std::move(anchors));
     }
 
     void bind_to_faces_of(const MeshData& surface, MeshData& bound, SurfaceBindingState& state) {
@@ -169,11 +169,11 @@ class Binder {
             std::isfinite(settings.locality) ? settings.locality : 0.0f,
             static_cast<std::size_t>(std::max(settings.faces, 1)));
         assets_.skins[state.skin.index] = make_face_skin(surface.positions, state.corners);
-        state.places = nullptr;
+        state.anchors = nullptr;
         state.order = nullptr;
     }
 
-    /// Another that is bound alike.
+    /// Another entity with an equal binding.
     const SurfaceBindingState* find_equal(Entity entity, const SurfaceBindingState& state) {
         const SurfaceBindingState* found = nullptr;
         bindings_.each([&](Entity other, const SurfaceBinding&, const SurfaceBindingState& theirs,
@@ -188,7 +188,7 @@ class Binder {
         return found;
     }
 
-    /// Whether it has a bound mesh, and it alone.
+    /// Whether it has a bound mesh that no other entity uses.
     bool is_sole_user(Entity entity, const SurfaceBindingState& state) {
         bool sole = state.bound != MeshId{};
         bindings_.each([&](Entity other, const SurfaceBinding&, const SurfaceBindingState& theirs,
@@ -291,11 +291,11 @@ void bind_surfaces(
                       const MeshInstance& instance) {
         const bool is_bound = state.bound != MeshId{} && instance.mesh == state.bound;
         const bool has_surface = is_bound && mesh_of(surfaces, state.surface) == state.surface_mesh;
-        const bool has_places =
-            state.places != nullptr || state.settings.method != SurfaceMethod::Patches;
+        const bool has_anchors =
+            state.anchors != nullptr || state.settings.method != SurfaceMethod::Patches;
         const bool failed =
             state.bound == MeshId{} && state.rest == instance.mesh && state.rest != MeshId{};
-        if (((has_surface && has_places) || failed) && binding == state.settings) {
+        if (((has_surface && has_anchors) || failed) && binding == state.settings) {
             return;
         }
         state.rest = is_bound ? state.rest : instance.mesh;
@@ -305,7 +305,7 @@ void bind_surfaces(
         if (!bound) {
             binder.release(entity, state);
             state.corners.clear();
-            state.places = nullptr;
+            state.anchors = nullptr;
             state.order = nullptr;
             const bool named = state.rest.index < assets->meshes.size();
             log_warn(

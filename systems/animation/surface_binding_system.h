@@ -9,11 +9,11 @@
 
 namespace limn {
 
-// Meshes that follow surfaces (surface_binding.h). Bound meshes are copies in Assets: entities of
-// the same mesh, surface mesh and settings share one, and changed settings replace it where nothing
-// else uses it. What cannot be bound is logged once, and drawn as if it had no binding.
+// Meshes that follow surfaces (surface_binding.h). Bound meshes are copies in Assets: entities with
+// the same mesh, surface mesh and settings share one, and changed settings replace it if nothing
+// else uses it. A mesh that cannot be bound is logged once, and drawn without the binding.
 
-/// What may deform the mesh of a surface.
+/// The components that may deform the mesh of a surface.
 using SurfaceQuery = Query<
     Optional<const ControlSurface>, Optional<const MeshInstance>, Optional<const Deformed>,
     Optional<const DeformerState>, AnyOf<ControlSurface, MeshInstance>>;
@@ -24,19 +24,19 @@ void add_surface_binding_states(
     Query<const SurfaceBinding, With<MeshInstance>, Without<SurfaceBindingState>> bare,
     Query<const Deformed> deformed, Commands commands);
 
-/// What has lost its SurfaceBinding gets its own mesh back, and loses what was added for it.
+/// Restores the mesh of entities that lost their SurfaceBinding, and removes what was added for it.
 void release_surface_bindings(
     Query<const SurfaceBindingState, Without<SurfaceBinding>> released,
     Query<const SurfaceBindingState, With<SurfaceBinding>> bound, Query<const Deformers> deformers,
     Query<MeshInstance> instances, Res<Assets> assets, Commands commands);
 
-/// Binds what is not bound, or has other settings, another mesh or another surface than when it
-/// was. Where the surface is gone, the mesh is as if it had no binding.
+/// Binds meshes that are unbound, or whose settings, mesh or surface changed. Where the surface is
+/// gone, the mesh is unbound.
 void bind_surfaces(
     Query<const SurfaceBinding, SurfaceBindingState, const MeshInstance> bindings,
     Query<MeshInstance> instances, SurfaceQuery surfaces, Res<Assets> assets);
 
-/// The shape of each surface now; that of the previous step is kept for velocities.
+/// Updates the shape of each surface; that of the previous step is kept for velocities.
 void update_surface_bindings(
     Query<SurfaceBindingState> bindings, SurfaceQuery surfaces, Query<const Pose> poses,
     Query<const MorphWeights> morphs, Res<const Assets> assets);

@@ -12,18 +12,18 @@ namespace limn {
 
 // Surface-oriented free-form deformation (face.soffd): K. Singh and E. Kokkevis, "Skinning
 // Characters Using Surface-Oriented Free-Form Deformations", 2000. Each face k of a control surface
-// has a frame F_k. A point x goes with the faces that are near it,
+// has a frame F_k. A point x follows the faces that are near it,
 //
 //     x' = sum over k of w_k D_k x,    D_k = F_k(now) F_k(rest)^-1,    sum of w_k = 1.
 //
-// As the weights never change this is linear blend skinning with one joint per face: SkinWeights
-// hold the w_k, a SkinData the F_k(rest)^-1 and a Pose the F_k(now). So it runs on the CPU and the
-// GPU with velocities and normals, and costs what skinning costs.
+// Since the weights never change, this is linear blend skinning with one joint per face:
+// SkinWeights hold the w_k, a SkinData the F_k(rest)^-1 and a Pose the F_k(now). So it runs on CPU
+// and GPU with velocities and normals, at the cost of skinning.
 //
 // The paper's weights are not normalized and would not reproduce the rest pose. A face that faces
-// away from a point's normal counts as farther away: so lips that touch do not stick. Where only
-// the nearest `count` faces are kept, their weights are reduced by that of the nearest one left
-// out, so that the list changes from point to point without a crease.
+// away from a point's normal counts as farther away, so that touching lips do not stick together.
+// Where only the nearest `count` faces are kept, their weights are reduced by that of the nearest
+// dropped one, so that the list changes from point to point without a crease.
 
 /// Frame of a triangle: origin a, axes b - a, c - a and their cross product, scaled to grow like a
 /// length. A triangle without area has no third axis.

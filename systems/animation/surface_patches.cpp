@@ -43,24 +43,24 @@ Mat3 frame_at(const PatchPoint& at) {
     return {tangent, glm::cross(at.normal, tangent), at.normal};
 }
 
-Vec3 place_on(const PatchPoint& at, const Vec3& offset) {
+Vec3 anchored_point(const PatchPoint& at, const Vec3& offset) {
     return at.position + frame_at(at) * offset;
 }
 
 /// (u, v, distance) so that the surface plus distance along its normal is `p`, from a start.
 /// False where the method does not converge.
-bool solve_place(std::span<const Vec4> patch, const Vec3& p, float size, Vec3& place) {
+bool solve_uvd(std::span<const Vec4> patch, const Vec3& p, float size, Vec3& uvd) {
     for (int i = 0; i < kSteps; ++i) {
-        const PatchPoint at = evaluate_patch(patch, place.x, place.y);
-        const Vec3 residual = p - (at.position + place.z * at.normal);
-        const Mat3 axes = axes_at(at, place.z);
+        const PatchPoint at = evaluate_patch(patch, uvd.x, uvd.y);
+        const Vec3 residual = p - (at.position + uvd.z * at.normal);
+        const Mat3 axes = axes_at(at, uvd.z);
         const float volume = glm::determinant(axes);
         if (!(std::abs(volume) > 1e-6f * size * size)) {
             return false;
         }
         const Vec3 step = glm::inverse(axes) * residual;
-        place += step;
-        if (!is_finite(place) || std::abs(place.x) > 4.0f || std::abs(place.y) > 4.0f) {
+        uvd += step;
+        if (!is_finite(uvd) || std::abs(uvd.x) > 4.0f || std::abs(uvd.y) > 4.0f) {
             return false;
         }
         if (std::max(std::abs(step.x), std::abs(step.y)) < 1e-6f
@@ -71,8 +71,8 @@ bool solve_place(std::span<const Vec4> patch, const Vec3& p, float size, Vec3& p
     return false;
 }
 
-bool is_inside_chart(const Vec3& place) {
-    return place.x >= -kInside && place.y >= -kInside && place.x + place.y <= 1.0f + kInside;
+bool is_inside_chart(const Vec3& uvd) {
+    return uvd.x >= -kInside && uvd.y >= -kInside && uvd.x + uvd.y <= 1.0f + kInside;
 }
 
 /// The nearest point of a patch among samples, as (u, v, 0).
@@ -93,18 +93,18 @@ Vec3 nearest_sample(std::span<const Vec4> patch, const Vec3& p) {
 }
 
 /// (u, v) of the point of the triangle nearest to the solution outside of it.
-Vec2 clamp_place(Vec3 place) {
-    Vec3 share = glm::max(Vec3(place.x, place.y, 1.0f - place.x - place.y), Vec3(0));
-    share /= share.x + share.y + share.z;
-    return {share.x, share.y};
+Vec2 clamp_uvd(Vec3 uvd) {
+    Vec3 weights = glm::max(Vec3(uvd.x, uvd.y, 1.0f - uvd.x - uvd.y), Vec3(0));
+    weights /= weights.x + weights.y + weights.z;
+    return {weights.x, weights.y};
 }
 
 class PatchBinder {
   public:
     PatchBinder(
-        std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach,
+        std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float max_distance,
         std::span<const Vec2> chart)
-        : positions_(positions), corners_(corners), reach_(reach), chart_(chart) {
+        : positions_(positions), corners_(corners), max_distance_(max_distance), chart_(chart) {
         make_patches(positions, corners, patches_);
         std::map<Edge, int> edges;
         for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -115,34 +115,34 @@ class PatchBinder {
         }
     }
 
-    [[nodiscard]] SurfacePlace
+    [[nodiscard]] SurfaceAnchor
     bind(const Vec3& point, const Vec3& normal, const Vec3& tangent) const {
         const auto in_space = [&](std::size_t i) { return corner(i); };
         const Faces near = nearest_faces(point, kCandidates, in_space);
         const Faces facing = facing_along(near, normal);
-        SurfacePlace place;
-        const bool found = find_inside(point, facing, place) || find_beside(point, facing, place)
-                           || find_inside(point, near, place) || find_beside(point, near, place);
-        return found ? finished(place, normal, tangent) : SurfacePlace{};
+        SurfaceAnchor anchor;
+        const bool found = find_inside(point, facing, anchor) || find_beside(point, facing, anchor)
+                           || find_inside(point, near, anchor) || find_beside(point, near, anchor);
+        return found ? finished(anchor, normal, tangent) : SurfaceAnchor{};
     }
 
     /// `at`: of the point in the chart.
-    [[nodiscard]] SurfacePlace bind_by_chart(
+    [[nodiscard]] SurfaceAnchor bind_by_chart(
         const Vec3& point, const Vec3& normal, const Vec3& tangent, const Vec2& at) const {
         const auto in_chart = [&](std::size_t i) { return Vec3(chart_[i], 0); };
         const Faces near = nearest_faces(Vec3(at, 0), kNeighbors, in_chart);
-        SurfacePlace place;
-        for (std::size_t i = 0; i < near.size() && place.patch == kNoPatch; ++i) {
-            find_inside(point, {near[i]}, place);
+        SurfaceAnchor anchor;
+        for (std::size_t i = 0; i < near.size() && anchor.patch == kNoPatch; ++i) {
+            find_inside(point, {near[i]}, anchor);
         }
         if (!near.empty() && near[0].first > kOnChart) {
-            // What goes on beyond the border is bound where the surface covers it closely.
-            const bool covered = (place.patch != kNoPatch || find_beside(point, {near[0]}, place))
-                                 && glm::length(place.offset) < kCloseTo * size_of(place.patch);
-            return covered ? finished(place, normal, tangent) : SurfacePlace{};
+            // Points beyond the border are bound where the surface covers them closely.
+            const bool covered = (anchor.patch != kNoPatch || find_beside(point, {near[0]}, anchor))
+                                 && glm::length(anchor.offset) < kCloseTo * size_of(anchor.patch);
+            return covered ? finished(anchor, normal, tangent) : SurfaceAnchor{};
         }
-        const bool found = place.patch != kNoPatch || find_beside(point, {near[0]}, place);
-        return found ? finished(place, normal, tangent) : SurfacePlace{};
+        const bool found = anchor.patch != kNoPatch || find_beside(point, {near[0]}, anchor);
+        return found ? finished(anchor, normal, tangent) : SurfaceAnchor{};
     }
 
   private:
@@ -152,20 +152,20 @@ class PatchBinder {
     /// Faces, with the distances of their flat triangles.
     using Faces = std::vector<std::pair<float, std::uint32_t>>;
 
-    /// With normal and tangent, or not bound.
-    [[nodiscard]] SurfacePlace
-    finished(SurfacePlace place, const Vec3& normal, const Vec3& tangent) const {
-        if (glm::length(place.offset) > reach_) {
+    /// Adds normal and tangent, or returns an unbound anchor.
+    [[nodiscard]] SurfaceAnchor
+    finished(SurfaceAnchor anchor, const Vec3& normal, const Vec3& tangent) const {
+        if (glm::length(anchor.offset) > max_distance_) {
             return {};
         }
-        const PatchPoint at = evaluate_patch(patch(place.patch), place.u, place.v);
-        const Mat3 axes = axes_at(at, place.offset.z);
+        const PatchPoint at = evaluate_patch(patch(anchor.patch), anchor.u, anchor.v);
+        const Mat3 axes = axes_at(at, anchor.offset.z);
         if (!(std::abs(glm::determinant(axes)) > 0.0f)) {
             return {};
         }
-        place.normal = glm::transpose(axes) * normal;
-        place.tangent = glm::inverse(axes) * tangent;
-        return place;
+        anchor.normal = glm::transpose(axes) * normal;
+        anchor.tangent = glm::inverse(axes) * tangent;
+        return anchor;
     }
 
     [[nodiscard]] std::span<const Vec4> patch(std::size_t f) const {
@@ -197,8 +197,8 @@ class PatchBinder {
         return nearest;
     }
 
-    /// Those that do not face away from the normal of a point: lips that touch are bound each to
-    /// its own patches.
+    /// Faces that do not face away from the normal of a point, so that each of two touching lips is
+    /// bound to its own patches.
     [[nodiscard]] Faces facing_along(const Faces& faces, const Vec3& normal) const {
         Faces facing;
         for (const auto& face : faces) {
@@ -217,8 +217,8 @@ class PatchBinder {
             glm::distance(corner(3 * f), corner(3 * f + 2)));
     }
 
-    /// The nearest place straight below the point.
-    bool find_inside(const Vec3& p, const Faces& faces, SurfacePlace& place) const {
+    /// The nearest anchor perpendicularly below the point.
+    bool find_inside(const Vec3& p, const Faces& faces, SurfaceAnchor& anchor) const {
         float nearest = INFINITY;
         for (const auto& [flat, f] : faces) {
             // A patch bulges less than its size.
@@ -229,36 +229,36 @@ class PatchBinder {
             at.z = glm::dot(
                 p - evaluate_patch(patch(f), at.x, at.y).position,
                 evaluate_patch(patch(f), at.x, at.y).normal);
-            if (solve_place(patch(f), p, size_of(f), at) && is_inside_chart(at)
+            if (solve_uvd(patch(f), p, size_of(f), at) && is_inside_chart(at)
                 && std::abs(at.z) < nearest) {
                 nearest = std::abs(at.z);
-                place.patch = f;
-                place.u = at.x;
-                place.v = at.y;
-                place.offset = {0, 0, at.z};
+                anchor.patch = f;
+                anchor.u = at.x;
+                anchor.v = at.y;
+                anchor.offset = {0, 0, at.z};
             }
         }
-        return place.patch != kNoPatch;
+        return anchor.patch != kNoPatch;
     }
 
-    /// Above an edge that is not at the border of the surface: the nearest place, and an offset
+    /// Above an edge that is not at the border of the surface: the nearest anchor, and an offset
     /// that is not only along the normal.
-    bool find_beside(const Vec3& p, const Faces& faces, SurfacePlace& place) const {
-        place = {};
+    bool find_beside(const Vec3& p, const Faces& faces, SurfaceAnchor& anchor) const {
+        anchor = {};
         float nearest = INFINITY;
         bool is_border = false;
         for (const auto& [flat, f] : faces) {
             Vec3 at = nearest_sample(patch(f), p);
-            solve_place(patch(f), p, size_of(f), at);
-            const Vec2 clamped = is_finite(at) ? clamp_place(at) : Vec2(1.0f / 3.0f);
+            solve_uvd(patch(f), p, size_of(f), at);
+            const Vec2 clamped = is_finite(at) ? clamp_uvd(at) : Vec2(1.0f / 3.0f);
             const PatchPoint on = evaluate_patch(patch(f), clamped.x, clamped.y);
             const float distance = glm::distance(on.position, p);
             if (distance < nearest) {
                 nearest = distance;
-                place.patch = f;
-                place.u = clamped.x;
-                place.v = clamped.y;
-                place.offset = glm::transpose(frame_at(on)) * (p - on.position);
+                anchor.patch = f;
+                anchor.u = clamped.x;
+                anchor.v = clamped.y;
+                anchor.offset = glm::transpose(frame_at(on)) * (p - on.position);
                 const float w = 1.0f - clamped.x - clamped.y;
                 is_border = (borders_[3 * f] && w <= kInside)
                             || (borders_[3 * f + 1] && clamped.x <= kInside)
@@ -266,14 +266,14 @@ class PatchBinder {
             }
         }
         if (is_border) {
-            place = {};
+            anchor = {};
         }
-        return place.patch != kNoPatch;
+        return anchor.patch != kNoPatch;
     }
 
     std::span<const Vec3> positions_;
     std::span<const std::uint32_t> corners_;
-    float reach_;
+    float max_distance_;
     std::span<const Vec2> chart_;  ///< per corner, or empty
     std::vector<Vec4> patches_;
     std::vector<bool> borders_;  ///< of the edge from each corner to the next
@@ -284,13 +284,13 @@ Vec3 edge_point(const Vec3& a, const Vec3& b, const Vec3& normal_a) {
     return (2.0f * a + b - glm::dot(b - a, normal_a) * normal_a) / 3.0f;
 }
 
-/// Normal in the middle of an edge.
+/// Normal at the midpoint of an edge.
 Vec3 edge_normal(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
     const Vec3 along = b - a;
     const float length2 = glm::dot(along, along);
     const Vec3 sum = normal_a + normal_b;
-    const float share = length2 > 0.0f ? 2.0f * glm::dot(along, sum) / length2 : 0.0f;
-    return normalize_or(sum - share * along, normal_a);
+    const float scale = length2 > 0.0f ? 2.0f * glm::dot(along, sum) / length2 : 0.0f;
+    return normalize_or(sum - scale * along, normal_a);
 }
 
 }  // namespace
@@ -367,7 +367,7 @@ void make_patches(
             edge_point(p[1], p[2], n[1]), edge_point(p[2], p[1], n[2]),
             edge_point(p[2], p[0], n[2]), edge_point(p[0], p[2], n[0])};
         const Vec3 mean = (edge[0] + edge[1] + edge[2] + edge[3] + edge[4] + edge[5]) / 6.0f;
-        const Vec3 middle = mean + 0.5f * (mean - (p[0] + p[1] + p[2]) / 3.0f);
+        const Vec3 inner = mean + 0.5f * (mean - (p[0] + p[1] + p[2]) / 3.0f);
         const std::array<Vec3, kPatchTexels> all = {
             p[0],
             p[1],
@@ -378,7 +378,7 @@ void make_patches(
             edge[3],
             edge[4],
             edge[5],
-            middle,
+            inner,
             n[0],
             n[1],
             n[2],
@@ -432,47 +432,48 @@ PatchPoint evaluate_patch(std::span<const Vec4> patch, float u, float v) {
     return at;
 }
 
-std::vector<SurfacePlace> bind_to_patches(
+std::vector<SurfaceAnchor> bind_to_patches(
     std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec4> tangents,
-    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float reach,
+    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float max_distance,
     const PatchChart& chart) {
     LIMN_CHECK(chart.corners.empty() || chart.corners.size() == corners.size());
-    const PatchBinder binder(positions, corners, reach, chart.corners);
-    std::vector<SurfacePlace> places(points.size());
+    const PatchBinder binder(positions, corners, max_distance, chart.corners);
+    std::vector<SurfaceAnchor> anchors(points.size());
     parallel_for(points.size(), kPatchGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3 tangent = Vec3(tangents[i]);
-            places[i] = chart.corners.empty()
-                            ? binder.bind(points[i], normals[i], tangent)
-                            : binder.bind_by_chart(points[i], normals[i], tangent, chart.points[i]);
+            anchors[i] =
+                chart.corners.empty()
+                    ? binder.bind(points[i], normals[i], tangent)
+                    : binder.bind_by_chart(points[i], normals[i], tangent, chart.points[i]);
         }
     });
-    return places;
+    return anchors;
 }
 
 void follow_patches(
-    std::span<const SurfacePlace> places, std::span<const Vec4> patches, std::span<Vec3> positions,
-    std::span<Vec3> normals, std::span<Vec4> tangents) {
-    LIMN_CHECK(places.size() == positions.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const SurfacePlace& place = places[i];
-        if (place.patch == kNoPatch) {
+    std::span<const SurfaceAnchor> anchors, std::span<const Vec4> patches,
+    std::span<Vec3> positions, std::span<Vec3> normals, std::span<Vec4> tangents) {
+    LIMN_CHECK(anchors.size() == positions.size());
+    for (std::size_t i = 0; i < anchors.size(); ++i) {
+        const SurfaceAnchor& anchor = anchors[i];
+        if (anchor.patch == kNoPatch) {
             continue;
         }
         const PatchPoint at = evaluate_patch(
-            patches.subspan(place.patch * kPatchTexels, kPatchTexels), place.u, place.v);
-        positions[i] = place_on(at, place.offset);
+            patches.subspan(anchor.patch * kPatchTexels, kPatchTexels), anchor.u, anchor.v);
+        positions[i] = anchored_point(at, anchor.offset);
         if (normals.empty()) {
             continue;
         }
-        const Mat3 axes = axes_at(at, place.offset.z);
+        const Mat3 axes = axes_at(at, anchor.offset.z);
         // The inverse transpose, times the determinant.
         const Mat3 cofactors(
             glm::cross(axes[1], axes[2]), glm::cross(axes[2], axes[0]),
             glm::cross(axes[0], axes[1]));
         const float side = glm::dot(axes[0], cofactors[0]) < 0.0f ? -1.0f : 1.0f;
-        normals[i] = normalize_or(side * (cofactors * place.normal), normals[i]);
-        tangents[i] = Vec4(normalize_or(axes * place.tangent, Vec3(tangents[i])), tangents[i].w);
+        normals[i] = normalize_or(side * (cofactors * anchor.normal), normals[i]);
+        tangents[i] = Vec4(normalize_or(axes * anchor.tangent, Vec3(tangents[i])), tangents[i].w);
     }
 }
 

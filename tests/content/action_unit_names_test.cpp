@@ -21,12 +21,12 @@ TEST_CASE("action unit names: those of ARKit, ICT FaceKit, MakeHuman and FACS ar
     CHECK(find_action_unit("eyeLookInLeft") == "AU62_L");
 }
 
-TEST_CASE("action unit names: a side that is a direction is no half of a shape") {
+TEST_CASE("action unit names: a side that is a direction is not half of a shape") {
     CHECK(find_action_unit("jawLeft") == "AU30_L");
     CHECK(find_action_unit("mouthLeft").empty());
 }
 
-TEST_CASE("action unit names: other names are none") {
+TEST_CASE("action unit names: other names have no unit") {
     for (const char* const name :
          {"", ".", "Left", "_L", "AU", "AU_L", "AUx", "AU123", "smile", "fat", "viseme_aa"}) {
         CAPTURE(name);

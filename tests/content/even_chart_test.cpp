@@ -73,7 +73,7 @@ float stretch_within(
 
 }  // namespace
 
-TEST_CASE("even chart: a part of a cylinder unrolls at its size, with axes as they were") {
+TEST_CASE("even chart: part of a cylinder unrolls to its size and keeps its axes") {
     const MeshData mesh = make_trough();
     const std::vector<float> importance(mesh.positions.size(), 1.0f);
     const std::vector<Vec2> chart = make_even_chart(mesh, 0.5f, importance);
@@ -92,7 +92,7 @@ TEST_CASE("even chart: a part of a cylinder unrolls at its size, with axes as th
     CHECK(std::abs(across.y) < 0.2f);
 }
 
-TEST_CASE("even chart: a triangle without area changes nothing") {
+TEST_CASE("even chart: a triangle without area has no effect") {
     MeshData mesh = make_trough();
     const std::vector<float> importance(mesh.positions.size(), 1.0f);
     const std::vector<Vec2> without = make_even_chart(mesh, 0.5f, importance);
@@ -100,7 +100,7 @@ TEST_CASE("even chart: a triangle without area changes nothing") {
     CHECK(make_even_chart(mesh, 0.5f, importance) == without);
 }
 
-TEST_CASE("even chart: joined sides of a seam stay a step apart, and what is between gives way") {
+TEST_CASE("even chart: joined sides of a seam stay a step apart, and triangles in between deform") {
     const MeshData mesh = make_trough();
     const std::vector<float> importance(mesh.positions.size(), 1.0f);
     std::vector<ChartJoin> joins;
@@ -116,7 +116,7 @@ TEST_CASE("even chart: joined sides of a seam stay a step apart, and what is bet
     }
 }
 
-TEST_CASE("head: behind the neck pores go on across the seam of the texture, hardly stretched") {
+TEST_CASE("head: behind the neck pores continue across the texture seam, hardly stretched") {
     HeadShape shape;
     shape.shoulders = true;
     const MeshData bust = make_head(shape);
@@ -139,7 +139,7 @@ TEST_CASE("head: behind the neck pores go on across the seam of the texture, har
 }
 
 TEST_CASE(
-    "head: pores are nearly round all over the face, beside the nose too"
+    "head: pores are nearly round all over the face, including beside the nose"
     * technique("skin.detail")) {
     const MeshData head = make_head({});
     REQUIRE(head.uvs1.size() == head.positions.size());

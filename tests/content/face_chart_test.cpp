@@ -39,7 +39,7 @@ TEST_CASE("face chart: points of the head's own skin are at its texture coordina
     CHECK(farthest_from_uvs() <= 1e-5f);
 }
 
-TEST_CASE("face chart: what is no part of the face is in the corner") {
+TEST_CASE("face chart: points outside the face map to the corner") {
     const Vec3 none(std::numeric_limits<float>::quiet_NaN());
     CHECK(make_face_chart(std::vector<Vec3>{none})[0] == Vec2{0, 0});
 }

@@ -72,7 +72,7 @@ TEST_CASE("face folds: lines of a region lie across the direction whose shorteni
     CHECK(regions == 12);
 }
 
-TEST_CASE("face folds: lines that cross the middle of the face are smooth there") {
+TEST_CASE("face folds: lines that cross the midline of the face are smooth there") {
     FaceFoldsPattern pattern;
     pattern.image.size = 1024;
     pattern.wander = 0;
@@ -151,7 +151,7 @@ TEST_CASE("face folds: on a map of twice the size neighbors differ half as much"
     CHECK(fine < 0.65f * coarse);
 }
 
-TEST_CASE("face folds: beside the nasolabial fold there is no second one") {
+TEST_CASE("face folds: no second fold appears beside the nasolabial fold") {
     FaceFoldsPattern pattern;
     pattern.image.size = 1024;
     for (const int seed : {1, 2, 3}) {

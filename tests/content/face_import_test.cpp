@@ -236,7 +236,7 @@ TEST_CASE("face import: expressions have the action unit that they show") {
     CHECK(makehuman_action_unit("eyebrows-left-up").empty());  // two units
 }
 
-TEST_CASE("face import: missing and wrong files are refused by name") {
+TEST_CASE("face import: missing and wrong files are rejected by name") {
     const test::TemporaryFolder folder;
     CHECK(
         refusal(import_ict_facekit, folder.path())
@@ -339,7 +339,7 @@ TEST_CASE("face import: the faces of ICT FaceKit come with their shapes, mirrore
     }
 }
 
-TEST_CASE("face import: what is imported is written and read back within a micrometer") {
+TEST_CASE("face import: imported faces are written and read back within a micrometer") {
     const auto folder = test::shared_asset("ict-facekit");
     if (!folder) {
         return;
@@ -371,7 +371,7 @@ TEST_CASE("face import: what is imported is written and read back within a micro
 }
 
 TEST_CASE(
-    "face import: the person of MakeHuman stands on the ground, with rig, shapes and regions") {
+    "face import: the human of MakeHuman stands on the ground, with rig, shapes and regions") {
     const auto folder = test::shared_asset("makehuman");
     if (!folder) {
         return;

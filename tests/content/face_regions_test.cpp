@@ -49,7 +49,7 @@ TEST_CASE("face regions: weights are 1 within the rule, half at its border and 0
     CHECK(sample("nasolabial", {0, -1.65f, 10}).weight == 0.0f);
 }
 
-TEST_CASE("face regions: skin that is not seen from the front belongs only to the canthus") {
+TEST_CASE("face regions: skin that does not face the front belongs only to the canthus") {
     CHECK(sample("forehead", {1, 8.5f, 10}, {1, 0, 0.05f}).weight == 0.0f);
     CHECK(sample("crows_feet", {5.5f, 3.4f, 8}, {1, 0, 0}).weight == 1.0f);
 }
@@ -109,7 +109,7 @@ TEST_CASE("face regions: folds of the canthus and the lips radiate, the nasolabi
     CHECK(angle_of(sample("glabella", {1, 5, 10}).across) == near(20).epsilon(1e-3));
 }
 
-TEST_CASE("face regions: what is no skin of the face is in none") {
+TEST_CASE("face regions: vertices outside the face are in no region") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const std::string_view name : face_region_names()) {
         CHECK(sample(name, {nan, 8, 10}).weight == 0.0f);

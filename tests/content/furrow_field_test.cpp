@@ -168,7 +168,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow map: a plane seen from the front keeps lengths and directions"
+    "furrow map: a plane viewed from the front keeps lengths and directions"
     * technique("wrinkle.furrow.map-planar")) {
     const MeshData square = make_square();
     const auto field = make_furrow_field(square.positions, square.normals, {});
@@ -189,7 +189,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow map: from the front the back is left out, and areas shrink by the slope"
+    "furrow map: a planar map skips back faces, and areas shrink by the slope"
     * technique("wrinkle.furrow.map-planar")) {
     MeshData tilted = make_square();
     for (Vec3& p : tilted.positions) {
@@ -276,7 +276,7 @@ TEST_CASE("furrow map: an image that repeats is covered by texture coordinates b
     CHECK(make_furrow_map(square, field, {.size = 64, .tiles = true})->triangles.size() < 8);
 }
 
-TEST_CASE("furrow map: a mesh that cannot be laid flat is an error that says why") {
+TEST_CASE("furrow map: a mesh that cannot be flattened is an error with a reason") {
     MeshData square = make_square();
     const auto field = make_furrow_field(square.positions, square.normals, {});
     square.uvs.clear();

@@ -57,7 +57,7 @@ FurrowGrowth make_smooth_growth(const FurrowMap& map) {
 }  // namespace
 
 TEST_CASE(
-    "furrow height: without noise it is the lesser of both fields, and within 0 to 1"
+    "furrow height: without noise it is the minimum of both fields, within 0 to 1"
     * technique("wrinkle.furrow.heightfield")) {
     const FurrowGrowth growth = grow_furrows(skin_map(), {});
     std::size_t first_lower = 0;
@@ -104,7 +104,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow noise: heights fall by a uniform share of it, from the same start each time"
+    "furrow noise: heights fall by uniform random fractions of it, always from the same start"
     * technique("wrinkle.furrow.noise")) {
     const FurrowGrowth growth = grow_furrows(skin_map(), {});
     FurrowStyle style;
@@ -214,7 +214,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow height: any number of threads gives the same bits"
+    "furrow height: it is bit-identical for any number of threads"
     * technique("wrinkle.furrow.heightfield")) {
     const int threads = thread_count();
     const FurrowStyle style = {.noise = 0.2f};
@@ -233,7 +233,7 @@ TEST_CASE(
     CHECK(found[0] == found[2]);
 }
 
-TEST_CASE("furrow maps: beyond the surface its border goes on for as many rings as asked for") {
+TEST_CASE("furrow maps: the border extends beyond the surface by the requested number of rings") {
     FurrowMap map = test::make_flat_furrow_map({40, 40}, {1, 0}, {0, 1});
     map.triangles.resize(1);  // x > y
     const FurrowMaps bare = make_furrow_maps(map, {.bump = 1});

@@ -85,8 +85,7 @@ TEST_CASE(
     CHECK(furrowed > 500);
 }
 
-TEST_CASE(
-    "furrow skin: what did not change is not grown again" * technique("wrinkle.furrow.editor")) {
+TEST_CASE("furrow skin: unchanged furrows are not regrown" * technique("wrinkle.furrow.editor")) {
     Sample sample;
     const std::uint32_t version = sample.skin().version;
     sample.update();
@@ -113,7 +112,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow skin: edits that wait show at their own vertex until their step comes"
+    "furrow skin: pending edits show only at their own vertex until their step"
     * technique("wrinkle.furrow.editor")) {
     Sample sample;
     Furrows& furrows = sample.furrows();
@@ -145,7 +144,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow skin: in the overview images are those of smooth skin"
+    "furrow skin: in the overview the images show smooth skin"
     * technique("wrinkle.furrow.view-modes")) {
     Sample sample;
     sample.world.add(sample.entity, FurrowView{.mode = FurrowMode::Overview});

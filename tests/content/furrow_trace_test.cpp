@@ -157,7 +157,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow trace: the shortest limit met on the way counts" * technique("wrinkle.furrow.trace")) {
+    "furrow trace: the smallest limit along the furrow counts"
+    * technique("wrinkle.furrow.trace")) {
     FurrowMap map = test::make_flat_furrow_map({300, 40}, {0.05f, 0});
     FurrowTriangle strong = map.triangles[0];
     strong.field[0] = {2, 0};
@@ -310,7 +311,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "furrow trace: furrows pass over the border of an image that repeats"
+    "furrow trace: furrows cross the border of an image that repeats"
     * technique("wrinkle.furrow.trace")) {
     FurrowMap map = test::make_flat_furrow_map({64, 48}, {0.995f, 0.0995f});
     map.wrap_s = true;

@@ -94,7 +94,7 @@ TEST_CASE("head correctives: they come last and follow a unit, or two on one sid
     }
 }
 
-TEST_CASE("head correctives: on its way down the chin keeps its distance from the jaw's joint") {
+TEST_CASE("head correctives: while the jaw opens the chin keeps its distance from the joint") {
     const auto chin = static_cast<std::size_t>(
         std::ranges::min_element(
             skin(), {},

@@ -101,7 +101,7 @@ constexpr Expected kExpected[] = {
 };
 
 TEST_CASE(
-    "head expressions: each unit moves what FACS says, as far as that says"
+    "head expressions: each unit moves the skin that FACS says, by as much as FACS says"
     * technique("wrinkle.compression.face-model")) {
     for (const Expected& expected : kExpected) {
         CAPTURE(expected.unit);
@@ -169,7 +169,7 @@ float shortest_ratio(const ActionUnit& unit) {
     return shortest;
 }
 
-TEST_CASE("head expressions: a unit gathers the skin, and crumples it nowhere at a ledge") {
+TEST_CASE("head expressions: a unit bunches up the skin without crumpling it at a ledge") {
     // In measured faces a twentieth of a region is shorter by up to 46 % in a strong unit.
     for (const ActionUnit& unit : action_units()) {
         if (unit.jaw == 0) {  // below an open jaw skin collapses
@@ -241,7 +241,7 @@ TEST_CASE("head expressions: AU43 and AU46 leave no gap between the lids") {
     }
 }
 
-TEST_CASE("head expressions: AU37 takes the tip of the tongue out over the lower lip") {
+TEST_CASE("head expressions: AU37 moves the tip of the tongue out over the lower lip") {
     const HeadPart mouth = make_mouth();
     const auto tip = std::ranges::max_element(mouth.points, {}, &HeadPoint::tongue);
     REQUIRE(tip->tongue > 0.9f);
@@ -250,7 +250,7 @@ TEST_CASE("head expressions: AU37 takes the tip of the tongue out over the lower
     CHECK(tip->rest.z + action_offset(action_unit("AU37"), *tip, kShape).z > lip.z + 0.5f);
 }
 
-TEST_CASE("head expressions: on its way no lid enters the ball of the eye") {
+TEST_CASE("head expressions: moving lids never enter the eyeball") {
     for (const char* const name :
          {"AU5_L", "AU6_L", "AU7_L", "AU41_L", "AU42_L", "AU43_L", "AU44_L", "AU45_L", "AU46_L",
           "AU63_L", "AU64_L"}) {
@@ -267,7 +267,7 @@ TEST_CASE("head expressions: on its way no lid enters the ball of the eye") {
     }
 }
 
-TEST_CASE("head expressions: an open jaw takes the incisors 35 to 45 mm down, AU26 10 to 20") {
+TEST_CASE("head expressions: an open jaw lowers the incisors by 35 to 45 mm, AU26 by 10 to 20") {
     const HeadPart teeth = make_teeth();
     const auto lower = std::ranges::max_element(teeth.points, {}, [](const HeadPoint& point) {
         return point.jaw > 0 && std::abs(point.rest.x) < 0.4f ? point.rest.z : -100.0f;

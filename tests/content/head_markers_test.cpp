@@ -40,7 +40,8 @@ const HeadVertex& layout_vertex(std::uint32_t marker) {
     return head_layout().vertices[head_markers().vertices[marker]];
 }
 
-/// Markers of the mouth on one side of where the lips touch; 0: at its corners, or elsewhere.
+/// The side of a marker of the mouth relative to where the lips touch; 0: at its corners, or
+/// elsewhere.
 int lip_of(std::uint32_t marker) {
     const HeadVertex& vertex = layout_vertex(marker);
     const float up = std::sin(vertex.angle);
@@ -57,11 +58,11 @@ const MeshData& skin() {
     return made;
 }
 
-/// A mouth that opens wide and smiles, at a share of the whole.
-std::vector<Vec3> laugh(const MeshData& mesh, float share) {
+/// A mouth that opens wide and smiles, at this weight.
+std::vector<Vec3> laugh(const MeshData& mesh, float weight) {
     std::vector<float> weights(mesh.morphs.size(), 0.0f);
     for (const std::string_view unit : {"AU27", "AU25", "AU12_L", "AU12_R", "AU45_L"}) {
-        weights[expression_index(unit)] = share;
+        weights[expression_index(unit)] = weight;
     }
     std::vector<Vec3> positions = mesh.positions;
     add_morphs(mesh.morphs, weights, {positions, {}, {}});
@@ -70,7 +71,8 @@ std::vector<Vec3> laugh(const MeshData& mesh, float share) {
 
 constexpr int kFrames = 5;
 
-/// A recording of the markers while the head nods, as a TRC file; `lacks`: what names begin with.
+/// A recording of the markers while the head nods, as a TRC file without markers whose names begin
+/// with `lacks`.
 std::string record_laugh(std::string_view lacks) {
     std::map<std::string, std::size_t> markers;  // by name, a vertex each
     for (std::size_t v = 0; v < surface().positions.size(); ++v) {
@@ -90,17 +92,17 @@ std::string record_laugh(std::string_view lacks) {
     }
     text += "\n\t\tX1\n";
     for (int f = 0; f < kFrames; ++f) {
-        const float share = static_cast<float>(f) / (kFrames - 1);
-        const std::vector<Vec3> shape = laugh(surface(), share);
-        const Affine nod = affine_from(
-            {0, 0.02f * share, 0}, glm::angleAxis(0.3f * share, Vec3(1, 0, 0)), Vec3(1));
+        const float time = static_cast<float>(f) / (kFrames - 1);
+        const std::vector<Vec3> shape = laugh(surface(), time);
+        const Affine nod =
+            affine_from({0, 0.02f * time, 0}, glm::angleAxis(0.3f * time, Vec3(1, 0, 0)), Vec3(1));
         text += fmt::format("{}\t0", f + 1);
-        const auto add = [&](const Vec3& place) {
-            const Vec3 p = 1000.0f * transform_point(nod, place);
+        const auto add = [&](const Vec3& position) {
+            const Vec3 p = 1000.0f * transform_point(nod, position);
             text += fmt::format("\t{:.5f}\t{:.5f}\t{:.5f}", p.x, p.y, p.z);
         };
-        for (const Vec3& place : kHead) {
-            add(place);
+        for (const Vec3& position : kHead) {
+            add(position);
         }
         for (const auto& marker : markers) {
             add(shape[marker.second]);
@@ -146,7 +148,7 @@ std::vector<Vec3> perform(const std::string& recording, const MeshData& head = s
     world.run(update_poses);
     world.run(update_surface_bindings);
     const auto& state = world.get<SurfaceBindingState>(face);
-    REQUIRE(state.places != nullptr);
+    REQUIRE(state.anchors != nullptr);
     std::vector<Vec3> positions = head.positions;
     move_by_patches(surface_shape(&state, state.patches), positions);
     return positions;
@@ -160,7 +162,7 @@ float rms(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return std::sqrt(sum / static_cast<float>(a.size()));
 }
 
-/// Between the middles of the lips [m].
+/// Distance between the centers of the lips [m].
 float gap(const std::vector<Vec3>& positions) {
     float upper = INFINITY;
     float lower = INFINITY;
@@ -203,7 +205,7 @@ TEST_CASE(
         CHECK(p.x * q.y < p.y * q.x);  // rows run down
         area += 0.5 * static_cast<double>(p.y * q.x - p.x * q.y);
     }
-    // Their convex hull: the grid, and on either side a triangle below the middle of the crown.
+    // Their convex hull: the grid, and on either side a triangle below the center of the crown.
     CHECK(area == test::near(kHeadColumns * kHeadRows + 2 * 0.5 * 48 * 12));
     for (const auto& [a, b] : edges) {
         if (!edges.contains({b, a})) {
@@ -264,23 +266,23 @@ TEST_CASE("head markers: they are vertices of the skin, and mirror images of eac
     for (std::uint32_t v = 0; v < head.positions.size(); ++v) {
         by_uv[{head.uvs[v].x, head.uvs[v].y}] = v;
     }
-    std::map<std::string, Vec3> places;
+    std::map<std::string, Vec3> positions;
     for (std::size_t m = 0; m < coarse.positions.size(); ++m) {
         const auto found = by_uv.find({coarse.uvs[m].x, coarse.uvs[m].y});
         if (head_markers().charts[m].y != -12) {
             REQUIRE(found != by_uv.end());
             CHECK(coarse.positions[m] == head.positions[found->second]);
         }
-        places[head_markers().names[m]] = coarse.positions[m];
+        positions[head_markers().names[m]] = coarse.positions[m];
     }
     int pairs = 0;
-    for (const auto& [name, place] : places) {
+    for (const auto& [name, position] : positions) {
         if (name.ends_with("_L")) {
-            const Vec3 other = places.at(name.substr(0, name.size() - 1) + "R");
-            CHECK(glm::distance(place, other * Vec3(-1, 1, 1)) < 1e-6f);
+            const Vec3 other = positions.at(name.substr(0, name.size() - 1) + "R");
+            CHECK(glm::distance(position, other * Vec3(-1, 1, 1)) < 1e-6f);
             ++pairs;
         } else if (name.ends_with("_M")) {
-            CHECK(std::abs(place.x) < 1e-6f);
+            CHECK(std::abs(position.x) < 1e-6f);
         }
     }
     CHECK(pairs > 80);
@@ -297,7 +299,7 @@ TEST_CASE(
     const std::vector<Vec3> driven = perform(record_laugh(""));
     CHECK(rms(driven, truth) < 0.15f * motion);
     CHECK(std::abs(gap(driven) - gap(truth)) < 1e-4f);
-    // Nobody marks the inside of lips and lids.
+    // Recordings have no markers inside lips and lids.
     const std::vector<Vec3> outside = perform(record_laugh("lid11"));
     CHECK(rms(outside, truth) < 0.25f * motion);
     CHECK(std::abs(gap(outside) - gap(truth)) < 1e-4f);
@@ -328,7 +330,7 @@ TEST_CASE("head markers: a bust follows them too; its shoulders stay, and its ne
     CHECK(stretch < 0.002f);  // half an edge of the skin there
 }
 
-TEST_CASE("head markers: a recording of other markers is refused with the nearest name") {
+TEST_CASE("head markers: a recording of other markers is rejected with the nearest name") {
     const MarkerSurface known = make_head_marker_surface();
     MarkerMotion motion;
     motion.names = {"mouth11_90_M", "mouth9_90_X"};

@@ -66,7 +66,7 @@ PositionKey key_of(const Vec3& p) {
     return {std::lround(p.x * 1e6f), std::lround(p.y * 1e6f), std::lround(p.z * 1e6f)};
 }
 
-TEST_CASE("shoulders: the skin ends in one closed plane ring, where a body begins") {
+TEST_CASE("shoulders: the skin ends in one closed planar ring, where a body begins") {
     std::map<std::pair<PositionKey, PositionKey>, int> edges;
     const std::vector<Vec3>& positions = skin().positions;
     for (std::size_t i = 0; i < skin().indices.size(); i += 3) {
@@ -96,7 +96,7 @@ TEST_CASE("shoulders: the skin ends in one closed plane ring, where a body begin
     CHECK(walked == border.size());
 }
 
-TEST_CASE("shoulders: both sides of the seam of the texture have one place, normal and weight") {
+TEST_CASE("shoulders: both sides of the texture seam have equal positions, normals and weights") {
     std::map<PositionKey, std::uint32_t> first;
     int doubled = 0;
     for (std::uint32_t v = 0; v < skin().positions.size(); ++v) {
@@ -165,7 +165,7 @@ TEST_CASE("shoulders: tips lie 8 to 11 cm below the chin, and the trapezius rise
     CHECK(top_at(11, false) > top_at(18, false) + 0.5f);  // trapezius
 }
 
-TEST_CASE("shoulders: skin is on the surface, no quad faces into it, and none is far stretched") {
+TEST_CASE("shoulders: skin is on the surface, no quad is inverted, and none is stretched far") {
     const std::array<HeadShape, 3> bodies = {bust(), bust(1, 1), bust(-1, -1)};
     for (const HeadShape& body : bodies) {
         const std::vector<Vec3> positions = wrap_head(body);
@@ -226,7 +226,7 @@ TEST_CASE("shoulders: weights sum to 1; the face turns with the head, shoulders 
     CHECK(between > 300);
 }
 
-TEST_CASE("shoulders: they have a tile of the texture of their own, without overlap") {
+TEST_CASE("shoulders: they have their own tile of the texture, without overlap") {
     for (std::size_t i = 0; i < skin().indices.size(); i += 3) {
         const std::array<Vec2, 3> uv = {
             skin().uvs[skin().indices[i]], skin().uvs[skin().indices[i + 1]],
@@ -309,7 +309,7 @@ TEST_CASE("shoulders: a shirt lies on the skin of every body, and its collar lea
     }
 }
 
-TEST_CASE("shoulders: a shirt moves as the shoulders do, without shapes, its halves alike") {
+TEST_CASE("shoulders: a shirt moves like the shoulders, without shapes, and is symmetric") {
     HeadShape shape;
     shape.part = HeadPartKind::Shirt;
     const MeshData shirt = make_head(shape);

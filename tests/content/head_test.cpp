@@ -82,7 +82,7 @@ TEST_CASE("head: width and length are within two deviations of an adult's") {
     CHECK(high.z - low.z < 21.2f);
 }
 
-TEST_CASE("head: lids do not enter the ball of the eye") {
+TEST_CASE("head: lids do not enter the eyeball") {
     for (std::size_t v = 0; v < wrapped().size(); ++v) {
         Vec3 p = wrapped()[v];
         p.x = std::abs(p.x);
@@ -157,7 +157,7 @@ TEST_CASE(
     CHECK(glm::distance(head, concha) < 0.6f);
 }
 
-TEST_CASE("head: the neck ends in a plane ring that turns once around") {
+TEST_CASE("head: the neck ends in a planar ring that turns once around") {
     float turned = 0;
     std::vector<Vec3> ring;
     for (std::size_t v = 0; v < wrapped().size(); ++v) {
@@ -177,7 +177,7 @@ TEST_CASE("head: the neck ends in a plane ring that turns once around") {
     CHECK(std::abs(turned - 2 * kPi) < 1e-3f);
 }
 
-TEST_CASE("head: no ridge of the ear stands out like a spike, nor where ridges meet") {
+TEST_CASE("head: no ridge of the ear forms a spike, not even where ridges meet") {
     float highest = 0;
     for (float x = -1.2f; x <= 2; x += 0.02f) {
         for (float y = -2.9f; y <= 2.9f; y += 0.02f) {
@@ -208,7 +208,7 @@ TEST_CASE("head: the tear line lies on the lower lid and the ball, and follows t
     CHECK(wet == 2 * 5 * 40);
 }
 
-TEST_CASE("head: a pupil mirrors no lamp to the front: nothing dark in it faces forward") {
+TEST_CASE("head: a pupil reflects no light to the front: nothing dark in it faces forward") {
     const HeadPart balls = make_eye_balls();
     const MeshData& mesh = balls.mesh;
     int dark = 0;
@@ -303,7 +303,7 @@ TEST_CASE("head: at weight 1 of the shape age every part is that of seventy year
     }
 }
 
-TEST_CASE("head: the surface of four points at once is that of each, to the last bit") {
+TEST_CASE("head: evaluating four points at once is bit-identical to evaluating each") {
     constexpr float kStep = 0.01f;
     for (const bool shoulders : {false, true}) {
         const HeadShape shape = {.sex = 0.7f, .build = -0.4f, .shoulders = shoulders};

@@ -88,7 +88,7 @@ const std::vector<Folding>& foldings() {
 }
 
 TEST_CASE(
-    "head wrinkles: skin shortens across the folds where anatomy says, 5 times more than beside"
+    "head wrinkles: skin shortens across the folds of anatomy, 5 times more than elsewhere"
     * technique("wrinkle.dimples")) {
     for (const Folding& folding : foldings()) {
         CAPTURE(folding.region);
@@ -102,7 +102,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("head wrinkles: raised brows shorten all of the middle of the forehead, with no gap") {
+TEST_CASE("head wrinkles: raised brows shorten the whole center of the forehead, without a gap") {
     const std::vector<Vec3> raised = posed({"AU1_L", "AU1_R", "AU2_L", "AU2_R"}, 1);
     const auto region = std::ranges::find(head().regions, "forehead", &VertexRegion::name);
     REQUIRE(region != head().regions.end());

@@ -71,7 +71,7 @@ MarkerMotion make_take() {
 }  // namespace
 
 TEST_CASE(
-    "marker file: names, rate and positions in meters, and what is not seen"
+    "marker file: names, rate and positions in meters, with hidden markers"
     * technique("face.mocap-drive")) {
     const MarkerMotion motion = *parse_trc(kTake, "take.trc");
     CHECK(motion.names == std::vector<std::string>{"brow", "lip"});
@@ -85,7 +85,7 @@ TEST_CASE(
     CHECK(meters.positions[0] == Vec3(10, 20, 30));
 }
 
-TEST_CASE("marker file: what is wrong is named with its line") {
+TEST_CASE("marker file: errors name the line") {
     CHECK(
         error_of("hello")
         == "take.trc: found no TRC file, expected one that begins with PathFileType");
@@ -182,7 +182,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("marker import: a take that is no face is refused with one line") {
+TEST_CASE("marker import: a take that is not a face is rejected with one line") {
     const auto error = [](const auto& change) {
         MarkerMotion take = make_take();
         change(take);

@@ -54,7 +54,7 @@ float determinant(const Affine& a) {
 }  // namespace
 
 TEST_CASE(
-    "head motion: what moves with the head rests when it is stabilized"
+    "head motion: markers that move with the head are at rest once it is stabilized"
     * technique("face.head-stabilise")) {
     MarkerMotion motion = make_motion(20, 0, true);
     const std::vector<Affine> heads = *stabilize_head(motion, kRest, kHead);
@@ -69,7 +69,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("head motion: what the face does on its own is kept" * technique("face.head-stabilise")) {
+TEST_CASE("head motion: motion of the face itself is kept" * technique("face.head-stabilise")) {
     MarkerMotion motion = make_motion(20, 0.001f, true);
     REQUIRE(stabilize_head(motion, kRest, kHead).ok());
     const MarkerMotion want = make_motion(20, 0.001f, false);
@@ -124,7 +124,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "markers: between frames they are on the line between, and beyond the ends they rest"
+    "markers: they are linear between frames, and constant beyond the ends"
     * technique("face.mocap-drive")) {
     const MarkerMotion motion = make_motion(5, 0.01f, false);
     CHECK(sample_markers(motion, 0.1f)[4].y == near(-0.06));
@@ -135,7 +135,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "markers: one that is hidden goes with its neighbors, from where it was to where it is"
+    "markers: a hidden one moves with its neighbors, between its last and its next position"
     * technique("face.mocap-drive")) {
     // It moves as they do: found exactly.
     MarkerMotion motion = make_motion(12, 0.002f, false);

@@ -90,7 +90,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "photometric normals: too few, coplanar or empty lights are refused with their number"
+    "photometric normals: too few, coplanar or empty lights are rejected with their number"
     * technique("face.photometric-normals")) {
     const auto refusal = [](const std::vector<Vec3>& lights) {
         const Status status = check_photometric_lights(lights);

@@ -14,7 +14,7 @@ const std::vector<Vec3> kFrom = {{0, 0, 0}, {1, 0, 0},    {0, 1, 0},         {0,
 
 }  // namespace
 
-TEST_CASE("point warp: given points go where they are told" * technique("face.retarget-fit")) {
+TEST_CASE("point warp: it interpolates the given points" * technique("face.retarget-fit")) {
     const std::vector<Vec3> to = {{0, 0.1f, 0}, {1.2f, 0, 0}, {0, 1, 0.3f},      {0, 0, 1.5f},
                                   {1, 2, 1},    {2, 1, 0},    {0.5f, 0.2f, 1.7f}};
     const Result<PointWarp> warp = make_point_warp(kFrom, to);
@@ -38,7 +38,7 @@ TEST_CASE("point warp: an affine map is reproduced everywhere" * technique("face
     }
 }
 
-TEST_CASE("point warp: points that coincide, or lie in a plane, are refused") {
+TEST_CASE("point warp: points that coincide, or are coplanar, are rejected") {
     const auto message = [](const std::vector<Vec3>& points) {
         const Result<PointWarp> warp = make_point_warp(points, points);
         return warp ? "it is made" : warp.error().message;

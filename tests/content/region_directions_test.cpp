@@ -107,7 +107,7 @@ TEST_CASE("region directions: other expressions and skin that shrinks evenly cha
     }
 }
 
-TEST_CASE("region directions: triangles without area count nothing, skin that collapses does") {
+TEST_CASE("region directions: triangles without area are ignored, collapsed skin is not") {
     MeshData mesh = make_skin("glabella", "AU4", shorten(24));
     mesh.indices.insert(mesh.indices.end(), {3, 3, 3});
     fit_region_directions(mesh);

@@ -35,7 +35,7 @@ Vec2 two_distances(const Vec2& uv, const SkinCells& cells) {
 }  // namespace
 
 TEST_CASE(
-    "skin cells: they are 0 on the edges, 1 at the sites and cover the image"
+    "skin cells: they are 0 on the edges, 1 at the sites and fill the image"
     * technique("wrinkle.furrow.polygon-models")) {
     for (int y = 0; y < 9; ++y) {
         for (int x = 0; x < 9; ++x) {

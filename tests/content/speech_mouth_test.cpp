@@ -220,7 +220,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "face clip: speech takes the mouth from an expression, and leaves it the brows"
+    "face clip: speech overrides the mouth of an expression, not the brows"
     * technique("face.categories")) {
     CHECK(moves_mouth({"smile", "AU12_L"}));
     CHECK(moves_mouth({"puff", "AU34"}));

@@ -192,7 +192,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "unit selection: without a price for jumps the cover is as small as trying all finds"
+    "unit selection: without a cost of jumps the cover is as small as by exhaustive search"
     * technique("face.unit-select")) {
     const std::vector<SpeechRecording> recordings = record({"no time", "time is", "is no", "mine"});
     const std::vector<SpeechUnit> units = generate_units(recordings);
@@ -208,7 +208,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "unit selection: a high price for jumps takes more units that fit better"
+    "unit selection: a high cost of jumps selects more units that fit better"
     * technique("face.unit-select")) {
     std::vector<SpeechRecording> recordings = record({"one two", "three", "one", "two"});
     const SpeechTrack target = say("one two three");
@@ -243,7 +243,7 @@ TEST_CASE(
     CHECK(cost(*dear) < cost(*cheap));
 }
 
-TEST_CASE("unit selection: what was never recorded is named" * technique("face.unit-select")) {
+TEST_CASE("unit selection: missing sounds are named" * technique("face.unit-select")) {
     const std::vector<SpeechRecording> recordings = record({"no time"});
     const std::vector<SpeechUnit> units = generate_units(recordings);
     CHECK(
@@ -339,7 +339,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "speech library: recordings survive writing, and bad ones are refused with their place"
+    "speech library: recordings survive writing, and bad ones are rejected with their position"
     * technique("face.unit-generate")) {
     SpeechLibrary library{kRate, record({"exactly one", "two"})};
     const std::string text = write_speech_library(library);

@@ -86,9 +86,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "surface fit: a surface that lies on the target stays as it is"
-    * technique("face.retarget-fit")) {
+TEST_CASE("surface fit: a surface on the target does not move" * technique("face.retarget-fit")) {
     const MeshData ball = make_ball(1, 16);
     const SurfaceFit fit =
         fit_surface(ball.positions, ball.indices, ball.positions, ball.indices, {}, 10);

@@ -84,7 +84,8 @@ esac)";
 
 }  // namespace
 
-TEST_CASE("utterance: the clip is as long as the sound, and each phrase has its place in both") {
+TEST_CASE(
+    "utterance: the clip is as long as the sound, and each phrase has the same time in both") {
     const FakeEspeak espeak(kCopyTone);
     espeak.add_tone("one.wav", 0.3f, 0.5f, 0.7f);
     espeak.add_tone("two.wav", 0.0f, 1.1f, 0.2f);

@@ -67,7 +67,7 @@ double square_of_slopes(const std::vector<WrinklePose>& poses) {
     return sum;
 }
 
-TEST_CASE("wrinkle model: degrees 1, 2 and 3 have 3, 9 and 19 terms beside the constant") {
+TEST_CASE("wrinkle model: degrees 1, 2 and 3 have 3, 9 and 19 terms besides the constant") {
     CHECK(wrinkle_terms(1) == 3);
     CHECK(wrinkle_terms(2) == 9);
     CHECK(wrinkle_terms(3) == 19);
@@ -222,7 +222,7 @@ TEST_CASE(
     CHECK(largest > 0.02f);
 }
 
-TEST_CASE("skin texels: rigid motion has no strain, and stretch along the tangent is its own") {
+TEST_CASE("skin texels: rigid motion has no strain, and stretch along the tangent is its strain") {
     const MeshData mesh = make_bent();
     std::vector<Vec3> turned;
     for (const Vec3& p : mesh.positions) {

@@ -61,7 +61,7 @@ void check_face(const MeshData& face, std::size_t count) {
 }
 
 TEST_CASE(
-    "face folding: the head's own skin folds where anatomy says, five times as much as beside") {
+    "face folding: the generated head folds where anatomy says, five times as much as elsewhere") {
     check_face(make_head({}), 10);
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("face folding: and that of MakeHuman") {
 
 TEST_CASE(
     "face folding: a frown that pushes brows down folds the glabella, a smile beside the nose") {
-    // Of MakeHuman, whose frown moves skin beside the middle of the face and nothing in it.
+    // MakeHuman's frown moves skin beside the midline of the face and nothing on it.
     if (const auto scene = import_shared("makehuman")) {
         const MeshData& face = scene->meshes[0];
         const oracle::FaceFolding folding(face);

@@ -23,7 +23,7 @@ constexpr int kFolds = 10;
 constexpr int kRings = 160;
 constexpr float kRadius = 0.5f;
 constexpr float kHeight = 2;
-constexpr float kLeft = 0.8f;  ///< of the height, when compressed in full
+constexpr float kLeft = 0.8f;  ///< fraction of the height at full compression
 
 /// Folds of a sine around the tube, `kFolds` of them.
 ImageData sine_map() {
@@ -93,7 +93,7 @@ struct FoldScene : WrinkleScene {
         REQUIRE(readback);
         return readback->run(world, std::vector<Entity>{entity})[0];
     }
-    /// The same skin as a mesh at rest, its folds made of triangles.
+    /// The same skin as a mesh at rest, with folds modeled by triangles.
     Entity carved(Entity entity) {
         const oracle::SkinReadbackVertices found = read(entity);
         MeshData mesh = mesh_of(entity);
@@ -108,7 +108,7 @@ struct FoldScene : WrinkleScene {
     }
 };
 
-/// Where the tube ends on the right, in each row but those of its rims [px].
+/// The right edge of the tube in each row except those of its rims [px].
 std::vector<int> outline(const gpu::FloatImage& depth) {
     std::vector<int> ends;
     for (int y = 130; y < depth.height - 130; ++y) {
@@ -162,7 +162,7 @@ TEST_CASE_FIXTURE(FoldScene, "fold displacement: the folded surface is as long a
     CHECK(length == near(kHeight).epsilon(0.02));
 }
 
-TEST_CASE_FIXTURE(FoldScene, "fold displacement: vertices that a seam doubles move alike") {
+TEST_CASE_FIXTURE(FoldScene, "fold displacement: vertices duplicated at a seam move together") {
     const Entity entity = tube(1, 1);
     const oracle::SkinReadbackVertices found = read(entity);
     REQUIRE(found.folds.size() == found.positions.size());
@@ -173,8 +173,8 @@ TEST_CASE_FIXTURE(FoldScene, "fold displacement: vertices that a seam doubles mo
 }
 
 TEST_CASE_FIXTURE(
-    FoldScene,
-    "fold displacement: at rest every bit is as without" * technique("wrinkle.displacement")) {
+    FoldScene, "fold displacement: at rest it is bit-identical to no displacement"
+                   * technique("wrinkle.displacement")) {
     shine(SpotLight{.intensity = 30, .radius = 20, .outer_angle = 0.8f}, at({0.4f, 0.3f, 4}));
     const RenderView front = look({0, 0, 1.6f}, {0, 0, 0}, 96, 96);
     for (const float weight : {0.0f, -0.5f}) {  // at rest and stretched
@@ -247,7 +247,7 @@ TEST_CASE_FIXTURE(
         world.get<WrinkleSurface>(entity).displacement_until = until;
         return std::ranges::max(read(entity).folds);
     };
-    // The camera is at the origin, the tube 3 m before it.
+    // The camera is at the origin, the tube 3 m in front of it.
     world.get<WorldTransform>(entity).world = at({0, 0, -3});
     const float whole = highest(0);
     CHECK(whole > 0.02f);
@@ -264,7 +264,8 @@ TEST_CASE_FIXTURE(
     CHECK(before == near(whole).epsilon(0.02));
 }
 
-TEST_CASE_FIXTURE(FoldScene, "fold displacement: what only shades, or covers, moves nothing") {
+TEST_CASE_FIXTURE(
+    FoldScene, "fold displacement: methods that only shade, or cover, displace nothing") {
     const auto folds = [&](const WrinkleSurface& surface) {
         const Entity entity = skin(make_seamed_tube(), surface, 1);
         const std::size_t count = read(entity).folds.size();

@@ -20,7 +20,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 const char* const kInclude = "#include \"lib/fold_light.glsl\"";
 
-/// A light in the section of a groove, of walls of some slope.
+/// A light in the cross-section of a groove whose walls have some slope.
 struct GrooveLight {
     double slope;
     double x;
@@ -50,20 +50,20 @@ Vec4 shader_input(const GrooveLight& light, double albedo) {
         static_cast<float>(albedo)};
 }
 
-/// Skin folded by its one slope, under one light.
+/// Skin folded with a single slope, under one light.
 struct FoldLightScene : WrinkleScene {
     FoldLightScene() {
         material.roughness = 1;
         material.specular = {0, 0, 0};
         light = shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 3}, {0, 0, 0}));
     }
-    Vec3 middle(const WrinkleSurface& surface, float weight = 0.3f) {
+    Vec3 center_pixel(const WrinkleSurface& surface, float weight = 0.3f) {
         const Entity entity = square(surface, weight);
         const Vec3 result = rgb_at(radiance(view), 16, 16);
         world.destroy(entity);
         return result;
     }
-    /// Skin at rest whose normal no G-buffer holds exactly.
+    /// Skin at rest whose normal a G-buffer cannot store exactly.
     Vec3 tilted(const WrinkleSurface& surface) {
         MeshData mesh = make_square();
         mesh.normals.assign(4, glm::normalize(Vec3{0.31f, -0.17f, 1}));
@@ -85,7 +85,7 @@ const WrinkleSurface kSingleSlopes = {.bounce = false, .share = 1};
 }  // namespace
 
 TEST_CASE(
-    "fold light: the light on each wall of a groove, in its shadow too, is the oracle's"
+    "fold light: the light on each wall of a groove, even in shadow, is the oracle's"
     * technique("wrinkle.fold-light")) {
     std::vector<Vec4> inputs;
     for (const GrooveLight& light : groove_lights()) {
@@ -170,15 +170,15 @@ TEST_CASE(
 TEST_CASE_FIXTURE(
     FoldLightScene, "fold light: the wall that faces away is lit by the other one, and redder"
                         * technique("wrinkle.fold-light")) {
-    const Vec3 flat = middle({.method = WrinkleMethod::None});
+    const Vec3 flat = center_pixel({.method = WrinkleMethod::None});
     // Along the plane, nearly: the slope faces down, away from it.
     turn_light(Vec3{0, 0.8f, 0.6f});
     const Entity entity = square(kFolds, 0.3f);
     const Vec3 n = glm::normalize(rgb_at(aov(view, "normal"), 16, 16));
     world.destroy(entity);
     turn_light(glm::normalize(Vec3{0, n.y > 0 ? -0.9f : 0.9f, 0.35f}));
-    CHECK(middle(kSingleSlopes) == Vec3(0));
-    const Vec3 lit = middle(kFolds);
+    CHECK(center_pixel(kSingleSlopes) == Vec3(0));
+    const Vec3 lit = center_pixel(kFolds);
     CHECK(lit.x > 0.02f * flat.x);
     CHECK(lit.x / lit.z > 1.5f * flat.x / flat.z);
 
@@ -196,27 +196,27 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     FoldLightScene,
     "fold light: skin without folds is as without, to the bit" * technique("wrinkle.fold-light")) {
-    CHECK(middle(kFolds, 0) == middle(kSingleSlopes, 0));
-    CHECK(middle(kFolds, 0) == middle({.method = WrinkleMethod::None}, 0));
+    CHECK(center_pixel(kFolds, 0) == center_pixel(kSingleSlopes, 0));
+    CHECK(center_pixel(kFolds, 0) == center_pixel({.method = WrinkleMethod::None}, 0));
     turn_light(glm::normalize(Vec3{0.8f, -0.3f, 0.2f}));
     CHECK(tilted(kFolds) == tilted({.method = WrinkleMethod::None}));
-    CHECK(middle(kFolds) != middle(kSingleSlopes));
+    CHECK(center_pixel(kFolds) != center_pixel(kSingleSlopes));
     const WrinkleSurface bump = {.method = WrinkleMethod::Bump, .lambda = 0.1f, .beta = 50};
     WrinkleSurface without = bump;
     without.bounce = false;
-    CHECK(middle(bump) == middle(without));
+    CHECK(center_pixel(bump) == center_pixel(without));
 }
 
 TEST_CASE_FIXTURE(
-    FoldLightScene, "fold light: every way to add lights up draws the same folds"
+    FoldLightScene, "fold light: every method of summing lights draws the same folds"
                         * technique("wrinkle.fold-light")) {
     turn_light(glm::normalize(Vec3{0, -0.7f, 0.5f}));
-    const Vec3 clustered = middle(kFolds);
+    const Vec3 clustered = center_pixel(kFolds);
     CHECK(clustered.x > 0.01f);
     for (const LightMethod method :
          {LightMethod::FullScreen, LightMethod::ObjectMajor, LightMethod::LightMajor}) {
         world.insert_resource(Rendering{.lights = method});
-        const Vec3 found = middle(kFolds);
+        const Vec3 found = center_pixel(kFolds);
         for (int c = 0; c < 3; ++c) {
             CHECK(found[c] == near(clustered[c]).epsilon(5e-3));
         }
@@ -226,19 +226,19 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     FoldLightScene, "fold light: no light shines through the wall of a fold, which has no back"
                         * technique("wrinkle.fold-light")) {
-    // By its shadow map, the skin stands nowhere in the way of light on itself: as if it were thin.
+    // In its shadow map, the skin never blocks light from itself, as if it were thin.
     world.add(light, Shadow{});
     material.shading = ShadingModel::Subsurface;
     material.gloss = 0;
     turn_light(glm::normalize(Vec3{0, -0.9f, 0.35f}));  // the slope faces up, away from it
-    const Vec3 opaque = middle(kFolds);
+    const Vec3 opaque = center_pixel(kFolds);
     CHECK(opaque.x > 0.01f);
     material.scatter = Vec3(0.02f);
-    const Vec3 translucent = middle(kFolds);
+    const Vec3 translucent = center_pixel(kFolds);
     for (int c = 0; c < 3; ++c) {
         CHECK(translucent[c] == near(opaque[c]).epsilon(0.02));
     }
-    CHECK(middle(kSingleSlopes).x > 1.5f * translucent.x);
+    CHECK(center_pixel(kSingleSlopes).x > 1.5f * translucent.x);
 }
 
 TEST_CASE_FIXTURE(
@@ -246,7 +246,7 @@ TEST_CASE_FIXTURE(
     "fold light: skin that emits light keeps it" * technique("wrinkle.fold-light")) {
     material.emission = {0.2f, 0.3f, 0.4f};
     turn_light({0, 0, -1});
-    const Vec3 folded = middle(kFolds);
+    const Vec3 folded = center_pixel(kFolds);
     for (int c = 0; c < 3; ++c) {
         CHECK(folded[c] == near(material.emission[c]).epsilon(5e-3));
     }

@@ -84,7 +84,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FurrowScene, "furrow view: what grows anew is seen in the next frame"
+    FurrowScene, "furrow view: regrown furrows are visible in the next frame"
                      * technique("wrinkle.furrow.view-modes")) {
     const gpu::ByteImage furrowed = shot();
     world.get<Furrows>(square).style.seed = 5;
@@ -107,7 +107,7 @@ TEST_CASE_FIXTURE(
     CHECK(spread(furrowed) > 20);
     CHECK(spread(shot(48)) > 10);  // smaller than the image: by its mip levels
     show({.mode = FurrowMode::Overview});
-    CHECK(spread(shot()) <= 12);  // light is not quite even
+    CHECK(spread(shot()) <= 12);  // lighting is slightly uneven
 }
 
 TEST_CASE(
@@ -163,8 +163,9 @@ TEST_CASE_FIXTURE(
     for (int y = 4; y < kSize - 4; ++y) {
         for (int x = 4; x < kSize - 4; ++x) {
             const float height = skin().height[static_cast<std::size_t>(y * kSize + x)];
-            const int wanted = static_cast<int>(std::lround(255 * std::clamp(height, 0.0f, 1.0f)));
-            off += std::abs(image.at(x, y, 0) - wanted) > 4 ? 1 : 0;
+            const int expected =
+                static_cast<int>(std::lround(255 * std::clamp(height, 0.0f, 1.0f)));
+            off += std::abs(image.at(x, y, 0) - expected) > 4 ? 1 : 0;
             dark += image.at(x, y, 0) < 200 ? 1 : 0;
         }
     }
@@ -173,7 +174,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FurrowScene, "furrow view: what stands before the mesh hides its view"
+    FurrowScene, "furrow view: objects in front of the mesh hide its view"
                      * technique("wrinkle.furrow.view-modes")) {
     show({.mode = FurrowMode::Vectors});
     Material gray = {.shading = ShadingModel::Unlit, .base_color = {0.2f, 0.2f, 0.2f, 1}};

@@ -44,9 +44,9 @@ std::string vec4_text(const Vec4& v) {
     return fmt::format("vec4({:.9e}, {:.9e}, {:.9e}, {:.9e})", v.x, v.y, v.z, v.w);
 }
 
-/// Light of a strand along +x: reflected in w, what has been inside in xyz. Inputs hold the
-/// inclination and the azimuth of light, then those of the viewer. The normal is +z. `lit`: how
-/// much of it others leave but for what they scatter.
+/// Light of a strand along +x: reflected in w, transmitted through it in xyz. Inputs hold the
+/// inclination and the azimuth of light, then those of the viewer. The normal is +z. `lit`:
+/// fraction of the light that other strands let through without scattering.
 std::vector<Vec4>
 strand_light(const Material& material, const std::vector<Vec4>& inputs, double lit = 1) {
     const layout::HairBlock block = make_hair_block(material);
@@ -63,20 +63,20 @@ strand_light(const Material& material, const std::vector<Vec4>& inputs, double l
     return evaluate_shader(before, body, inputs);
 }
 
-/// Of strands seen in a half-space full of them, along its normal: the share that light reaches at
-/// this cosine, over the share if it came along the normal, too. By steps down into it.
+/// In a half-space full of strands, viewed along its normal: the fraction of visible strands that
+/// light at this cosine reaches, relative to light along the normal. By integration over depth.
 double reached(double cosine) {
     constexpr double kStep = 1e-3;
-    double share = 0;
+    double lit = 0;
     double all = 0;
     for (double depth = 0.5 * kStep; depth < 20; depth += kStep) {
-        share += cosine > 0 ? std::exp(-depth - depth / cosine) : 0.0;
+        lit += cosine > 0 ? std::exp(-depth - depth / cosine) : 0.0;
         all += std::exp(-2 * depth);
     }
-    return share / all;
+    return lit / all;
 }
 
-/// What a strand seen at an inclination reflects under light of radiance 1 from all sides.
+/// Radiance of a strand viewed at an inclination under light of radiance 1 from all sides.
 DVec3 furnace(const Material& material, float to_viewer) {
     constexpr int kSteps = 180;
     std::vector<Vec4> inputs;
@@ -96,7 +96,7 @@ DVec3 furnace(const Material& material, float to_viewer) {
     return sum * (2.0 * 9.8696044 / (kSteps * kSteps));
 }
 
-/// Inclination of light that lobe `lobe` of a viewer at `to_viewer` is brightest for [rad].
+/// Inclination [rad] of the light for which `lobe` of a viewer at `to_viewer` is brightest.
 float brightest(const Material& material, int lobe, float to_viewer) {
     const layout::HairBlock block = make_hair_block(material);
     std::vector<Vec4> inputs;
@@ -117,8 +117,8 @@ float brightest(const Material& material, int lobe, float to_viewer) {
     return inputs[static_cast<std::size_t>(most - found.begin())].x;
 }
 
-/// What TT holds of the light on a strand seen at an inclination.
-Vec3 transmitted_share(const Material& material, float to_viewer) {
+/// Fraction of the light on a strand, viewed at an inclination, that TT holds.
+Vec3 transmitted_fraction(const Material& material, float to_viewer) {
     const layout::HairBlock block = make_hair_block(material);
     return Vec3(evaluate_shader(
         "#include \"lib/hair.glsl\"\n",
@@ -130,7 +130,7 @@ Vec3 transmitted_share(const Material& material, float to_viewer) {
         {{to_viewer, 0, 0, 0}})[0]);
 }
 
-/// The middle of a square whose strands run down, along v, seen head on and lit from `to_light`.
+/// The center of a square whose strands run down, along v, viewed head on and lit from `to_light`.
 Vec3 lit_square(const Material& material, const Vec3& to_light, const MeshData& mesh) {
     Scene scene;
     scene.place(scene.add(mesh), scene.add(material), at({0, 0, 0}));
@@ -141,7 +141,7 @@ Vec3 lit_square(const Material& material, const Vec3& to_light, const MeshData& 
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: white strands give back all light, and none gives more"
+    RenderTest, "hair lobes: white strands reflect all light, and none reflects more"
                     * technique("hair.shading")) {
     for (const float roughness : {0.1f, 0.3f, 0.7f}) {
         for (const float scatter : {0.0f, 1.0f}) {
@@ -181,7 +181,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: light and viewer at equal inclinations may change places"
+    RenderTest, "hair lobes: light and viewer at equal inclinations are interchangeable"
                     * technique("hair.shading")) {
     const Material hair = hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, 0);
     std::vector<Vec4> inputs;
@@ -262,11 +262,12 @@ TEST_CASE_FIXTURE(
                     * technique("hair.shading")) {
     constexpr Vec3 kBrown = {0.12f, 0.06f, 0.03f};
     for (const float to_viewer : {0.0f, 0.7f}) {
-        const Vec3 white = transmitted_share(hair_of(Vec3(1), 0.3f, 0.3f, 0), to_viewer);
-        const Vec3 one = transmitted_share(hair_of(kBrown, 0.3f, 0.3f, 0), to_viewer);
+        const Vec3 white = transmitted_fraction(hair_of(Vec3(1), 0.3f, 0.3f, 0), to_viewer);
+        const Vec3 one = transmitted_fraction(hair_of(kBrown, 0.3f, 0.3f, 0), to_viewer);
         const Vec3 passed = one / white;
         for (const float density : {0.25f, 0.75f}) {
-            const Vec3 dense = transmitted_share(hair_of(kBrown, 0.3f, 0.3f, density), to_viewer);
+            const Vec3 dense =
+                transmitted_fraction(hair_of(kBrown, 0.3f, 0.3f, density), to_viewer);
             const Vec3 through = (1 - density) * one * ((1 - density) + density * passed * passed);
             CHECK(glm::distance(dense, through) < 1e-4f);
             CHECK(dense.z < 0.7f * dense.x);
@@ -333,7 +334,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hair: strands of a dense body throw no shadow on each other, what is farther away does"
+    "hair: strands of a dense body cast no shadow on each other, distant casters do"
     * technique("hair.shading")) {
     const auto lit = [](float density, float distance, bool shadowed) {
         Scene scene;
@@ -342,7 +343,7 @@ TEST_CASE(
             at({0, 0, 0}));
         scene.place(
             scene.add(make_square()), scene.add(Material{}), at({1.2f + distance, 0, distance}));
-        const Vec3 behind_edge = {0.2f + 0.6f * distance, 0, 0};  // seen past the caster's edge
+        const Vec3 behind_edge = {0.2f + 0.6f * distance, 0, 0};  // visible past the caster's edge
         const Entity light =
             scene.shine(DirectionalLight{.illuminance = 3}, look_at({0, 0, 0}, {-1, 0, -1}));
         if (shadowed) {
@@ -357,11 +358,11 @@ TEST_CASE(
     };
     for (const float distance : {0.015f, 0.03f, 0.3f}) {
         CAPTURE(distance);
-        const double way = std::sqrt(2.0) * static_cast<double>(distance) / 0.03;
-        const double share = std::exp(-way * way);
+        const double depth = std::sqrt(2.0) * static_cast<double>(distance) / 0.03;
+        const double visible = std::exp(-depth * depth);
         const auto open = static_cast<double>(lit(0.6f, distance, false));
         const auto shaded = static_cast<double>(lit(0.6f, distance, true));
-        CHECK(std::abs(shaded - share * open) < 0.01 * open);
+        CHECK(std::abs(shaded - visible * open) < 0.01 * open);
         CHECK(lit(0, distance, true) == 0);
     }
 }

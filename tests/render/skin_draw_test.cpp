@@ -16,8 +16,8 @@
 namespace limn::test::skin_draw_test {
 namespace {
 
-/// A bent tube before a wall, under a light with a shadow; or, in its place, the mesh that the
-/// oracle says it is.
+/// A bent tube in front of a wall, under a light with a shadow; or instead the mesh that the oracle
+/// makes of it.
 struct SkinPicture : SkinScene {
     SkinPicture() {
         world.insert_resource(Environment{.sky = SkyKind::Gradient, .visible = false});
@@ -47,7 +47,7 @@ struct SkinPicture : SkinScene {
         world.add(entity, MorphWeights{.weights = {0.7f, -0.4f}, .previous = {0.7f, -0.4f}});
         return entity;
     }
-    /// The same as a mesh of its own.
+    /// The same as a separate mesh.
     Entity baked(Entity entity) {
         MeshData copy = mesh_of(entity);
         const std::vector<oracle::SkinnedVertex> vertices = want(entity);
@@ -85,8 +85,8 @@ struct SkinPicture : SkinScene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: what is deformed looks as the mesh that the oracle makes of it"
-                     * technique("char.skin-gpu")) {
+    SkinPicture,
+    "skin_draw: a deformed mesh looks like the mesh of the oracle" * technique("char.skin-gpu")) {
     for (const AlphaMode mode : {AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend}) {
         for (const LightMethod method :
              {LightMethod::Clustered, LightMethod::ObjectMajor, LightMethod::LightMajor}) {
@@ -121,8 +121,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: what is deformed swells along the normals that it has now") {
+TEST_CASE_FIXTURE(SkinPicture, "skin_draw: a deformed mesh inflates along its deformed normals") {
     const Inflate more = {.distance = 0.08f};
     const Entity entity = snake(0.5f, white);
     const gpu::FloatImage thin = radiance(view);
@@ -151,8 +150,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: the shadow follows the pose, and wait
     CHECK(different(got, radiance(view)) <= 12);
 }
 
-TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: a shadow falls into the image from where nothing is seen") {
+TEST_CASE_FIXTURE(SkinPicture, "skin_draw: a mesh outside the image casts its shadow into it") {
     const RenderView close = look({0, 0.5f, -0.2f}, {0, 0.5f, -1}, 48, 48);
     world.get<WorldTransform>(light).world = at({0, 0.5f, 3});
     const gpu::FloatImage lit = radiance(close);
@@ -163,7 +161,8 @@ TEST_CASE_FIXTURE(
     CHECK(different(lit, gpu::read_floats(*shaded.radiance), 0.1f) > 50);
 }
 
-TEST_CASE_FIXTURE(SkinPicture, "skin_draw: what a pose takes out of the image is not computed") {
+TEST_CASE_FIXTURE(
+    SkinPicture, "skin_draw: a mesh that its pose moves out of the image is not computed") {
     world.remove<Shadow>(light);
     const Entity entity = snake(0.4f, white);
     CHECK(draw(view).statistics.visible_instances == 2);
@@ -175,7 +174,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: what a pose takes out of the image is
     const FrameOutput gone = draw(view);
     CHECK(gone.statistics.visible_instances == 1);
     CHECK(gone.statistics.deformed == 0);
-    // Its own place does not matter, where its vertices are does.
+    // Its own transform does not matter, the positions of its vertices do.
     world.get<WorldTransform>(entity).world = at({-50, 0, 0});
     const FrameOutput back = draw(view);
     CHECK(back.statistics.visible_instances == 2);
@@ -227,7 +226,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: a probe sees the shape, and the image need not compute it again") {
+    SkinPicture, "skin_draw: a probe captures the shape, and the image does not compute it again") {
     const Entity entity = snake(0.4f, white);
     const Entity probe =
         world.create(EnvProbe{.resolution = 16}, WorldTransform{at({0, 0.5f, 1.0f})});

@@ -39,7 +39,7 @@ class SkinScene : public Scene {
     const MeshData& mesh_of(Entity entity) {
         return world.resource<Assets>().meshes[world.get<MeshInstance>(entity).mesh.index];
     }
-    /// What the oracle says of an entity with its own pose.
+    /// The oracle's vertices of an entity with its own pose.
     std::vector<oracle::SkinnedVertex> want(Entity entity, bool before = false) {
         const Deformed& deformed = world.get<Deformed>(entity);
         std::vector<glm::dmat4> matrices;
@@ -58,7 +58,7 @@ class SkinScene : public Scene {
     }
 };
 
-/// Length of the diagonal of what the vertices stay within.
+/// Length of the diagonal of the bounding box.
 inline float size_of(const std::vector<Vec3>& positions) {
     Bounds box;
     for (const Vec3& p : positions) {
@@ -67,7 +67,7 @@ inline float size_of(const std::vector<Vec3>& positions) {
     return glm::length(box.max - box.min);
 }
 
-/// Largest distance from the oracle's positions, as a share of the box.
+/// Largest distance from the oracle's positions, relative to the box.
 inline double
 largest_error(const std::vector<Vec3>& got, const std::vector<oracle::SkinnedVertex>& want) {
     double largest = got.size() == want.size() ? 0.0 : INFINITY;

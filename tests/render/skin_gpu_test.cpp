@@ -123,8 +123,8 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: the kernels of the CPU give the same") {
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: where joints are as they were bound, vertices stay"
-                  * technique("char.skin-bone-offset")) {
+    SkinTest,
+    "skin_gpu: in the bind pose vertices do not move" * technique("char.skin-bone-offset")) {
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         const Entity entity = snake(skinning, 7, 5, 3);
         Pose& pose = world.get<Pose>(entity);
@@ -189,8 +189,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: offsets a joint of each vertex give what offsets of the joints give") {
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: vertex offsets per joint equal the joint offsets") {
     const Entity entity = snake(Skinning::Linear, 9, 4, 5);
     const std::vector<Vec3> got = read(entity).positions;
     const MeshData& mesh = mesh_of(entity);
@@ -229,7 +228,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: dual quaternions blend the short way round") {
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: dual quaternions blend along the shorter arc") {
     Bend bend = make_bend({0, 1, 0}, radians(100.0f), 0.5f);
     bend.pose.joints[0] =
         affine_from(Vec3(0), rotation_about({0, 1, 0}, radians(-100.0f)), Vec3(1));
@@ -378,7 +377,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: no vertex leaves the box that culls it") 
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: a twist far from its axis stays in the box on its way round") {
+    SkinTest, "skin_gpu: a twist far from its axis stays in the box throughout its arc") {
     Bend bend = make_bend({0, 1, 0}, radians(170.0f), 0.5f);
     for (Vec3& p : bend.mesh.positions) {
         p.x += 2;
@@ -451,7 +450,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: who goes gives its vertices back, and the others keep theirs") {
+    SkinTest, "skin_gpu: a removed instance frees its vertices, and the others keep theirs") {
     std::vector<Entity> herd;
     for (std::uint64_t i = 0; i < 24; ++i) {
         herd.push_back(snake(Skinning::Linear, 2 + static_cast<int>(i % 5) * 3, 4, 20 + i));
@@ -548,7 +547,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one line says why") {
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: a mesh that cannot be deformed stays at rest, and one line says why") {
     const auto complaint = [&](Entity entity) {
         const std::vector<std::string> messages = messages_of([&] {
             for (int frame = 0; frame < 2; ++frame) {
@@ -609,7 +609,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one li
     CHECK(has(complaint(entity), "vertex 99999"));
 }
 
-TEST_CASE("slot_allocator: what is given back is found again, and neighbors become one") {
+TEST_CASE("slot_allocator: freed ranges are reused, and adjacent ones merge") {
     SlotAllocator slots;
     CHECK_FALSE(slots.allocate(1).has_value());
     slots.grow(100);

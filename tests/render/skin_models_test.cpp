@@ -58,7 +58,7 @@ Material pigmented(Pigments pigments, float melanin, float blood) {
         .blood = blood};
 }
 
-/// The middle of a square that faces the camera, lit from `to_light` by the two intensities of
+/// The center of a square that faces the camera, lit from `to_light` by the two intensities of
 /// skin.blinn, Ia = 0.3 around and Il = 0.7.
 Vec3 shaded(const Material& material, const Vec3& to_light) {
     Scene scene;
@@ -76,7 +76,7 @@ double off(const Vec3& found, const DVec3& exact) {
 }  // namespace
 
 TEST_CASE(
-    "skin tone: melanin and blood take away the colors of the table"
+    "skin tone: melanin and blood subtract the colors of the table"
     * technique("skin.melanin-blood")) {
     const double amounts[][2] = {{0, 0}, {0.2, 0.5}, {0.05, 0.2}, {0.5, 0.6}, {1, 0}, {1, 1}};
     for (const auto& [melanin, blood] : amounts) {
@@ -136,7 +136,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin blinn: the preset of the hand, seen and lit head on, has the printed color"
+    "skin blinn: the preset of the hand, viewed and lit head on, has the printed color"
     * technique("skin.blinn")) {
     CHECK(
         off(shaded(pigmented(Pigments::Plane, 0.2f, 0.5f), {0, 0, 1}), DVec3(0.972, 0.748, 0.510))
@@ -152,7 +152,8 @@ TEST_CASE(
         < 1e-3);
 }
 
-TEST_CASE("skin blinn: without gloss it looks alike from everywhere" * technique("skin.blinn")) {
+TEST_CASE(
+    "skin blinn: without gloss it looks the same from every direction" * technique("skin.blinn")) {
     Scene scene;
     Material matte = pigmented(Pigments::Plane, 0.2f, 0.5f);
     matte.specular = Vec3(0);
@@ -250,7 +251,7 @@ TEST_CASE("skin brdf: neither set reflects more light than it receives, from any
 }
 
 TEST_CASE(
-    "subsurface gloss: highlights are the two lobes of GGX, each by its share"
+    "subsurface gloss: highlights are the two lobes of GGX, each with its weight"
     * technique("skin.gloss")) {
     Material black = {
         .shading = ShadingModel::Subsurface,

@@ -25,7 +25,7 @@ class Face : public Scene {
         place(add(make_ball()), add(skin), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.8f)));
         shine(PointLight{.color = {1, 1, 1}, .intensity = 4, .radius = 0}, at(light));
     }
-    [[nodiscard]] RenderView seen() const { return look({0, 0, 2}, {0, 0, 0}, 65, 65); }
+    [[nodiscard]] RenderView full_view() const { return look({0, 0, 2}, {0, 0, 0}, 65, 65); }
 };
 
 float green(const gpu::FloatImage& image, int x, int y) {
@@ -55,7 +55,7 @@ TEST_CASE("skin shade: of a black rim it is Blinn, to the bit" * technique("char
         face.skin.shading = model;
         face.skin.skin_color = {0, 0, 0};
         face.show({1, 1, 2});
-        return face.radiance(face.seen());
+        return face.radiance(face.full_view());
     };
     const gpu::FloatImage skin = picture(ShadingModel::Skin);
     CHECK(skin.pixels == picture(ShadingModel::Blinn).pixels);
@@ -71,8 +71,8 @@ TEST_CASE(
         face.skin.wide_rim = wide;
         face.show({0, 0, -2});
         gpu::FloatImage& image = rims[wide ? 1 : 0];
-        image = face.radiance(face.seen());
-        CHECK(green(image, 32, 32) < 1e-3f);  // seen head on
+        image = face.radiance(face.full_view());
+        CHECK(green(image, 32, 32) < 1e-3f);  // head on
         float before = 0;
         for (int x = 33; x < 46; ++x) {  // outward
             CHECK(green(image, x, 32) >= before);
@@ -95,9 +95,9 @@ TEST_CASE(
         for (const LightMethod method :
              {LightMethod::Clustered, LightMethod::ObjectMajor, LightMethod::LightMajor}) {
             face.world.insert_resource(Rendering{.lights = method});
-            const gpu::FloatImage image = face.radiance(face.seen());
-            const gpu::FloatImage depth = face.aov(face.seen(), "depth");
-            const gpu::FloatImage normal = face.aov(face.seen(), "normal");
+            const gpu::FloatImage image = face.radiance(face.full_view());
+            const gpu::FloatImage depth = face.aov(face.full_view(), "depth");
+            const gpu::FloatImage normal = face.aov(face.full_view(), "normal");
             int compared = 0;
             for (int y = 0; y < 65; ++y) {
                 for (int x = 0; x < 65; ++x) {

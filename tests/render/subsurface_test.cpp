@@ -26,7 +26,7 @@ namespace {
 
 using oracle::DVec3;
 
-/// Of skin, forty times as large.
+/// Mean free paths of skin, forty times as large.
 constexpr Vec3 kFreePath = {0.147f, 0.0548f, 0.0272f};
 constexpr int kSide = 256;  ///< of images [px]
 constexpr gpu::Profile kProfiles[] = {gpu::Profile::Software, gpu::Profile::Gpu};
@@ -77,7 +77,7 @@ class LitPlane : public Scene {
     MeshId square;
 };
 
-/// Where the corner of a pixel, or a fraction of one, lies in z = 0.
+/// Position of the corner of a pixel, or of a fraction of one, in z = 0.
 DVec3 point_at(const RenderView& view, double x, double y) {
     const DVec3 ray = DVec3(transform_vector(
         view.world_from_camera, {(2 * x / view.width - 1) * view.tangent.x,
@@ -88,9 +88,9 @@ DVec3 point_at(const RenderView& view, double x, double y) {
     return eye - ray * (eye.z / ray.z);
 }
 
-/// Largest difference of each channel from the profile's convolution of the image without
-/// diffusion, a pixel a patch, along a row and a column through the middle; of the lit plane, by
-/// either renderer.
+/// Largest difference of each channel from the convolution of the image without diffusion with the
+/// profile, one patch per pixel, along a row and a column through the center; relative to the lit
+/// plane, by either renderer.
 DVec3 largest_errors(LitPlane& scene, const RenderView& view) {
     auto& assets = scene.world.resource<Assets>();
     const Material material = assets.materials[0];
@@ -162,7 +162,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "diffusion profile: the first of rings seen from far away stands for many"
+    "diffusion profile: at a distance the first ring stands for many"
     * technique("skin.diffusion")) {
     const Vec3 d = {0.98f, 0.39f, 0.19f};
     std::array<Vec4, 20> many;
@@ -182,7 +182,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "diffusion profile: a ring's share is the integral of the profile over it"
+    "diffusion profile: a ring's weight is the integral of the profile over it"
     * technique("skin.diffusion")) {
     const double d = 0.39;
     double sum = 0;
@@ -249,7 +249,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "subsurface: no light comes from what does not scatter, nor leaves for it"
+    "subsurface: no light diffuses from or to surfaces that do not scatter"
     * technique("skin.diffusion")) {
     LitPlane scene(wax());
     scene.darken(-30, 0);
@@ -269,14 +269,14 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("subsurface: light spreads wherever a surface is seen, also at the image's edges") {
-    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
+TEST_CASE("subsurface: light diffuses wherever a surface is visible, also at the image's edges") {
+    for (const Vec3& position : {Vec3(0, 0, 0), Vec3(1.9f, 0.5f, 0), Vec3(-0.7f, -1.9f, 0.3f)}) {
         std::array<gpu::FloatImage, 2> images[2];
         for (const bool another_behind : {false, true}) {
             Scene scene;
             const MeshId ball = scene.add(make_ball());
             const MaterialId skin = scene.add(wax());
-            scene.place(ball, skin, at(place));
+            scene.place(ball, skin, at(position));
             if (another_behind) {
                 scene.place(ball, skin, at({0, 0, 2}));  // around the camera: its box is all pixels
             }
@@ -305,7 +305,7 @@ class WaxBalls : public Scene {
         shine(DirectionalLight{.illuminance = 3}, look_at({0, 0, 0}, {-1, -0.5f, -1}));
     }
     /// 250 x 131 px, no multiple of a work group.
-    [[nodiscard]] RenderView seen() const { return look({0, 0, 3}, {0, 0, 0}, 250, 131); }
+    [[nodiscard]] RenderView full_view() const { return look({0, 0, 3}, {0, 0, 0}, 250, 131); }
 };
 
 int dispatches(ProfileRenderer& renderer, const Scene& scene, const RenderView& view) {
@@ -319,7 +319,7 @@ TEST_CASE(
     "subsurface: what a GPU computes is what a software OpenGL draws"
     * technique("skin.diffusion")) {
     const WaxBalls scene;
-    const RenderView view = scene.seen();
+    const RenderView view = scene.full_view();
     const gpu::FloatImage drawn = renderer_of(gpu::Profile::Software).radiance(scene.world, view);
     const gpu::FloatImage computed = renderer_of(gpu::Profile::Gpu).radiance(scene.world, view);
     // Hardware has its own filter for mip levels of odd sizes; NVIDIA's differs by 0.0064.
@@ -338,7 +338,7 @@ TEST_CASE(
 TEST_CASE("subsurface: pixels of other surfaces keep every bit" * technique("skin.diffusion")) {
     WaxBalls scene;
     const WaxBalls dull(Vec3(0));
-    const RenderView view = scene.seen();
+    const RenderView view = scene.full_view();
     const gpu::FloatImage albedo = scene.aov(view, "albedo");
     for (const gpu::Profile profile : kProfiles) {
         const gpu::FloatImage with = renderer_of(profile).radiance(scene.world, view);
@@ -366,11 +366,11 @@ TEST_CASE(
     const RenderView aside = scene.look({-9, 0, 3}, {-9, 0, 0});
     for (const gpu::Profile profile : kProfiles) {
         ProfileRenderer& renderer = renderer_of(profile);
-        const int seen = dispatches(renderer, scene, scene.seen());
+        const int count = dispatches(renderer, scene, scene.full_view());
         CHECK(renderer.graph().was_run("subsurface"));
         // Distances, five mip levels of two textures, diffusion.
         const int expected = profile == gpu::Profile::Gpu ? 1 + 2 * 5 + 1 : 0;
-        CHECK(seen - dispatches(renderer, dull, scene.seen()) == expected);
+        CHECK(count - dispatches(renderer, dull, scene.full_view()) == expected);
         for (const RenderView& away : {behind, aside}) {
             const int found = dispatches(renderer, scene, away);
             CHECK_FALSE(renderer.graph().was_run("subsurface"));
@@ -447,7 +447,7 @@ void check_slab(const Vec3& found, double irradiance, double path) {
 }  // namespace
 
 TEST_CASE(
-    "subsurface: a slab lit from behind lets through what the profile holds beyond it"
+    "subsurface: a slab lit from behind transmits the integral of the profile beyond it"
     * technique("skin.transmission")) {
     const DirectionalLight sun = {.illuminance = 3};
     for (const float thickness : {0.01f, 0.03f, 0.08f}) {

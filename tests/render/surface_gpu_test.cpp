@@ -77,7 +77,7 @@ TEST_CASE_FIXTURE(
     const auto& state = world.get<SurfaceBindingState>(tube);
     const MeshData& mesh = mesh_of(tube);
     const auto follow = [&](const std::vector<Vec4>& patches, SkinnedVertices to) {
-        follow_patches(*state.places, patches, to.positions, to.normals, to.tangents);
+        follow_patches(*state.anchors, patches, to.positions, to.normals, to.tangents);
     };
     std::vector<Vec3> positions = mesh.positions;
     std::vector<Vec3> normals = mesh.normals;

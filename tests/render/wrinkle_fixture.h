@@ -36,7 +36,7 @@ struct WrinkleScene : SkinScene {
         world.run(prepare_wrinkles);
         return entity;
     }
-    /// The square, whose height becomes a share `1 - weight` of what it was.
+    /// The square, whose height is scaled by `1 - weight`.
     Entity square(const WrinkleSurface& surface, float weight) {
         MeshData mesh = make_square();
         MorphTarget& flat = mesh.morphs.emplace_back();

@@ -14,19 +14,19 @@
 namespace limn::test::wrinkle_light_test {
 namespace {
 
-/// Wrinkled skin under one light, around which is nothing.
+/// Wrinkled skin under one light, in empty space.
 struct WrinkleLightScene : WrinkleScene {
     WrinkleLightScene() {
         light = shine(DirectionalLight{.illuminance = 3}, look_at({1, 2, 3}, {0, 0, 0}));
     }
-    /// Of the square that is shortened by `weight`.
+    /// Color of the square shortened by `weight`.
     std::vector<float> pixels(const WrinkleSurface& surface, float weight = 0.2f) {
         const Entity entity = square(surface, weight);
         std::vector<float> result = radiance(view).pixels;
         world.destroy(entity);
         return result;
     }
-    Vec3 middle(const WrinkleSurface& surface, float weight = 0.2f) {
+    Vec3 center_pixel(const WrinkleSurface& surface, float weight = 0.2f) {
         const Entity entity = square(surface, weight);
         const Vec3 result = rgb_at(radiance(view), 16, 16);
         world.destroy(entity);
@@ -64,13 +64,14 @@ TEST_CASE_FIXTURE(
     for (const ShadingModel model : {ShadingModel::Pbr, ShadingModel::Blinn, ShadingModel::Skin}) {
         material.shading = model;
         for (const float weight : {0.05f, 0.1f, 0.3f}) {
-            const Vec3 wrinkled = middle(in_full(WrinkleMethod::Bump), weight);
-            const Vec3 smooth = middle({.method = WrinkleMethod::None}, weight);
-            const Vec3 blended = middle({.method = WrinkleMethod::Blend, .lambda = 1}, weight);
-            const float share = wrinkle_intensity(limn::square(1 - weight), 1, 4);
+            const Vec3 wrinkled = center_pixel(in_full(WrinkleMethod::Bump), weight);
+            const Vec3 smooth = center_pixel({.method = WrinkleMethod::None}, weight);
+            const Vec3 blended =
+                center_pixel({.method = WrinkleMethod::Blend, .lambda = 1}, weight);
+            const float intensity = wrinkle_intensity(limn::square(1 - weight), 1, 4);
             CHECK(glm::length(wrinkled - smooth) > 0.01f);
             CHECK(
-                glm::length(blended - glm::mix(smooth, wrinkled, share))
+                glm::length(blended - glm::mix(smooth, wrinkled, intensity))
                 <= 2e-3f * glm::length(wrinkled - smooth));
         }
     }
@@ -115,20 +116,20 @@ TEST_CASE_FIXTURE(
     turn_light(glm::normalize(Vec3{0, 1, -0.05f}));
     const Vec3 to_slope = glm::normalize(Vec3(0, -map_slope().y, 1));
     REQUIRE(glm::dot(to_slope, Vec3{0, 1, -0.05f}) > 0.1f);
-    CHECK(middle(bump).x > 0.05f);
+    CHECK(center_pixel(bump).x > 0.05f);
     bump.fade = true;
-    CHECK(middle(bump) == Vec3(0));
-    CHECK(middle({.method = WrinkleMethod::Blend, .fade = true}) == Vec3(0));
+    CHECK(center_pixel(bump) == Vec3(0));
+    CHECK(center_pixel({.method = WrinkleMethod::Blend, .fade = true}) == Vec3(0));
 
-    // Halfway to a cosine of 1/8 half of it is left.
+    // Halfway to a cosine of 1/8 half of it remains.
     turn_light(Vec3{0, std::sqrt(1 - limn::square(0.0625f)), 0.0625f});
-    const float faded = middle(bump).x;
+    const float faded = center_pixel(bump).x;
     bump.fade = false;
-    CHECK(faded == near(0.5f * middle(bump).x).epsilon(4e-3));
+    CHECK(faded == near(0.5f * center_pixel(bump).x).epsilon(4e-3));
     turn_light(Vec3{0, std::sqrt(1 - limn::square(0.2f)), 0.2f});
-    const float full = middle(bump).x;
+    const float full = center_pixel(bump).x;
     bump.fade = true;
-    CHECK(middle(bump).x == near(full).epsilon(1e-4));
+    CHECK(center_pixel(bump).x == near(full).epsilon(1e-4));
 }
 
 TEST_CASE_FIXTURE(
@@ -141,16 +142,16 @@ TEST_CASE_FIXTURE(
     world.get<DirectionalLight>(light).illuminance = kPi;
     turn_light({0, 0, 1});
     const WrinkleSurface none = {.method = WrinkleMethod::None};
-    CHECK(middle(none).x == near(2).epsilon(2e-3));       // N = L = H
-    const Vec3 to_eye = glm::normalize(Vec3{-1, 1, 32});  // from the middle of the pixel
+    CHECK(center_pixel(none).x == near(2).epsilon(2e-3));  // N = L = H
+    const Vec3 to_eye = glm::normalize(Vec3{-1, 1, 32});   // from the center_pixel of the pixel
     const Vec3 half = glm::normalize(to_eye + Vec3{0, 0, 1});
     const Vec3 n = glm::normalize(Vec3(0, -map_slope().y, 1));
     const float highlight = std::pow(glm::dot(n, half), 4.0f);
     WrinkleSurface bump = in_full(WrinkleMethod::Bump);
     bump.fade = true;
-    CHECK(middle(bump).x == near(n.z + highlight).epsilon(5e-3));
+    CHECK(center_pixel(bump).x == near(n.z + highlight).epsilon(5e-3));
     material.base_color = {0, 0, 0, 1};
-    CHECK(middle(bump).x == near(highlight).epsilon(5e-3));
+    CHECK(center_pixel(bump).x == near(highlight).epsilon(5e-3));
 }
 
 TEST_CASE_FIXTURE(

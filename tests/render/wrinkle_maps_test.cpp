@@ -21,7 +21,7 @@ using DVec2 = glm::dvec2;
 using DVec3 = glm::dvec3;
 
 constexpr int kSide = 16;
-constexpr double kSeen = 1.74 / 255;  // half a step of 8 bits in each coordinate of a normal
+constexpr double kRounding = 1.74 / 255;  // half a step of 8 bits in each coordinate of a normal
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 template <typename Texel>
@@ -40,7 +40,7 @@ ImageData painted(Texel&& texel) {
     return image;
 }
 
-/// A normal in an image, upwards, other for each `kind`.
+/// An image of normals that point up, different for each `kind`.
 Vec4 normal_texel(int kind, int x, int y) {
     const auto phase = static_cast<float>(kind);
     const Vec2 slope = {
@@ -49,7 +49,7 @@ Vec4 normal_texel(int kind, int x, int y) {
     return {0.5f + 0.5f * glm::normalize(Vec3(slope, 1)), 1};
 }
 
-/// Four regions; in the middle column they overlap.
+/// Four regions that overlap in the central column.
 Vec4 mask_texel(int kind, int x, int y) {
     const float s = (static_cast<float>(x) + 0.5f) / kSide;
     const float t = (static_cast<float>(y) + 0.5f) / kSide;
@@ -109,12 +109,12 @@ class WrinkledFace : public Scene {
         place(add(make_square()), add(material), at({0, 0, 0}));
         face = world.create(maps, WrinkleWeights{});
     }
-    gpu::FloatImage seen() {
+    gpu::FloatImage rendered() {
         return radiance(look({0, 0, 1}, {0, 0, 0}, kZoom * kSide, kZoom * kSide));
     }
-    gpu::FloatImage seen(const WrinkleWeights& weights) {
+    gpu::FloatImage rendered(const WrinkleWeights& weights) {
         world.get<WrinkleWeights>(face) = weights;
-        return seen();
+        return rendered();
     }
     /// Normal of a texel.
     static DVec3 normal(const gpu::FloatImage& image, int x, int y) {
@@ -204,15 +204,15 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: what is drawn is the composite of every texel"
+    WrinkledFace, "wrinkle maps: the image shows the composite of every texel"
                       * technique("wrinkle.maps.composite")) {
     for (const WrinkleBlend blend : {WrinkleBlend::Lerp, WrinkleBlend::Slopes}) {
         world.get<WrinkleMaps>(face).blend = blend;
         for (const float factor : {1.0f, -1.0f, 0.05f}) {
             const WrinkleWeights weights = scaled(kGrimace, factor);
             const double error = largest_error(
-                seen(weights), [&](int x, int y) { return composed(weights, blend, x, y); });
-            CHECK(error <= kSeen);
+                rendered(weights), [&](int x, int y) { return composed(weights, blend, x, y); });
+            CHECK(error <= kRounding);
         }
     }
 }
@@ -220,38 +220,38 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     WrinkledFace, "skin pipeline: measured weights draw what the animator's would, pixel for pixel"
                       * technique("skin.pipeline")) {
-    const gpu::FloatImage animated = seen(kGrimace);
-    const gpu::FloatImage rest = seen({});
+    const gpu::FloatImage animated = rendered(kGrimace);
+    const gpu::FloatImage rest = rendered({});
     world.add(face, WrinkleResponse{.share = 1});
     world.add(face, MeasuredWrinkles{.weights = kGrimace, .started = true});
-    CHECK(seen({.lips = 1}).pixels == animated.pixels);
-    // Without a share of theirs the skin is as at rest: wrinkles are left to the surface.
+    CHECK(rendered({.lips = 1}).pixels == animated.pixels);
+    // With a `share` of 0 the skin is as at rest: wrinkles are left to the surface.
     world.get<WrinkleResponse>(face).share = 0;
-    CHECK(seen({.lips = 1}).pixels == rest.pixels);
+    CHECK(rendered({.lips = 1}).pixels == rest.pixels);
     // Half of it is half of the influence.
     world.get<WrinkleResponse>(face).share = 0.5f;
     world.get<MeasuredWrinkles>(face).weights = {.left_brow = 1};
-    const gpu::FloatImage half = seen({});
+    const gpu::FloatImage half = rendered({});
     world.remove<WrinkleResponse>(face);
-    CHECK(half.pixels == seen({.left_brow = 0.5f}).pixels);
+    CHECK(half.pixels == rendered({.left_brow = 0.5f}).pixels);
 }
 
 TEST_CASE_FIXTURE(
     WrinkledFace, "wrinkle maps: without weights normals are those of the skin"
                       * technique("wrinkle.maps.composite, wrinkle.maps.weights")) {
     const auto skin = [](int x, int y) { return decoded(normal_texel(0, x, y)); };
-    CHECK(largest_error(seen({}), skin) <= kSeen);
-    CHECK(largest_error(seen({.left_brow = kNaN, .lips = kNaN}), skin) <= kSeen);
+    CHECK(largest_error(rendered({}), skin) <= kRounding);
+    CHECK(largest_error(rendered({.left_brow = kNaN, .lips = kNaN}), skin) <= kRounding);
     world.remove<WrinkleWeights>(face);
-    CHECK(largest_error(seen(), skin) <= kSeen);
+    CHECK(largest_error(rendered(), skin) <= kRounding);
 }
 
 TEST_CASE_FIXTURE(
     WrinkledFace,
     "wrinkle maps: weights beyond -1 and 1 count as those" * technique("wrinkle.maps.weights")) {
-    const gpu::FloatImage full = seen(scaled(kGrimace, 0));
-    const gpu::FloatImage beyond = seen({.left_brow = 10, .right_brow = -10});
-    const gpu::FloatImage most = seen({.left_brow = 1, .right_brow = -1});
+    const gpu::FloatImage full = rendered(scaled(kGrimace, 0));
+    const gpu::FloatImage beyond = rendered({.left_brow = 10, .right_brow = -10});
+    const gpu::FloatImage most = rendered({.left_brow = 1, .right_brow = -1});
     CHECK(beyond.pixels == most.pixels);
     CHECK(beyond.pixels != full.pixels);
 }
@@ -260,13 +260,13 @@ TEST_CASE_FIXTURE(
     WrinkledFace, "wrinkle maps: regions that overlap act as one in full at most"
                       * technique("wrinkle.maps.influence")) {
     // First masks are s and 1 - s: together 1 everywhere, with the lips' 0.5 beyond.
-    const gpu::FloatImage one = seen({.left_brow = 1, .right_brow = 1});
-    const gpu::FloatImage more = seen({.left_brow = 1, .right_brow = 1, .lips = 1});
+    const gpu::FloatImage one = rendered({.left_brow = 1, .right_brow = 1});
+    const gpu::FloatImage more = rendered({.left_brow = 1, .right_brow = 1, .lips = 1});
     CHECK(one.pixels == more.pixels);
     const auto added = [](int x, int y) {
         return add_normals(decoded(normal_texel(0, x, y)), decoded(normal_texel(2, x, y)));
     };
-    CHECK(largest_error(one, added) <= kSeen);
+    CHECK(largest_error(one, added) <= kRounding);
 }
 
 TEST_CASE_FIXTURE(
@@ -274,10 +274,10 @@ TEST_CASE_FIXTURE(
     "wrinkle maps: opposite weights swap both maps" * technique("wrinkle.maps.influence")) {
     maps = world.get<WrinkleMaps>(face);
     const WrinkleWeights surprised = {.left_brow = -0.7f, .lips = -0.2f, .left_cheek = -0.5f};
-    const gpu::FloatImage stretched = seen(surprised);
+    const gpu::FloatImage stretched = rendered(surprised);
     std::swap(maps.stretched, maps.compressed);
     world.get<WrinkleMaps>(face) = maps;
-    CHECK(largest_difference(stretched, seen(scaled(surprised, -1))) == 0.0f);
+    CHECK(largest_difference(stretched, rendered(scaled(surprised, -1))) == 0.0f);
 }
 
 TEST_CASE_FIXTURE(
@@ -286,16 +286,16 @@ TEST_CASE_FIXTURE(
     // The cheeks' masks are below 1: only brows act in full.
     WrinkleWeights both = {.left_brow = 1, .right_brow = 1, .left_cheek = -1};
     const WrinkleWeights compressed = {.left_brow = 1, .right_brow = 1};
-    CHECK(seen(both).pixels == seen(compressed).pixels);
+    CHECK(rendered(both).pixels == rendered(compressed).pixels);
     world.get<WrinkleMaps>(face).blend = WrinkleBlend::Slopes;
-    CHECK(largest_difference(seen(both), seen(compressed)) > 0.01f);
+    CHECK(largest_difference(rendered(both), rendered(compressed)) > 0.01f);
 }
 
 TEST_CASE_FIXTURE(
     WrinkledFace, "wrinkle maps: without second masks the lower regions are silent"
                       * technique("wrinkle.maps.masks")) {
     world.get<WrinkleMaps>(face).second_masks = {};
-    CHECK(seen({.lips = 0.4f, .left_cheek = 1}).pixels == seen({.lips = 0.4f}).pixels);
+    CHECK(rendered({.lips = 0.4f, .left_cheek = 1}).pixels == rendered({.lips = 0.4f}).pixels);
 }
 
 TEST_CASE_FIXTURE(
@@ -309,13 +309,13 @@ TEST_CASE_FIXTURE(
         WrinkleMaps bad = good;
         bad.*image = {77};
         world.get<WrinkleMaps>(face) = bad;
-        CHECK(rgb_at(seen(kGrimace), 5, 5) == Vec3(0));
+        CHECK(rgb_at(rendered(kGrimace), 5, 5) == Vec3(0));
         bad.*image = good.target;
         world.get<WrinkleMaps>(face) = bad;
-        CHECK(rgb_at(seen(kGrimace), 5, 5) == Vec3(0));
+        CHECK(rgb_at(rendered(kGrimace), 5, 5) == Vec3(0));
     }
     world.get<WrinkleMaps>(face) = good;
-    CHECK(rgb_at(seen(kGrimace), 5, 5) != Vec3(0));
+    CHECK(rgb_at(rendered(kGrimace), 5, 5) != Vec3(0));
 }
 
 TEST_CASE_FIXTURE(
@@ -340,12 +340,12 @@ TEST_CASE_FIXTURE(
         WrinkleMaps changed = good;
         changed.*image = flat(2 * width, height);
         world.get<WrinkleMaps>(face) = changed;
-        CHECK(rgb_at(seen(kGrimace), 5, 5) == Vec3(0));
+        CHECK(rgb_at(rendered(kGrimace), 5, 5) == Vec3(0));
     }
     WrinkleMaps larger = good;
     larger.stretched = flat(2 * width, 2 * height);
     world.get<WrinkleMaps>(face) = larger;
-    CHECK(rgb_at(seen(kGrimace), 5, 5) != Vec3(0));
+    CHECK(rgb_at(rendered(kGrimace), 5, 5) != Vec3(0));
 }
 
 TEST_CASE_FIXTURE(
@@ -358,13 +358,13 @@ TEST_CASE_FIXTURE(
     const auto mask = add(painted([](int, int) { return Vec4(1, 0, 0, 0); }));
     const auto shown = [&](const Vec3& n, const Vec3& w1, const Vec3& w2, float weight) {
         world.get<WrinkleMaps>(face) = {flat(n), flat(w1), flat(w2), mask, {}, maps.target};
-        return normal(seen({.left_brow = weight}), 3, 3);
+        return normal(rendered({.left_brow = weight}), 3, 3);
     };
     const Vec3 up = {0, 0, 1};
     const Vec3 right = {0.6f, 0, 0.8f};
     const Vec3 front = {0, 0.6f, 0.8f};
     const auto is_near = [](const DVec3& found, const DVec3& expected) {
-        CHECK(glm::length(found - expected) <= kSeen);
+        CHECK(glm::length(found - expected) <= kRounding);
     };
     is_near(shown(right, up, front, 1), {0.564532, 0.564532, 0.602168});
     is_near(shown(front, right, up, -1), {0.564532, 0.564532, 0.602168});  // in either order
@@ -378,10 +378,10 @@ TEST_CASE_FIXTURE(
         const Vec3 steep = {0.8f, 0, 0.6f};
         const float weight = 0.25f * static_cast<float>(i + 1);
         const DVec3 n = shown(up, up, steep, weight);
-        CHECK(std::abs(std::atan2(n.x, n.z) - radians(source[i])) < kSeen);
+        CHECK(std::abs(std::atan2(n.x, n.z) - radians(source[i])) < kRounding);
         world.get<WrinkleMaps>(face).blend = WrinkleBlend::Slopes;
-        const DVec3 exact = normal(seen(), 3, 3);
-        CHECK(std::abs(std::atan2(exact.x, exact.z) - radians(height[i])) < kSeen);
+        const DVec3 exact = normal(rendered(), 3, 3);
+        CHECK(std::abs(std::atan2(exact.x, exact.z) - radians(height[i])) < kRounding);
     }
 }
 

@@ -14,7 +14,7 @@
 namespace limn::test::wrinkle_test {
 namespace {
 
-/// The factor on the slopes of the map that its normal was drawn with.
+/// The factor of the slopes of the map with which the normal was drawn.
 float drawn_factor(const gpu::FloatImage& normal) {
     const Vec3 n = rgb_at(normal, normal.width / 2, normal.height / 2);
     return n.y / n.z / -WrinkleScene::map_slope().y;
@@ -57,11 +57,11 @@ TEST_CASE_FIXTURE(
         surfaces.back().smoothing = 1.5f;
         surfaces.back().lambda = 0.5f;  // wrinkles at rest: little is compressed on the mean
     }
-    for (const WrinkleSurface& asked : surfaces) {
-        const WrinkleMethod method = asked.method;
+    for (const WrinkleSurface& requested : surfaces) {
+        const WrinkleMethod method = requested.method;
         MeshData tube = make_tube(24, 12, 1);
         add_morphs(tube, 1, 1, 0.03f, random);
-        const Entity entity = skin(std::move(tube), asked, 1);
+        const Entity entity = skin(std::move(tube), requested, 1);
         const oracle::SkinReadbackVertices found =
             readback->run(world, std::vector<Entity>{entity})[0];
         const WrinkleState& state = world.get<WrinkleState>(entity);
@@ -288,7 +288,7 @@ TEST_CASE_FIXTURE(
         CHECK(glm::length(expected) > 0.1f);
         CHECK(glm::distance(slope_at(0.2f), expected) < 4e-3f);
         CHECK(slope_at(0) == Vec2(0));
-        // Beyond the poses it stays where it is at their end.
+        // Beyond the poses it is clamped.
         CHECK(glm::distance(slope_at(0.9f), slope_at(0.5f)) < 1e-6f);
     }
 }
@@ -320,7 +320,7 @@ ImageData layered_map() {
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene, "wrinkle overlap: slopes of both layers add up, each by its own strength"
+    WrinkleScene, "wrinkle overlap: slopes of both layers add up, each scaled by its strength"
                       * technique("wrinkle.compression.overlap")) {
     MeshData mesh = make_square();
     MorphTarget& smaller = mesh.morphs.emplace_back();
@@ -345,7 +345,7 @@ TEST_CASE_FIXTURE(
     CHECK(summed.x == near(low * slope).epsilon(3e-3));
     CHECK(summed.y == near(high * slope).epsilon(3e-3));
 
-    // Independent, the second one covers the first: less of it is left, and in between it is
+    // Independent, the second one covers the first: less of it remains, and in between it is
     // flatter.
     const Vec2 covered =
         drawn({.method = WrinkleMethod::Bump, .combine = WrinkleCombine::Independent});

@@ -16,7 +16,7 @@ namespace {
 struct TierScene : WrinkleScene {
     TierScene() { shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0})); }
 
-    /// Of the square with these tangents, shortened to 0.8; none: without tangents.
+    /// Normal of the square with these tangents, shortened to 0.8; none: without tangents.
     Entity square_with(const WrinkleSurface& surface, const std::vector<Vec4>& tangents) {
         MeshData mesh = make_square();
         mesh.tangents = tangents;

@@ -90,7 +90,7 @@ const std::vector<Vec3> kPlaces{
 }  // namespace
 
 TEST_CASE(
-    "muscle: at rest nothing moves, and what lies beyond its reach or cone never does"
+    "muscle: at rest nothing moves, and points beyond its range or cone never do"
     * technique("face.waters-muscle")) {
     LinearMuscle muscle = kMuscleUp;
     muscle.contraction = 0.0f;
@@ -107,7 +107,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "muscle: it pulls to the bone, by nothing there, most at full, by nothing at its reach"
+    "muscle: it pulls to the bone, most at full, and by nothing there or at its range"
     * technique("face.waters-muscle")) {
     const auto pull = [](float distance) {
         const Vec3 p(0, distance, 0);
@@ -206,7 +206,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lattice: an inner point moves the middle by 0.375^3 of its way, a corner its vertex"
+    "lattice: an inner point moves the center by 0.375^3 of its offset, a corner its vertex"
     * technique("face.ffd")) {
     const Vec3 by(0.5f, 0.25f, -1.0f);
     const Lattice inner = make_lattice([&](const Vec3&, int i, int j, int k) {
@@ -242,7 +242,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "tug: without offset nothing changes to the bit, and the place moves by all of it"
+    "tug: without offset nothing changes to the bit, and its point moves by the whole offset"
     * technique("face.pull")) {
     const Tug tug{.at = {0.1f, -0.2f, 0.3f}, .offset = {0.02f, 0.01f, -0.005f}, .radius = 0.07f};
     CHECK(pack_deformers({.tugs = {{.at = tug.at, .radius = tug.radius}}}).empty());

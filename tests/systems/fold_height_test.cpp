@@ -112,7 +112,7 @@ TEST_CASE("fold height: twice the size of the sheet, folds are twice as high") {
 }
 
 TEST_CASE(
-    "fold height: where the map lies on the mesh does not matter, and no seam opens"
+    "fold height: the mapping to the mesh does not matter, and no seam opens"
     * technique("wrinkle.displacement")) {
     MeshData sheet = make_sheet(96);
     const std::vector<Vec2> whole = fold_heights(sheet, sine_map(), {}, false);
@@ -195,7 +195,7 @@ TEST_CASE("fold height: two layers have heights of their own") {
     CHECK(fold_heights(sheet, map, {}, true).empty());  // both flat
 }
 
-TEST_CASE("fold height: what is missing, not finite or out of range moves nothing") {
+TEST_CASE("fold height: missing, non-finite or out-of-range input displaces nothing") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     MeshData sheet = make_sheet(24);
     sheet.tangents.clear();

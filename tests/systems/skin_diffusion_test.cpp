@@ -82,7 +82,7 @@ std::vector<WrinkleRest> strain_rests(const Sheet& sheet, float smoothing) {
 }
 
 TEST_CASE(
-    "skin diffusion: constant strain stays as it is, by any driver, on any triangles"
+    "skin diffusion: constant strain is preserved, by any driver, on any triangles"
     * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(8, 0.5f);
     std::vector<Vec3> now = sheet.positions;
@@ -155,7 +155,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin diffusion: a peak spreads as far as asked, whatever the size of the triangles"
+    "skin diffusion: a peak spreads by the requested distance, whatever the triangle size"
     * technique("wrinkle.smoothing")) {
     for (const std::uint32_t side : {16u, 32u}) {
         for (const float edges : {0.5f, 1.0f, 2.0f}) {
@@ -174,7 +174,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin diffusion: fine meshes are left as they are" * technique("wrinkle.smoothing")) {
+TEST_CASE("skin diffusion: fine meshes hardly change" * technique("wrinkle.smoothing")) {
     double previous = 0;
     for (const std::uint32_t side : {8u, 16u, 32u}) {
         const Sheet sheet = make_sheet(side);

@@ -314,8 +314,7 @@ TEST_CASE("skin: scaled and mirrored joints keep normals perpendicular to the su
 }
 
 TEST_CASE(
-    "skin: vectors of the machine and plain C++ give the same bits, cut anywhere"
-    * technique("char.skin-cpu")) {
+    "skin: SIMD and plain C++ are bit-identical, split anywhere" * technique("char.skin-cpu")) {
     for (const std::size_t count : {1, 15, 16, 17, 203}) {
         Puppet puppet = make_puppet(30, count, 5);
         puppet.pose(random_pose(puppet.skeleton, 3));
@@ -330,9 +329,9 @@ TEST_CASE(
         skin_dual_scalar(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, count);
         CHECK(same_bits(plain.positions, puppet.moved.positions));
         CHECK(same_bits(plain.normals, puppet.moved.normals));
-        const std::size_t middle = count / 3;
-        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, middle);
-        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, middle, count);
+        const std::size_t split = count / 3;
+        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, split);
+        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, split, count);
         CHECK(same_bits(plain.positions, puppet.moved.positions));
         CHECK(same_bits(plain.tangents, puppet.moved.tangents));
     }
@@ -425,7 +424,7 @@ TEST_CASE(
     "skin: motions and normals that cancel, in the midst of others, are those of each alone") {
     for (const std::size_t run : {1, 1000}) {
         Puppet puppet = make_regular_puppet(2, run, 64);
-        for (std::size_t i = 0; i < 24; i += 2) {  // half a turn apart, and as far the other way
+        for (std::size_t i = 0; i < 24; i += 2) {  // half a turn apart, and opposite
             puppet.palette[i] = Affine{};
             puppet.palette[i].row[0] = {-1, 0, 0, 0};
             puppet.palette[i].row[2] = {0, 0, -1, 0};
@@ -517,7 +516,7 @@ TEST_CASE(
     CHECK(half.tangents[4] == mesh.tangents[4] + Vec4(0, -2, 0, 0));
     std::swap(mesh.morphs[0], mesh.morphs[1]);
     CHECK(glm::distance(shaped({-2, 0.5f}).positions[3], half.positions[3]) < 1e-6f);
-    CHECK(same_bits(shaped({0, 0, 9, 9}).positions, mesh.positions));  // nobody has those
+    CHECK(same_bits(shaped({0, 0, 9, 9}).positions, mesh.positions));  // no such targets
 }
 
 TEST_CASE(
@@ -533,7 +532,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin: a palette of three rows a joint does what 4x4 matrices do, in three quarters of it"
+    "skin: a palette of three rows per joint equals 4x4 matrices in three quarters of the space"
     * technique("char.skin-limits")) {
     Puppet puppet = make_puppet(98, 200, 4);
     puppet.pose(random_pose(puppet.skeleton, 0.2f));
@@ -546,7 +545,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin: weights that sum to a half pull a vertex half way to the origin") {
+TEST_CASE("skin: weights that sum to a half pull a vertex halfway to the origin") {
     // Which is why what is loaded is scaled to a sum of 1.
     Puppet puppet = make_puppet(5, 60, 3);
     puppet.pose(random_pose(puppet.skeleton, 0.7f));

@@ -45,7 +45,7 @@ MeshData make_skin(int cells, float half) {
     return mesh;
 }
 
-/// Skin of one joint that turns it, an eye before it, and a pointer.
+/// Skin rotated by one joint, an eye in front of it, and a pointer.
 struct PullScene {
     World world;
     Schedule schedule = make_world_schedule();
@@ -70,7 +70,7 @@ struct PullScene {
         world.add(face, Deformed{face, SkinId{0}});
         start_world(world);
     }
-    /// Runs `seconds` with the pointer on a place; the left button held or not.
+    /// Runs `seconds` with the pointer on a point; the left button held or not.
     void run(float seconds, const Vec3& at, bool held) {
         Input input;
         input.eye = eye;
@@ -96,7 +96,7 @@ struct PullScene {
     }
 };
 
-constexpr std::size_t kMiddle = 40;  // of 9 x 9 vertices
+constexpr std::size_t kCenter = 40;  // of 9 x 9 vertices
 
 /// Hardly limited, so that skin follows exactly.
 constexpr PullableSkin kFree = {.radius = 0.03f, .reach = 100};
@@ -139,7 +139,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin pull: pulls keep their direction and never exceed the reach") {
+TEST_CASE("skin pull: pulls keep their direction and never exceed the limit") {
     const Vec3 direction = glm::normalize(Vec3(1, -2, 3));
     CHECK(glm::distance(limited_pull(1e-4f * direction, 0.02f), 1e-4f * direction) < 1e-8f);
     float last = 0;
@@ -156,7 +156,7 @@ TEST_CASE("skin pull: pulls keep their direction and never exceed the reach") {
     CHECK(limited_pull(Vec3(1), 0) == Vec3(0));
 }
 
-TEST_CASE("skin pull: the nearest front face is taken, and no back") {
+TEST_CASE("skin pull: the nearest front face is grabbed, and no back face") {
     MeshData mesh = make_skin(2, 1);
     const std::size_t count = mesh.positions.size();
     for (std::size_t v = 0; v < count; ++v) {  // a second layer, farther
@@ -170,34 +170,34 @@ TEST_CASE("skin pull: the nearest front face is taken, and no back") {
     const auto hit = hit_skin(mesh.positions, mesh.indices, from, {0, 0, -2});
     REQUIRE(hit);
     CHECK(hit->distance == near(1));
-    Vec3 place(0);
+    Vec3 point(0);
     for (std::uint32_t k = 0; k < 3; ++k) {
-        place += hit->barycentric[static_cast<int>(k)]
+        point += hit->barycentric[static_cast<int>(k)]
                  * mesh.positions[mesh.indices[3 * hit->triangle + k]];
     }
-    CHECK(glm::distance(place, Vec3(0.3f, 0.2f, 0)) < 1e-6f);
+    CHECK(glm::distance(point, Vec3(0.3f, 0.2f, 0)) < 1e-6f);
     CHECK_FALSE(hit_skin(mesh.positions, mesh.indices, {0.3f, 0.2f, -3}, {0, 0, 1}));
     CHECK_FALSE(hit_skin(mesh.positions, mesh.indices, {3, 0, 2}, {0, 0, -1}));
 }
 
 TEST_CASE(
-    "skin pull: the place under the pointer follows it, whatever its joint does"
+    "skin pull: the point under the pointer follows it, whatever its joint does"
     * technique("face.pull")) {
     const Affine turned =
         affine_from({0.01f, 0.02f, -0.03f}, glm::angleAxis(0.5f, Vec3(0, 1, 0)), Vec3(1));
     for (const Affine& joint : {Affine{}, turned}) {
         PullScene scene(kFree, 1.0f / 60, joint);
-        const Vec3 place = scene.drawn()[kMiddle];
-        const Vec3 to = place + Vec3(0.006f, -0.004f, 0);
-        scene.run(0.05f, place, true);
+        const Vec3 from = scene.drawn()[kCenter];
+        const Vec3 to = from + Vec3(0.006f, -0.004f, 0);
+        scene.run(0.05f, from, true);
         REQUIRE(scene.pulls().size() == 1);
-        CHECK(glm::distance(scene.drawn()[kMiddle], place) < 1e-6f);
+        CHECK(glm::distance(scene.drawn()[kCenter], from) < 1e-6f);
         scene.run(1, to, true);
-        // At the distance from the eye at which it was taken.
-        const Vec3 wanted =
-            scene.eye + glm::distance(place, scene.eye) * glm::normalize(to - scene.eye);
-        CHECK(glm::distance(scene.drawn()[kMiddle], wanted) < 1e-5f);
-        CHECK(glm::distance(wanted, to) < 2e-4f);
+        // At the distance from the eye at which it was grabbed.
+        const Vec3 expected =
+            scene.eye + glm::distance(from, scene.eye) * glm::normalize(to - scene.eye);
+        CHECK(glm::distance(scene.drawn()[kCenter], expected) < 1e-5f);
+        CHECK(glm::distance(expected, to) < 2e-4f);
         // A corner is beyond the radius.
         PullScene rest(kFree, 1.0f / 60, joint);
         CHECK(scene.drawn()[0] == rest.drawn()[0]);
@@ -205,7 +205,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin pull: what is let go springs back, and is at rest to the bit" * technique("face.pull")) {
+    "skin pull: released skin springs back, and is at rest to the bit" * technique("face.pull")) {
     PullScene scene(kFree);
     const std::vector<Vec3> rest = scene.drawn();
     scene.run(0.05f, {0, 0, 0}, true);
@@ -221,7 +221,7 @@ TEST_CASE(
     CHECK(scene.pulls().empty());
     CHECK(scene.world.get<DeformerState>(scene.face).now.empty());
     CHECK(scene.drawn() == rest);
-    // The button pressed beside the skin takes nothing, moved onto it or not.
+    // Pressing the button beside the skin grabs nothing, even if it then moves onto it.
     scene.run(0.1f, {0.2f, 0, 0}, true);
     scene.run(0.1f, {0, 0, 0}, true);
     CHECK(scene.pulls().empty());
@@ -247,14 +247,14 @@ TEST_CASE(
 
 TEST_CASE("skin pull: other deformers of the character follow it, and those of others do not") {
     PullScene scene(kFree);
-    const auto place = [&](Entity character) {
+    const auto add_brows = [&](Entity character) {
         const Entity entity = scene.world.create(
             MeshInstance{.mesh = {0}, .material = {}}, WorldTransform{}, Deformers{});
         scene.world.add(entity, Deformed{character, SkinId{0}});
         return entity;
     };
-    const Entity brows = place(scene.face);
-    const Entity stranger = place(scene.world.create());
+    const Entity brows = add_brows(scene.face);
+    const Entity stranger = add_brows(scene.world.create());
     scene.run(0.05f, {0, 0, 0}, true);
     scene.run(0.1f, {0.01f, 0, 0}, true);
     const std::vector<Vec4> packed = scene.world.get<DeformerState>(scene.face).now;

@@ -122,8 +122,8 @@ bool is_in(const std::string& region, const Vec3& c, float nz) {
 
 struct RegionStrain {
     double mean = 0;       ///< of min(lower, 0) [%]
-    double below[3] = {};  ///< share of area below -5, -10, -20 % [%]
-    double theta = 0;      ///< direction of most shortening, right side mirrored [deg], 0 .. 180
+    double below[3] = {};  ///< fraction of area below -5, -10, -20 % [%]
+    double theta = 0;      ///< direction of maximum shortening, right side mirrored [deg], 0 .. 180
 };
 
 /// The ICT neutral with every shape of the assets, right halves mirrored where absent.
@@ -174,8 +174,8 @@ class IctFace {
         }
         REQUIRE(area > 0);
         found.mean /= area;
-        for (double& share : found.below) {
-            share /= area;
+        for (double& fraction : found.below) {
+            fraction /= area;
         }
         found.theta = std::fmod(0.5 * std::atan2(sine, cosine) * 180 / kPi + 180, 180);
         return found;
@@ -243,7 +243,7 @@ TEST_CASE("skin_strain: compression along a slanted direction keeps its angle") 
     }
 }
 
-TEST_CASE("skin_strain: degenerate and non-finite triangles are left out") {
+TEST_CASE("skin_strain: degenerate and non-finite triangles are skipped") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {nan, 0, 0}};
     const std::vector<std::uint32_t> indices = {0, 1, 3, 0, 1, 4, 0, 1, 9, 0, 0, 1, 0, 1, 2};
@@ -256,7 +256,7 @@ TEST_CASE("skin_strain: degenerate and non-finite triangles are left out") {
     check_strain(strain[0], 0, 0, 0);
 }
 
-TEST_CASE("skin_strain: triangles with an edge below the limit are left out") {
+TEST_CASE("skin_strain: triangles with an edge below the limit are skipped") {
     const std::vector<Vec3> sliver = {{0, 0, 0}, {1e-4f, 0, 0}, {0, 0.01f, 0}};
     CHECK(make_skin_triangles(sliver, kCorners).source.empty());
     CHECK(make_skin_triangles(sliver, kCorners, 5e-5f).source.size() == 1);

@@ -68,22 +68,22 @@ struct Skin {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;
     std::vector<Vec4> tangents;
-    std::vector<SurfacePlace> places;
+    std::vector<SurfaceAnchor> anchors;
 
-    void bind(const Surface& surface, float reach) {
+    void bind(const Surface& surface, float max_distance) {
         normals.assign(positions.size(), glm::normalize(Vec3(0.2f, 1, -0.1f)));
         tangents.assign(positions.size(), Vec4(1, 0, 0, -1));
-        places = bind_to_patches(
-            positions, normals, tangents, surface.positions, surface.corners, reach);
+        anchors = bind_to_patches(
+            positions, normals, tangents, surface.positions, surface.corners, max_distance);
     }
     [[nodiscard]] Skin follow(const Surface& surface) const {
         Skin moved = *this;
-        follow_patches(places, surface.patches, moved.positions, moved.normals, moved.tangents);
+        follow_patches(anchors, surface.patches, moved.positions, moved.normals, moved.tangents);
         return moved;
     }
 };
 
-Skin skin_over(const Surface& surface, float reach = 0.3f) {
+Skin skin_over(const Surface& surface, float max_distance = 0.3f) {
     Skin skin;
     Random random(2, 7, 1, 8);
     while (skin.positions.size() < 400) {
@@ -94,7 +94,7 @@ Skin skin_over(const Surface& surface, float reach = 0.3f) {
                 + 0.2f * (random.uniform() - 0.5f),
             at.y);
     }
-    skin.bind(surface, reach);
+    skin.bind(surface, max_distance);
     return skin;
 }
 
@@ -221,7 +221,7 @@ TEST_CASE(
     const Skin moved = skin.follow(surface);
     std::size_t bound = 0;
     for (std::size_t i = 0; i < skin.positions.size(); ++i) {
-        bound += skin.places[i].patch != kNoPatch ? 1 : 0;
+        bound += skin.anchors[i].patch != kNoPatch ? 1 : 0;
         CHECK(glm::distance(moved.positions[i], skin.positions[i]) < 1e-6f);
         CHECK(glm::distance(moved.normals[i], skin.normals[i]) < 1e-5f);
         CHECK(glm::distance(moved.tangents[i], skin.tangents[i]) < 1e-5f);
@@ -246,12 +246,12 @@ TEST_CASE(
     }
     skin.bind(surface, 1);
     for (std::size_t i = 0; i < heights.size(); ++i) {
-        const SurfacePlace& place = skin.places[i];
-        REQUIRE(place.patch != kNoPatch);
-        CHECK(glm::length(place.offset - Vec3(0, 0, heights[i])) < 1e-5f);
+        const SurfaceAnchor& anchor = skin.anchors[i];
+        REQUIRE(anchor.patch != kNoPatch);
+        CHECK(glm::length(anchor.offset - Vec3(0, 0, heights[i])) < 1e-5f);
         CHECK(
             glm::distance(
-                evaluate_patch(surface.patch(place.patch), place.u, place.v).position, feet[i])
+                evaluate_patch(surface.patch(anchor.patch), anchor.u, anchor.v).position, feet[i])
             < 1e-4f);
     }
 }
@@ -279,8 +279,8 @@ TEST_CASE(
             nearest = std::min(nearest, glm::distance(sample, skin.positions[i]));
         }
         // Along the field of normals, which leans a little: not quite the nearest point.
-        if (skin.places[i].patch != kNoPatch) {
-            CHECK(glm::length(skin.places[i].offset) < 1.03f * nearest + 1e-3f);
+        if (skin.anchors[i].patch != kNoPatch) {
+            CHECK(glm::length(skin.anchors[i].offset) < 1.03f * nearest + 1e-3f);
         }
     }
 }
@@ -293,7 +293,7 @@ TEST_CASE(
     const Skin moved =
         skin.follow(map_surface(surface, [](const Vec3& p) { return transform_point(kTurn, p); }));
     for (std::size_t i = 0; i < skin.positions.size(); ++i) {
-        if (skin.places[i].patch == kNoPatch) {
+        if (skin.anchors[i].patch == kNoPatch) {
             continue;
         }
         CHECK(glm::distance(moved.positions[i], transform_point(kTurn, skin.positions[i])) < 1e-5f);
@@ -322,8 +322,8 @@ TEST_CASE(
     const Skin moved = skin.follow(map_surface(surface, bend));
     std::size_t apart = 0;
     for (std::size_t i = 0; i < skin.positions.size(); i += 2) {
-        REQUIRE(skin.places[i].patch != kNoPatch);
-        apart += skin.places[i].patch != skin.places[i + 1].patch ? 1 : 0;
+        REQUIRE(skin.anchors[i].patch != kNoPatch);
+        apart += skin.anchors[i].patch != skin.anchors[i + 1].patch ? 1 : 0;
         CHECK(glm::distance(moved.positions[i], moved.positions[i + 1]) < 1e-3f);
     }
     CHECK(apart > skin.positions.size() / 3);
@@ -335,17 +335,17 @@ TEST_CASE(
     const Surface bent = map_surface(surface, bend);
     Skin skin = skin_over(surface);
     std::vector<Skin> moved;
-    for (const float share : {0.0f, 1.0f, 2.0f}) {
+    for (const float scale : {0.0f, 1.0f, 2.0f}) {
         Skin scaled = skin;
-        for (SurfacePlace& place : scaled.places) {
-            place.offset *= share;
+        for (SurfaceAnchor& anchor : scaled.anchors) {
+            anchor.offset *= scale;
         }
         moved.push_back(scaled.follow(bent));
     }
     for (std::size_t i = 0; i < skin.positions.size(); ++i) {
-        if (skin.places[i].patch != kNoPatch) {
-            const Vec3 middle = 0.5f * (moved[0].positions[i] + moved[2].positions[i]);
-            CHECK(glm::distance(moved[1].positions[i], middle) < 1e-6f);
+        if (skin.anchors[i].patch != kNoPatch) {
+            const Vec3 mean = 0.5f * (moved[0].positions[i] + moved[2].positions[i]);
+            CHECK(glm::distance(moved[1].positions[i], mean) < 1e-6f);
         }
     }
 }
@@ -365,7 +365,7 @@ TEST_CASE(
     }
     skin.bind(surface, 1);
     skin.normals.assign(skin.positions.size(), Vec3(0, 1, 0));
-    skin.places = bind_to_patches(
+    skin.anchors = bind_to_patches(
         skin.positions, skin.normals, skin.tangents, surface.positions, surface.corners, 1);
     const Skin moved = skin.follow(bent);
     for (std::size_t i = 0; i < skin.positions.size(); i += 3) {
@@ -384,10 +384,10 @@ TEST_CASE(
     Skin skin;
     skin.positions = {{0, 0.6f, 0}, {0, 0.12f, 0}, {1.3f, 0.1f, 0}, {0.2f, 0.1f, -1.4f}};
     skin.bind(surface, 0.3f);
-    CHECK(skin.places[0].patch == kNoPatch);
-    CHECK(skin.places[1].patch != kNoPatch);
-    CHECK(skin.places[2].patch == kNoPatch);
-    CHECK(skin.places[3].patch == kNoPatch);
+    CHECK(skin.anchors[0].patch == kNoPatch);
+    CHECK(skin.anchors[1].patch != kNoPatch);
+    CHECK(skin.anchors[2].patch == kNoPatch);
+    CHECK(skin.anchors[3].patch == kNoPatch);
     const Skin moved = skin.follow(map_surface(surface, bend));
     CHECK(moved.positions[0] == skin.positions[0]);
     CHECK(moved.normals[2] == skin.normals[2]);
@@ -404,8 +404,8 @@ TEST_CASE(
         skin.positions.push_back((0.4f + 0.8f * random.uniform()) * random.direction());
     }
     skin.bind(sphere, 2);
-    for (const SurfacePlace& place : skin.places) {
-        CHECK(place.patch != kNoPatch);
+    for (const SurfaceAnchor& anchor : skin.anchors) {
+        CHECK(anchor.patch != kNoPatch);
     }
     const Skin moved =
         skin.follow(map_surface(sphere, [](const Vec3& p) { return transform_point(kTurn, p); }));
@@ -438,11 +438,11 @@ TEST_CASE(
         normals.insert(normals.end(), {{0, 1, 0}, {0, -1, 0}, {0, 1, 0}, {0, -1, 0}});
     }
     const std::vector<Vec4> tangents(points.size(), Vec4(1, 0, 0, 1));
-    const std::vector<SurfacePlace> places =
+    const std::vector<SurfaceAnchor> anchors =
         bind_to_patches(points, normals, tangents, lips.positions, lips.corners, 1);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        REQUIRE(places[i].patch != kNoPatch);
-        CHECK((places[i].patch < lower) == (normals[i].y > 0));
+        REQUIRE(anchors[i].patch != kNoPatch);
+        CHECK((anchors[i].patch < lower) == (normals[i].y > 0));
     }
 }
 
@@ -474,12 +474,12 @@ TEST_CASE(
     }
     const std::vector<Vec3> normals(skin.positions.size(), Vec3(0, 1, 0));
     const std::vector<Vec4> tangents(skin.positions.size(), Vec4(1, 0, 0, 1));
-    const std::vector<SurfacePlace> places = bind_to_patches(
+    const std::vector<SurfaceAnchor> anchors = bind_to_patches(
         skin.positions, normals, tangents, lips.positions, lips.corners, 1, {chart, corner_chart});
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        REQUIRE(places[i].patch != kNoPatch);
-        CHECK((places[i].patch < lower) == (i % 2 == 0));
-        CHECK(std::abs(places[i].offset.z - (i % 2 == 0 ? 0.0f : -1e-3f)) < 2e-4f);
+    for (std::size_t i = 0; i < anchors.size(); ++i) {
+        REQUIRE(anchors[i].patch != kNoPatch);
+        CHECK((anchors[i].patch < lower) == (i % 2 == 0));
+        CHECK(std::abs(anchors[i].offset.z - (i % 2 == 0 ? 0.0f : -1e-3f)) < 2e-4f);
     }
 }
 
@@ -494,12 +494,12 @@ TEST_CASE(
         skin.positions.push_back(skin.positions[static_cast<std::size_t>(i)]);
     }
     skin.bind(surface, 0.3f);
-    for (std::size_t i = skin.places.size() - 60; i < skin.places.size(); ++i) {
-        skin.places[i].offset.x = 0.05f * random.uniform();
-        skin.places[i].offset.y = -0.03f * random.uniform();
+    for (std::size_t i = skin.anchors.size() - 60; i < skin.anchors.size(); ++i) {
+        skin.anchors[i].offset.x = 0.05f * random.uniform();
+        skin.anchors[i].offset.y = -0.03f * random.uniform();
     }
-    const std::vector<std::uint32_t> order = order_by_patch(skin.places);
-    CHECK(order.size() + 1 <= skin.places.size());
+    const std::vector<std::uint32_t> order = order_by_patch(skin.anchors);
+    CHECK(order.size() + 1 <= skin.anchors.size());
     Surface bent = map_surface(surface, bend);
     for (const bool crushed : {false, true}) {
         if (crushed) {  // the first triangle has neither normals nor tangents
@@ -511,7 +511,7 @@ TEST_CASE(
                 bent.patches[i] = Vec4(1, 2, 3, 0) * (i < kPatchPoints ? 1.0f : 0.0f);
             }
         }
-        const SurfaceShape shape = {skin.places, bent.patches, order};
+        const SurfaceShape shape = {skin.anchors, bent.patches, order};
         std::vector<Vec3> at_once = skin.positions;
         std::vector<Vec3> one_by_one = skin.positions;
         move_by_patches(shape, at_once);
@@ -531,8 +531,8 @@ TEST_CASE("patches: no vertex moves farther than the bound" * technique("face.bi
     const Skin skin = skin_over(surface);
     const Skin moved = skin.follow(bent);
     float largest = 0.0f;
-    for (const SurfacePlace& place : skin.places) {
-        largest = std::max(largest, glm::length(place.offset));
+    for (const SurfaceAnchor& anchor : skin.anchors) {
+        largest = std::max(largest, glm::length(anchor.offset));
     }
     const float most = max_motion(surface.patches, bent.patches, largest);
     float found = 0.0f;
@@ -560,7 +560,7 @@ TEST_CASE(
     make_patches(apart, closed, patches);
     CHECK(patches == surface.patches);
     CHECK(make_patch_faces(apart, each)->named == each);
-    // Of different kinds, vertices at one place stay apart.
+    // Of different kinds, vertices at one position stay apart.
     std::vector<std::uint64_t> kinds(apart.size());
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         kinds[i] = i / 3 % 2;

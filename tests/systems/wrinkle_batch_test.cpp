@@ -164,7 +164,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("wrinkle batch: folds at rest count as shortening, each face by its own share") {
+TEST_CASE("wrinkle batch: folds at rest count as shortening, each face by its own weight") {
     const Sheet sheet = make_sheet();
     std::vector<float> resting(sheet.positions.size(), 0.0f);
     for (std::size_t v = 0; v < resting.size(); v += 3) {  // some where nothing is measured

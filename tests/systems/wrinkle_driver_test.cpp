@@ -46,7 +46,7 @@ Positions mapped(const Positions& positions, const std::function<Vec3(Vec3)>& ma
     return result;
 }
 
-/// By the shortest direction, with the axes of SkinTriangles.
+/// Compression in the direction of least stretch, with the axes of SkinTriangles.
 std::vector<WrinkleRest>
 strain_rests(const Sheet& sheet, WrinkleWeight weight = WrinkleWeight::Angle) {
     const SkinTriangles skin = make_skin_triangles(sheet.positions, sheet.indices, 0);
@@ -77,11 +77,11 @@ TEST_CASE(
     for (const float ratio : vertex_compression(edges, sheet.positions)) {
         CHECK(ratio == near(1));
     }
-    const std::size_t middle = 12;
-    CHECK(vertex_compression(chord_rests(sheet, {1, 0, 0}), sheared)[middle] == near(1));
-    CHECK(std::abs(vertex_compression(edges, sheared)[middle] - 1) > 0.05f);
+    const std::size_t center = 12;
+    CHECK(vertex_compression(chord_rests(sheet, {1, 0, 0}), sheared)[center] == near(1));
+    CHECK(std::abs(vertex_compression(edges, sheared)[center] - 1) > 0.05f);
 
-    // A vertex between two right triangles: edges along x and y, each with half of the share.
+    // A vertex between two right triangles: edges along x and y, each with half of the weight.
     const Sheet corner = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}};
     const std::vector<WrinkleRest> one = {make_edge_rest(corner.positions, corner.indices)};
     const Positions shorter = mapped(corner.positions, [](Vec3 p) {
@@ -91,7 +91,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle driver: strain finds the shortest direction, whichever it is"
+    "wrinkle driver: strain finds the direction of least stretch, whichever it is"
     * technique("face.strain")) {
     const Sheet sheet = make_sheet();
     const std::vector<WrinkleRest> rests = strain_rests(sheet);
@@ -165,7 +165,7 @@ TEST_CASE(
             CHECK(principal.higher == near(0.05));
             // The direction of compression is still the axis u.
             CHECK(std::abs(std::cos(side * principal.angle + angle)) == near(1));
-            // Turned back, its own tensor gives what there was.
+            // Rotated back, it is the original tensor.
             const SkinStrain squared = {
                 .uu = square(1 + turned.uu) + square(turned.uv),
                 .vv = square(1 + turned.vv) + square(turned.uv),

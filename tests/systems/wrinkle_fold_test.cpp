@@ -25,7 +25,7 @@ std::vector<Vec2> sine_slopes(int count = 4096) {
     return slopes;
 }
 
-/// Length of a profile whose slopes are multiplied, over its place.
+/// Length of a profile whose slopes are multiplied, relative to its flat length.
 double length_of(const std::vector<Vec2>& slopes, double factor) {
     double sum = 0;
     for (const Vec2& slope : slopes) {
@@ -40,7 +40,7 @@ double length_of(const std::vector<Vec2>& slopes, double factor) {
 TEST_CASE(
     "wrinkle fold: a sine is as high as its elliptic integral says"
     * technique("wrinkle.compression.skin-model")) {
-    // Amplitude over wavelength by the share of the length that is left (face-facts F).
+    // Amplitude over wavelength by the fraction of the length that remains (face-facts F).
     struct Row {
         float left, amplitude;
     };
@@ -74,7 +74,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("wrinkle fold: flat texels do not count, and a flat map has no folds") {
+TEST_CASE("wrinkle fold: flat texels are ignored, and a flat map has no folds") {
     std::vector<Vec2> slopes = sine_slopes();
     const FoldTable alone = make_fold_table(slopes);
     slopes.resize(3 * slopes.size(), Vec2{0, 0});
@@ -87,7 +87,7 @@ TEST_CASE("wrinkle fold: flat texels do not count, and a flat map has no folds")
 }
 
 TEST_CASE(
-    "wrinkle fold: no shortening, no fold; stretch neither, nor what the slack takes"
+    "wrinkle fold: neither rest nor stretch folds, nor shortening within the slack"
     * technique("wrinkle.compression.skin-model")) {
     const FoldTable table = make_fold_table(sine_slopes());
     CHECK(fold_strength(table, fold_excess(1, 0, 1)) == 0);

@@ -101,7 +101,7 @@ float mean_at_center(const Fan& fan, WrinkleWeight weight) {
 }  // namespace
 
 TEST_CASE(
-    "wrinkle measure: the examples of chords, from the middle vertex to the edge before it"
+    "wrinkle measure: the examples of chords, from the vertex in between to the opposite edge"
     * technique("wrinkle.compression.rest-measure")) {
     const auto check = [](const Positions& p, Vec3 across, int apex, Vec3 end, float length2) {
         const Chord chord = find_chord(p, across);
@@ -213,7 +213,7 @@ TEST_CASE(
 
 TEST_CASE(
     "wrinkle measure: an edge of three triangles and one triangle twice are measured as others") {
-    // A page in a book: all are shortened alike, so every mean is that.
+    // A page in a book: all are shortened equally, so every mean is the same.
     const Positions book = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
     const std::vector<std::uint32_t> pages = {0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 2};
     const WrinkleRest rest =
@@ -222,7 +222,7 @@ TEST_CASE(
     for (const float ratio : vertex_compression({&rest, 1}, shorter)) {
         CHECK(ratio == near(0.81).epsilon(1e-5));
     }
-    // An index beyond the positions is no triangle.
+    // A triangle with an index out of range is ignored.
     const std::vector<std::uint32_t> beyond = {0, 1, 2, 0, 1, 77};
     const WrinkleRest cut =
         make_wrinkle_rest(book, beyond, std::vector<Vec3>(book.size(), Vec3(0, 1, 0)));
@@ -230,7 +230,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle measure: by angles, how a fan is divided does not matter"
+    "wrinkle measure: weighted by angles, the subdivision of a fan does not matter"
     * technique("wrinkle.compression.vertex-weight")) {
     // Four right angles about a point, the last one compressed to a half.
     Fan four{
@@ -341,7 +341,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle measure: skin that is stretched along its folds gets narrower without folding"
+    "wrinkle measure: skin that is stretched along its folds narrows without folding"
     * technique("wrinkle.natural-width")) {
     constexpr float kPoisson = 0.5f;
     const std::vector<Vec3> across(3, Vec3{1, 0, 0});
@@ -373,11 +373,11 @@ TEST_CASE(
         VertexRegion second = {.name = "second", .weights = {}, .across = {}};
         const float angle = radians(60.0f);
         for (std::size_t i = 0; i < kSteps; ++i) {
-            const float share = static_cast<float>(i) / (kSteps - 1);
-            mesh.positions.emplace_back(share, 0, 0);
+            const float x = static_cast<float>(i) / (kSteps - 1);
+            mesh.positions.emplace_back(x, 0, 0);
             mesh.normals.emplace_back(0, 0, 1);
-            first.weights.push_back(1 - share);
-            second.weights.push_back(share);
+            first.weights.push_back(1 - x);
+            second.weights.push_back(x);
             first.across.emplace_back(1, 0, 0);
             if (second_has_direction) {
                 second.across.emplace_back(-std::cos(angle), -std::sin(angle), 0);

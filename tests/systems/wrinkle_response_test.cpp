@@ -51,7 +51,7 @@ MeshData make_skin() {
     return mesh;
 }
 
-/// left_brow is left of the middle column of vertices, right_brow right of it, lips nowhere.
+/// left_brow is left of the central column of vertices, right_brow right of it, lips nowhere.
 ImageData make_masks() {
     ImageData image;
     image.name = "masks";
@@ -201,11 +201,11 @@ TEST_CASE(
     };
     CHECK(weight() == 0);
     face.world.get<MorphWeights>(face.entity).weights[0] = 0.2f;
-    const double share = 1 - std::exp(-1 / (60 * 0.06));
+    const double fraction = 1 - std::exp(-1 / (60 * 0.06));
     double expected = 0;
     for (int i = 0; i < 5; ++i) {
         face.world.run(update_wrinkle_responses);
-        expected += share * (0.712663 - expected);
+        expected += fraction * (0.712663 - expected);
         CHECK(weight() == near(expected).epsilon(1e-4));
     }
     // A face that starts deformed is so from its first step.

@@ -69,7 +69,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle system: a state follows its mesh, its regions and what is asked for"
+    "wrinkle system: a state follows its mesh, its regions and its settings"
     * technique("wrinkle.compression.integration")) {
     World world;
     world.insert_resource(two_regions());
@@ -170,11 +170,11 @@ TEST_CASE(
     float before = 1;
     for (int i = 1; i < 12; ++i) {
         const float r = 0.1f * static_cast<float>(i);
-        const float share = radial_falloff({1 + r, 2, 3}, {1, 2, 3}, 1);
-        CHECK(share == near(radial_falloff({1, 2 - 0.6f * r, 3 + 0.8f * r}, {1, 2, 3}, 1)));
-        CHECK((share < before || share == 0));
-        CHECK((share == 0) == (i >= 10));
-        before = share;
+        const float falloff = radial_falloff({1 + r, 2, 3}, {1, 2, 3}, 1);
+        CHECK(falloff == near(radial_falloff({1, 2 - 0.6f * r, 3 + 0.8f * r}, {1, 2, 3}, 1)));
+        CHECK((falloff < before || falloff == 0));
+        CHECK((falloff == 0) == (i >= 10));
+        before = falloff;
     }
 }
 

@@ -1,4 +1,4 @@
-// The image that furrows are drawn on, as in content/bake/furrow_trace.cpp.
+// The image on which furrows are drawn, as in content/bake/furrow_trace.cpp.
 
 uniform ivec2 size;  // [px]
 uniform ivec2 wraps; // 1: the image repeats to the right, downwards

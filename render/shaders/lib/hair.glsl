@@ -3,12 +3,12 @@
 // that of d'Eon et al., "An Energy-Conserving Hair Reflectance Model", 2011, one of the azimuth, and an attenuation.
 // Azimuths of TT and TRT are von Mises distributions as in Karis, "Physically Based Hair Shading in Unreal", 2016;
 // absorption follows from the color as in Chiang et al., "A Practical and Controllable Hair and Fur Model", 2016.
-// Part of TT is scattered by other hairs: diffuse light that wraps around the body of hair. The more light grazes a dense
-// body, the fewer of its visible strands it reaches.
+// Part of TT is scattered by other strands: diffuse light that wraps around the body of hair. The more light grazes a
+// dense body, the fewer of its visible strands it reaches.
 //
 // Vectors of three hold R, TT and TRT. Inclinations are from the plane across the strand toward its tip. Attenuations
-// are those at the viewer's inclination, so that under light from all sides the lobes reflect together what is not
-// absorbed; hair lit at one inclination and seen at another is reciprocal only as far as attenuations agree.
+// are those at the viewer's inclination, so that under light from all sides the lobes together reflect what is not
+// absorbed; between different inclinations, reciprocity holds only if attenuations agree.
 // Techniques: hair.shading
 // Source of hair.shading: Marschner et al. 2003; d'Eon et al. 2011; Karis 2016; Chiang et al. 2016
 
@@ -28,15 +28,15 @@ struct HairLobes {
     vec4 azimuth;    // HairBlock::azimuth
     float across;    // cosine of the viewer's inclination
     float along;     // its sine
-    float reflected; // share of light that R holds
-    vec3 tt;         // that TT holds
-    vec3 trt;        // that TRT and all longer paths hold
-    vec3 scattered;  // that other hairs scatter
+    float reflected; // fraction of light in R
+    vec3 tt;         // in TT
+    vec3 trt;        // in TRT and all longer paths
+    vec3 scattered;  // scattered by other strands
     float density;   // of the body of hair: 0 a single strand .. 1
 };
 
-// Schlick's Fresnel term, averaged over the width of a strand inclined by acos(c): for a ray at the share h of the half
-// width the cosine is c sqrt(1 - h^2).
+// Schlick's Fresnel term, averaged over the width of a strand inclined by acos(c): for a ray at the fraction h of the
+// half width the cosine is c sqrt(1 - h^2).
 float strand_reflectance(float c) {
     float weight = 1.0 + c * (-3.926991 + c * (6.666667 + c * (-5.890486 + c * (2.666667 - c * 0.490874))));
     return mix(kHairHeadOn, 1.0, weight);
@@ -93,7 +93,7 @@ HairLobes hair_lobes(vec4 azimuth, vec4 fiber, vec3 color, float roughness, vec3
     vec3 depth = log(max(color, vec3(1e-6)));
     vec3 passed = exp(-fiber.x / inside_cosine * depth * depth);
     float entered = (1.0 - hair.reflected) * (1.0 - hair.reflected);
-    // In a dense body it has come through two others.
+    // In a dense body the light has passed through two other strands.
     hair.tt = (1.0 - fiber.y) * entered * passed * mix(vec3(1.0), passed * passed, fiber.y);
     hair.trt = entered * hair.reflected * passed * passed / (1.0 - hair.reflected * passed);
     hair.scattered = fiber.y * entered * color;
@@ -105,19 +105,19 @@ HairLobes hair_lobes(vec4 azimuth, vec4 fiber, vec3 color, float roughness, vec3
 struct HairLight {
     float reflected;
     vec3 transmitted;  // TT and TRT
-    vec3 scattered;    // by other hairs
+    vec3 scattered;    // by other strands
 };
 
-// Share of the visible strands of a body of hair that light reaches past others, by cosines at its surface: single
-// scattering in a half-space (Lommel and Seeliger; Chandrasekhar, "Radiative Transfer", 1950), 1 where light is no
-// lower than the viewer.
+// Fraction of the visible strands of a body of hair that light reaches past others, by cosines at its surface: single
+// scattering in a half-space (Lommel and Seeliger; Chandrasekhar, "Radiative Transfer", 1950), 1 if the light is at
+// least as high as the viewer.
 float lit_strands(float density, float n_l, float n_v) {
     float reached = max(n_l, 0.0);
     return mix(1.0, min(2.0 * reached / max(reached + n_v, 1e-4), 1.0), density);
 }
 
-// Share of the light that met the nearest caster at this distance [m] which arrives all the same. What strands of the same
-// dense body take, lit_strands() tells; their shadows, besides, would be those of single cards.
+// Fraction of the light blocked by the nearest caster at this distance [m] that arrives nevertheless. lit_strands()
+// covers occlusion by strands of the same dense body; their shadows would also be those of single cards.
 float past_strands(HairLobes hair, float distance) {
     float depth = distance / kHairBody;
     return min(2.0 * hair.density, 1.0) * exp(-depth * depth);

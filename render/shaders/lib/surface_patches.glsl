@@ -1,4 +1,4 @@
-// Smooth patches through the vertices of a surface that moves a mesh: ecs/components/surface_places.h has their layout,
+// Smooth patches through the vertices of a surface that moves a mesh: ecs/components/surface_anchors.h has their layout,
 // systems/animation/surface_patches.cpp the same on the CPU. Needs `samplerBuffer controls`.
 // Techniques: face.bids-rebuild, face.bids-surface
 

@@ -5,12 +5,12 @@
 
 #include "wrinkle_gpu.h"
 
-// Of the square of the length by that at rest.
+// Intensity from the squared length ratio to rest.
 float wrinkle_intensity(float ratio, float lambda, float beta) {
     return -tanh(clamp(0.5 * beta * log(max(lambda * ratio, 1e-30)), -20.0, 20.0));
 }
 
-// The lower eigenvalue of the tensor with these squares of lengths along u, v and (u + v) / sqrt(2).
+// The lower eigenvalue of the tensor with these squared lengths along u, v and (u + v) / sqrt(2).
 float shortest_ratio(float along_u, float along_v, float between) {
     float mean = 0.5 * (along_u + along_v);
     float half_difference = 0.5 * (along_u - along_v);
@@ -18,7 +18,7 @@ float shortest_ratio(float along_u, float along_v, float between) {
     return max(mean - sqrt(half_difference * half_difference + uv * uv), 0.0);
 }
 
-// The strain sqrt(C) - I as (tt, bb, tb), in axes turned by `angle` from u towards v; `side` -1: the second is opposite.
+// The strain sqrt(C) - I as (tt, bb, tb), in axes rotated by `angle` from u towards v; `side` -1 flips the second.
 vec3 strain_of_tensor(float along_u, float along_v, float between, float angle, float side) {
     float mean = 0.5 * (along_u + along_v);
     float half_difference = 0.5 * (along_u - along_v);
@@ -40,9 +40,9 @@ vec4 principal_strain(vec3 strain) {
     return vec4(mean - radius, mean + radius, cos(angle), sin(angle));
 }
 
-const float kFullStrain = 0.3;  // shown in full
+const float kFullStrain = 0.3;  // strain with the full color
 
-// Red as far as skin is compressed in some direction, blue as far as it is stretched.
+// Red by the compression of skin in some direction, blue by its stretch.
 vec3 strain_color(vec4 principal) {
     float compressed = clamp(-principal.x / kFullStrain, 0.0, 1.0);
     float stretched = clamp(principal.y / kFullStrain, 0.0, 1.0);
@@ -50,8 +50,8 @@ vec3 strain_color(vec4 principal) {
     return mix(color, vec3(0.03, 0.12, 0.75), stretched * (1.0 - 0.5 * compressed));
 }
 
-// How much a cross covers a pixel at `from_center` [px] of its cell: arms along `direction` (lengths by the lower
-// value) and `other` [px of a full strain].
+// Coverage by a cross of a pixel at `from_center` [px] in its cell: arms along `direction` (length by the lower value)
+// and `other` [px at full strain].
 vec2 strain_cross(vec2 from_center, vec4 principal, vec2 direction, vec2 other) {
     vec2 cover = vec2(0.0);
     vec2 arms[2] = vec2[2](direction, other);
@@ -66,36 +66,36 @@ vec2 strain_cross(vec2 from_center, vec4 principal, vec2 direction, vec2 other) 
     return cover;
 }
 
-// Square of the length by that which would not fold, of skin that is too long by `resting`.
+// Squared length ratio relative to unfolded skin, for skin that is too long by `resting`.
 float rested_ratio(float ratio, float resting) {
     return ratio * (1.0 - resting) * (1.0 - resting);
 }
 
-// The excess of length that becomes folds, 1 at most.
+// The excess length that becomes folds, at most 1.
 float fold_excess(float ratio, float slack, float share) {
     float shortening = max(1.0 - sqrt(ratio) - slack, 0.0);
     return 1.0 / max(1.0 - share * shortening, 0.5) - 1.0;
 }
 
-// The slope that a normal of a wrinkle map stands for. `texel` is flat at 128 of 255, exactly.
+// Decodes the slope of a wrinkle map. A `texel` of 128 of 255 is exactly flat.
 vec2 wrinkle_slope(vec3 texel) {
     vec3 n = (texel * 255.0 - 128.0) / 127.0;
     return -n.xy / max(n.z, 0.05);
 }
 
-// Slope of the normal whose x and y are scaled and lifted to the unit sphere: hardware could do it without normalizing.
-// Too flat in between (wrinkle.compression.normal-fit).
+// Slope of the normal whose x and y are scaled and lifted to the unit sphere, which needs no normalization in hardware.
+// Too flat at intermediate strengths (wrinkle.compression.normal-fit).
 vec2 lifted_slope(vec2 slope, float strength) {
     vec2 xy = strength * slope * inversesqrt(1.0 + dot(slope, slope));
     return xy * inversesqrt(max(1.0 - dot(xy, xy), 0.0025));
 }
 
-// How much darker slopes are: all, or those that face down the map.
+// How much slopes are darkened: all, or those that face down the map.
 float wrinkle_shade(vec2 slope, bool directional) {
     return clamp(directional ? slope.y : length(slope), 0.0, 1.0);
 }
 
-// Light from above the map at 45 degrees, by that on smooth skin.
+// Light from the top of the map at 45 degrees, relative to that on smooth skin.
 float painted_light(vec2 slope) {
     return max(1.0 - slope.y, 0.0) * inversesqrt(1.0 + dot(slope, slope));
 }
@@ -107,7 +107,7 @@ vec4 wrinkle_slopes(vec4 texel) {
     return -n / z.xxyy;
 }
 
-// The second layer blended over the first, each over flat skin, as normals: not as high in between.
+// The second layer blended over the first, each over flat skin, as normals: flatter at intermediate strengths.
 vec2 covered_slope(vec4 slopes, vec2 strength) {
     vec3 first = vec3(-slopes.xy, 1.0) * inversesqrt(1.0 + dot(slopes.xy, slopes.xy));
     vec3 second = vec3(-slopes.zw, 1.0) * inversesqrt(1.0 + dot(slopes.zw, slopes.zw));

@@ -2,13 +2,13 @@
 // Maps", 2007; normals are in tangent space.
 // Techniques: wrinkle.maps.composite, wrinkle.maps.influence, wrinkle.maps.normal-add
 
-// Both x and y, and the slopes that they stand for, add up: neither loses its detail.
+// Adds x and y, and so the slopes: neither normal loses its detail.
 vec3 add_normals(vec3 n, vec3 w) {
     vec3 sum = vec3(n.xy + w.xy, n.z * w.z);
     return sum * inversesqrt(max(dot(sum, sum), 1e-20));
 }
 
-// How strongly the stretched and the compressed map act, 0 .. 1: where regions overlap they add up.
+// Influence of the stretched and the compressed map, 0 .. 1: overlapping regions add up.
 vec2 wrinkle_influence(vec4 first_mask, vec4 second_mask, vec4 first_weights, vec4 second_weights) {
     float stretched = dot(first_mask, max(-first_weights, 0.0)) + dot(second_mask, max(-second_weights, 0.0));
     float compressed = dot(first_mask, max(first_weights, 0.0)) + dot(second_mask, max(second_weights, 0.0));

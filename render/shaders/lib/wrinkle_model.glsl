@@ -1,8 +1,8 @@
-// Polynomials of the strain of skin, as content/bake/wrinkle_model.h fits them (face.wrinkle-model).
+// Polynomials of the strain of skin, fitted by content/bake/wrinkle_model.h (face.wrinkle-model).
 // Techniques: face.wrinkle-model
 
-// The strain (tt, bb, tb) in units of its largest magnitude in the poses of the fit, and not beyond them. `range`: least
-// and most of tt, then of bb; `range_tb`: of tb.
+// The strain (tt, bb, tb) clamped to its range in the poses of the fit, and divided by its largest magnitude there.
+// `range`: minimum and maximum of tt, then of bb; `range_tb`: of tb.
 vec3 model_strain(vec3 strain, vec4 range, vec4 range_tb) {
     vec3 least = vec3(range.xz, range_tb.x);
     vec3 most = vec3(range.yw, range_tb.y);

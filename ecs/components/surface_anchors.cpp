@@ -1,4 +1,4 @@
-#include "ecs/components/surface_places.h"
+#include "ecs/components/surface_anchors.h"
 
 #include <glm/geometric.hpp>
 
@@ -6,7 +6,7 @@
 
 namespace limn {
 
-float max_motion(std::span<const Vec4> rest, std::span<const Vec4> patches, float reach) {
+float max_motion(std::span<const Vec4> rest, std::span<const Vec4> patches, float largest_offset) {
     float most = 0.0f;
     for (std::size_t f = 0; f + kPatchTexels <= std::min(rest.size(), patches.size());
          f += kPatchTexels) {
@@ -17,7 +17,7 @@ float max_motion(std::span<const Vec4> rest, std::span<const Vec4> patches, floa
             turns = turns || moved > 0.0f;
             farthest = i < kPatchPoints ? std::max(farthest, moved) : farthest;
         }
-        most = std::max(most, farthest + (turns ? 2.0f * reach : 0.0f));
+        most = std::max(most, farthest + (turns ? 2.0f * largest_offset : 0.0f));
     }
     return most;
 }
