@@ -85,21 +85,6 @@ struct SpriteFeatures {
     }
 };
 
-/// What of the GPU draws a particle. A disc of a few pixels without light, which would differ from
-/// corner to corner, is a point unless it follows something that needs a quad.
-enum class SpriteShape : std::uint8_t { Quad, SmallDisc, Point };
-
-/// Particles that follow one another in the order, have images of the same texture arrays and are
-/// drawn as the same shape.
-struct ParticleRun {
-    ParticleArrays arrays{};
-    SpriteShape shape = SpriteShape::Quad;
-    bool lit = false;        ///< some are lit at their corners
-    bool magnified = false;  ///< none is smaller than a frame of its image
-    int first = 0;
-    int count = 0;
-};
-
 class GpuParticlePools;
 struct GpuParticleView;
 

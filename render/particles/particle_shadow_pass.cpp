@@ -307,7 +307,7 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
         }
     };
     texels.bind(device, kShadowParticlesUnit);
-    for (const ParticleRun& run : runs) {
+    for (const ShadowCasters& run : runs) {
         program->set("first", run.first);
         bind_images(run.arrays);
         device.draw_quads(run.count);

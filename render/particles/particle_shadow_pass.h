@@ -50,6 +50,13 @@ struct ParticleShadowView {
     std::array<ShadowRange, 3> ranges{};  ///< of s (the sun's), t (likewise) and depth
 };
 
+/// Particles one after another that cast, with images of the same texture arrays.
+struct ShadowCasters {
+    ParticleArrays arrays{};
+    int first = 0;
+    int count = 0;
+};
+
 /// Particles on the GPU that cast.
 struct GpuShadowCaster {
     const GpuParticlePool* pool = nullptr;
@@ -77,7 +84,7 @@ struct ParticleShadowEffect {
     // Of the frame.
     std::vector<ParticleInstance> casters = {};
     std::vector<ShadowBall> balls = {};
-    std::vector<ParticleRun> runs = {};
+    std::vector<ShadowCasters> runs = {};
     std::vector<GpuShadowCaster> gpu_casters = {};
     ParticleShadowView view = {};
     int light = 0;  ///< PARTICLE_SHADOWS; 0: none to shadow

@@ -2,7 +2,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "render/light/light_list.h"
-#include "render/particles/particle_draws.h"
+#include "render/particles/particle_scene.h"
 #include "tests/near.h"
 #include "tests/render/particle_fixture.h"
 #include "tests/render/scene_fixture.h"

@@ -38,6 +38,12 @@ Particle read_particle(int index) {
                     int(words[3] >> 16), words[6], velocity_z_age.y < 0.0, int(words[4]), uintBitsToFloat(words[5]));
 }
 
+// Half the extents of a quad in world space: along x and y of its corners.
+struct Quad {
+    vec3 right;
+    vec3 up;
+};
+
 // Of the quad's vertices, -1 .. 1, as a strip.
 vec2 corner_of(int vertex) {
     return 2.0 * vec2(vertex & 1, vertex >> 1) - 1.0;
@@ -51,6 +57,21 @@ float random_share(uint bits, uint index) {  // -1 .. 1
 
 vec4 look_texel(int look, uint texel) {
     return texelFetch(looks, look * int(kLookTexels) + int(texel));
+}
+
+// What most shapes need of a look: texels 0 to 3, and kLookMore (particle_gpu.h).
+struct Look {
+    int index;
+    vec4 shape;
+    vec4 streak;
+    vec4 glow;
+    vec4 book;
+    vec4 more;
+};
+
+Look read_look(int index) {
+    return Look(index, look_texel(index, 0u), look_texel(index, 1u), look_texel(index, 2u), look_texel(index, 3u),
+                look_texel(index, kLookMore));
 }
 
 float size_factor(int look, float at) {

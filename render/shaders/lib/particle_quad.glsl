@@ -2,11 +2,13 @@
 
 const float kFilterPixels = 1.0;  // that a mip level as coarse as a pixel spreads what a frame shows
 
-// Half the extents of the quad in world space: along x and y of `corner`.
-struct Quad {
-    vec3 right;
-    vec3 up;
-};
+const float kRoundness = 0.8;  // how far the normals at the corners lean outward, by eye
+
+// Toward which a corner, or a position on the way to it, faces.
+vec3 rounded_normal(vec3 position_ws, vec3 offset) {
+    return normalize(to_viewer(position_ws) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
+}
+
 Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, float size) {
     float angle = angle_of(p, shape, streak);
     vec3 to_camera = normalize(view.camera_ws.xyz - p.position);

@@ -8,7 +8,6 @@
 #define NORMALS vec3
 #endif
 
-const float kRoundness = 0.8;   // how far the normals at the corners lean outward, by eye
 const float kShadeReach = 0.5;  // of the way to its corners at which it is shadowed by others, by eye
 
 #ifdef MEAN_OF_CORNERS
@@ -67,11 +66,6 @@ Incoming incoming_shadowed(int index, vec3 position_ws, vec3 normal, float radiu
     return light;
 }
 #endif
-
-// Toward which a corner, or a place on the way to it, faces.
-vec3 rounded_normal(vec3 position_ws, vec3 offset) {
-    return normalize(to_viewer(position_ws) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
-}
 
 // `radius`: of the particle [m].
 vec3 scattered_light(vec3 position_ws, NORMALS normals, float forward, float radius, vec2 pixel, float distance) {

@@ -1,4 +1,4 @@
-#include "render/particles/particle_draws.h"
+#include "render/particles/particle_scene.h"
 
 #include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
@@ -108,7 +108,7 @@ void set_insets(const std::vector<float>& insets, LookRecord& record) {
 }
 
 std::uint32_t add_look(
-    const FrameData& frame, const ParticleLook& look, ParticleDraws& draws,
+    const FrameData& frame, const ParticleLook& look, ParticleScene& scene,
     std::optional<Vec3> place = std::nullopt) {
     const bool has_image = frame.assets->images.size() > look.image.index;
     const ImageLayer image = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
@@ -119,114 +119,114 @@ std::uint32_t add_look(
     const auto layer_if = [](bool has, const ImageLayer& layer) {
         return has ? static_cast<int>(layer.layer) : -1;
     };
-    draws.looks.push_back(make_look_record(
+    scene.looks.push_back(make_look_record(
         look, {.image = layer_if(has_image, image),
                .motion = layer_if(has_motion, motion),
                .negative_light = layer_if(is_six_way, negative)}));
-    draws.arrays.push_back(
+    scene.arrays.push_back(
         {.images = image.array,
          .motions = has_motion ? motion.array : 0,
          .negative_lights = is_six_way ? negative.array : 0});
-    draws.places.push_back(place);
-    draws.extents.push_back(make_look_extent(look));
-    draws.extents.back().texels = 0;
+    scene.places.push_back(place);
+    scene.extents.push_back(make_look_extent(look));
+    scene.extents.back().texels = 0;
     if (has_image) {
         const ImageData& pixels = frame.assets->images[look.image.index];
-        draws.extents.back().texels = std::max(
+        scene.extents.back().texels = std::max(
             static_cast<float>(pixels.width) / static_cast<float>(look.columns),
             static_cast<float>(pixels.height) / static_cast<float>(look.rows));
         set_insets(
-            draws.insets.find(pixels, look.image, look.columns, look.rows), draws.looks.back());
+            scene.insets.find(pixels, look.image, look.columns, look.rows), scene.looks.back());
     }
-    draws.layers.push_back(layer_of(look));
-    draws.has_halves = draws.has_halves || draws.layers.back() == LookLayer::Half;
-    draws.has_weighted = draws.has_weighted || draws.layers.back() == LookLayer::Weighted;
-    draws.lit_in_middle = draws.lit_in_middle || is_lit_in_middle(draws.looks.back());
+    scene.layers.push_back(layer_of(look));
+    scene.has_halves = scene.has_halves || scene.layers.back() == LookLayer::Half;
+    scene.has_weighted = scene.has_weighted || scene.layers.back() == LookLayer::Weighted;
+    scene.lit_in_middle = scene.lit_in_middle || is_lit_in_middle(scene.looks.back());
     const SpriteFeatures features = {
         .images = has_image,
         .flipbooks = look.frames != ParticleFrames::Pick && (look.columns > 1 || look.rows > 1),
         .motions = has_motion,
         .six_way = is_six_way};
-    draws.features |= features;
-    draws.layer_features[static_cast<std::size_t>(draws.layers.back())] |= features;
-    draws.soft = draws.soft || look.softness > 0;
-    draws.moving = draws.moving || moves_pixels(draws.looks.back());
-    draws.focused = draws.focused || look.velocity_cover < 1;
-    return static_cast<std::uint32_t>(draws.looks.size() - 1);
+    scene.features |= features;
+    scene.layer_features[static_cast<std::size_t>(scene.layers.back())] |= features;
+    scene.soft = scene.soft || look.softness > 0;
+    scene.moving = scene.moving || moves_pixels(scene.looks.back());
+    scene.focused = scene.focused || look.velocity_cover < 1;
+    return static_cast<std::uint32_t>(scene.looks.size() - 1);
 }
 
 /// What bends the ways of an emitter's particles, gusts apart.
-void add_pull(const World& world, Entity emitter, std::uint32_t look, ParticleDraws& draws) {
+void add_pull(const World& world, Entity emitter, std::uint32_t look, ParticleScene& scene) {
     if (const auto* const motion = world.find<ParticleMotion>(emitter)) {
         constexpr float kGravity = 9.81f;  // [m/s^2]
         const Vec3 at_rest = Vec3(0, -kGravity * motion->gravity, 0) + motion->drag * motion->wind;
-        draws.looks[look][layout::kLookMotion + 1] = Vec4(at_rest, motion->drag);
+        scene.looks[look][layout::kLookMotion + 1] = Vec4(at_rest, motion->drag);
     }
 }
 
-void collect_ribbons(const FrameData& frame, float back, float step, ParticleDraws& draws) {
+void collect_ribbons(const FrameData& frame, float back, float step, ParticleScene& scene) {
     const World& world = *frame.world;
     const auto add_segments = [&](const ParticleLook& look) {
-        draws.has_ribbons = true;
-        const std::uint32_t index = add_look(frame, look, draws);
-        draws.looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
-        draws.looks[index][layout::kLookFocus].y = 0;    // lit at its corners
-        draws.looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
-        draws.looks[index][layout::kLookMotion].w = -1;
-        draws.extents[index] = {};
-        clear_insets(draws.looks[index]);  // its image repeats
-        for (const std::uint32_t before : draws.ribbons.segments) {
+        scene.has_ribbons = true;
+        const std::uint32_t index = add_look(frame, look, scene);
+        scene.looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
+        scene.looks[index][layout::kLookFocus].y = 0;    // lit at its corners
+        scene.looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
+        scene.looks[index][layout::kLookMotion].w = -1;
+        scene.extents[index] = {};
+        clear_insets(scene.looks[index]);  // its image repeats
+        for (const std::uint32_t before : scene.ribbons.segments) {
             const Vec3 middle = 0.5f
-                                * (draws.ribbons.points[before + 1].position
-                                   + draws.ribbons.points[before + 2].position);
-            draws.instances.push_back(
+                                * (scene.ribbons.points[before + 1].position
+                                   + scene.ribbons.points[before + 2].position);
+            scene.instances.push_back(
                 {.position = middle, .look_and_share = index << 16, .velocity_xy = before});
         }
-        draws.ribbons.segments.clear();
+        scene.ribbons.segments.clear();
     };
     world.query<const Trail, const ParticleLook, Optional<const TrailState>>().each(
         [&](Entity entity, const Trail& trail, const ParticleLook& look, const TrailState* state) {
-            if (draws.looks.size() >= kMaxLooks) {
+            if (scene.looks.size() >= kMaxLooks) {
                 return;
             }
-            draws.ribbons.width = max_width(look);
+            scene.ribbons.width = max_width(look);
             const Entity followed = trail.emitter.is_null() ? entity : trail.emitter;
             if (trail.path == TrailPath::Births) {
-                append_births_of(world, followed, trail, back, frame.camera.alpha, draws.ribbons);
+                append_births_of(world, followed, trail, back, frame.camera.alpha, scene.ribbons);
             } else if (state != nullptr) {
-                append_trail(trail, *state, back, step, draws.ribbons);
+                append_trail(trail, *state, back, step, scene.ribbons);
             }
             add_segments(look);
         });
     world.query<const Beam, const ParticleLook, const BeamState>().each(
         [&](Entity entity, const Beam& beam, const ParticleLook& look, const BeamState& state) {
-            if (draws.looks.size() < kMaxLooks) {
-                draws.ribbons.width = max_width(look);
-                append_beam(beam, state, entity, frame.camera.alpha, frame.time, draws.ribbons);
+            if (scene.looks.size() < kMaxLooks) {
+                scene.ribbons.width = max_width(look);
+                append_beam(beam, state, entity, frame.camera.alpha, frame.time, scene.ribbons);
                 add_segments(look);
             }
         });
 }
 
-void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws) {
+void collect_billboards(const FrameData& frame, float back, ParticleScene& scene) {
     const auto add_once = [&](const ParticleLook& look) {
-        const std::uint32_t index = add_look(frame, look, draws);
-        draws.looks[index][2].w = static_cast<float>(layout::kFacingBillboard);
-        light_at_corners(draws.looks[index]);
-        draws.looks[index][layout::kLookMore + 1].w = 0;  // no life to fade at the end of
+        const std::uint32_t index = add_look(frame, look, scene);
+        scene.looks[index][2].w = static_cast<float>(layout::kFacingBillboard);
+        light_at_corners(scene.looks[index]);
+        scene.looks[index][layout::kLookMore + 1].w = 0;  // no life to fade at the end of
         const bool is_repeated =
-            index > 0 && draws.looks[index] == draws.looks[index - 1]
-            && draws.arrays[index] == draws.arrays[index - 1]
-            && draws.extents[index].culling == draws.extents[index - 1].culling;
+            index > 0 && scene.looks[index] == scene.looks[index - 1]
+            && scene.arrays[index] == scene.arrays[index - 1]
+            && scene.extents[index].culling == scene.extents[index - 1].culling;
         if (!is_repeated) {
-            draws.extents[index].radius = draws.extents[index].stretch = 0;
+            scene.extents[index].radius = scene.extents[index].stretch = 0;
             return index;
         }
-        draws.looks.pop_back();
-        draws.arrays.pop_back();
-        draws.layers.pop_back();
-        draws.places.pop_back();
-        draws.extents.pop_back();
+        scene.looks.pop_back();
+        scene.arrays.pop_back();
+        scene.layers.pop_back();
+        scene.places.pop_back();
+        scene.extents.pop_back();
         return index - 1;
     };
     const World& world = *frame.world;
@@ -234,17 +234,17 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
                                                                 const Billboard& billboard,
                                                                 const ParticleLook& look) {
         const std::optional<Affine> pose = pose_of(world, entity, frame.camera.alpha);
-        const std::size_t first = draws.billboards.quads.size();
+        const std::size_t first = scene.billboards.quads.size();
         const Vec3 velocity = entity_velocity(world, entity, particle_step(frame));
         const std::uint32_t random = entity.index * 0x9e3779b9u;
-        if (!pose || draws.looks.size() + 2 > kMaxLooks) {
+        if (!pose || scene.looks.size() + 2 > kMaxLooks) {
             return;
         }
         const double time = std::max(billboard.time - static_cast<double>(back), 0.0);
-        append_billboard(billboard, look, *pose, time, random, draws.billboards);
-        for (std::size_t i = first; i < draws.billboards.quads.size(); ++i) {
-            const BillboardPlace& place = draws.billboards.places[i];
-            BillboardQuad& quad = draws.billboards.quads[i];
+        append_billboard(billboard, look, *pose, time, random, scene.billboards);
+        for (std::size_t i = first; i < scene.billboards.quads.size(); ++i) {
+            const BillboardPlace& place = scene.billboards.places[i];
+            BillboardQuad& quad = scene.billboards.quads[i];
             quad.velocity = velocity;
             ParticleLook section_look = look;
             if (place.is_section) {
@@ -253,10 +253,10 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
             }
             section_look.culling = ParticleCulling::Particles;
             const std::uint32_t index = add_once(section_look);
-            draws.extents[index].radius = std::max(
-                draws.extents[index].radius,
+            scene.extents[index].radius = std::max(
+                scene.extents[index].radius,
                 glm::length(quad.right) + glm::length(quad.up) + look.cull_margin);
-            draws.instances.push_back(
+            scene.instances.push_back(
                 {.position = place.position,
                  .look_and_share = index << 16 | static_cast<std::uint32_t>(place.share * 65535.0f),
                  .velocity_xy = static_cast<std::uint32_t>(i),
@@ -264,42 +264,42 @@ void collect_billboards(const FrameData& frame, float back, ParticleDraws& draws
                  .random = random});
         }
     });
-    draws.has_billboards = !draws.billboards.quads.empty();
+    scene.has_billboards = !scene.billboards.quads.empty();
 }
 
 /// For a warm-up, whose image nobody sees: a particle for each program that some look needs.
-void append_one_of_each(ParticleDraws& draws) {
+void append_one_of_each(ParticleScene& scene) {
     std::set<std::tuple<LookLayer, bool, bool, bool>> made;
-    for (std::uint32_t i = 0; i < draws.looks.size(); ++i) {
-        const bool is_six_way = draws.arrays[i].negative_lights != 0;
-        const LookRecord& look = draws.looks[i];
+    for (std::uint32_t i = 0; i < scene.looks.size(); ++i) {
+        const bool is_six_way = scene.arrays[i].negative_lights != 0;
+        const LookRecord& look = scene.looks[i];
         const bool is_new =
-            made.emplace(draws.layers[i], is_point(look), is_six_way, is_lit_at_corners(look))
+            made.emplace(scene.layers[i], is_point(look), is_six_way, is_lit_at_corners(look))
                 .second;
         if (is_new) {
             auto& target =
-                draws.layers[i] == LookLayer::Weighted ? draws.weighted : draws.instances;
+                scene.layers[i] == LookLayer::Weighted ? scene.weighted : scene.instances;
             target.emplace_back().look_and_share = i << 16;
         }
     }
 }
 
-void clear(ParticleDraws& draws) {
-    draws.looks.clear();
-    draws.arrays.clear();
-    draws.places.clear();
-    draws.layers.clear();
-    draws.instances.clear();
-    draws.weighted.clear();
-    draws.ribbons.clear();
-    draws.billboards.quads.clear();
-    draws.billboards.places.clear();
-    draws.extents.clear();
-    draws.waters.clear();
-    draws.features = {};
-    draws.layer_features = {};
-    draws.lit_in_middle = draws.soft = draws.moving = draws.focused = false;
-    draws.has_ribbons = draws.has_billboards = draws.has_halves = draws.has_weighted = false;
+void clear(ParticleScene& scene) {
+    scene.looks.clear();
+    scene.arrays.clear();
+    scene.places.clear();
+    scene.layers.clear();
+    scene.instances.clear();
+    scene.weighted.clear();
+    scene.ribbons.clear();
+    scene.billboards.quads.clear();
+    scene.billboards.places.clear();
+    scene.extents.clear();
+    scene.waters.clear();
+    scene.features = {};
+    scene.layer_features = {};
+    scene.lit_in_middle = scene.soft = scene.moving = scene.focused = false;
+    scene.has_ribbons = scene.has_billboards = scene.has_halves = scene.has_weighted = false;
 }
 
 Bounds shape_in_world(const World& world, Entity entity, float alpha) {
@@ -308,7 +308,7 @@ Bounds shape_in_world(const World& world, Entity entity, float alpha) {
     return emitter != nullptr && pose ? shape_bounds(*emitter, *pose) : Bounds{};
 }
 
-void collect_pools(const FrameData& frame, float back, float step, ParticleDraws& draws) {
+void collect_pools(const FrameData& frame, float back, float step, ParticleScene& scene) {
     const World& world = *frame.world;
     const float alpha = frame.camera.alpha;
     const Vec3 eye_velocity = entity_velocity(world, frame.camera.entity, step);
@@ -317,28 +317,28 @@ void collect_pools(const FrameData& frame, float back, float step, ParticleDraws
             const Trail* trail) {
             const bool is_ribbon =
                 trail != nullptr && trail->path == TrailPath::Births && trail->emitter.is_null();
-            if (draws.looks.size() < kMaxLooks && !is_ribbon) {
+            if (scene.looks.size() < kMaxLooks && !is_ribbon) {
                 std::optional<Vec3> place;
                 if (look.sort == ParticleSort::Births) {
                     place = place_of(world, entity, alpha);
                 }
-                const std::uint32_t index = add_look(frame, look, draws, place);
+                const std::uint32_t index = add_look(frame, look, scene, place);
                 auto& target =
-                    draws.layers[index] == LookLayer::Weighted ? draws.weighted : draws.instances;
+                    scene.layers[index] == LookLayer::Weighted ? scene.weighted : scene.instances;
                 const std::size_t first = target.size();
-                add_pull(world, entity, index, draws);
+                add_pull(world, entity, index, scene);
                 append_particles(particles, index, back, target, look.camera_streak * eye_velocity);
                 if (look.culling == ParticleCulling::Bounds) {
-                    draws.extents[index].group = bounds_of(std::span(target).subspan(first));
+                    scene.extents[index].group = bounds_of(std::span(target).subspan(first));
                 } else if (look.culling == ParticleCulling::Emitter) {
-                    draws.extents[index].group = shape_in_world(world, entity, alpha);
+                    scene.extents[index].group = shape_in_world(world, entity, alpha);
                 }
             }
         });
 }
 
 /// Of those that the GPU moves, looks alone.
-void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& draws) {
+void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleScene& scene) {
     const World& world = *frame.world;
     const float alpha = frame.camera.alpha;
     const auto* const rendering = world.find_resource<Rendering>();
@@ -351,35 +351,35 @@ void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& d
             Optional<const ParticleCollision>>()
         .each([&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
                   const GpuParticles& particles, const ParticleCollision* collision) {
-            if (draws.looks.size() < kMaxLooks) {
-                const std::uint32_t index = add_look(frame, enlarged(look, stride), draws);
-                light_at_corners(draws.looks[index]);
-                add_pull(world, entity, index, draws);
+            if (scene.looks.size() < kMaxLooks) {
+                const std::uint32_t index = add_look(frame, enlarged(look, stride), scene);
+                light_at_corners(scene.looks[index]);
+                add_pull(world, entity, index, scene);
                 gpu.add(
                     frame, entity, emitter, particles, index, sort_passes(look), collision, stride);
                 if (look.culling == ParticleCulling::Emitter) {
-                    draws.extents[index].group = shape_in_world(world, entity, alpha);
+                    scene.extents[index].group = shape_in_world(world, entity, alpha);
                 }
                 const std::optional<Affine> pose = pose_of(world, entity, alpha);
-                if (draws.layers[index] == LookLayer::Weighted && pose) {
-                    draws.extents[index].ways = bounds_of_ways(emitter, *pose);
+                if (scene.layers[index] == LookLayer::Weighted && pose) {
+                    scene.extents[index].ways = bounds_of_ways(emitter, *pose);
                 }
             }
         });
     gpu.forget_unused();
 }
 
-void order(const RenderView& camera, ParticleDraws& draws) {
+void order(const RenderView& camera, ParticleScene& scene) {
     const Affine& pose = camera.world_from_camera;
     order_by_distance(
-        draws.instances, draws.places, transform_point(pose, Vec3(0)),
-        transform_vector(pose, Vec3(0, 0, -1)), draws.order);
-    draws.sorted.clear();
-    for (const std::uint32_t i : draws.order.indices) {
-        draws.sorted.push_back(draws.instances[i]);
+        scene.instances, scene.places, transform_point(pose, Vec3(0)),
+        transform_vector(pose, Vec3(0, 0, -1)), scene.order);
+    scene.sorted.clear();
+    for (const std::uint32_t i : scene.order.indices) {
+        scene.sorted.push_back(scene.instances[i]);
     }
-    draws.sorted.insert(draws.sorted.end(), draws.weighted.begin(), draws.weighted.end());
-    draws.instances.insert(draws.instances.end(), draws.weighted.begin(), draws.weighted.end());
+    scene.sorted.insert(scene.sorted.end(), scene.weighted.begin(), scene.weighted.end());
+    scene.instances.insert(scene.instances.end(), scene.weighted.begin(), scene.weighted.end());
 }
 
 }  // namespace
@@ -403,24 +403,24 @@ Vec3 entity_velocity(const World& world, Entity entity, float step) {
            / step;
 }
 
-void collect_particle_draws(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& draws) {
+void collect_particles(FrameData& frame, GpuParticlePools& gpu, ParticleScene& scene) {
     const World& world = *frame.world;
     const float step = particle_step(frame);
     const float back = particle_lag(frame);
-    clear(draws);
-    draws.insets.use_assets(frame.assets_identity);
+    clear(scene);
+    scene.insets.use_assets(frame.assets_identity);
     world.query<const Water, const WorldTransform>().each(
         [&](const Water& water, const WorldTransform& transform) {
-            draws.waters.push_back({&water, water_frame(transform.world)});
+            scene.waters.push_back({&water, water_frame(transform.world)});
         });
-    collect_pools(frame, back, step, draws);
-    collect_gpu_pools(frame, gpu, draws);
-    collect_ribbons(frame, back, step, draws);
-    collect_billboards(frame, back, draws);
+    collect_pools(frame, back, step, scene);
+    collect_gpu_pools(frame, gpu, scene);
+    collect_ribbons(frame, back, step, scene);
+    collect_billboards(frame, back, scene);
     if (frame.warm_up) {
-        append_one_of_each(draws);
+        append_one_of_each(scene);
     }
-    order(frame.camera, draws);
+    order(frame.camera, scene);
 }
 
 }  // namespace limn

@@ -22,7 +22,7 @@ class World;
 struct FrameData;
 
 // What of a world is drawn as particles: ParticlePool, Trail, Beam and Billboard with their
-// ParticleLook, collected once a frame, whatever the number of views (particle_runs.h).
+// ParticleLook, collected once a frame, whatever the number of views (layered_draws.h).
 
 /// What the particles of a look are drawn into.
 enum class LookLayer : std::uint8_t { Full, Half, Weighted };
@@ -34,7 +34,7 @@ struct DrawnWater {
 };
 
 /// Keeps its memory from frame to frame.
-struct ParticleDraws {
+struct ParticleScene {
     std::vector<LookRecord> looks = {};
     std::vector<ParticleArrays> arrays = {};       ///< of each look
     std::vector<LookLayer> layers = {};            ///< of each look
@@ -61,8 +61,8 @@ struct ParticleDraws {
 };
 
 /// Sorted as the camera of the frame sees them. Those that the GPU moves go to `gpu`, which begins
-/// a frame; their looks are among `draws.looks`.
-void collect_particle_draws(FrameData& frame, GpuParticlePools& gpu, ParticleDraws& draws);
+/// a frame; their looks are among `scene.looks`.
+void collect_particles(FrameData& frame, GpuParticlePools& gpu, ParticleScene& scene);
 
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
