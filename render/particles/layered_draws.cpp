@@ -14,6 +14,8 @@
 #include <cmath>
 #include <span>
 
+// Techniques: particle.visibility
+
 namespace limn {
 namespace {
 
