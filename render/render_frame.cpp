@@ -20,6 +20,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -341,6 +342,8 @@ ViewSlot& Renderer::view_slot(std::size_t index) {
 /// Requested views come first: the main one shows what they drew.
 void Renderer::prepare_views() {
     view_count_ = frame_.views.size() + 1;
+    const gpu::RingSlice zeros =
+        ring_.push_value(std::array<std::byte, layout::kEffectBlockBytes>{});
     for (std::size_t i = 0; i < view_count_; ++i) {
         const bool main = i + 1 == view_count_;
         ViewSlot& slot = view_slot(main ? 0 : i + 1);
@@ -352,6 +355,7 @@ void Renderer::prepare_views() {
         view.velocity = main && frame_.velocity;
         view.attributes = main && frame_.attributes;
         view.lighting.clear();
+        view.effect_blocks.fill(zeros);
         view.gbuffer = {};
         view.radiance = {};
         view.scattered = {};

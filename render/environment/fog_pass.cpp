@@ -1,7 +1,9 @@
 #include "render/environment/fog_pass.h"
 
 #include "ecs/world.h"
+#include "render/environment/fog_block.h"
 #include "render/fullscreen.h"
+#include "render/light/light_list.h"
 #include "render/view_block.h"
 #include "render/water/water_surfaces.h"
 
@@ -18,6 +20,14 @@ bool FogEffect::is_used(const FrameData& frame) {
 
 Result<FogEffect> FogEffect::create(gpu::Device& device, const RenderSettings&) {
     return FogEffect{LIMN_TRY(load_fullscreen(device, "fog.frag"))};
+}
+
+bool FogEffect::prepare(const FrameData& frame, ViewData& view) {
+    const float y = view.camera.world_from_camera.row[1].w;
+    view.publish_block(
+        layout::kFogBinding,
+        make_fog_block(*frame.world->find_resource<HeightFog>(), view.data.get<LightList>(), y));
+    return true;
 }
 
 void FogEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {

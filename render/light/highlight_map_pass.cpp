@@ -10,9 +10,13 @@
 #include "render/light/lighting.h"
 #include "render/light/shading_rates.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/highlight_gpu.h"
 #include "render/view_block.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -72,6 +76,24 @@ bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Sour
                std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row));
 }
 
+/// The global vector that fixes the axes of Blinn maps: unit, or zero.
+Vec3 blinn_axis(const Rendering& rendering, const RenderView& camera) {
+    const auto unit_or_zero = [](const Vec3& v) {
+        const float length = glm::length(v);
+        return length > 1e-6f && std::isfinite(length) ? v / length : Vec3(0);
+    };
+    switch (rendering.blinn_axis) {
+    case BlinnAxis::WorldUp:
+        return {0, 1, 0};
+    case BlinnAxis::Custom:
+        return unit_or_zero(rendering.blinn_vector);
+    default: {
+        const auto& r = camera.world_from_camera.row;
+        return unit_or_zero({r[0][1], r[1][1], r[2][1]});
+    }
+    }
+}
+
 }  // namespace
 
 Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const RenderSettings&) {
@@ -97,7 +119,10 @@ void HighlightMapEffect::collect(FrameData& frame) {
     }
 }
 
-bool HighlightMapEffect::prepare(const FrameData&, ViewData& view) {
+bool HighlightMapEffect::prepare(const FrameData& frame, ViewData& view) {
+    const auto* found = frame.world->find_resource<Rendering>();
+    const Vec3 axis = blinn_axis(found != nullptr ? *found : Rendering{}, view.camera);
+    view.publish_block(layout::kHighlightBinding, layout::HighlightBlock{Vec4(axis, 0)});
     return reads(view, HighlightMap::Blinn) || reads(view, HighlightMap::Environment);
 }
 

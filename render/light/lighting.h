@@ -30,7 +30,7 @@ struct LightingMethod {
     LightMethod method = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;  ///< the others with LightMethod::ObjectMajor
     std::optional<ShadingRate> compared;  ///< lit a second time, ObjectMajor (ComparedRadiance)
-    bool worst_blinn_axis = false;        ///< that of ViewBlock::blinn_axis otherwise
+    bool worst_blinn_axis = false;        ///< that of HighlightBlock::blinn_axis otherwise
     bool blinn_diffuse = false;
     bool screen_interpolation = false;  ///< of what forward shaders interpolate
     HardwareDefects hardware = {};

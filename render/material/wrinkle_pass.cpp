@@ -1,11 +1,14 @@
 #include "render/material/wrinkle_pass.h"
 
 #include "ecs/components/transform.h"
+#include "ecs/components/wrinkle_comparison.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/device.h"
 #include "render/gpu/grown_buffer.h"
 #include "render/gpu/shader_library.h"
+#include "render/material/surface_features.h"
+#include "render/shaders/wrinkle_columns_gpu.h"
 #include "render/shaders/wrinkle_gpu.h"
 #include "render/skinning/deformed_list.h"
 
@@ -38,6 +41,18 @@ static_assert(static_cast<std::uint32_t>(WrinkleMethod::Model) == layout::kWrink
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Photo) == layout::kWrinklePhoto);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Bump) == layout::kWrinkleBump);
+
+layout::WrinkleColumns
+pack_columns(const std::vector<WrinkleMethod>& methods, const Vec2& borders) {
+    layout::WrinkleColumns packed{};
+    packed.left = borders.x;
+    packed.right = borders.y;
+    for (const WrinkleMethod method : methods) {
+        packed.methods |= static_cast<std::uint32_t>(method) << (4 * packed.count);
+        ++packed.count;
+    }
+    return packed;
+}
 
 struct Texel {
     std::uint32_t x;
@@ -242,6 +257,20 @@ Result<WrinkleEffect> WrinkleEffect::create(gpu::Device& device, const RenderSet
     WrinkleEffect effect;
     effect.program = LIMN_TRY(device.shaders().load({.compute = "wrinkle.comp"}));
     return effect;
+}
+
+bool WrinkleEffect::prepare(const FrameData& frame, ViewData& view) {
+    const auto* comparison = frame.world->find_resource<WrinkleComparison>();
+    view.publish_block(
+        layout::kWrinkleColumnsBinding,
+        pack_columns(wrinkle_columns(comparison), column_borders(comparison)));
+    Variant& lit = view.lighting.variant;
+    const DeformedList& shapes = *frame.shapes;
+    lit.add_if(
+        shapes.has_wrinkles(kWrinkleBlend | kWrinkleFade | kWrinkleBounce), "SMOOTH_NORMALS");
+    lit.add_if(shapes.has_wrinkles(kWrinkleBlend), "BLENDED_SKIN");
+    lit.add_if(shapes.has_wrinkles(kWrinkleBounce), "FOLD_LIGHT");
+    return true;
 }
 
 void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {

@@ -55,7 +55,7 @@ const uint kWrinkleBlend = 6u;
 const uint kWrinkleStrainView = 7u;
 const uint kWrinkleModel = 8u;
 const uint kWrinklePhoto = 9u;
-const uint kWrinkleColumns = 15u;  // none of them: the fragments choose, by ViewBlock::wrinkle_columns
+const uint kWrinkleColumns = 15u;  // none of them: the fragments choose, by WrinkleColumns
 
 // WrinkleDriver
 const uint kWrinkleByStrain = 2u;

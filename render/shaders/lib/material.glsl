@@ -19,7 +19,7 @@
 //   WRINKLE_LAYERS  the wrinkle map has two layers: wrinkle_strength is of the slopes and then the shade of both
 //   WRINKLE_INDEPENDENT  the second one covers the first
 //   WRINKLE_PHOTO  light from above the map is painted on
-//   WRINKLE_COLUMNS  each column of the image has a method of its own (ViewBlock): wrinkle_strength is that of isometric
+//   WRINKLE_COLUMNS  each column of the image has a method of its own (WrinkleColumns): wrinkle_strength is that of isometric
 //                  folds, and that of all others. After lib/view.glsl
 //   WRINKLE_FLAT   strengths are those of one vertex of each triangle
 
@@ -28,6 +28,7 @@
 #include "lib/material_maps.glsl"
 #include "lib/wrinkle.glsl"
 #include "lib/wrinkle_model.glsl"
+#include "wrinkle_columns_gpu.h"
 
 #if defined(WRINKLE_MAP) && !defined(LIT_AT_VERTICES)
 #define WRINKLES
@@ -133,12 +134,13 @@ vec2 wrinkle_slope_here() {
 #endif
 
 #if defined(WRINKLES) && defined(WRINKLE_COLUMNS)
+UNIFORM_BLOCK(kWrinkleColumnsBinding, Columns, WrinkleColumns, columns, column_blocks);
+
 // The method of this pixel's column.
 uint column_method() {
-    vec2 borders = uintBitsToFloat(view.wrinkle_columns.zw);
-    float place = (gl_FragCoord.x * view.size.z - borders.x) / (borders.y - borders.x);
-    int column = clamp(int(floor(place * float(view.wrinkle_columns.x))), 0, int(view.wrinkle_columns.x) - 1);
-    return view.wrinkle_columns.y >> (4 * column) & 15u;
+    float x = (gl_FragCoord.x * view.size.z - columns.left) / (columns.right - columns.left);
+    int column = clamp(int(floor(x * float(columns.count))), 0, int(columns.count) - 1);
+    return columns.methods >> (4 * column) & 15u;
 }
 
 // Its strengths, as wrinkle_strength has them where all of the image has one method.
