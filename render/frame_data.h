@@ -150,10 +150,10 @@ struct ViewData {
     /// Uploads a uniform block for all programs of this view; in prepare(). `binding` is that of
     /// its shaders, kEffectBlocks at least.
     template <typename Block>
-    void publish_block(unsigned binding, const Block& block) {
+    void publish_block(unsigned binding, const Block& values) {
         static_assert(sizeof(Block) <= layout::kEffectBlockBytes);
         LIMN_CHECK(binding - layout::kEffectBlocks < layout::kMaxEffectBlocks);
-        effect_blocks[binding - layout::kEffectBlocks] = frame->ring->push_value(block);
+        effect_blocks[binding - layout::kEffectBlocks] = frame->ring->push_value(values);
     }
     /// Size of what is drawn [px].
     [[nodiscard]] IVec2 size() const { return {camera.width, camera.height}; }

@@ -45,7 +45,7 @@ void draw_depth(
     ProgramVariants& programs, const gpu::PipelineState& state) {
     constexpr std::uint32_t kHoles = kAlphaMask | kUvMap | kUvMaps | kVertexColor;
     const bool holes = run.features.has(kAlphaMask);
-    SurfaceFeatures features = {.bits = run.features.bits & kMovedVertices};
+    SurfaceFeatures features = moving_features(run.features);
     if (holes) {
         features.bits |= run.features.bits & kHoles;
         features.maps = run.features.maps.only(layout::kBaseColorSlot);
@@ -106,6 +106,10 @@ std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vect
         }
     }
     return reads;
+}
+
+SurfaceFeatures moving_features(const SurfaceFeatures& features) {
+    return {.bits = features.bits & kInflate, .hooks = moving_hooks(features.hooks)};
 }
 
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list) {

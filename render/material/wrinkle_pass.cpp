@@ -7,7 +7,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/grown_buffer.h"
 #include "render/gpu/shader_library.h"
-#include "render/material/surface_features.h"
+#include "render/material/wrinkle_hook.h"
 #include "render/shaders/wrinkle_columns_gpu.h"
 #include "render/shaders/wrinkle_gpu.h"
 #include "render/skinning/deformed_list.h"
@@ -265,11 +265,10 @@ bool WrinkleEffect::prepare(const FrameData& frame, ViewData& view) {
         layout::kWrinkleColumnsBinding,
         pack_columns(wrinkle_columns(comparison), column_borders(comparison)));
     Variant& lit = view.lighting.variant;
-    const DeformedList& shapes = *frame.shapes;
-    lit.add_if(
-        shapes.has_wrinkles(kWrinkleBlend | kWrinkleFade | kWrinkleBounce), "SMOOTH_NORMALS");
-    lit.add_if(shapes.has_wrinkles(kWrinkleBlend), "BLENDED_SKIN");
-    lit.add_if(shapes.has_wrinkles(kWrinkleBounce), "FOLD_LIGHT");
+    const auto has = [&](unsigned bits) { return frame.shapes->has_hook(kWrinkleHook, bits); };
+    lit.add_if(has(kWrinkleBlend | kWrinkleFade | kWrinkleBounce), "SMOOTH_NORMALS");
+    lit.add_if(has(kWrinkleBlend), "BLENDED_SKIN");
+    lit.add_if(has(kWrinkleBounce), "FOLD_LIGHT");
     return true;
 }
 

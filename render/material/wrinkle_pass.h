@@ -15,7 +15,8 @@ namespace limn {
 // how strong its wrinkles are there (wrinkle.compression.*). lib/material.glsl draws them.
 //
 // Reads    WrinkleState, WrinkleSurface; positions of DeformedVertices
-// Writes   DeformedVertices: strengths by kind of drawing; heights of folds that move the skin; the view's WrinkleColumns
+// Writes   DeformedVertices: strengths by kind of drawing; heights of folds that move the skin; the
+// view's WrinkleColumns
 //          and what lit programs must do for wrinkled skin
 // Order    after deform_pass, before everything that draws meshes
 // Shaders  wrinkle.comp, lib/wrinkle.glsl; layout in wrinkle_gpu.h. lib/mesh_vertex.glsl moves the
