@@ -23,7 +23,7 @@ int face_size(const PanoramaPass& pass, int panorama_width) {
 }
 
 constexpr int kMinLevel = 16;  ///< [px]; texels of smaller levels become visible, however blurred
-constexpr int kSamples = 256;  ///< maximum per texel; level 0 is sharp and takes 1
+constexpr int kMaxMapSamples = 256;  ///< maximum per texel; level 0 is sharp and takes 1
 constexpr int kIrradianceFace =
     32;  ///< [px] of the cube map level that irradiance is integrated from
 constexpr unsigned kCubeUnit = 5;
@@ -55,7 +55,7 @@ void draw_levels(
                 program.set("size", static_cast<float>(pass.maps.width(level)));
                 // Levels shrink faster than their lobes widen: fewer texels afford more samples.
                 const int doubled = samples << std::max(level - 1, 0);
-                program.set("samples", level == 0 ? 1 : std::min(doubled, kSamples));
+                program.set("samples", level == 0 ? 1 : std::min(doubled, kMaxMapSamples));
                 context.device().draw_fullscreen();
             });
     }
@@ -148,14 +148,15 @@ void draw_sky_reflection(
     FrameGraph& graph, ReflectionPass& pass, const SceneEnvironment& environment) {
     const SkyKind sky = environment.settings.sky;
     if (sky == SkyKind::Panorama) {
-        draw_cube_reflection(graph, pass, environment.block_slice, *environment.cube, 0, kSamples);
+        draw_cube_reflection(
+            graph, pass, environment.block_slice, *environment.cube, 0, kMaxMapSamples);
         return;
     }
     const layout::Irradiance irradiance = project_irradiance(environment.block);
     pass.irradiance.write(0, std::span(&irradiance, 1));
     draw_levels(
         graph, pass, environment.block_slice, *pass.programs[static_cast<int>(sky)], nullptr, 0,
-        kSamples);
+        kMaxMapSamples);
 }
 
 void draw_cube_reflection(

@@ -15,7 +15,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kWidth = 4;       ///< influences per vertex of one set
+constexpr std::size_t kInfluences = 4;  ///< influences per vertex of one set
 constexpr double kMaxDeviation = 1e-3;  ///< of a sum of weights from 1
 /// What a weight of 0 may become by rounding.
 constexpr float kMinWeight = -1e-3f;
@@ -73,10 +73,10 @@ read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
                 "{}: accessors[{}].componentType: found {}, expected 5121 or 5123",
                 set.joints_place, joints->second, type);
         }
-        set.joints =
-            LIMN_TRY(read_attribute(document, vertices, joints->second, kWidth, set.joints_place));
+        set.joints = LIMN_TRY(
+            read_attribute(document, vertices, joints->second, kInfluences, set.joints_place));
         set.weights = LIMN_TRY(
-            read_attribute(document, vertices, weights->second, kWidth, set.weights_place));
+            read_attribute(document, vertices, weights->second, kInfluences, set.weights_place));
         sets.push_back(std::move(set));
     }
 }
@@ -118,7 +118,8 @@ Status gather_influences(
     std::vector<Influence>& influences) {
     influences.clear();
     for (const InfluenceSet& set : sets) {
-        for (std::size_t i = kWidth * vertex; i < kWidth * (vertex + std::size_t{1}); ++i) {
+        for (std::size_t i = kInfluences * vertex; i < kInfluences * (vertex + std::size_t{1});
+             ++i) {
             const float weight = set.weights[i];
             if (weight < kMinWeight) {
                 return fail(

@@ -134,11 +134,13 @@ float mirrored(float x) {
     return left < kWidth ? left * left * (2 * kWidth - left) / square(kWidth) : left;
 }
 
-constexpr float kReach = 4.5f;  ///< of a crease in widths
+constexpr float kCreaseExtent = 4.5f;  ///< of a crease in widths
 
 bool is_near(const Crease& crease, const Vec2& p) {
-    const Vec2 low = glm::min(crease.a, glm::min(crease.b, crease.c)) - kReach * crease.width;
-    const Vec2 high = glm::max(crease.a, glm::max(crease.b, crease.c)) + kReach * crease.width;
+    const Vec2 low =
+        glm::min(crease.a, glm::min(crease.b, crease.c)) - kCreaseExtent * crease.width;
+    const Vec2 high =
+        glm::max(crease.a, glm::max(crease.b, crease.c)) + kCreaseExtent * crease.width;
     return p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y;
 }
 

@@ -302,7 +302,7 @@ Vec3 turn_lid(const ActionUnit& unit, const HeadPoint& point, const Vec3& p) {
 }
 
 Vec3 roll_lip(const ActionUnit& unit, const HeadPoint& point, const Vec3& p) {
-    constexpr float kReach = 1.05f;
+    constexpr float kRollRadius = 1.05f;
     const float c = p.x / 2.5f;
     if (std::abs(c) >= 1 || (unit.upper_roll == 0 && unit.lower_roll == 0)) {
         return p;
@@ -310,7 +310,7 @@ Vec3 roll_lip(const ActionUnit& unit, const HeadPoint& point, const Vec3& p) {
     const Vec3 line = lip_line((1 - c) * kPi / 2);
     const float side = p.y > line.y ? 1.0f : -1.0f;
     const Vec3 axis = {p.x, line.y + 0.36f * side, line.z + 0.12f};
-    const Vec3 q = (point.rest - axis) / kReach;
+    const Vec3 q = (point.rest - axis) / kRollRadius;
     const float share =
         fall_off(glm::dot(q, q)) * square(1 - square(c)) * std::abs(2 * point.upper_lip - 1);
     const float roll = side > 0 ? -unit.upper_roll : unit.lower_roll;

@@ -60,7 +60,7 @@ struct LoopRing {
     std::array<int, 13> angles;  ///< up to kEnd
 };
 
-constexpr LoopRing kRings[] = {
+constexpr LoopRing kLoopRings[] = {
     {"lid", HeadLoops::Eye, 4, {0, 41, 90, 139, 180, 221, 270, 319, kEnd}},
     {"lid",
      HeadLoops::Eye,
@@ -127,7 +127,7 @@ class MarkerBuilder {
                     grid_vertex(layout_, column, row.row), Vec2(column, row.row));
             }
         }
-        for (const LoopRing& ring : kRings) {
+        for (const LoopRing& ring : kLoopRings) {
             for (std::size_t i = 0; ring.angles[i] != kEnd; ++i) {
                 const std::uint32_t v = ring_vertex(layout_, ring, ring.angles[i]);
                 add(fmt::format("{}{}_{}", ring.name, ring.loop, ring.angles[i]), v,

@@ -12,8 +12,6 @@
 namespace limn {
 namespace {
 
-using namespace boat;
-
 constexpr float kDifference = 1e-3f;  // step in u and v for normals
 
 /// A patch of the surface place(u, v); seen from the front, u runs to the right and v downwards.
@@ -45,7 +43,7 @@ void add_patch(MeshData& mesh, int columns, int rows, const Vec2& uv, Place&& pl
 }
 
 /// A tube from `a` to `b`, capped at both ends by cones as long as its radius.
-void add_spar(MeshData& mesh, const Spar& spar) {
+void add_spar(MeshData& mesh, const boat::Spar& spar) {
     const auto& [a, b, radius_a, radius_b, color] = spar;
     const Vec3 axis = glm::normalize(b - a);
     const Vec3 side =
@@ -80,12 +78,13 @@ float sheer_height(float t) {
 float keel_height(float t) {
     const float fore = glm::smoothstep(0.72f, 1.05f, t);
     const float aft = glm::smoothstep(0.0f, 0.55f, t);
-    return kKeel * (0.25f + 0.75f * aft) * (1 - 0.55f * fore);
+    return boat::kKeel * (0.25f + 0.75f * aft) * (1 - 0.55f * fore);
 }
 
 float half_breadth(float t) {
-    return t > 0.42f ? kHalfBeam * (1 - std::pow(std::clamp((t - 0.42f) / 0.58f, 0.0f, 1.0f), 2.3f))
-                     : kHalfBeam * (1 - 0.32f * square((0.42f - t) / 0.42f));
+    return t > 0.42f
+               ? boat::kHalfBeam * (1 - std::pow(std::clamp((t - 0.42f) / 0.58f, 0.0f, 1.0f), 2.3f))
+               : boat::kHalfBeam * (1 - 0.32f * square((0.42f - t) / 0.42f));
 }
 
 /// The port side: s from the keel (0) to the sheer (1).
@@ -98,7 +97,7 @@ Vec3 side_place(float t, float s) {
     p.x = half_breadth(t) * out;
     p.y = glm::mix(keel_height(t), sheer_height(t), up);
     // The stem rakes ahead, the transom aft.
-    p.z = (t - 0.5f) * kLength - 0.75f * (1 - up) * std::pow(std::max(t, 0.0f), 7.0f)
+    p.z = (t - 0.5f) * boat::kLength - 0.75f * (1 - up) * std::pow(std::max(t, 0.0f), 7.0f)
           - 0.22f * up * std::pow(std::max(1 - t, 0.0f), 5.0f);
     return p;
 }
@@ -111,7 +110,7 @@ Vec3 side_normal(float t, float s) {
 }
 
 Vec4 hull_paint(const Vec3& p) {
-    return p.y < 0.02f ? kBottom : kPaint;
+    return p.y < 0.02f ? boat::kBottom : boat::kPaint;
 }
 
 void add_hull_side(MeshData& mesh, const BoatShape& shape, float side) {
@@ -123,24 +122,24 @@ void add_hull_side(MeshData& mesh, const BoatShape& shape, float side) {
         const auto plank = [&](float u, float v) {
             const float t = std::clamp(side > 0 ? 1 - u : u, 0.0f, 1.0f);
             const float s = glm::mix(high, low, v);
-            return mirrored(side_place(t, s) + kLap * v * side_normal(t, s));
+            return mirrored(side_place(t, s) + boat::kLap * v * side_normal(t, s));
         };
-        add_patch(mesh, shape.stations, 1, {kLength, 0.25f}, plank, [&](const Vec3& p) {
-            return p.y < 0.03f ? kBottom : kPaint;
+        add_patch(mesh, shape.stations, 1, {boat::kLength, 0.25f}, plank, [&](const Vec3& p) {
+            return p.y < 0.03f ? boat::kBottom : boat::kPaint;
         });
         const auto edge = [&](float u, float v) {
             const float t = std::clamp(side > 0 ? 1 - u : u, 0.0f, 1.0f);
-            return mirrored(side_place(t, low) + kLap * (1 - v) * side_normal(t, low));
+            return mirrored(side_place(t, low) + boat::kLap * (1 - v) * side_normal(t, low));
         };
-        add_patch(mesh, shape.stations, 1, {kLength, 0.01f}, edge, kShade);
+        add_patch(mesh, shape.stations, 1, {boat::kLength, 0.01f}, edge, boat::kShade);
     }
     // The rail, a tube along the sheer.
     const auto rail = [&](float u, float v) {
         const float t = std::clamp(u, 0.0f, 1.0f);
         const float angle = 2 * kPi * (side > 0 ? v : 1 - v);
-        return mirrored(side_place(t, 1) + kRail * Vec3(std::cos(angle), std::sin(angle), 0));
+        return mirrored(side_place(t, 1) + boat::kRail * Vec3(std::cos(angle), std::sin(angle), 0));
     };
-    add_patch(mesh, shape.stations, 8, {kLength, 0.2f}, rail, kTrim);
+    add_patch(mesh, shape.stations, 8, {boat::kLength, 0.2f}, rail, boat::kTrim);
 }
 
 MeshData make_hull(const BoatShape& shape) {
@@ -163,13 +162,13 @@ MeshData make_hull(const BoatShape& shape) {
                 Vec3(0, -1 + s, 0.9f * glm::smoothstep(0.7f, 1.0f, along)), {0, -1, 0});
             return Vec3(side * 0.03f, p.y, p.z) + out * (0.09f * v - 0.02f);
         };
-        add_patch(mesh, 2 * shape.stations, 1, {kLength, 0.1f}, keel, [](const Vec3& p) {
-            return p.y < 0.03f ? kBottom : kTrim;
+        add_patch(mesh, 2 * shape.stations, 1, {boat::kLength, 0.1f}, keel, [](const Vec3& p) {
+            return p.y < 0.03f ? boat::kBottom : boat::kTrim;
         });
     }
     // The fin below, the rudder behind it and the tiller.
     for (const float side : {1.0f, -1.0f}) {
-        for (const Blade& blade : kBlades) {
+        for (const boat::Blade& blade : boat::kBlades) {
             const auto surface = [&](float u, float v) {
                 const float along = side > 0 ? 1 - u : u;  // 0 aft, 1 ahead
                 const float z = glm::mix(
@@ -181,11 +180,11 @@ MeshData make_hull(const BoatShape& shape) {
                     glm::mix(blade.top, blade.bottom, v), z);
             };
             add_patch(mesh, blade.quads.x, blade.quads.y, blade.uv, surface, [](const Vec3& p) {
-                return p.y < 0.02f ? kBottom : kTrim;
+                return p.y < 0.02f ? boat::kBottom : boat::kTrim;
             });
         }
     }
-    add_spar(mesh, kTiller);
+    add_spar(mesh, boat::kTiller);
     return mesh;
 }
 
@@ -201,25 +200,25 @@ MeshData make_deck(const BoatShape& shape) {
     MeshData mesh;
     const int n = shape.stations;
     // Seen from above with the bow up, +x is to the left.
-    for (const DeckStrip& strip : kDeck) {
+    for (const boat::DeckStrip& strip : boat::kDeck) {
         const auto place = [&](float u, float v) {
             return deck_place(
                 glm::mix(strip.end, strip.begin, v), glm::mix(strip.left, strip.right, u));
         };
         const float share = strip.end - strip.begin;
         const int rows = std::max(2, static_cast<int>(static_cast<float>(n) * share));
-        const Vec2 uv = {std::abs(strip.left - strip.right), share * kLength};
-        add_patch(mesh, strip.columns, rows, uv, place, kPaint);
+        const Vec2 uv = {std::abs(strip.left - strip.right), share * boat::kLength};
+        add_patch(mesh, strip.columns, rows, uv, place, boat::kPaint);
     }
 
     // The coaming, an upright board around the well, and the walls of the well below it.
     const auto rim = [](float t, float side, float height) {
-        const Vec3 p = deck_place(t, side * kWell);
-        return Vec3(p.x, height < 0 ? kSole : p.y + height, p.z);
+        const Vec3 p = deck_place(t, side * boat::kWell);
+        return Vec3(p.x, height < 0 ? boat::kSole : p.y + height, p.z);
     };
     for (const float side : {1.0f, -1.0f}) {
         const auto t_at = [side](float u) {
-            return glm::mix(kWellBegin, kWellEnd, side > 0 ? u : 1 - u);
+            return glm::mix(boat::kWellBegin, boat::kWellEnd, side > 0 ? u : 1 - u);
         };
         const auto inside = [&](float u, float v) {
             return glm::mix(rim(t_at(u), side, 0.09f), rim(t_at(u), side, -1), v);
@@ -231,9 +230,9 @@ MeshData make_deck(const BoatShape& shape) {
         const auto top = [&](float u, float v) {
             return rim(t_at(u), side, 0.09f) + Vec3(side * 0.025f * (1 - v), 0, 0);
         };
-        add_patch(mesh, 12, 1, {3, 0.5f}, inside, kPaint);
-        add_patch(mesh, 12, 1, {3, 0.1f}, outside, kTrim);
-        add_patch(mesh, 12, 1, {3, 0.03f}, top, kTrim);
+        add_patch(mesh, 12, 1, {3, 0.5f}, inside, boat::kPaint);
+        add_patch(mesh, 12, 1, {3, 0.1f}, outside, boat::kTrim);
+        add_patch(mesh, 12, 1, {3, 0.03f}, top, boat::kTrim);
         // bench
         const auto bench = [&](float u, float v) {
             Vec3 p = rim(t_at(u), side, -1);
@@ -241,35 +240,35 @@ MeshData make_deck(const BoatShape& shape) {
             p.x -= side * 0.34f * v;
             return p;
         };
-        add_patch(mesh, 8, 1, {3, 0.34f}, bench, kPaint);
+        add_patch(mesh, 8, 1, {3, 0.34f}, bench, boat::kPaint);
         const auto front = [&](float u, float v) {
             Vec3 p = rim(t_at(u), side, -1);
-            p.y = glm::mix(0.30f, kSole, v);
+            p.y = glm::mix(0.30f, boat::kSole, v);
             p.x -= side * 0.34f;
             return p;
         };
-        add_patch(mesh, 8, 1, {3, 0.25f}, front, kShade);
+        add_patch(mesh, 8, 1, {3, 0.25f}, front, boat::kShade);
     }
-    for (const float t : {kWellBegin, kWellEnd}) {
-        const float way = t == kWellEnd ? 1.0f : -1.0f;
+    for (const float t : {boat::kWellBegin, boat::kWellEnd}) {
+        const float way = t == boat::kWellEnd ? 1.0f : -1.0f;
         const auto wall = [&](float u, float v) {
-            const float across = way * glm::mix(1.0f, -1.0f, u) * kWell;
+            const float across = way * glm::mix(1.0f, -1.0f, u) * boat::kWell;
             const Vec3 p = deck_place(t, across);
-            return Vec3(p.x, glm::mix(p.y + 0.09f, kSole, v), p.z);
+            return Vec3(p.x, glm::mix(p.y + 0.09f, boat::kSole, v), p.z);
         };
-        add_patch(mesh, 4, 1, {1.3f, 0.5f}, wall, kPaint);
+        add_patch(mesh, 4, 1, {1.3f, 0.5f}, wall, boat::kPaint);
         const auto back = [&](float u, float v) {
-            const float across = -way * glm::mix(1.0f, -1.0f, u) * kWell;
+            const float across = -way * glm::mix(1.0f, -1.0f, u) * boat::kWell;
             const Vec3 p = deck_place(t, across);
             return Vec3(p.x, p.y + 0.09f * (1 - v), p.z + way * 0.02f);
         };
-        add_patch(mesh, 4, 1, {1.3f, 0.1f}, back, kTrim);
+        add_patch(mesh, 4, 1, {1.3f, 0.1f}, back, boat::kTrim);
     }
     const auto sole = [&](float u, float v) {
-        const float t = glm::mix(kWellEnd, kWellBegin, v);
+        const float t = glm::mix(boat::kWellEnd, boat::kWellBegin, v);
         return glm::mix(rim(t, 1, -1), rim(t, -1, -1), u);
     };
-    add_patch(mesh, 2, 8, {1.2f, 3}, sole, kShade);
+    add_patch(mesh, 2, 8, {1.2f, 3}, sole, boat::kShade);
     return mesh;
 }
 
@@ -277,7 +276,7 @@ MeshData make_deck(const BoatShape& shape) {
 
 MeshData make_spars() {
     MeshData mesh;
-    for (const Spar& spar : kMast) {
+    for (const boat::Spar& spar : boat::kMast) {
         add_spar(mesh, spar);
     }
     return mesh;
@@ -285,11 +284,12 @@ MeshData make_spars() {
 
 /// Point of the sail: u from luff to leech, v from head to foot.
 Vec3 sail_place(float u, float v) {
-    const Vec2 head = glm::mix(Vec2(-0.07f, kThroat), kPeak, u);
+    const Vec2 head = glm::mix(Vec2(-0.07f, boat::kThroat), boat::kPeak, u);
     const Vec2 foot = glm::mix(
-        Vec2(-0.07f, kBoomHeight + 0.1f), Vec2(-kBoomLength + 0.2f, kBoomHeight + 0.22f), u);
+        Vec2(-0.07f, boat::kBoomHeight + 0.1f),
+        Vec2(-boat::kBoomLength + 0.2f, boat::kBoomHeight + 0.22f), u);
     const Vec2 flat = glm::mix(head, foot, v);
-    const float chord = glm::mix(3.0f, kBoomLength, v);
+    const float chord = glm::mix(3.0f, boat::kBoomLength, v);
     const float along = std::clamp(u, 0.0f, 1.0f);
     // Deepest at two fifths of the chord; boom and gaff hold it flat.
     const float arc = 6.75f * 0.6f * along * square(1 - along) + 1.2f * along * (1 - along);
@@ -297,8 +297,8 @@ Vec3 sail_place(float u, float v) {
     const float held = 1 - square(1 - 4 * down * (1 - down));
     const float roach = 0.10f * 4 * down * (1 - down) * along;
     return {
-        kBelly * chord * arc * held * 0.85f + 0.12f * along * std::sin(kPi * (1 - down)), flat.y,
-        flat.x - roach};
+        boat::kBelly * chord * arc * held * 0.85f + 0.12f * along * std::sin(kPi * (1 - down)),
+        flat.y, flat.x - roach};
 }
 
 MeshData make_rig() {
@@ -307,11 +307,11 @@ MeshData make_rig() {
         // Seen from port (+x), u runs to the right, toward the stern.
         const auto cloth = [side](float u, float v) {
             const float along = side > 0 ? u : 1 - u;
-            return sail_place(along, v) + Vec3(side * kSailGap, 0, 0);
+            return sail_place(along, v) + Vec3(side * boat::kSailGap, 0, 0);
         };
-        add_patch(mesh, 14, 14, {1, 7}, cloth, kPaint);
+        add_patch(mesh, 14, 14, {1, 7}, cloth, boat::kPaint);
     }
-    for (const Spar& spar : kBoomAndGaff) {
+    for (const boat::Spar& spar : boat::kBoomAndGaff) {
         add_spar(mesh, spar);
     }
     return mesh;
@@ -320,7 +320,7 @@ MeshData make_rig() {
 }  // namespace
 
 Vec3 mast_position(float length) {
-    return {0, 0, kMastFoot * length / kLength};
+    return {0, 0, boat::kMastFoot * length / boat::kLength};
 }
 
 MeshData make_boat(const BoatShape& shape) {
@@ -341,7 +341,7 @@ MeshData make_boat(const BoatShape& shape) {
     }
     mesh.bounds = {};
     for (Vec3& p : mesh.positions) {
-        p *= shape.length / kLength;
+        p *= shape.length / boat::kLength;
         grow(mesh.bounds, p);
     }
     return mesh;

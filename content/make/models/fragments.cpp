@@ -20,7 +20,7 @@ namespace limn {
 namespace {
 
 constexpr std::uint32_t kNoFragment = 0xffffffffu;
-constexpr int kRounds = 4;  // of moving the middles of the groups
+constexpr int kGroupRounds = 4;  // of moving the middles of the groups
 
 /// A triangle with an area.
 struct FragmentFace {
@@ -153,7 +153,7 @@ spread_seeds(const std::vector<FragmentFace>& faces, const FragmentsShape& shape
     for (std::size_t k = 0; k < count; ++k) {
         seeds.push_back(order[k].second);
     }
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kGroupRounds; ++round) {
         const std::vector<std::uint32_t> group = group_faces(faces, seeds, 0, shape.seed);
         const std::vector<Vec3> centers = find_centers(faces, group, count);
         std::vector<float> least(count, std::numeric_limits<float>::max());
