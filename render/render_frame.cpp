@@ -15,6 +15,7 @@
 #include "render/image.h"
 #include "render/light/light_list.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/fullscreen_gpu.h"
 #include "render/skinning/deformed_list.h"
 
 #include <glm/geometric.hpp>
@@ -463,7 +464,7 @@ void Renderer::add_to_sum(const ViewData& view, float weight) {
     gpu::PipelineState state = gpu::kFullscreenState;
     state.blend = gpu::kBlendAdd;
     add_fullscreen_pass(
-        graph, "accumulate", {sampled(view.radiance, 0)},
+        graph, "accumulate", {sampled(view.radiance, layout::kSourceUnit)},
         {accumulation.empty ? cleared(target) : Use(target)}, add_, state,
         [weight](PassContext&, const gpu::Program& program) { program.set("weight", weight); });
     accumulation.empty = false;

@@ -4,15 +4,12 @@
 #include "render/environment/fog_block.h"
 #include "render/fullscreen.h"
 #include "render/light/light_list.h"
+#include "render/shaders/fog_gpu.h"
 #include "render/view_block.h"
 #include "render/water/water_surfaces.h"
 
 namespace limn {
-namespace {
-
-constexpr unsigned kFogSceneDepthUnit = 0;
-
-}  // namespace
+namespace {}  // namespace
 
 bool FogEffect::is_used(const FrameData& frame) {
     return frame.world->find_resource<HeightFog>() != nullptr;
@@ -38,8 +35,9 @@ void FogEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     gpu::PipelineState state = gpu::kFullscreenState;
     state.blend = gpu::kBlendPremultiplied;
     add_fullscreen_pass(
-        graph, "fog", {sampled(view.gbuffer.depth, kFogSceneDepthUnit)}, {view.radiance}, program,
-        state, [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
+        graph, "fog", {sampled(view.gbuffer.depth, layout::kFogDepthUnit)}, {view.radiance},
+        program, state,
+        [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
 }
 
 }  // namespace limn

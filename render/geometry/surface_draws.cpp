@@ -5,6 +5,7 @@
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/shaders/instance_gpu.h"
+#include "render/shaders/material_gpu.h"
 #include "render/skinning/deformed_list.h"
 #include "render/view_block.h"
 
@@ -115,7 +116,7 @@ SurfaceFeatures moving_features(const SurfaceFeatures& features) {
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list) {
     set_instance_streams(frame.meshes->streams().vertices(), list);
     set_instance_streams(frame.shapes->vertices().streams().vertices(), list);
-    frame.materials->records().bind(device, kMaterialsUnit);
+    frame.materials->records().bind(device, layout::kMaterialsUnit);
     device.bind_indirect(list.commands.buffer);
 }
 

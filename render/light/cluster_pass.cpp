@@ -8,6 +8,8 @@
 #include "render/gpu/shader_library.h"
 #include "render/material/shading_models.h"
 #include "render/render_frame.h"
+#include "render/shaders/cluster_gpu.h"
+#include "render/shaders/light_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -17,11 +19,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kMasksBinding = 0;
-constexpr unsigned kCellsBinding = 1;
-constexpr unsigned kIndicesBinding = 2;
-constexpr unsigned kClusterLightsUnit = 0;
-constexpr unsigned kBoxesUnit = 1;
 constexpr unsigned kBlocksGroup = 32;  ///< local size of cluster_blocks.comp
 
 unsigned divide_up(std::size_t count, std::size_t by) {
@@ -94,9 +91,9 @@ ClusterLists build_clusters(
         [&pass, &clusters, &view, masks, blocks, words](PassContext& context) {
             context.device().use(*pass.blocks);
             bind_view(context, view);
-            clusters.light_records.bind(context.device(), kClusterLightsUnit);
-            clusters.box_records.bind(context.device(), kBoxesUnit);
-            context.bind_storage(kMasksBinding, masks);
+            clusters.light_records.bind(context.device(), layout::kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), layout::kClusterBoxesUnit);
+            context.bind_storage(layout::kClusterMasksBinding, masks);
             context.device().dispatch(divide_up(blocks, kBlocksGroup), words);
         });
     graph.add_pass(
@@ -104,16 +101,16 @@ ClusterLists build_clusters(
         [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
             context.device().use(*pass.count);
             bind_view(context, view);
-            clusters.light_records.bind(context.device(), kClusterLightsUnit);
-            clusters.box_records.bind(context.device(), kBoxesUnit);
-            context.bind_storage(kMasksBinding, masks);
-            context.bind_storage(kCellsBinding, lists.cells);
+            clusters.light_records.bind(context.device(), layout::kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), layout::kClusterBoxesUnit);
+            context.bind_storage(layout::kClusterMasksBinding, masks);
+            context.bind_storage(layout::kClusterCellsBinding, lists.cells);
             context.device().dispatch(blocks);
         });
     graph.add_pass("clusters.scan", {}, {lists.cells}, [&pass, lists, cells](PassContext& context) {
         context.device().use(*pass.scan);
         pass.scan->set("cell_count", cells);
-        context.bind_storage(kCellsBinding, lists.cells);
+        context.bind_storage(layout::kClusterCellsBinding, lists.cells);
         context.device().dispatch(1);
     });
     graph.add_pass(
@@ -121,11 +118,11 @@ ClusterLists build_clusters(
         [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
             context.device().use(*pass.fill);
             bind_view(context, view);
-            clusters.light_records.bind(context.device(), kClusterLightsUnit);
-            clusters.box_records.bind(context.device(), kBoxesUnit);
-            context.bind_storage(kMasksBinding, masks);
-            context.bind_storage(kCellsBinding, lists.cells);
-            context.bind_storage(kIndicesBinding, lists.indices);
+            clusters.light_records.bind(context.device(), layout::kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), layout::kClusterBoxesUnit);
+            context.bind_storage(layout::kClusterMasksBinding, masks);
+            context.bind_storage(layout::kClusterCellsBinding, lists.cells);
+            context.bind_storage(layout::kClusterIndicesBinding, lists.indices);
             context.device().dispatch(blocks);
             pass.cells.set(context.buffer(lists.cells));
             pass.indices.set(context.buffer(lists.indices));
@@ -202,8 +199,8 @@ void LightListEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
     published = lists;
     view.lighting.reads.insert(view.lighting.reads.end(), {lists.cells, lists.indices});
     view.lighting.add_binding<[](PassContext& context, const ClusterLists& found) {
-        found.index_texture->bind(context.device(), kLightIndicesUnit);
-        found.cell_texture->bind(context.device(), kLightCellsUnit);
+        found.index_texture->bind(context.device(), layout::kLightIndicesUnit);
+        found.cell_texture->bind(context.device(), layout::kLightCellsUnit);
     }>(published);
 }
 

@@ -24,9 +24,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kLayersUnit = 7;
-constexpr unsigned kHighlightLightsUnit = 9;
-constexpr unsigned kHighlightMapsImage = 0;
 constexpr unsigned kHighlightGroup = 8;
 
 /// Whether a rate of the frame reads the map; methods that are compared will be switched.
@@ -182,11 +179,11 @@ HighlightMaps::Map HighlightMapEffect::draw_map(
         [this, &maps, texture = published.layers, count, by_view, &view](PassContext& context) {
             const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
             context.device().use(program);
-            maps.layer_records.bind(context.device(), kLayersUnit);
-            context.bind_image(kHighlightMapsImage, texture, GL_WRITE_ONLY);
+            maps.layer_records.bind(context.device(), layout::kHighlightRecordsUnit);
+            context.bind_image(layout::kHighlightMapsImage, texture, GL_WRITE_ONLY);
             if (by_view) {
                 bind_view(context, view);
-                lights.bind(context.device(), kHighlightLightsUnit);
+                lights.bind(context.device(), layout::kLightsUnit);
                 program.set("light_count", static_cast<int>(environment.source.lights.size()));
             }
             context.device().dispatch(

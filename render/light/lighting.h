@@ -10,20 +10,7 @@
 
 namespace limn {
 
-// What passes that light surfaces share: texture units of lib/lighting.glsl and
-// lib/stored_surface.glsl, and the LightingInputs of a view. Units 0 .. 4 are the material's own.
-
-inline constexpr unsigned kEnvironmentBinding = 1;
-inline constexpr unsigned kGbufferUnit = 5;
-inline constexpr unsigned kDepthUnit = 6;
-inline constexpr unsigned kLightIndicesUnit = 10;
-inline constexpr unsigned kLightCellsUnit = 11;
-inline constexpr unsigned kMaterialsUnit = 12;
-inline constexpr unsigned kGbufferMaterialUnit = 13;
-inline constexpr unsigned kVelocityUnit = 14;
-inline constexpr unsigned kShadowAtlasUnit = 15;
-inline constexpr unsigned kShadowViewsUnit = 16;
-inline constexpr unsigned kShadowMasksUnit = 17;
+// What passes that light surfaces share: how they do it, and the LightingInputs of a view.
 
 /// How surfaces meet lights in a view; published in prepare() before all that depends on it.
 struct LightingMethod {

@@ -23,12 +23,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kWrinkleJobsUnit = 0;
-constexpr unsigned kWrinkleGroupsUnit = 1;
-constexpr unsigned kWrinkleRestUnit = 2;
-constexpr unsigned kWrinklePositionsBinding = 0;
-constexpr unsigned kWrinklesBinding = 1;
-constexpr unsigned kFoldHeightsBinding = 2;
 constexpr std::uint32_t kInitialTexels = 1 << 14;
 
 static_assert(kFoldSteps == layout::kFoldSteps);
@@ -327,18 +321,20 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         [this, &vertices, aligned, end, group_count, displaced](PassContext& context) {
             gpu::Device& device = context.device();
             device.use(*program);
-            jobs.bind(device, kWrinkleJobsUnit);
-            groups.bind(device, kWrinkleGroupsUnit);
-            rest.bind(device, kWrinkleRestUnit);
+            jobs.bind(device, layout::kWrinkleJobsUnit);
+            groups.bind(device, layout::kWrinkleGroupsUnit);
+            rest.bind(device, layout::kWrinkleRestUnit);
             const auto bind = [&](unsigned binding, const gpu::Buffer& buffer, std::size_t stride) {
                 device.bind_storage(
                     binding, buffer.id(), aligned * stride, (end - aligned) * stride);
             };
-            bind(kWrinklePositionsBinding, vertices.positions(), sizeof(Vec3));
-            bind(kWrinklesBinding, vertices.wrinkles(), stream_stride(VertexStream::Wrinkle));
+            bind(layout::kWrinklePositionsBinding, vertices.positions(), sizeof(Vec3));
+            bind(
+                layout::kWrinklesBinding, vertices.wrinkles(),
+                stream_stride(VertexStream::Wrinkle));
             // Without displaced skin none are written.
             const VertexStream last = displaced ? VertexStream::FoldHeight : VertexStream::Wrinkle;
-            bind(kFoldHeightsBinding, vertices.streams().buffer(last), stream_stride(last));
+            bind(layout::kFoldHeightsBinding, vertices.streams().buffer(last), stream_stride(last));
             program->set("group_count", group_count);
             program->set("first_vertex", aligned);
             const unsigned wide = std::min(group_count, layout::kWrinkleGroupsWide);

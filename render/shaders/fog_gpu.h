@@ -19,6 +19,9 @@ struct FogBlock {
 
 const uint kFogBinding = kEffectBlocks + 0u;
 
+// Bindings.
+const uint kFogDepthUnit = 0u;
+
 #ifdef __cplusplus
 static_assert(sizeof(FogBlock) == 64);
 }  // namespace limn::layout

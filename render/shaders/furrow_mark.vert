@@ -1,8 +1,9 @@
 // A line with round ends, or a dot, as a quad that faces the camera, from FurrowMark records of three texels
 // (furrow_pass.h).
 #version 450
+#include "furrow_gpu.h"
 
-layout(binding = 0) uniform samplerBuffer marks;
+layout(binding = kFurrowMarksUnit) uniform samplerBuffer marks;
 
 layout(location = 0) out vec4 color;
 layout(location = 1) noperspective out vec2 place_px;  // along the line from its beginning, and across

@@ -16,6 +16,12 @@ struct HighlightBlock {
 
 const uint kHighlightBinding = kEffectBlocks + 1u;
 
+// Bindings.
+const uint kHighlightMapsUnit = 5u;
+const uint kHighlightLayersUnit = 6u;
+const uint kHighlightRecordsUnit = 7u;
+const uint kHighlightMapsImage = 0u;
+
 #ifdef __cplusplus
 static_assert(sizeof(HighlightBlock) == 16);
 }  // namespace limn::layout

@@ -2,11 +2,12 @@
 // (N.H)^n where (x, y) is N projected along H, and N.L where n = 1. Texels at the edge are 0, as what is addressed
 // beyond the disc.
 #version 450
+#include "highlight_gpu.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 7) uniform samplerBuffer layers;  // w: exponent n
-layout(binding = 0, r16f) writeonly uniform image2DArray maps;
+layout(binding = kHighlightRecordsUnit) uniform samplerBuffer layers;  // w: exponent n
+layout(binding = kHighlightMapsImage, r16f) writeonly uniform image2DArray maps;
 
 void main() {
     ivec2 size = imageSize(maps).xy;

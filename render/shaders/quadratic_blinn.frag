@@ -2,8 +2,9 @@
 // Definitions SINGLE_LIGHTS and BLINN_DIFFUSE: lib/single_lights.glsl, lib/map_lights.glsl.
 #version 450
 #include "lib/facet_pixel.glsl"
+#include "highlight_gpu.h"
 
-layout(binding = 5) uniform sampler2DArray highlight_maps;
+layout(binding = kHighlightMapsUnit) uniform sampler2DArray highlight_maps;
 
 layout(location = 1) INTERPOLATED in vec3 diffuse;
 layout(location = 5) INTERPOLATED in vec3 specular;

@@ -65,6 +65,14 @@ const uint kFoldSteps = 16u;
 const uint kWrinkleStretch = 0x80000000u;
 const uint kWrinkleAway = 0x40000000u;
 
+// Bindings.
+const uint kWrinkleJobsUnit = 0u;
+const uint kWrinkleGroupsUnit = 1u;
+const uint kWrinkleRestUnit = 2u;
+const uint kWrinklePositionsBinding = 0u;
+const uint kWrinklesBinding = 1u;
+const uint kFoldHeightsBinding = 2u;
+
 #ifdef __cplusplus
 static_assert(sizeof(WrinkleJob) == 16 * kWrinkleJobTexels);
 }  // namespace limn::layout

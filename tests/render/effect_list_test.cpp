@@ -2,6 +2,7 @@
 #include "render/graph/frame_graph.h"
 #include "render/image.h"
 #include "render/shaders/fog_gpu.h"
+#include "render/shaders/fullscreen_gpu.h"
 #include "tests/render/scene_fixture.h"
 
 #include <doctest/doctest.h>
@@ -22,8 +23,8 @@ struct DoubleEffect {
     void draw(FrameGraph& graph, const FrameData&, ViewData& view) {
         const TextureId doubled = create_like(graph, "doubled", view.radiance);
         add_fullscreen_pass(
-            graph, "double", {sampled(view.radiance, 0)}, {discarded(doubled)}, copy,
-            [](PassContext&, const gpu::Program& program) { program.set("weight", 2.0f); });
+            graph, "double", {sampled(view.radiance, layout::kSourceUnit)}, {discarded(doubled)},
+            copy, [](PassContext&, const gpu::Program& program) { program.set("weight", 2.0f); });
         view.radiance = doubled;
     }
 };
@@ -144,7 +145,7 @@ TEST_CASE_FIXTURE(TwoPasses, "image: reading what a pass writes without declarin
         written = &context.texture(first);
     });
     graph.add_pass("sneak", {}, {second}, [&](PassContext& context) {
-        context.device().bind_texture(0, *written);
+        context.device().bind_texture(layout::kSourceUnit, *written);
         draw(context);
     });
     graph.execute();
@@ -155,7 +156,7 @@ TEST_CASE_FIXTURE(TwoPasses, "image: reading what a pass writes without declarin
 
 TEST_CASE_FIXTURE(TwoPasses, "image: reading the texture that the pass draws to is a hazard") {
     graph.add_pass("feedback", {}, {cleared(second)}, [&](PassContext& context) {
-        context.device().bind_texture(0, context.texture(second));
+        context.device().bind_texture(layout::kSourceUnit, context.texture(second));
         draw(context);
     });
     graph.execute();
@@ -164,9 +165,9 @@ TEST_CASE_FIXTURE(TwoPasses, "image: reading the texture that the pass draws to 
 }
 
 TEST_CASE_FIXTURE(TwoPasses, "image: a declared read is no hazard") {
-    graph.add_pass("copy", {sampled(first, 0)}, {discarded(second)}, [&](PassContext& context) {
-        draw(context);
-    });
+    graph.add_pass(
+        "copy", {sampled(first, layout::kSourceUnit)}, {discarded(second)},
+        [&](PassContext& context) { draw(context); });
     graph.execute();
     CHECK(graph.hazards().empty());
 }
