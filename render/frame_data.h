@@ -1,13 +1,16 @@
 #pragma once
 
+#include "ecs/base/check.h"
 #include "ecs/base/math.h"
 #include "render/geometry/gbuffer.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/graph/frame_graph.h"
 #include "render/render_view.h"
+#include "render/shaders/view_gpu.h"
 #include "render/typed_store.h"
 #include "render/variant.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -131,6 +134,8 @@ struct ViewData {
     bool attributes = false;
     bool spreads = false;  ///< light within surfaces is drawn apart, to be spread; set in prepare()
     gpu::RingSlice block;  ///< layout::ViewBlock
+    /// Those of effects, by binding less kEffectBlocks.
+    std::array<gpu::RingSlice, layout::kMaxEffectBlocks> effect_blocks;
     LightingInputs lighting;
 
     Gbuffer gbuffer;
@@ -142,6 +147,14 @@ struct ViewData {
     TypedStore data;
 
     [[nodiscard]] bool is(std::uint32_t kinds) const { return (kind & kinds) != 0; }
+    /// Uploads a uniform block for all programs of this view; in prepare(). `binding` is that of
+    /// its shaders, kEffectBlocks at least.
+    template <typename Block>
+    void publish_block(unsigned binding, const Block& values) {
+        static_assert(sizeof(Block) <= layout::kEffectBlockBytes);
+        LIMN_CHECK(binding - layout::kEffectBlocks < layout::kMaxEffectBlocks);
+        effect_blocks[binding - layout::kEffectBlocks] = frame->ring->push_value(values);
+    }
     /// Size of what is drawn [px].
     [[nodiscard]] IVec2 size() const { return {camera.width, camera.height}; }
 };

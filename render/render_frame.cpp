@@ -15,11 +15,13 @@
 #include "render/image.h"
 #include "render/light/light_list.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/fullscreen_gpu.h"
 #include "render/skinning/deformed_list.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -343,6 +345,8 @@ ViewSlot& Renderer::view_slot(std::size_t index) {
 /// Requested views come first: the main one shows what they drew.
 void Renderer::prepare_views() {
     view_count_ = frame_.views.size() + 1;
+    const gpu::RingSlice zeros =
+        ring_.push_value(std::array<std::byte, layout::kEffectBlockBytes>{});
     for (std::size_t i = 0; i < view_count_; ++i) {
         const bool main = i + 1 == view_count_;
         ViewSlot& slot = view_slot(main ? 0 : i + 1);
@@ -354,6 +358,7 @@ void Renderer::prepare_views() {
         view.velocity = main && frame_.velocity;
         view.attributes = main && frame_.attributes;
         view.lighting.clear();
+        view.effect_blocks.fill(zeros);
         view.gbuffer = {};
         view.radiance = {};
         view.scattered = {};
@@ -461,7 +466,7 @@ void Renderer::add_to_sum(const ViewData& view, float weight) {
     gpu::PipelineState state = gpu::kFullscreenState;
     state.blend = gpu::kBlendAdd;
     add_fullscreen_pass(
-        graph, "accumulate", {sampled(view.radiance, 0)},
+        graph, "accumulate", {sampled(view.radiance, layout::kSourceUnit)},
         {accumulation.empty ? cleared(target) : Use(target)}, add_, state,
         [weight](PassContext&, const gpu::Program& program) { program.set("weight", weight); });
     accumulation.empty = false;

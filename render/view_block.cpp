@@ -5,12 +5,6 @@
 #include "render/light/light_clusters.h"
 
 namespace limn {
-namespace {
-
-constexpr unsigned kViewBlockBinding = 0;
-
-}  // namespace
-
 layout::ViewBlock make_view_block(
     const RenderView& camera, const ClusterShape& shape, const LightList& lights,
     bool infinite_viewer) {
@@ -34,8 +28,13 @@ layout::ViewBlock make_view_block(
 }
 
 void bind_view(PassContext& context, const ViewData& view) {
-    context.device().bind_uniforms(
-        kViewBlockBinding, view.block.buffer, view.block.offset, view.block.size);
+    const auto bind = [&](unsigned binding, const gpu::RingSlice& block) {
+        context.device().bind_uniforms(binding, block.buffer, block.offset, block.size);
+    };
+    bind(layout::kViewBinding, view.block);
+    for (unsigned i = 0; i < layout::kMaxEffectBlocks; ++i) {
+        bind(layout::kEffectBlocks + i, view.effect_blocks[i]);
+    }
 }
 
 bool is_clipped(const ViewData& view) {

@@ -15,7 +15,7 @@ struct ViewData;
     const RenderView& camera, const ClusterShape& shape, const LightList& lights,
     bool infinite_viewer);
 
-/// Binds it, as uploaded in ViewData::block.
+/// Binds it, as uploaded in ViewData::block, and the blocks that effects have published.
 void bind_view(PassContext& context, const ViewData& view);
 
 /// Whether a plane cuts away part of the view: then surfaces are drawn with the definition CLIPPED

@@ -5,7 +5,7 @@
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/graph/frame_graph.h"
-#include "render/material/surface_features.h"
+#include "render/material/wrinkle_hook.h"
 #include "render/material/wrinkle_pass.h"
 #include "render/render_frame.h"
 #include "render/skinning/deform_pass.h"
@@ -123,7 +123,7 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
                 skin.wrinkles.push_back(glm::unpackHalf4x16(packed));
             }
         }
-        if ((m.shapes[index].wrinkle_features & kWrinkleDisplaced) != 0) {
+        if ((m.shapes[index].hooks.of(kWrinkleHook) & kWrinkleDisplaced) != 0) {
             skin.folds = read<float>(vertices.fold_heights(), first, count);
         }
         for (const PackedFrame& v : read<PackedFrame>(vertices.frames(), first, count)) {

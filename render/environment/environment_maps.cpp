@@ -4,6 +4,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/light/lighting.h"
+#include "render/shaders/environment_gpu.h"
 
 #include <algorithm>
 #include <array>
@@ -28,8 +29,6 @@ constexpr int kMinLevel = 16;  ///< [px]; texels of smaller levels become visibl
 constexpr int kMaxMapSamples = 256;  ///< maximum per texel; level 0 is sharp and takes 1
 constexpr int kIrradianceFace =
     32;  ///< [px] of the cube map level that irradiance is integrated from
-constexpr unsigned kCubeUnit = 5;
-constexpr unsigned kMapSumsBinding = 0;
 
 /// All levels of one layer; `cube` is null for an analytic sky.
 void draw_levels(
@@ -46,9 +45,9 @@ void draw_levels(
             [&pass, block, &program, cube, level, samples](PassContext& context) {
                 context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
                 context.device().bind_uniforms(
-                    kEnvironmentBinding, block.buffer, block.offset, block.size);
+                    layout::kEnvironmentBinding, block.buffer, block.offset, block.size);
                 if (cube != nullptr) {
-                    context.device().bind_texture(kCubeUnit, *cube);
+                    context.device().bind_texture(layout::kSkyCubeUnit, *cube);
                 }
                 const int levels = pass.maps.desc().levels;
                 program.set(
@@ -93,7 +92,7 @@ void draw_panorama(
             [&pass, &panorama, environment, face, size](PassContext& context) {
                 const gpu::Program& program = *pass.program;
                 context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
-                context.device().bind_texture(kCubeUnit, panorama, &pass.sampler);
+                context.device().bind_texture(layout::kSkyCubeUnit, panorama, &pass.sampler);
                 program.set("face", face);
                 program.set("size", static_cast<float>(size));
                 program.set("mapping", static_cast<int>(environment.mapping));
@@ -172,8 +171,8 @@ void draw_cube_reflection(
         "irradiance", {source}, {sums}, [&pass, &cube, sums, layer](PassContext& context) {
             const gpu::Program& sum = *pass.irradiance_program;
             context.device().use(sum);
-            context.device().bind_texture(kCubeUnit, cube);
-            context.bind_storage(kMapSumsBinding, sums);
+            context.device().bind_texture(layout::kSkyCubeUnit, cube);
+            context.bind_storage(layout::kIrradianceSumsBinding, sums);
             const auto shrink = static_cast<unsigned>(std::max(cube.width() / kIrradianceFace, 1));
             sum.set("level", static_cast<int>(std::bit_width(shrink)) - 1);
             sum.set("layer", layer);

@@ -6,13 +6,11 @@
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"
+#include "render/shaders/environment_gpu.h"
 
 namespace limn {
 namespace {
 
-constexpr unsigned kIrradianceBinding = 5;
-constexpr unsigned kReflectionUnit = 7;
-constexpr unsigned kSpecularAlbedoUnit = 8;
 constexpr int kSpecularAlbedoSize = 64;
 
 /// Without the resource nothing surrounds the scene; a missing panorama is magenta, as on surfaces.
@@ -38,9 +36,11 @@ bool same_light(const Environment& a, const Environment& b) {
 
 void bind_environment(PassContext& context, const SceneEnvironment& environment) {
     const gpu::RingSlice& block = environment.block_slice;
-    context.device().bind_uniforms(kEnvironmentBinding, block.buffer, block.offset, block.size);
-    context.device().bind_texture(kReflectionUnit, environment.reflection->maps);
-    context.device().bind_uniforms(kIrradianceBinding, environment.reflection->irradiance);
+    context.device().bind_uniforms(
+        layout::kEnvironmentBinding, block.buffer, block.offset, block.size);
+    context.device().bind_texture(layout::kReflectionMapsUnit, environment.reflection->maps);
+    context.device().bind_uniforms(
+        layout::kSurroundingsBinding, environment.reflection->irradiance);
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ void EnvironmentEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
 bool EnvironmentEffect::prepare(const FrameData& frame, ViewData& view) {
     view.lighting.add_binding<bind_environment>(frame.data.get<SceneEnvironment>());
     view.lighting.add_binding<[](PassContext& context, const gpu::Texture& table) {
-        context.device().bind_texture(kSpecularAlbedoUnit, table);
+        context.device().bind_texture(layout::kSpecularAlbedoUnit, table);
     }>(specular_albedo);
     return true;
 }

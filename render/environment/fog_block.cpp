@@ -15,17 +15,15 @@ constexpr float kMaxExponent = 40;  // of the density at the camera: far below t
 
 }  // namespace
 
-void describe_fog(const HeightFog* fog, const LightList& lights, layout::ViewBlock& block) {
-    if (fog == nullptr) {
-        return;
-    }
-    const HeightFog settings = within_ranges(*fog);
-    const float above = (block.camera_ws.y - settings.base) / settings.scale_height;
+layout::FogBlock make_fog_block(const HeightFog& fog, const LightList& lights, float y) {
+    const HeightFog settings = within_ranges(fog);
+    const float above = (y - settings.base) / settings.scale_height;
     const float density = settings.density * std::exp(std::min(-above, kMaxExponent));
-    block.fog = {density, 1 / settings.scale_height, settings.forward, 0};
-    block.fog_ambient = Vec4(settings.ambient, 0);
-    block.fog_sun = Vec4(settings.sun * lights.sun_color, 0);
-    block.fog_to_sun = Vec4(lights.sun_direction, 0);
+    return {
+        .density = {density, 1 / settings.scale_height, settings.forward, 0},
+        .ambient = Vec4(settings.ambient, 0),
+        .sun = Vec4(settings.sun * lights.sun_color, 0),
+        .to_sun = Vec4(lights.sun_direction, 0)};
 }
 
 }  // namespace limn

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/components/height_fog.h"
-#include "render/shaders/view_gpu.h"
+#include "render/shaders/fog_gpu.h"
 
 namespace limn {
 
@@ -16,7 +16,8 @@ struct LightList;
 // Henyey and Greenstein's phase function; not that of other lights, and shadows do not darken it.
 // lib/height_fog.glsl is the same for shaders.
 
-/// Fills in the fog of a block whose camera is known; none without fog.
-void describe_fog(const HeightFog* fog, const LightList& lights, layout::ViewBlock& block);
+/// As a camera at the height `y` [m] meets it.
+[[nodiscard]] layout::FogBlock
+make_fog_block(const HeightFog& fog, const LightList& lights, float y);
 
 }  // namespace limn

@@ -7,8 +7,8 @@ namespace limn {
 
 // Fog between the camera and surfaces, water and sky (render/environment/fog_block.h).
 //
-// Reads    depth; HeightFog
-// Writes   radiance
+// Reads    depth; HeightFog, LightList
+// Writes   radiance; the view's FogBlock
 // Order    after water, before blended surfaces and particles, which add the fog in front of them
 // Shaders  fog.frag, lib/height_fog.glsl
 //
@@ -19,6 +19,7 @@ struct FogEffect {
 
     [[nodiscard]] static bool is_used(const FrameData& frame);
     [[nodiscard]] static Result<FogEffect> create(gpu::Device& device, const RenderSettings&);
+    bool prepare(const FrameData& frame, ViewData& view);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 };
 

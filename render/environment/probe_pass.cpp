@@ -7,13 +7,13 @@
 #include "render/gpu/shader_library.h"
 #include "render/light/lighting.h"
 #include "render/render_frame.h"
+#include "render/shaders/environment_gpu.h"
 
 // Techniques: env.capture
 
 namespace limn {
 namespace {
 
-constexpr unsigned kProbesBinding = 6;
 constexpr int kWarmUpResolution = 16;  ///< of faces that nobody sees [px]
 constexpr int kProbeSamples = 64;      ///< per texel of a probe's reflection map
 
@@ -24,7 +24,7 @@ struct ProbeBlockSlice {
 
 void bind_probes(PassContext& context, const ProbeBlockSlice& probes) {
     const gpu::RingSlice& block = probes.block;
-    context.device().bind_uniforms(kProbesBinding, block.buffer, block.offset, block.size);
+    context.device().bind_uniforms(layout::kProbesBinding, block.buffer, block.offset, block.size);
 }
 
 /// Whether the face just counted completes a round of six.
@@ -99,7 +99,7 @@ void ProbeEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
     const ProbeSlot& slot = probes.slots()[static_cast<std::size_t>(drawn.slot)];
     const TextureId cube = graph.import("probe cube", slot.cube);
     add_fullscreen_pass(
-        graph, "probe face", {sampled(view.radiance, kGbufferUnit)},
+        graph, "probe face", {sampled(view.radiance, layout::kProbeFaceUnit)},
         {target_level(discarded(cube), 0, drawn.face)}, program);
     if (drawn.completes_cube) {
         const auto& environment = frame.data.get<SceneEnvironment>();

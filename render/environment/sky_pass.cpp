@@ -4,6 +4,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/light/lighting.h"
+#include "render/shaders/environment_gpu.h"
 #include "render/view_block.h"
 
 #include <string>
@@ -31,7 +32,7 @@ void SkyEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) 
     const bool panorama = environment.settings.sky == SkyKind::Panorama;
     std::vector<Use> reads = {depth_tested(view.gbuffer.depth)};
     if (panorama) {
-        reads.push_back(sampled(graph.import("sky cube", *environment.cube), kGbufferUnit));
+        reads.push_back(sampled(graph.import("sky cube", *environment.cube), layout::kSkyCubeUnit));
     }
     const Use writes[] = {view.radiance};
     graph.add_pass(
@@ -42,7 +43,7 @@ void SkyEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) 
             context.device().use(gpu::Pipeline{program, kWhereBackground});
             bind_view(context, view);
             context.device().bind_uniforms(
-                kEnvironmentBinding, block.buffer, block.offset, block.size);
+                layout::kEnvironmentBinding, block.buffer, block.offset, block.size);
             program->set("for_light", for_light ? 1 : 0);
             context.device().draw_fullscreen();
         });

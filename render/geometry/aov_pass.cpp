@@ -3,6 +3,8 @@
 #include "render/fullscreen.h"
 #include "render/light/lighting.h"
 #include "render/render_frame.h"
+#include "render/shaders/gbuffer_gpu.h"
+#include "render/shaders/shadow_gpu.h"
 #include "render/shadow/shadow_list.h"
 #include "render/shadow/volume_list.h"
 #include "render/view_block.h"
@@ -36,10 +38,10 @@ TextureId draw_aov(FrameGraph& graph, AovEffect& effect, const ViewData& view, i
     const std::string name = "aov." + std::string(kAovs[aov].name);
     const TextureId value = create_target(graph, name, GL_RGBA32F, view.size());
     std::vector<Use> reads = {
-        sampled(view.gbuffer.surface, kGbufferUnit),
-        sampled(depth_tested(view.gbuffer.depth), kDepthUnit)};
+        sampled(view.gbuffer.surface, layout::kGbufferUnit),
+        sampled(depth_tested(view.gbuffer.depth), layout::kDepthUnit)};
     if (aov == kVelocityAov) {
-        reads.push_back(sampled(view.gbuffer.velocity, kVelocityUnit));
+        reads.push_back(sampled(view.gbuffer.velocity, layout::kVelocityUnit));
     }
     const Use writes[] = {cleared(value, kAovs[aov].background)};
     graph.add_pass(name, std::span(reads), writes, [&effect, &view, aov](PassContext& context) {
@@ -59,7 +61,7 @@ TextureId draw_aov(FrameGraph& graph, AovEffect& effect, const ViewData& view, i
         context.device().use(gpu::Pipeline{program, state});
         bind_view(context, view);
         if (aov == kShadowTexelsAov) {
-            maps->records->bind(context.device(), kShadowViewsUnit);
+            maps->records->bind(context.device(), layout::kShadowViewsUnit);
             program->set("shadow_view_count", static_cast<int>(shadow_views));
         }
         context.device().draw_fullscreen();

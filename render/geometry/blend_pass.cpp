@@ -3,15 +3,13 @@
 #include "render/geometry/instance_list.h"
 #include "render/geometry/surface_draws.h"
 #include "render/light/lighting.h"
+#include "render/shaders/material_clear_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
 
 namespace limn {
 namespace {
-
-constexpr unsigned kBlendBehindUnit = 22;
-constexpr unsigned kBlendBehindDepthUnit = 23;
 
 bool has_any(std::span<const DrawRun> runs, SurfaceFeature feature) {
     return std::any_of(runs.begin(), runs.end(), [feature](const DrawRun& run) {
@@ -72,8 +70,8 @@ void BlendEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
         mesh_reads(graph, *view.frame, lighting_reads(view, {depth_tested(view.gbuffer.depth)}));
     if (has_any(runs, kTransmission)) {
         reads.push_back(
-            sampled(copy_behind_surfaces(graph, levels, view.radiance), kBlendBehindUnit));
-        reads.push_back(sampled(view.gbuffer.depth, kBlendBehindDepthUnit));
+            sampled(copy_behind_surfaces(graph, levels, view.radiance), layout::kBehindClearUnit));
+        reads.push_back(sampled(view.gbuffer.depth, layout::kBehindClearDepthUnit));
     }
     const Use writes[] = {view.radiance};
     const bool clipped = is_clipped(view);

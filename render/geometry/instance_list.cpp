@@ -370,15 +370,7 @@ void InstanceCollector::add_command(
         run.features.maps.remove(layout::kNormalSlot);
         list.without_tangents.push_back(mesh_index(items, state));
     }
-    const std::uint32_t wrinkles =
-        state.deformed ? items.shapes()[state.index].wrinkle_features : 0u;
-    if (!state.deformed || !items.shapes()[state.index].wrinkled
-        || (wrinkles & kWrinkleView) != 0) {
-        run.features.maps.remove(layout::kWrinkleSlot);
-    }
-    if (run.features.maps.has(layout::kWrinkleSlot) || (wrinkles & kWrinkleView) != 0) {
-        run.features.bits |= wrinkles;
-    }
+    add_hooks(run.features, state.deformed ? items.shapes()[state.index].hooks : HookBits{});
     run.textures = batch.textures;
     run.mirrored = state.mirrored;
     run.first_command = static_cast<std::uint32_t>(commands_.size());

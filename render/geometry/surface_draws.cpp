@@ -5,6 +5,7 @@
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/shaders/instance_gpu.h"
+#include "render/shaders/material_gpu.h"
 #include "render/skinning/deformed_list.h"
 #include "render/view_block.h"
 
@@ -47,7 +48,7 @@ void draw_depth(
     ProgramVariants& programs, const gpu::PipelineState& state) {
     constexpr std::uint32_t kHoles = kAlphaMask | kUvMap | kUvMaps | kVertexColor;
     const bool holes = run.features.has(kAlphaMask);
-    SurfaceFeatures features = {.bits = run.features.bits & kMovedVertices};
+    SurfaceFeatures features = moving_features(run.features);
     if (holes) {
         features.bits |= run.features.bits & kHoles;
         features.maps = run.features.maps.only(layout::kBaseColorSlot);
@@ -110,10 +111,14 @@ std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vect
     return reads;
 }
 
+SurfaceFeatures moving_features(const SurfaceFeatures& features) {
+    return {.bits = features.bits & kInflate, .hooks = moving_hooks(features.hooks)};
+}
+
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list) {
     set_instance_streams(frame.meshes->streams().vertices(), list);
     set_instance_streams(frame.shapes->vertices().streams().vertices(), list);
-    frame.materials->records().bind(device, kMaterialsUnit);
+    frame.materials->records().bind(device, layout::kMaterialsUnit);
     device.bind_indirect(list.commands.buffer);
 }
 

@@ -73,8 +73,8 @@ mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {
 
 // ---- parts of the above ----
 
-/// What decides where the vertices of a mesh are drawn.
-inline constexpr std::uint32_t kMovedVertices = kInflate | kWrinkleDisplaced;
+/// Of a surface, what decides where the vertices of its mesh are drawn.
+[[nodiscard]] SurfaceFeatures moving_features(const SurfaceFeatures& features);
 
 /// Binds instance streams, material records and draw commands of a list.
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list);
@@ -90,8 +90,9 @@ void draw_motions(
     const auto& list = view.data.get<InstanceList>();
     bind_instances(context.device(), *view.frame, list);
     for (const DrawRun& run : list.opaque) {
-        const gpu::Program* program = programs.get(
-            {}, {.bits = (run.features.bits & (kMovedVertices | kDeformed)) | kVelocity});
+        SurfaceFeatures features = moving_features(run.features);
+        features.bits |= (run.features.bits & kDeformed) | kVelocity;
+        const gpu::Program* program = programs.get({}, features);
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, visible_sides(state, run)});
             prepare(*program);

@@ -2,12 +2,11 @@
 
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/shaders/fullscreen_gpu.h"
 
 namespace limn {
 namespace {
 
-constexpr unsigned kSourceUnit = 0;
-constexpr unsigned kLevelImage = 0;
 constexpr int kMipGroup = 8;  ///< side of the work groups [px]
 
 }  // namespace
@@ -28,13 +27,13 @@ void fill_mip_levels(gpu::Device& device, const MipLevels& levels, const gpu::Te
         return;
     }
     device.use(*levels.program);
-    device.bind_texture(kSourceUnit, texture, &levels.sampler);
+    device.bind_texture(layout::kSourceUnit, texture, &levels.sampler);
     for (int level = 1; level < texture.desc().levels; ++level) {
         if (level > 1) {
             glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
         }
         levels.program->set("source_level", level - 1);
-        device.bind_image(kLevelImage, texture, GL_WRITE_ONLY, level);
+        device.bind_image(layout::kTargetImage, texture, GL_WRITE_ONLY, level);
         device.dispatch_over(texture.width(level), texture.height(level), kMipGroup);
     }
 }

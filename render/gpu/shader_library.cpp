@@ -155,17 +155,39 @@ Status check_textures(const DeviceCaps& caps, const ProgramDesc& desc, const Pro
     return require(caps, describe(desc).c_str(), needs);
 }
 
-/// Textures of different types on one unit, in whichever stages, are an error at draw time that not
-/// every driver reports.
-Status check_units(const ProgramDesc& desc, const Program& program) {
-    for (const ProgramBinding& a : program.bindings()) {
-        for (const ProgramBinding& b : program.bindings()) {
-            if (a.kind == BindingKind::Texture && b.kind == BindingKind::Texture
-                && a.binding == b.binding && a.type != b.type) {
+const char* binding_name(BindingKind kind) {
+    switch (kind) {
+    case BindingKind::UniformBlock:
+        return "uniform binding";
+    case BindingKind::StorageBlock:
+        return "storage binding";
+    case BindingKind::Texture:
+        return "texture unit";
+    case BindingKind::Image:
+        return "image unit";
+    }
+    return "";
+}
+
+/// The binding after the last one that a resource takes: arrays take several.
+int end_of(const ProgramBinding& resource) {
+    const bool is_block =
+        resource.kind == BindingKind::UniformBlock || resource.kind == BindingKind::StorageBlock;
+    return resource.binding + (is_block ? 1 : resource.size);
+}
+
+/// Two resources at one binding, in whichever stages, would be the same one; textures of different
+/// types are an error at draw time that not every driver reports.
+Status check_bindings(const ProgramDesc& desc, const Program& program) {
+    const std::vector<ProgramBinding>& all = program.bindings();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t j = i + 1; j < all.size(); ++j) {
+            const ProgramBinding& a = all[i];
+            const ProgramBinding& b = all[j];
+            if (a.kind == b.kind && a.binding < end_of(b) && b.binding < end_of(a)) {
                 return fail(
-                    "{}: context: {} and {} found at texture unit {}, expected one texture type "
-                    "per unit",
-                    describe(desc), a.name, b.name, a.binding);
+                    "{}: context: {} and {} found at {} {}, expected one of them", describe(desc),
+                    a.name, b.name, binding_name(a.kind), std::max(a.binding, b.binding));
             }
         }
     }
@@ -323,7 +345,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
             log.empty() ? "the stages do not link, no reason given" : log);
     }
     Program program(id, describe(desc));
-    LIMN_TRY(check_units(desc, program));
+    LIMN_TRY(check_bindings(desc, program));
     LIMN_TRY(check_textures(caps_, desc, program));
     return program;
 }

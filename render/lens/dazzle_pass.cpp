@@ -5,6 +5,9 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/settings.h"
+#include "render/shaders/dazzle_gpu.h"
+#include "render/shaders/disk_visibility_gpu.h"
+#include "render/shaders/fullscreen_gpu.h"
 
 #include <glm/geometric.hpp>
 
@@ -82,15 +85,16 @@ void DazzleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const TextureId visible =
         create_target(graph, "dazzle visibility", GL_R32F, {static_cast<int>(points.size()), 1});
     add_fullscreen_pass(
-        graph, "dazzle visibility", {sampled(view.gbuffer.depth, 0)}, {discarded(visible)},
-        visibility, [this](PassContext& context, const gpu::Program&) {
-            source_records.bind(context.device(), 1);
+        graph, "dazzle visibility", {sampled(view.gbuffer.depth, layout::kDiskDepthUnit)},
+        {discarded(visible)}, visibility, [this](PassContext& context, const gpu::Program&) {
+            source_records.bind(context.device(), layout::kDiskSourcesUnit);
         });
     const TextureId dazzled = create_like(graph, "dazzled radiance", view.radiance);
     add_fullscreen_pass(
-        graph, "dazzle", {sampled(view.radiance, 0), sampled(visible, 1)}, {discarded(dazzled)},
-        program, [this](PassContext& context, const gpu::Program& shader) {
-            point_records.bind(context.device(), 2);
+        graph, "dazzle",
+        {sampled(view.radiance, layout::kSourceUnit), sampled(visible, layout::kVisibilityUnit)},
+        {discarded(dazzled)}, program, [this](PassContext& context, const gpu::Program& shader) {
+            point_records.bind(context.device(), layout::kDazzlePointsUnit);
             shader.set("count", static_cast<int>(points.size()));
         });
     view.radiance = dazzled;

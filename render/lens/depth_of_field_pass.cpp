@@ -15,9 +15,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kFocusBinding = 2;
-constexpr unsigned kTilesUnit = 7;
-constexpr unsigned kSlightTilesUnit = 8;
 constexpr int kLuminanceLevels = 6;
 
 /// Kinds of tiles, bits of depth_of_field_tile.vert.
@@ -211,7 +208,7 @@ class Drawing {
 
 void use_fullscreen(PassContext& context, const gpu::Program* program, const gpu::Buffer& focus) {
     context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
-    context.device().bind_uniforms(kFocusBinding, focus);
+    context.device().bind_uniforms(layout::kFocusBinding, focus);
 }
 
 /// Draws `program` over the tiles of any of `kinds`; the targets cover `cover` pixels of the
@@ -226,8 +223,8 @@ void draw_tiles(
 }
 
 void bind_tiles(PassContext& context, const FocusTextures& made) {
-    context.bind_texture(kTilesUnit, made.tiles);
-    context.bind_texture(kSlightTilesUnit, made.slight_tiles);
+    context.bind_texture(layout::kFocusTilesUnit, made.tiles);
+    context.bind_texture(layout::kFocusSlightTilesUnit, made.slight_tiles);
 }
 
 void Drawing::find_tiles(TextureId depth) {
@@ -240,7 +237,7 @@ void Drawing::find_tiles(TextureId depth) {
         [&pass = pass_, block = block_, depth](PassContext& context) {
             pass.focus.write(0, std::span(&block, 1));
             use_fullscreen(context, pass.blocks, pass.focus);
-            context.bind_texture(1, depth);
+            context.bind_texture(layout::kFocusDepthUnit, depth);
             context.device().draw_fullscreen();
         });
     made_.near_reach = create("focus.near reach", GL_R16F, block_count);
@@ -248,7 +245,7 @@ void Drawing::find_tiles(TextureId depth) {
         "focus.spread", {small_of_blocks}, {discarded(made_.near_reach)},
         [&pass = pass_, small_of_blocks](PassContext& context) {
             use_fullscreen(context, pass.spread, pass.focus);
-            context.bind_texture(0, small_of_blocks);
+            context.bind_texture(layout::kFocusSmallBlocksUnit, small_of_blocks);
             context.device().draw_fullscreen();
         });
     const TextureId own = create("focus.own tiles", GL_RGBA16F, count);
@@ -257,8 +254,8 @@ void Drawing::find_tiles(TextureId depth) {
         "focus.tiles", {blocks, small_of_blocks}, {discarded(own), discarded(small)},
         [&pass = pass_, blocks, small_of_blocks](PassContext& context) {
             use_fullscreen(context, pass.tiles, pass.focus);
-            context.bind_texture(0, blocks);
-            context.bind_texture(1, small_of_blocks);
+            context.bind_texture(layout::kFocusBlocksUnit, blocks);
+            context.bind_texture(layout::kFocusSmallBlocksUnit, small_of_blocks);
             context.device().draw_fullscreen();
         });
     made_.tiles = create("focus.tiles", GL_RGBA16F, count);
@@ -267,8 +264,8 @@ void Drawing::find_tiles(TextureId depth) {
         "focus.reach", {own, small}, {discarded(made_.tiles), discarded(made_.slight_tiles)},
         [&pass = pass_, own, small](PassContext& context) {
             use_fullscreen(context, pass.reach, pass.focus);
-            context.bind_texture(0, own);
-            context.bind_texture(1, small);
+            context.bind_texture(layout::kFocusOwnTilesUnit, own);
+            context.bind_texture(layout::kFocusOwnSmallUnit, small);
             context.device().draw_fullscreen();
         });
 }
@@ -279,8 +276,8 @@ void Drawing::split(TextureId radiance, TextureId depth) {
         "focus.pack", {radiance, depth}, {discarded(made_.packed)},
         [&pass = pass_, radiance, depth](PassContext& context) {
             use_fullscreen(context, pass.pack, pass.focus);
-            context.bind_texture(0, radiance);
-            context.bind_texture(1, depth);
+            context.bind_texture(layout::kFocusRadianceUnit, radiance);
+            context.bind_texture(layout::kFocusDepthUnit, depth);
             context.device().draw_fullscreen();
         });
     made_.far_light = create("focus.far", format_, made_.half);
@@ -297,7 +294,7 @@ void Drawing::split(TextureId radiance, TextureId depth) {
          cleared(made_.near_kernels), cleared(made_.far_wide), cleared(made_.near_wide),
          cleared(made_.wide_radii), cleared(made_.behind_near)},
         [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
-            context.bind_texture(0, made.packed);
+            context.bind_texture(layout::kFocusPackedUnit, made.packed);
             bind_tiles(context, made);
             draw_tiles(context, pass.split, pass.focus, kAnyBlurred, 2 * made.half, count);
         });
@@ -320,9 +317,9 @@ void Drawing::extract_highlights() {
         {target_level(discarded(luminance), 0)},
         [&pass = pass_, made = made_](PassContext& context) {
             use_fullscreen(context, pass.light, pass.focus);
-            context.bind_texture(0, made.near_light);
-            context.bind_texture(1, made.near_wide);
-            context.bind_texture(2, made.behind_near);
+            context.bind_texture(layout::kFocusNearLightUnit, made.near_light);
+            context.bind_texture(layout::kFocusNearWideUnit, made.near_wide);
+            context.bind_texture(layout::kFocusBehindNearUnit, made.behind_near);
             context.device().draw_fullscreen();
         });
     fill_levels(luminance, luminance_levels);
@@ -340,11 +337,11 @@ void Drawing::extract_highlights() {
          target_level(discarded(made_.rest_radii), 0), target_level(discarded(made_.behind), 0)},
         [&pass = pass_, made = made_, luminance](PassContext& context) {
             use_fullscreen(context, pass.rest, pass.focus);
-            context.bind_texture(0, made.far_wide);
-            context.bind_texture(1, made.near_wide);
-            context.bind_texture(2, made.wide_radii);
-            context.bind_texture(3, made.behind_near);
-            context.bind_texture(4, luminance);
+            context.bind_texture(layout::kFocusFarWideUnit, made.far_wide);
+            context.bind_texture(layout::kFocusNearWideUnit, made.near_wide);
+            context.bind_texture(layout::kFocusWideRadiiUnit, made.wide_radii);
+            context.bind_texture(layout::kFocusBehindNearUnit, made.behind_near);
+            context.bind_texture(layout::kFocusLuminanceUnit, luminance);
             context.device().draw_fullscreen();
         });
     fill_levels(made_.far_rest, levels);
@@ -362,10 +359,10 @@ void Drawing::gather_coarse() {
         {discarded(made_.far_coarse), discarded(made_.near_coarse), discarded(made_.near_radius)},
         [&pass = pass_, made = made_](PassContext& context) {
             use_fullscreen(context, pass.coarse, pass.focus);
-            context.bind_texture(0, made.far_rest);
-            context.bind_texture(1, made.near_rest);
-            context.bind_texture(2, made.rest_radii);
-            context.bind_texture(kTilesUnit, made.tiles);
+            context.bind_texture(layout::kFocusFarRestUnit, made.far_rest);
+            context.bind_texture(layout::kFocusNearRestUnit, made.near_rest);
+            context.bind_texture(layout::kFocusRestRadiiUnit, made.rest_radii);
+            context.bind_texture(layout::kFocusTilesUnit, made.tiles);
             context.device().draw_fullscreen();
         });
 }
@@ -379,15 +376,15 @@ void Drawing::gather() {
          made_.far_coarse, made_.near_coarse, made_.near_radius, made_.tiles, made_.slight_tiles},
         {cleared(made_.far_blurred), cleared(made_.near_blurred)},
         [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
-            context.bind_texture(0, made.far_light);
-            context.bind_texture(1, made.near_light);
-            context.bind_texture(2, made.far_kernels);
-            context.bind_texture(3, made.near_kernels);
-            context.bind_texture(4, made.far_wide);
-            context.bind_texture(5, made.far_coarse);
-            context.bind_texture(6, made.near_coarse);
+            context.bind_texture(layout::kFocusFarLightUnit, made.far_light);
+            context.bind_texture(layout::kFocusNearLightUnit, made.near_light);
+            context.bind_texture(layout::kFocusFarKernelsUnit, made.far_kernels);
+            context.bind_texture(layout::kFocusNearKernelsUnit, made.near_kernels);
+            context.bind_texture(layout::kFocusFarWideUnit, made.far_wide);
+            context.bind_texture(layout::kFocusFarCoarseUnit, made.far_coarse);
+            context.bind_texture(layout::kFocusNearCoarseUnit, made.near_coarse);
             bind_tiles(context, made);
-            context.bind_texture(9, made.near_radius);
+            context.bind_texture(layout::kFocusNearRadiusUnit, made.near_radius);
             draw_tiles(context, pass.gather, pass.focus, kAnyBlurred, 2 * made.half, count);
         });
 }
@@ -401,13 +398,13 @@ TextureId Drawing::compose(TextureId radiance) {
         {discarded(composed)},
         [&pass = pass_, made = made_, radiance, size = size_,
          count = tile_count()](PassContext& context) {
-            context.bind_texture(0, radiance);
-            context.bind_texture(1, made.packed);
-            context.bind_texture(2, made.far_blurred);
-            context.bind_texture(3, made.near_blurred);
-            context.bind_texture(4, made.behind);
-            context.bind_texture(5, made.near_reach);
-            context.bind_texture(6, made.near_coarse);
+            context.bind_texture(layout::kFocusRadianceUnit, radiance);
+            context.bind_texture(layout::kFocusPackedUnit, made.packed);
+            context.bind_texture(layout::kFocusFarBlurredUnit, made.far_blurred);
+            context.bind_texture(layout::kFocusNearBlurredUnit, made.near_blurred);
+            context.bind_texture(layout::kFocusBehindNearUnit, made.behind);
+            context.bind_texture(layout::kFocusNearReachUnit, made.near_reach);
+            context.bind_texture(layout::kFocusNearCoarseUnit, made.near_coarse);
             bind_tiles(context, made);
             for (int i = 0; i < 4; ++i) {
                 draw_tiles(context, pass.compose[i], pass.focus, 1 << i, size, count);
@@ -426,16 +423,16 @@ void Drawing::draw_discs(TextureId composed, TextureId depth) {
             add.blend = gpu::kBlendAdd;
             add.color_mask = 0b0111;
             context.device().use(gpu::Pipeline{pass.disc, add});
-            context.device().bind_uniforms(kFocusBinding, pass.focus);
+            context.device().bind_uniforms(layout::kFocusBinding, pass.focus);
             pass.disc->set("texels", made.quarter);
-            context.bind_texture(0, made.far_wide);
-            context.bind_texture(1, made.near_wide);
-            context.bind_texture(2, made.far_rest);
-            context.bind_texture(3, made.near_rest);
-            context.bind_texture(4, made.packed);
-            context.bind_texture(5, made.near_blurred);
-            context.bind_texture(6, depth);
-            context.bind_texture(kTilesUnit, made.tiles);
+            context.bind_texture(layout::kFocusFarWideUnit, made.far_wide);
+            context.bind_texture(layout::kFocusNearWideUnit, made.near_wide);
+            context.bind_texture(layout::kFocusFarRestUnit, made.far_rest);
+            context.bind_texture(layout::kFocusNearRestUnit, made.near_rest);
+            context.bind_texture(layout::kFocusPackedUnit, made.packed);
+            context.bind_texture(layout::kFocusNearBlurredUnit, made.near_blurred);
+            context.bind_texture(layout::kFocusDepthUnit, depth);
+            context.bind_texture(layout::kFocusTilesUnit, made.tiles);
             context.device().draw(GL_POINTS, 0, 2 * made.quarter.x * made.quarter.y);
         });
 }
@@ -468,8 +465,8 @@ TextureId Drawing::by_mips(TextureId radiance, TextureId depth) {
         [&pass = pass_, block = block_, pyramid, depth](PassContext& context) {
             pass.focus.write(0, std::span(&block, 1));
             use_fullscreen(context, pass.mip, pass.focus);
-            context.bind_texture(0, pyramid);
-            context.bind_texture(1, depth);
+            context.bind_texture(layout::kFocusRadianceUnit, pyramid);
+            context.bind_texture(layout::kFocusDepthUnit, depth);
             context.device().draw_fullscreen();
         });
     return composed;

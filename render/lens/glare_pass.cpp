@@ -3,6 +3,8 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/settings.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/glare_gpu.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +36,9 @@ void draw_line(
         state.blend = last ? gpu::kBlendAdd : gpu::kBlendOff;
         add_fullscreen_pass(
             graph, "glare.streak",
-            {sampled(source, 0, &pass.black_border), sampled(sum, 1, &pass.black_border)}, {target},
-            pass.streak, state,
+            {sampled(source, layout::kSourceUnit, &pass.black_border),
+             sampled(sum, layout::kGlareSumUnit, &pass.black_border)},
+            {target}, pass.streak, state,
             [share = std::exp2(-static_cast<float>(i)) / whole, sum_weight = first ? 0.0f : 1.0f,
              offset = unit * std::exp2(static_cast<float>(i))
                       * direction](PassContext&, const gpu::Program& program) {
@@ -75,8 +78,8 @@ draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, Texture
     const TextureId source = create_target(
         graph, "glare.source", spec.format, half_resolution({spec.width, spec.height}));
     add_fullscreen_pass(
-        graph, "glare.source", {sampled(radiance, 0)}, {discarded(source)}, pass.source,
-        [threshold = glare.threshold](PassContext&, const gpu::Program& program) {
+        graph, "glare.source", {sampled(radiance, layout::kSourceUnit)}, {discarded(source)},
+        pass.source, [threshold = glare.threshold](PassContext&, const gpu::Program& program) {
             program.set("threshold", threshold);
         });
     const TextureId star = create_like(graph, "glare.star", source);
@@ -91,7 +94,9 @@ draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, Texture
     }
     const TextureId glaring = create_like(graph, "radiance with glare", radiance);
     add_fullscreen_pass(
-        graph, "glare", {sampled(radiance, 0), sampled(star, 1)}, {discarded(glaring)}, pass.add,
+        graph, "glare",
+        {sampled(radiance, layout::kSourceUnit), sampled(star, layout::kGlareSumUnit)},
+        {discarded(glaring)}, pass.add,
         [strength = glare.strength / static_cast<float>(lines)](
             PassContext&, const gpu::Program& program) { program.set("strength", strength); });
     return glaring;

@@ -3,6 +3,8 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/settings.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/glow_gpu.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +25,7 @@ TextureId draw_first(
     const IVec2 size = half_resolution(size_of(graph, radiance));
     const TextureId first = create_target(graph, "glow", graph.spec(radiance).format, size);
     add_fullscreen_pass(
-        graph, "glow.first", {sampled(radiance, 0)}, {discarded(first)},
+        graph, "glow.first", {sampled(radiance, layout::kSourceUnit)}, {discarded(first)},
         even ? pass.first : pass.first_odd,
         [size, inverse_firefly = glow.firefly > 0 ? 1.0f / glow.firefly : 0.0f](
             PassContext&, const gpu::Program& program) {
@@ -54,7 +56,7 @@ void draw_axis(
     const int from = length_along(axis, size_of(graph, source));
     const int to = length_along(axis, size_of(graph, TextureId{target.resource}));
     add_fullscreen_pass(
-        graph, up ? "glow.up" : "glow.down", {sampled(source, 0)}, {target},
+        graph, up ? "glow.up" : "glow.down", {sampled(source, layout::kSourceUnit)}, {target},
         up ? up_program(pass, from, to) : down_program(pass, from, to), state,
         [axis, gain, to](PassContext&, const gpu::Program& shader) {
             shader.set("axis", axis);
@@ -98,7 +100,8 @@ TextureId compose(
     float strength) {
     const TextureId glowing = create_like(graph, "radiance with glow", radiance);
     add_fullscreen_pass(
-        graph, "glow", {sampled(radiance, 0), sampled(glow, 1)}, {discarded(glowing)}, program,
+        graph, "glow", {sampled(radiance, layout::kSourceUnit), sampled(glow, layout::kGlowUnit)},
+        {discarded(glowing)}, program,
         [strength](PassContext&, const gpu::Program& shader) { shader.set("strength", strength); });
     return glowing;
 }
@@ -116,7 +119,9 @@ TextureId draw_glow_mask(
     TextureId mask = create_target(
         graph, "glow mask", graph.spec(radiance).format, half_resolution(size_of(graph, radiance)));
     add_fullscreen_pass(
-        graph, "glow mask", {sampled(gbuffer.surface, 0), sampled(gbuffer.depth, 1)},
+        graph, "glow mask",
+        {sampled(gbuffer.surface, layout::kGlowSurfaceUnit),
+         sampled(gbuffer.depth, layout::kGlowDepthUnit)},
         {discarded(mask)}, pass.mask);
     for (int i = 0; i < std::clamp(glow.passes, 1, 16); ++i) {
         mask = blur_separable(graph, pass.blur, "glow mask blur", mask);

@@ -5,6 +5,10 @@
 #include "render/lens/lens_ghosts.h"
 #include "render/light/light_list.h"
 #include "render/settings.h"
+#include "render/shaders/disk_visibility_gpu.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/glow_gpu.h"
+#include "render/shaders/lens_flare_gpu.h"
 
 #include <glm/geometric.hpp>
 
@@ -241,19 +245,20 @@ void LensFlareEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
     const IVec2 count = {static_cast<int>(sources.size()), 1};
     const TextureId visible = create_target(graph, "flare visibility", GL_R32F, count);
     add_fullscreen_pass(
-        graph, "lens flare visibility", {sampled(view.gbuffer.depth, 0)}, {discarded(visible)},
-        visibility, [this](PassContext& context, const gpu::Program&) {
-            source_records.bind(context.device(), 1);
+        graph, "lens flare visibility", {sampled(view.gbuffer.depth, layout::kDiskDepthUnit)},
+        {discarded(visible)}, visibility, [this](PassContext& context, const gpu::Program&) {
+            source_records.bind(context.device(), layout::kDiskSourcesUnit);
         });
     const TextureId light = create_target(
         graph, "lens flare", graph.spec(view.radiance).format,
         half_resolution(size_of(graph, view.radiance)));
     graph.add_pass(
-        "lens flare", {sampled(visible, 1)}, {cleared(light)}, [this, &view](PassContext& context) {
+        "lens flare", {sampled(visible, layout::kVisibilityUnit)}, {cleared(light)},
+        [this, &view](PassContext& context) {
             gpu::PipelineState state = gpu::kFullscreenState;
             state.blend = gpu::kBlendAdd;
             context.device().use(gpu::Pipeline{sprite, state});
-            sprite_records.bind(context.device(), 0);
+            sprite_records.bind(context.device(), layout::kLensSpritesUnit);
             sprite->set("tangent", view.camera.tangent);
             sprite->set("blades", static_cast<float>(flare.blades));
             sprite->set("blade_rotation", flare.blade_rotation);
@@ -261,8 +266,10 @@ void LensFlareEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
         });
     const TextureId sum = create_like(graph, "radiance with lens flare", view.radiance);
     add_fullscreen_pass(
-        graph, "lens flare add", {sampled(view.radiance, 0), sampled(light, 1)}, {discarded(sum)},
-        add, [](PassContext&, const gpu::Program& shader) { shader.set("strength", 1.0f); });
+        graph, "lens flare add",
+        {sampled(view.radiance, layout::kSourceUnit), sampled(light, layout::kGlowUnit)},
+        {discarded(sum)}, add,
+        [](PassContext&, const gpu::Program& shader) { shader.set("strength", 1.0f); });
     view.radiance = sum;
 }
 

@@ -1,6 +1,7 @@
 #include "render/lens/local_luminance_pass.h"
 
 #include "render/fullscreen.h"
+#include "render/shaders/fullscreen_gpu.h"
 #include "render/shaders/tone_gpu.h"
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kWeightsBinding = 2;
 constexpr int kFineRadius = 4;  // kernel radius of each level [texels]
 constexpr int kMiddleRadius = 11;
 constexpr int kCoarseRadius = 14;
@@ -98,9 +98,9 @@ TextureId blur_along(
     const gpu::Buffer& weights, TextureId source, const IVec2& direction) {
     const TextureId target = create_target(graph, name, GL_RGBA32F, size_of(graph, source));
     add_fullscreen_pass(
-        graph, name, {sampled(source, 0)}, {discarded(target)}, program,
+        graph, name, {sampled(source, layout::kSourceUnit)}, {discarded(target)}, program,
         [&weights, direction](PassContext& context, const gpu::Program& shader) {
-            context.device().bind_uniforms(kWeightsBinding, weights);
+            context.device().bind_uniforms(layout::kBlurWeightsBinding, weights);
             shader.set("direction", direction);
         });
     return target;
@@ -119,7 +119,7 @@ TextureId shrink(
     const IVec2& size) {
     const TextureId target = create_target(graph, name, GL_R32F, size);
     add_fullscreen_pass(
-        graph, name, {sampled(source, 0)}, {discarded(target)}, program,
+        graph, name, {sampled(source, layout::kSourceUnit)}, {discarded(target)}, program,
         [size](PassContext&, const gpu::Program& shader) {
             shader.set("texel", 1.0f / Vec2(size));
         });

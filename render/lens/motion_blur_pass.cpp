@@ -3,6 +3,8 @@
 #include "ecs/base/log.h"
 #include "ecs/world.h"
 #include "render/fullscreen.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/motion_blur_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -41,8 +43,8 @@ TextureId find_longest(
         graph, first ? "motion blur.rows" : "motion blur.tiles", GL_RGBA32F,
         first ? IVec2(tiles(size.x), size.y) : IVec2(size.x, tiles(size.y)));
     add_fullscreen_pass(
-        graph, first ? "motion blur, rows" : "motion blur, tiles", {sampled(source, 0)},
-        {discarded(longest)}, program,
+        graph, first ? "motion blur, rows" : "motion blur, tiles",
+        {sampled(source, layout::kSourceUnit)}, {discarded(longest)}, program,
         [side, along, first](PassContext&, const gpu::Program& shader) {
             shader.set("along", along);
             shader.set("side", side);
@@ -85,7 +87,9 @@ MotionReconstruct::blur(FrameGraph& graph, const MotionBlur& settings, const Vie
     const TextureId motion =
         create_target(graph, "motion blur.motion", GL_RGBA32F, size_of(graph, velocity));
     add_fullscreen_pass(
-        graph, "motion blur, pack", {sampled(velocity, 0), sampled(view.gbuffer.depth, 1)},
+        graph, "motion blur, pack",
+        {sampled(velocity, layout::kPackVelocityUnit),
+         sampled(view.gbuffer.depth, layout::kPackDepthUnit)},
         {discarded(motion)}, pack,
         [&view, longest = tiling.longest,
          half_share = half_exposure(settings)](PassContext& context, const gpu::Program& program) {
@@ -98,15 +102,16 @@ MotionReconstruct::blur(FrameGraph& graph, const MotionBlur& settings, const Vie
     const TextureId neighbors =
         create_target(graph, "motion blur.neighbors", GL_RGBA32F, size_of(graph, tiles));
     add_fullscreen_pass(
-        graph, "motion blur, neighbors", {sampled(tiles, 0)}, {discarded(neighbors)}, neighbor,
-        [tiling](PassContext&, const gpu::Program& program) {
+        graph, "motion blur, neighbors", {sampled(tiles, layout::kSourceUnit)},
+        {discarded(neighbors)}, neighbor, [tiling](PassContext&, const gpu::Program& program) {
             program.set("side", tiling.side);
             program.set("radius", tiling.radius);
         });
     const TextureId blurred = create_like(graph, "motion blur", view.radiance);
     add_fullscreen_pass(
         graph, "motion blur",
-        {sampled(view.radiance, 0), sampled(motion, 1), sampled(neighbors, 2)},
+        {sampled(view.radiance, layout::kSourceUnit), sampled(motion, layout::kMotionUnit),
+         sampled(neighbors, layout::kMotionNeighborsUnit)},
         {discarded(blurred)}, gather,
         [side = tiling.side,
          samples = std::clamp(settings.samples, 4, 64)](PassContext&, const gpu::Program& program) {

@@ -2,6 +2,8 @@
 
 #include "render/fullscreen.h"
 #include "render/geometry/surface_draws.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/motion_modes_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -16,7 +18,7 @@ namespace {
 void copy_frame(
     FrameGraph& graph, std::string_view name, const gpu::Program* copy, TextureId from, Use to) {
     add_fullscreen_pass(
-        graph, name, {sampled(from, 0)}, {to}, copy,
+        graph, name, {sampled(from, layout::kSourceUnit)}, {to}, copy,
         [](PassContext&, const gpu::Program& program) { program.set("weight", 1.0f); });
 }
 
@@ -56,7 +58,7 @@ TextureId MotionAccumulate::blur(
         graph, "motion blur, keep", copy, view.radiance, target_level(discarded(kept), 0, newest));
     const TextureId blurred = create_like(graph, "motion blur", view.radiance);
     add_fullscreen_pass(
-        graph, "motion blur", {sampled(kept, 0)}, {discarded(blurred)}, mean,
+        graph, "motion blur", {sampled(kept, layout::kSourceUnit)}, {discarded(blurred)}, mean,
         [window, newest = newest, count = count](PassContext&, const gpu::Program& program) {
             program.set("newest", newest);
             program.set("count", count);
@@ -75,7 +77,9 @@ TextureId
 MotionCamera::blur(FrameGraph& graph, const MotionBlur& settings, const ViewData& view, bool) {
     const TextureId blurred = create_like(graph, "motion blur", view.radiance);
     add_fullscreen_pass(
-        graph, "motion blur", {sampled(view.radiance, 0), sampled(view.gbuffer.depth, 1)},
+        graph, "motion blur",
+        {sampled(view.radiance, layout::kSourceUnit),
+         sampled(view.gbuffer.depth, layout::kCameraMotionDepthUnit)},
         {discarded(blurred)}, program,
         [&view, settings](PassContext& context, const gpu::Program& shader) {
             bind_view(context, view);
@@ -124,8 +128,9 @@ MotionFlow::blur(FrameGraph& graph, const MotionBlur& settings, const ViewData& 
         for (const float scale : {step * kTrailing, -step * kLeading}) {
             const TextureId mixed = create_like(graph, "motion blur", image);
             add_fullscreen_pass(
-                graph, "motion blur", {sampled(image, 0), sampled(flow, 1)}, {discarded(mixed)},
-                warp, [scale](PassContext&, const gpu::Program& program) {
+                graph, "motion blur",
+                {sampled(image, layout::kSourceUnit), sampled(flow, layout::kFlowUnit)},
+                {discarded(mixed)}, warp, [scale](PassContext&, const gpu::Program& program) {
                     program.set("scale", scale);
                 });
             image = mixed;
@@ -166,7 +171,9 @@ TextureId MotionStretch::blur(
         "motion blur",
         mesh_reads(
             graph, *view.frame,
-            {sampled(view.radiance, 0), sampled(history, 1), sampled(view.gbuffer.depth, 2)}),
+            {sampled(view.radiance, layout::kSourceUnit),
+             sampled(history, layout::kPreviousRadianceUnit),
+             sampled(view.gbuffer.depth, layout::kStretchDepthUnit)}),
         std::array{Use(blurred), cleared(layer_depth)},
         [this, &view, settings](PassContext& context) {
             bind_view(context, view);

@@ -1,6 +1,7 @@
 #include "render/lens/separable_blur.h"
 
 #include "render/fullscreen.h"
+#include "render/shaders/fullscreen_gpu.h"
 
 #include <cmath>
 #include <numeric>
@@ -15,7 +16,7 @@ TextureId blur_axis(
     const BlurKernel& kernel, const IVec2& axis) {
     const TextureId target = create_like(graph, name, source);
     add_fullscreen_pass(
-        graph, name, {sampled(source, 0)}, {discarded(target)}, blur.program,
+        graph, name, {sampled(source, layout::kSourceUnit)}, {discarded(target)}, blur.program,
         [kernel, axis](PassContext&, const gpu::Program& program) {
             program.set("axis", axis);
             program.set("negative_weights", Vec3(kernel[0], kernel[1], kernel[2]));

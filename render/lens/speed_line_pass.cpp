@@ -4,6 +4,7 @@
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/shaders/speed_line_gpu.h"
 #include "render/view_block.h"
 
 #include <glm/geometric.hpp>
@@ -103,7 +104,7 @@ void SpeedLineEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
                 program,
                 {.depth = {.write = false}, .blend = gpu::kBlendPremultiplied, .cull = GL_NONE}});
             bind_view(context, view);
-            records.bind(context.device(), 0);
+            records.bind(context.device(), layout::kSpeedLinesUnit);
             context.device().draw_ids(6 * static_cast<int>(lines.size()));
         });
 }

@@ -1,6 +1,7 @@
 #include "render/lens/statistics_pass.h"
 
 #include "render/gpu/shader_library.h"
+#include "render/shaders/fullscreen_gpu.h"
 #include "render/shaders/tone_gpu.h"
 
 #include <algorithm>
@@ -12,14 +13,7 @@
 // Techniques: hdr.defog, hdr.log-average
 
 namespace limn {
-namespace {
-
-constexpr unsigned kPartsBinding = 0;
-constexpr unsigned kHistogramBinding = 1;
-constexpr unsigned kStatisticsBinding = 2;
-constexpr unsigned kStatisticsDepthUnit = 1;
-
-}  // namespace
+namespace {}  // namespace
 
 Result<StatisticsPass> create_statistics_pass(gpu::Device& device) {
     StatisticsPass pass = {
@@ -60,9 +54,9 @@ BufferId measure_image(
     const BufferId histogram = graph.import("luminance histogram", pass.histogram);
     const BufferId measure = graph.import("image statistics", pass.measure);
 
-    std::vector<Use> reads = {sampled(radiance, 0)};
+    std::vector<Use> reads = {sampled(radiance, layout::kSourceUnit)};
     if (request.depth.valid()) {
-        reads.push_back(sampled(request.depth, kStatisticsDepthUnit));
+        reads.push_back(sampled(request.depth, layout::kStatisticsDepthUnit));
     }
     const std::array<Use, 2> writes = {parts, histogram};
     graph.add_pass(
@@ -72,8 +66,8 @@ BufferId measure_image(
                 return;
             }
             context.device().use(*sum);
-            context.bind_storage(kPartsBinding, parts);
-            context.bind_storage(kHistogramBinding, histogram);
+            context.bind_storage(layout::kStatisticsPartsBinding, parts);
+            context.bind_storage(layout::kHistogramBinding, histogram);
             context.device().dispatch(groups.x, groups.y);
         });
     graph.add_pass(
@@ -89,9 +83,9 @@ BufferId measure_image(
             program.set("adaptation_blend", request.blend);
             program.set("adaptation_range", request.adaptation_range);
             program.set("clipped_share", request.clipped_share);
-            context.bind_storage(kPartsBinding, parts);
-            context.bind_storage(kHistogramBinding, histogram);
-            context.bind_storage(kStatisticsBinding, measure);
+            context.bind_storage(layout::kStatisticsPartsBinding, parts);
+            context.bind_storage(layout::kHistogramBinding, histogram);
+            context.bind_storage(layout::kStatisticsBinding, measure);
             context.device().dispatch(1);
         });
     return measure;

@@ -3,6 +3,8 @@
 #include "ecs/components/rendering.h"
 #include "ecs/world.h"
 #include "render/fullscreen.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/temporal_gpu.h"
 #include "render/view_block.h"
 
 namespace limn {
@@ -55,8 +57,10 @@ void TemporalEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
     const TextureId moments_now = graph.import("temporal.moments", moments[newest]);
     add_fullscreen_pass(
         graph, "temporal",
-        {sampled(view.radiance, 0), sampled(before, 1), sampled(view.gbuffer.velocity, 2),
-         sampled(view.gbuffer.depth, 3), sampled(moments_before, 4)},
+        {sampled(view.radiance, layout::kSourceUnit), sampled(before, layout::kHistoryUnit),
+         sampled(view.gbuffer.velocity, layout::kTemporalVelocityUnit),
+         sampled(view.gbuffer.depth, layout::kTemporalDepthUnit),
+         sampled(moments_before, layout::kMomentsUnit)},
         {discarded(resolved), discarded(moments_now)}, program,
         [&view, has_history](PassContext& context, const gpu::Program& shader) {
             bind_view(context, view);

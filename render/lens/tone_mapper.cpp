@@ -2,6 +2,7 @@
 
 #include "ecs/world.h"
 #include "render/fullscreen.h"
+#include "render/shaders/fullscreen_gpu.h"
 #include "render/shaders/tone_gpu.h"
 
 #include <algorithm>
@@ -14,22 +15,20 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kMeasureBinding = 2;
-constexpr unsigned kLocalUnit = 1;
-
 /// `measure`, if valid(), for defog and metering.
 TextureId add_tone_map(
     FrameGraph& graph, const ToneMapper& tone_mapper, const Exposure& exposure, TextureId radiance,
     BufferId measure, const std::optional<LocalLuminance>& local) {
     const TextureId display = create_target(graph, "display", GL_RGBA8, size_of(graph, radiance));
-    std::vector<Use> reads = {sampled(radiance, 0)};
+    std::vector<Use> reads = {sampled(radiance, layout::kSourceUnit)};
     if (measure.valid()) {
         reads.emplace_back(measure);
     }
     if (local) {
         reads.insert(
-            reads.end(), {sampled(local->fine, kLocalUnit), sampled(local->middle, kLocalUnit + 1),
-                          sampled(local->coarse, kLocalUnit + 2)});
+            reads.end(), {sampled(local->fine, layout::kLocalFineUnit),
+                          sampled(local->middle, layout::kLocalMediumUnit),
+                          sampled(local->coarse, layout::kLocalCoarseUnit)});
     }
     const std::array writes = {discarded(display)};
     graph.add_pass(
@@ -49,9 +48,9 @@ TextureId add_tone_map(
             program.set("gamma", power ? exposure.gamma : 0.0f);
             program.set("dither_codes", exposure.dither ? 1.0f : 0.0f);
             if (measure.valid()) {
-                context.bind_uniforms(kMeasureBinding, measure);
+                context.bind_uniforms(layout::kToneMeasureBinding, measure);
             } else {
-                context.device().bind_uniforms(kMeasureBinding, tone_mapper.no_measure);
+                context.device().bind_uniforms(layout::kToneMeasureBinding, tone_mapper.no_measure);
             }
             context.device().draw_fullscreen();
         });

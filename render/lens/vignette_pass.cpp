@@ -3,6 +3,7 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/settings.h"
+#include "render/shaders/fullscreen_gpu.h"
 
 #include <glm/geometric.hpp>
 
@@ -39,7 +40,8 @@ Result<VignetteEffect> VignetteEffect::create(gpu::Device& device, const RenderS
 void VignetteEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
     const TextureId darkened = create_like(graph, "radiance with vignette", view.radiance);
     add_fullscreen_pass(
-        graph, "vignette", {sampled(view.radiance, 0)}, {discarded(darkened)}, program,
+        graph, "vignette", {sampled(view.radiance, layout::kSourceUnit)}, {discarded(darkened)},
+        program,
         [settings = vignette_of(frame),
          tangent = view.camera.tangent](PassContext&, const gpu::Program& shader) {
             shader.set("tangent", tangent);

@@ -5,6 +5,8 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/light/lighting.h"
+#include "render/shaders/caustics_gpu.h"
+#include "render/shaders/shadow_gpu.h"
 #include "render/shadow/shadow_list.h"
 #include "render/view_block.h"
 
@@ -15,13 +17,7 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kCausticJobsUnit = 20;
-constexpr unsigned kRaysBinding = 0;
-constexpr unsigned kLightBinding = 1;
-constexpr unsigned kMapsImage = 0;
 constexpr unsigned kCausticGroup = 64;  ///< texels per work group
-constexpr unsigned kWaterLightsUnit = 20;
-constexpr unsigned kCausticMapsUnit = 21;
 
 gpu::Texture make_caustic_atlas(const IVec2& size) {
     return {"caustic maps", {.format = GL_R32F, .width = size.x, .height = size.y}};
@@ -30,7 +26,7 @@ gpu::Texture make_caustic_atlas(const IVec2& size) {
 void use_with_jobs(gpu::Device& device, const CausticList& list, const gpu::Program& program) {
     device.use(program);
     program.set("groups", list.groups);
-    list.job_texture.bind(device, kCausticJobsUnit);
+    list.job_texture.bind(device, layout::kCausticRecordsUnit);
 }
 
 /// Sums into a transient buffer, then writes the maps.
@@ -46,15 +42,15 @@ void sum_on_gpu(
         context.buffer(light).clear(0, bytes);
         use_with_jobs(device, list, *pass.splat);
         pass.splat->set("width", static_cast<int>(width));
-        context.bind_storage(kRaysBinding, rays);
-        context.bind_storage(kLightBinding, light);
+        context.bind_storage(layout::kCausticRaysBinding, rays);
+        context.bind_storage(layout::kCausticLightBinding, light);
         device.dispatch(static_cast<unsigned>(list.groups));
     });
     graph.add_pass("caustic maps", {light}, {image(made)}, [=, &pass](PassContext& context) {
         gpu::Device& device = context.device();
         device.use(*pass.map);
-        context.bind_storage(kLightBinding, light);
-        context.bind_image(kMapsImage, made, GL_WRITE_ONLY);
+        context.bind_storage(layout::kCausticLightBinding, light);
+        context.bind_image(layout::kCausticMapsImage, made, GL_WRITE_ONLY);
         device.dispatch((width + kCausticGroup - 1) / kCausticGroup, height);
     });
 }
@@ -81,8 +77,8 @@ struct WaterLights {
 };
 
 void bind_water_lights(PassContext& context, const WaterLights& lights) {
-    lights.records->bind(context.device(), kWaterLightsUnit);
-    context.device().bind_texture(kCausticMapsUnit, *lights.maps);
+    lights.records->bind(context.device(), layout::kWaterLightsUnit);
+    context.device().bind_texture(layout::kCausticMapsUnit, *lights.maps);
 }
 
 /// Whether some water of the level reflects sunlight upward, even if the sun is low in this frame.
@@ -156,11 +152,11 @@ void CausticsEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
             use_with_jobs(device, list, *program);
             bind_view(context, view);
             if (const auto& shadows = view.data.get<ShadowMaps>(); shadows.atlas.valid()) {
-                device.bind_texture(kShadowAtlasUnit, context.texture(shadows.atlas));
-                shadows.records->bind(device, kShadowViewsUnit);
+                device.bind_texture(layout::kShadowAtlasUnit, context.texture(shadows.atlas));
+                shadows.records->bind(device, layout::kShadowViewsUnit);
             }
             bind_water_surfaces(device, waters);
-            context.bind_storage(kRaysBinding, ray_buffer);
+            context.bind_storage(layout::kCausticRaysBinding, ray_buffer);
             device.dispatch(static_cast<unsigned>(list.groups));
         });
     if (on_cpu) {

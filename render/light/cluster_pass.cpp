@@ -2,33 +2,25 @@
 
 #include "ecs/base/log.h"
 #include "ecs/components/shading_comparison.h"
-#include "ecs/components/wrinkle_comparison.h"
 #include "ecs/world.h"
-#include "render/environment/fog_block.h"
 #include "render/geometry/instance_list.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/material/shading_models.h"
-#include "render/material/surface_features.h"
 #include "render/render_frame.h"
-#include "render/skinning/deformed_list.h"
+#include "render/shaders/cluster_gpu.h"
+#include "render/shaders/light_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <vector>
 
 // Techniques: fakephong.blinn-axis
 
 namespace limn {
 namespace {
 
-constexpr unsigned kMasksBinding = 0;
-constexpr unsigned kCellsBinding = 1;
-constexpr unsigned kIndicesBinding = 2;
-constexpr unsigned kClusterLightsUnit = 0;
-constexpr unsigned kBoxesUnit = 1;
 constexpr unsigned kBlocksGroup = 32;  ///< local size of cluster_blocks.comp
 
 unsigned divide_up(std::size_t count, std::size_t by) {
@@ -39,18 +31,6 @@ unsigned block_count(const ClusterShape& shape) {
     return divide_up(shape.columns, layout::kBlockColumns)
            * divide_up(shape.rows, layout::kBlockRows)
            * divide_up(shape.slices, layout::kBlockSlices);
-}
-
-/// As ViewBlock::wrinkle_columns has them.
-layout::uvec4 pack_columns(const std::vector<WrinkleMethod>& methods, const Vec2& borders) {
-    layout::uvec4 packed;
-    packed.z = std::bit_cast<std::uint32_t>(borders.x);
-    packed.w = std::bit_cast<std::uint32_t>(borders.y);
-    for (const WrinkleMethod method : methods) {
-        packed.y |= static_cast<std::uint32_t>(method) << (4 * packed.x);
-        ++packed.x;
-    }
-    return packed;
 }
 
 /// Sizes vary from frame to frame; rounding to powers of two lets the pool reuse the buffer.
@@ -78,24 +58,6 @@ ClusterLists clear_clusters(FrameGraph& graph, ClusterPass& pass, const ClusterS
             pass.indices.set(context.buffer(lists.indices));
         });
     return lists;
-}
-
-/// The global vector that fixes the axes of Blinn maps: unit, or zero.
-Vec3 blinn_axis(const Rendering& rendering, const RenderView& camera) {
-    const auto unit_or_zero = [](const Vec3& v) {
-        const float length = glm::length(v);
-        return length > 1e-6f && std::isfinite(length) ? v / length : Vec3(0);
-    };
-    switch (rendering.blinn_axis) {
-    case BlinnAxis::WorldUp:
-        return {0, 1, 0};
-    case BlinnAxis::Custom:
-        return unit_or_zero(rendering.blinn_vector);
-    default: {
-        const auto& r = camera.world_from_camera.row;
-        return unit_or_zero({r[0][1], r[1][1], r[2][1]});
-    }
-    }
 }
 
 }  // namespace
@@ -131,9 +93,9 @@ ClusterLists build_clusters(
         [&pass, &clusters, &view, masks, blocks, words](PassContext& context) {
             context.device().use(*pass.blocks);
             bind_view(context, view);
-            clusters.light_records.bind(context.device(), kClusterLightsUnit);
-            clusters.box_records.bind(context.device(), kBoxesUnit);
-            context.bind_storage(kMasksBinding, masks);
+            clusters.light_records.bind(context.device(), layout::kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), layout::kClusterBoxesUnit);
+            context.bind_storage(layout::kClusterMasksBinding, masks);
             context.device().dispatch(divide_up(blocks, kBlocksGroup), words);
         });
     graph.add_pass(
@@ -141,16 +103,16 @@ ClusterLists build_clusters(
         [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
             context.device().use(*pass.count);
             bind_view(context, view);
-            clusters.light_records.bind(context.device(), kClusterLightsUnit);
-            clusters.box_records.bind(context.device(), kBoxesUnit);
-            context.bind_storage(kMasksBinding, masks);
-            context.bind_storage(kCellsBinding, lists.cells);
+            clusters.light_records.bind(context.device(), layout::kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), layout::kClusterBoxesUnit);
+            context.bind_storage(layout::kClusterMasksBinding, masks);
+            context.bind_storage(layout::kClusterCellsBinding, lists.cells);
             context.device().dispatch(blocks);
         });
     graph.add_pass("clusters.scan", {}, {lists.cells}, [&pass, lists, cells](PassContext& context) {
         context.device().use(*pass.scan);
         pass.scan->set("cell_count", cells);
-        context.bind_storage(kCellsBinding, lists.cells);
+        context.bind_storage(layout::kClusterCellsBinding, lists.cells);
         context.device().dispatch(1);
     });
     graph.add_pass(
@@ -158,11 +120,11 @@ ClusterLists build_clusters(
         [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
             context.device().use(*pass.fill);
             bind_view(context, view);
-            clusters.light_records.bind(context.device(), kClusterLightsUnit);
-            clusters.box_records.bind(context.device(), kBoxesUnit);
-            context.bind_storage(kMasksBinding, masks);
-            context.bind_storage(kCellsBinding, lists.cells);
-            context.bind_storage(kIndicesBinding, lists.indices);
+            clusters.light_records.bind(context.device(), layout::kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), layout::kClusterBoxesUnit);
+            context.bind_storage(layout::kClusterMasksBinding, masks);
+            context.bind_storage(layout::kClusterCellsBinding, lists.cells);
+            context.bind_storage(layout::kClusterIndicesBinding, lists.indices);
             context.device().dispatch(blocks);
             pass.cells.set(context.buffer(lists.cells));
             pass.indices.set(context.buffer(lists.indices));
@@ -212,13 +174,8 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
             placed.dropped, lights.reach.size());
         dropped_reported = true;
     }
-    layout::ViewBlock block =
-        make_view_block(view.camera, placed.shape, lights, method.infinite_viewer);
-    block.blinn_axis = Vec4(blinn_axis(rendering, view.camera), 0);
-    const auto* const wrinkles = frame.world->find_resource<WrinkleComparison>();
-    block.wrinkle_columns = pack_columns(wrinkle_columns(wrinkles), column_borders(wrinkles));
-    describe_fog(frame.world->find_resource<HeightFog>(), lights, block);
-    view.block = frame.ring->push_value(block);
+    view.block = frame.ring->push_value(
+        make_view_block(view.camera, placed.shape, lights, method.infinite_viewer));
 
     Variant& variant = view.lighting.variant;
     variant.add_if(lights.directional > 0, "DIRECTIONAL_LIGHTS");
@@ -227,11 +184,6 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(lights.linear_fade, "LINEAR_FADE");
     variant.add_if(!lights.reach.empty(), "LOCAL_LIGHTS");
     add_shading_models(variant, frame.materials->shading_models());
-    variant.add_if(
-        frame.shapes->has_wrinkles(kWrinkleBlend | kWrinkleFade | kWrinkleBounce),
-        "SMOOTH_NORMALS");
-    variant.add_if(frame.shapes->has_wrinkles(kWrinkleBlend), "BLENDED_SKIN");
-    variant.add_if(frame.shapes->has_wrinkles(kWrinkleBounce), "FOLD_LIGHT");
     return true;
 }
 
@@ -249,8 +201,8 @@ void LightListEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
     published = lists;
     view.lighting.reads.insert(view.lighting.reads.end(), {lists.cells, lists.indices});
     view.lighting.add_binding<[](PassContext& context, const ClusterLists& found) {
-        found.index_texture->bind(context.device(), kLightIndicesUnit);
-        found.cell_texture->bind(context.device(), kLightCellsUnit);
+        found.index_texture->bind(context.device(), layout::kLightIndicesUnit);
+        found.cell_texture->bind(context.device(), layout::kLightCellsUnit);
     }>(published);
 }
 

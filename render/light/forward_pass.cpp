@@ -7,6 +7,8 @@
 #include "render/light/light_list.h"
 #include "render/light/lighting.h"
 #include "render/light/shading_rates.h"
+#include "render/shaders/highlight_gpu.h"
+#include "render/shaders/light_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -75,8 +77,8 @@ void draw_object_major(
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
     bind_shadow_masks(context, view);
-    records.object_indices.bind(context.device(), kLightIndicesUnit);
-    records.object_lists.bind(context.device(), kLightCellsUnit);
+    records.object_indices.bind(context.device(), layout::kLightIndicesUnit);
+    records.object_lists.bind(context.device(), layout::kLightCellsUnit);
     Variant variant = view.lighting.variant;
     variant.add("OBJECT_LIGHTS");
     const auto& method = view.data.get<LightingMethod>();
@@ -86,8 +88,8 @@ void draw_object_major(
     if (row.map != HighlightMap::None) {
         const HighlightMaps::Map& map =
             view.data.get<HighlightMaps>().maps[static_cast<std::size_t>(row.map)];
-        context.bind_texture(kHighlightMapsUnit, map.layers);
-        map.layer_of_material->bind(context.device(), kHighlightLayersUnit);
+        context.bind_texture(layout::kHighlightMapsUnit, map.layers);
+        map.layer_of_material->bind(context.device(), layout::kHighlightLayersUnit);
     }
     draw_runs(
         context, view, view.data.get<InstanceList>().opaque,

@@ -13,10 +13,6 @@ namespace limn {
 
 struct Material;
 
-/// Units 5 and 6: those of the G-buffer, which passes that draw surfaces do not read.
-inline constexpr unsigned kHighlightMapsUnit = 5;
-inline constexpr unsigned kHighlightLayersUnit = 6;
-
 /// Published in the views of which a rate reads them: by HighlightMap, empty if none reads that
 /// one.
 struct HighlightMaps {

@@ -10,9 +10,13 @@
 #include "render/light/lighting.h"
 #include "render/light/shading_rates.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/highlight_gpu.h"
 #include "render/view_block.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -22,9 +26,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kLayersUnit = 7;
-constexpr unsigned kHighlightLightsUnit = 9;
-constexpr unsigned kHighlightMapsImage = 0;
 constexpr unsigned kHighlightGroup = 8;
 
 /// Whether a rate of the frame reads the map; methods that are compared will be switched.
@@ -74,6 +75,24 @@ bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Sour
                std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row));
 }
 
+/// The global vector that fixes the axes of Blinn maps: unit, or zero.
+Vec3 blinn_axis(const Rendering& rendering, const RenderView& camera) {
+    const auto unit_or_zero = [](const Vec3& v) {
+        const float length = glm::length(v);
+        return length > 1e-6f && std::isfinite(length) ? v / length : Vec3(0);
+    };
+    switch (rendering.blinn_axis) {
+    case BlinnAxis::WorldUp:
+        return {0, 1, 0};
+    case BlinnAxis::Custom:
+        return unit_or_zero(rendering.blinn_vector);
+    default: {
+        const auto& r = camera.world_from_camera.row;
+        return unit_or_zero({r[0][1], r[1][1], r[2][1]});
+    }
+    }
+}
+
 }  // namespace
 
 Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const RenderSettings&) {
@@ -99,7 +118,10 @@ void HighlightMapEffect::collect(FrameData& frame) {
     }
 }
 
-bool HighlightMapEffect::prepare(const FrameData&, ViewData& view) {
+bool HighlightMapEffect::prepare(const FrameData& frame, ViewData& view) {
+    const auto* found = frame.world->find_resource<Rendering>();
+    const Vec3 axis = blinn_axis(found != nullptr ? *found : Rendering{}, view.camera);
+    view.publish_block(layout::kHighlightBinding, layout::HighlightBlock{Vec4(axis, 0)});
     return reads(view, HighlightMap::Blinn) || reads(view, HighlightMap::Environment);
 }
 
@@ -159,11 +181,11 @@ HighlightMaps::Map HighlightMapEffect::draw_map(
         [this, &maps, texture = published.layers, count, by_view, &view](PassContext& context) {
             const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
             context.device().use(program);
-            maps.layer_records.bind(context.device(), kLayersUnit);
-            context.bind_image(kHighlightMapsImage, texture, GL_WRITE_ONLY);
+            maps.layer_records.bind(context.device(), layout::kHighlightRecordsUnit);
+            context.bind_image(layout::kHighlightMapsImage, texture, GL_WRITE_ONLY);
             if (by_view) {
                 bind_view(context, view);
-                lights.bind(context.device(), kHighlightLightsUnit);
+                lights.bind(context.device(), layout::kLightsUnit);
                 program.set("light_count", static_cast<int>(environment.source.lights.size()));
             }
             context.device().dispatch(

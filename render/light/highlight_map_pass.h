@@ -16,7 +16,7 @@ namespace limn {
 // material.
 //
 // Reads    materials; of sphere maps: light records, the boxes of all objects
-// Writes   HighlightMaps
+// Writes   HighlightMaps, the view's HighlightBlock
 // Order    after LightList, before surfaces are lit
 // Shaders  highlight_maps.comp, highlight_environment.comp
 //

@@ -4,6 +4,7 @@
 #include "render/gpu/shader_library.h"
 #include "render/light/light_clusters.h"
 #include "render/light/lighting.h"
+#include "render/shaders/gbuffer_gpu.h"
 
 #include <array>
 
@@ -82,7 +83,7 @@ void add_in_volume(
 std::vector<Use> gbuffer_reads(FrameGraph& graph, const ViewData& view) {
     const TextureId depth = view.gbuffer.depth;
     if (view.data.get<LightingMethod>().method != LightMethod::Volumes) {
-        return surface_reads(view, sampled(depth_tested(depth), kDepthUnit));
+        return surface_reads(view, sampled(depth_tested(depth), layout::kDepthUnit));
     }
     const TextureId copy = graph.create(
         {.name = "lights.depth",
@@ -96,7 +97,7 @@ std::vector<Use> gbuffer_reads(FrameGraph& graph, const ViewData& view) {
             from.id(), GL_TEXTURE_2D, 0, 0, 0, 0, to.id(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(),
             from.height(), 1);
     });
-    std::vector<Use> reads = surface_reads(view, sampled(copy, kDepthUnit));
+    std::vector<Use> reads = surface_reads(view, sampled(copy, layout::kDepthUnit));
     reads.push_back(depth_tested(depth));
     return reads;
 }

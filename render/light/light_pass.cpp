@@ -9,6 +9,10 @@
 #include "render/light/lobe_bounds.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"
+#include "render/shaders/gbuffer_gpu.h"
+#include "render/shaders/light_gpu.h"
+#include "render/shaders/material_gpu.h"
+#include "render/shaders/projector_gpu.h"
 
 #include <glm/common.hpp>
 
@@ -20,20 +24,17 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kLightsUnit = 9;
-constexpr unsigned kProjectorImagesUnit = 18;
-constexpr unsigned kProjectorsUnit = 19;
-
 void bind_records(PassContext& context, const LightRecords& lights) {
-    lights.records.bind(context.device(), kLightsUnit);
+    lights.records.bind(context.device(), layout::kLightsUnit);
     if (!lights.projector_pool->records().empty()) {
-        context.device().bind_texture(kProjectorImagesUnit, lights.projector_pool->images());
-        lights.projectors.bind(context.device(), kProjectorsUnit);
+        context.device().bind_texture(
+            layout::kProjectorImagesUnit, lights.projector_pool->images());
+        lights.projectors.bind(context.device(), layout::kProjectorsUnit);
     }
 }
 
 void bind_materials(PassContext& context, const MaterialPool& materials) {
-    materials.records().bind(context.device(), kMaterialsUnit);
+    materials.records().bind(context.device(), layout::kMaterialsUnit);
 }
 
 /// What the forward methods loop over.
@@ -88,7 +89,8 @@ TextureId draw_lobes(FrameGraph& graph, const gpu::Program* program, const ViewD
     state.depth = {.test = true, .write = true, .func = GL_ALWAYS};
     add_fullscreen_pass(
         graph, "shading lobes",
-        {sampled(view.gbuffer.surface, kGbufferUnit), sampled(view.gbuffer.depth, kDepthUnit)},
+        {sampled(view.gbuffer.surface, layout::kGbufferUnit),
+         sampled(view.gbuffer.depth, layout::kDepthUnit)},
         {discarded(lobes)}, program, state, [](PassContext&, const gpu::Program&) {});
     return lobes;
 }
@@ -125,7 +127,7 @@ void draw_clustered(FrameGraph& graph, ProgramVariants& programs, const ViewData
     std::vector<Use> reads = surface_reads(
         view, sampled(
                   lobes != nullptr ? Use(view.gbuffer.depth) : depth_tested(view.gbuffer.depth),
-                  kDepthUnit));
+                  layout::kDepthUnit));
     if (lobes != nullptr) {
         reads.push_back(depth_tested(lobes->depth));
     }

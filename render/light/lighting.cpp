@@ -1,5 +1,7 @@
 #include "render/light/lighting.h"
 
+#include "render/shaders/gbuffer_gpu.h"
+#include "render/shaders/shadow_gpu.h"
 #include "render/view_block.h"
 
 namespace limn {
@@ -19,16 +21,16 @@ std::vector<Use> lighting_reads(const ViewData& view, std::initializer_list<Use>
 
 std::vector<Use> surface_reads(const ViewData& view, Use depth) {
     std::vector<Use> reads =
-        lighting_reads(view, {sampled(view.gbuffer.surface, kGbufferUnit), depth});
+        lighting_reads(view, {sampled(view.gbuffer.surface, layout::kGbufferUnit), depth});
     if (view.gbuffer.material.valid()) {
-        reads.push_back(sampled(view.gbuffer.material, kGbufferMaterialUnit));
+        reads.push_back(sampled(view.gbuffer.material, layout::kGbufferMaterialUnit));
     }
     return reads;
 }
 
 void bind_shadow_masks(PassContext& context, const ViewData& view) {
     if (const auto* masks = view.data.find<ShadowMasks>()) {
-        context.bind_texture(kShadowMasksUnit, masks->layers);
+        context.bind_texture(layout::kShadowMasksUnit, masks->layers);
     }
 }
 

@@ -10,27 +10,14 @@
 
 namespace limn {
 
-// What passes that light surfaces share: texture units of lib/lighting.glsl and
-// lib/stored_surface.glsl, and the LightingInputs of a view. Units 0 .. 4 are the material's own.
-
-inline constexpr unsigned kEnvironmentBinding = 1;
-inline constexpr unsigned kGbufferUnit = 5;
-inline constexpr unsigned kDepthUnit = 6;
-inline constexpr unsigned kLightIndicesUnit = 10;
-inline constexpr unsigned kLightCellsUnit = 11;
-inline constexpr unsigned kMaterialsUnit = 12;
-inline constexpr unsigned kGbufferMaterialUnit = 13;
-inline constexpr unsigned kVelocityUnit = 14;
-inline constexpr unsigned kShadowAtlasUnit = 15;
-inline constexpr unsigned kShadowViewsUnit = 16;
-inline constexpr unsigned kShadowMasksUnit = 17;
+// What passes that light surfaces share: how they do it, and the LightingInputs of a view.
 
 /// How surfaces meet lights in a view; published in prepare() before all that depends on it.
 struct LightingMethod {
     LightMethod method = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;  ///< the others with LightMethod::ObjectMajor
     std::optional<ShadingRate> compared;  ///< lit a second time, ObjectMajor (ComparedRadiance)
-    bool worst_blinn_axis = false;        ///< that of ViewBlock::blinn_axis otherwise
+    bool worst_blinn_axis = false;        ///< that of HighlightBlock::blinn_axis otherwise
     bool blinn_diffuse = false;
     bool screen_interpolation = false;  ///< of what forward shaders interpolate
     HardwareDefects hardware = {};

@@ -4,6 +4,7 @@
 #include "render/fullscreen.h"
 #include "render/light/lighting.h"
 #include "render/settings.h"
+#include "render/shaders/shading_comparison_gpu.h"
 
 // Techniques: fakephong.metric-diffimage
 
@@ -26,7 +27,9 @@ void ShadingComparisonEffect::draw(FrameGraph& graph, const FrameData& frame, Vi
     const TextureId composed = create_like(graph, "radiance of both", view.radiance);
     const auto* found = frame.world->find_resource<ShadingComparison>();
     add_fullscreen_pass(
-        graph, "shading comparison", {sampled(both->left, 0), sampled(both->right, 1)},
+        graph, "shading comparison",
+        {sampled(both->left, layout::kLeftRadianceUnit),
+         sampled(both->right, layout::kRightRadianceUnit)},
         {discarded(composed)}, program,
         [comparison = within_ranges(*found)](PassContext&, const gpu::Program& to) {
             to.set("shows_difference", comparison.image == ComparisonImage::Difference ? 1 : 0);

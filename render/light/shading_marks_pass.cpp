@@ -8,6 +8,8 @@
 #include "render/fullscreen.h"
 #include "render/light/lighting.h"
 #include "render/settings.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/shading_comparison_gpu.h"
 
 #include <fmt/format.h>
 
@@ -110,7 +112,9 @@ void ShadingMarksEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDat
     const TextureId right = both != nullptr ? both->right : view.radiance;
     const TextureId marked = create_like(graph, "radiance with marks", view.radiance);
     add_fullscreen_pass(
-        graph, "shading marks", {sampled(view.radiance, 0), sampled(left, 1), sampled(right, 2)},
+        graph, "shading marks",
+        {sampled(view.radiance, layout::kSourceUnit), sampled(left, layout::kLeftRadianceUnit),
+         sampled(right, layout::kRightRadianceUnit)},
         {discarded(marked)}, program,
         [plotted = within_ranges(plot != nullptr ? *plot : ScanlinePlot{.height = 0}),
          divider = comparison != nullptr && comparison->image == ComparisonImage::Split

@@ -7,6 +7,10 @@
 #include "render/light/lobe_bounds.h"
 #include "render/material/material_pool.h"
 #include "render/material/shading_models.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/gbuffer_gpu.h"
+#include "render/shaders/material_gpu.h"
+#include "render/shaders/material_subsurface_gpu.h"
 #include "render/view_block.h"
 
 #include <glm/common.hpp>
@@ -19,9 +23,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kScatteredUnit = 0;
-constexpr unsigned kDistancesUnit = 1;
-constexpr unsigned kWrittenImage = 0;
 constexpr int kSubsurfaceGroup = 8;  ///< side of the work groups [px]
 constexpr std::uint32_t kSubsurfaceLobe = lobe_number(ShadingModel::Subsurface);
 
@@ -40,7 +41,7 @@ TextureId
 measure_distances(FrameGraph& graph, const SubsurfaceEffect& effect, const ViewData& view) {
     const TextureId distances = create_target(
         graph, "scattered.distances", GL_RG32F, view.size(), graph.spec(view.scattered).levels);
-    const Use depth = sampled(view.gbuffer.depth, kDepthUnit);
+    const Use depth = sampled(view.gbuffer.depth, layout::kDepthUnit);
     if (!effect.in_compute) {
         add_fullscreen_pass(
             graph, "scattered.distances", {depth}, {discarded(distances)}, effect.moments,
@@ -52,7 +53,7 @@ measure_distances(FrameGraph& graph, const SubsurfaceEffect& effect, const ViewD
         [&effect, &view, distances](PassContext& context) {
             context.device().use(*effect.moments);
             bind_view(context, view);
-            context.bind_image(kWrittenImage, distances, GL_WRITE_ONLY);
+            context.bind_image(layout::kDistanceMomentsImage, distances, GL_WRITE_ONLY);
             context.device().dispatch_over(view.size().x, view.size().y, kSubsurfaceGroup);
         });
     return distances;
@@ -74,7 +75,7 @@ void compute_within(
     context.device().use(program);
     program.set("low", bounds.low);
     program.set("high", bounds.high);
-    context.bind_image(kWrittenImage, radiance, GL_READ_WRITE);
+    context.bind_image(layout::kTargetImage, radiance, GL_READ_WRITE);
     context.device().dispatch_over(size.x, size.y, kSubsurfaceGroup);
 }
 
@@ -123,18 +124,18 @@ void SubsurfaceEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData&
         });
     const TextureId radiance = view.radiance;
     const Use reads[] = {
-        sampled(view.scattered, kScatteredUnit, &sampler),
-        sampled(distances, kDistancesUnit, &sampler),
-        sampled(view.gbuffer.surface, kGbufferUnit),
-        sampled(view.gbuffer.material, kGbufferMaterialUnit),
-        sampled(view.gbuffer.depth, kDepthUnit),
+        sampled(view.scattered, layout::kScatteredUnit, &sampler),
+        sampled(distances, layout::kDistancesUnit, &sampler),
+        sampled(view.gbuffer.surface, layout::kGbufferUnit),
+        sampled(view.gbuffer.material, layout::kGbufferMaterialUnit),
+        sampled(view.gbuffer.depth, layout::kDepthUnit),
         in_compute ? Use(radiance) : depth_tested(view.data.get<ShadingLobes>().depth)};
     const Use writes[] = {in_compute ? image(radiance) : Use(radiance)};
     graph.add_pass(
         "subsurface", std::span(reads), std::span(writes),
         [this, program, radiance, &view, &bounds](PassContext& context) {
             bind_view(context, view);
-            view.frame->materials->records().bind(context.device(), kMaterialsUnit);
+            view.frame->materials->records().bind(context.device(), layout::kMaterialsUnit);
             if (in_compute) {
                 compute_within(context, *program, bounds, radiance);
             } else {

@@ -3,6 +3,7 @@
 #include "ecs/base/check.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/shader_library.h"
+#include "render/shaders/furrow_gpu.h"
 
 #include <algorithm>
 #include <array>
@@ -16,14 +17,9 @@ namespace limn {
 namespace {
 
 constexpr float kThreads = 64;           // of a work group
-constexpr float kMaxRounds = 32768;      // of loops per dispatch; llvmpipe aborts it after 65,535
-constexpr float kRoundsPerSegment = 48;  // besides the loops over pixels around it
-constexpr int kMaxSegments = 1024;       // per dispatch
-constexpr unsigned kTriangles = 0;
-constexpr unsigned kCover = 1;
-constexpr unsigned kFurrowCells = 2;
-constexpr unsigned kHeights = 3;
-constexpr unsigned kProgress = 4;
+constexpr float kMaxRounds = 32768;      // of loops in a dispatch; llvmpipe ends it after 65,535
+constexpr float kRoundsPerSegment = 48;  // besides those over the pixels around it
+constexpr int kMaxSegments = 1024;       // in a dispatch
 
 /// Layout of furrow_trace.comp.
 struct Progress {
@@ -97,11 +93,11 @@ FurrowTextures make_furrow_textures(
     set_style(*maker.trace, map, style);
     maker.trace->set("triangle_count", static_cast<int>(map.triangles.size()));
     maker.trace->set("budget", segment_budget(style));
-    device.bind_storage(kTriangles, triangles);
-    device.bind_storage(kCover, covered);
-    device.bind_storage(kFurrowCells, cells);
-    device.bind_storage(kHeights, heights);
-    device.bind_storage(kProgress, progress);
+    device.bind_storage(layout::kFurrowTrianglesBinding, triangles);
+    device.bind_storage(layout::kFurrowCoverBinding, covered);
+    device.bind_storage(layout::kFurrowCellsBinding, cells);
+    device.bind_storage(layout::kFurrowHeightsBinding, heights);
+    device.bind_storage(layout::kFurrowProgressBinding, progress);
     const std::size_t starts = map.triangles.size() + pixels;
     const auto grows = [starts](const Progress& p) { return p.furrow != 0 || p.next < starts; };
     while (grows(now[0]) || grows(now[1])) {
@@ -122,8 +118,8 @@ FurrowTextures make_furrow_textures(
     maker.maps->set("key_y", key[1]);
     maker.maps->set("noise", style.noise);
     maker.maps->set("bump", style.bump);
-    device.bind_image(0, textures.height, GL_WRITE_ONLY);
-    device.bind_image(1, textures.normal, GL_WRITE_ONLY);
+    device.bind_image(layout::kFurrowHeightImage, textures.height, GL_WRITE_ONLY);
+    device.bind_image(layout::kFurrowNormalImage, textures.normal, GL_WRITE_ONLY);
     device.dispatch_over(map.size.x, map.size.y, 8);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
     return textures;

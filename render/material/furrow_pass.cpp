@@ -6,6 +6,7 @@
 #include "render/fullscreen.h"
 #include "render/material/image_pool.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/furrow_gpu.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -21,12 +22,6 @@
 
 namespace limn {
 namespace {
-
-constexpr unsigned kVerticesUnit = 0;
-constexpr unsigned kIndicesUnit = 1;
-constexpr unsigned kMarksUnit = 0;
-constexpr unsigned kHeightsUnit = 2;
-constexpr unsigned kSceneUnit = 3;
 
 constexpr float kLineRadius = 0.75f;    // [px]
 constexpr float kEditedRadius = 1.25f;  // radius of the lines of edited vertices
@@ -240,7 +235,7 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
                     to.set("has_scene", scene.valid() ? 1 : 0);
                 };
                 if (scene.valid()) {
-                    context.bind_texture(kSceneUnit, scene);
+                    context.bind_texture(layout::kFurrowSceneUnit, scene);
                 }
                 draw_shown(context, furrows, set);
             }
@@ -259,9 +254,9 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
             const Mat4 mesh_from_world = glm::inverse(to_mat4(furrows.world_from_mesh));
             faces->set("eye", Vec3(mesh_from_world * Vec4(eye, 1)));
             faces->set("shows_height", furrows.mode == FurrowMode::Height ? 1 : 0);
-            furrows.vertices.bind(context.device(), kVerticesUnit);
-            furrows.indices.bind(context.device(), kIndicesUnit);
-            context.device().bind_texture(kHeightsUnit, furrows.heights, &texels);
+            furrows.vertices.bind(context.device(), layout::kFurrowVerticesUnit);
+            furrows.indices.bind(context.device(), layout::kFurrowIndicesUnit);
+            context.device().bind_texture(layout::kFurrowHeightsUnit, furrows.heights, &texels);
             context.device().draw_ids(furrows.corners);
         },
         cleared(depth));
@@ -277,7 +272,7 @@ void FurrowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
             const IVec2 size = context.size();
             marks->set("size", Vec2(size));
             marks->set("pixels", furrow_mark_pixels(size.y, 1));
-            furrows.mark_records.bind(context.device(), kMarksUnit);
+            furrows.mark_records.bind(context.device(), layout::kFurrowMarksUnit);
             context.device().draw_ids(6 * furrows.marks);
         },
         depth);

@@ -4,6 +4,7 @@
 #include "render/gpu/device.h"
 #include "render/material/material_blocks.h"
 #include "render/material/skin_tone.h"
+#include "render/shaders/material_maps_gpu.h"
 
 #include <algorithm>
 
@@ -188,7 +189,7 @@ std::uint32_t MaterialPool::index_of(const MapBindings& bindings) {
 }
 
 void MaterialPool::bind_textures(std::uint32_t textures) const {
-    unsigned unit = 0;
+    unsigned unit = layout::kFirstMapUnit;
     for (const MapBinding& map : textures_[textures].used()) {
         const gpu::Texture& texture =
             map.encoded ? images_.encoded(map.array) : images_.array(map.array);

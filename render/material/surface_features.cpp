@@ -22,20 +22,9 @@ constexpr FeatureName kNames[] = {
     {kInflate, "INFLATE"},
     {kDeformed, "DEFORMED"},
     {kVelocity, "VELOCITY"},
-    {kWrinkleBlend, "WRINKLE_BLEND"},
-    {kWrinkleFade, "WRINKLE_FADE"},
-    {kWrinkleFlat, "WRINKLE_FLAT"},
-    {kWrinkleView, "WRINKLE_VIEW"},
     {kTransmission, "TRANSMISSION"},
     {kRefraction, "REFRACTION"},
     {kStrands, "STRANDS"},
-    {kWrinkleDisplaced, "WRINKLE_DISPLACED"},
-    {kWrinkleColumns, "WRINKLE_COLUMNS"},
-    {kWrinkleModel, "WRINKLE_MODEL"},
-    {kWrinkleLayers, "WRINKLE_LAYERS"},
-    {kWrinkleIndependent, "WRINKLE_INDEPENDENT"},
-    {kWrinklePhoto, "WRINKLE_PHOTO"},
-    {kWrinkleBounce, "WRINKLE_BOUNCE"},
 };
 
 constexpr bool has_bits_of_their_own() {
@@ -58,6 +47,7 @@ void add_features(Variant& variant, const SurfaceFeatures& features) {
             variant.add(feature.definition);
         }
     }
+    add_hook_definitions(variant, features.hooks);
     for (const MapSlot& slot : map_slots()) {
         if (features.maps.has(slot.number)) {
             variant.add(slot.definition, static_cast<int>(features.maps.unit(slot.number)));

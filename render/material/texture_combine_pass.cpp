@@ -6,6 +6,7 @@
 #include "render/geometry/surface_draws.h"
 #include "render/material/drawn_image.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/texture_combine_gpu.h"
 
 #include <cmath>
 
@@ -61,8 +62,9 @@ void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame
         add_fullscreen_pass(
             graph, "combine textures",
             {array_of(combine.water), array_of(combine.grating),
-             sampled(graph.import("combined image", *water), 0, &repeat),
-             sampled(graph.import("combined image", *grating), 1, &repeat)},
+             sampled(graph.import("combined image", *water), layout::kCombinedWaterUnit, &repeat),
+             sampled(
+                 graph.import("combined image", *grating), layout::kCombinedGratingUnit, &repeat)},
             {target_level(discarded(combined), 0)}, program,
             [&array, offset, gain = combine.gain](PassContext&, const gpu::Program& shader) {
                 shader.set("size", Vec2(array.width(), array.height()));

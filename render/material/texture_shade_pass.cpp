@@ -7,6 +7,7 @@
 #include "render/geometry/surface_draws.h"
 #include "render/material/drawn_image.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/texture_shade_gpu.h"
 
 // Techniques: wrinkle.furrow.texture-space-shading
 
@@ -60,8 +61,11 @@ void TextureShadeEffect::draw_shared(FrameGraph& graph, const FrameData& frame) 
         add_fullscreen_pass(
             graph, "shade texture",
             {array_of(shade.normals), array_of(shade.color),
-             sampled(graph.import("normals of shaded image", *normals), 0, &texels),
-             sampled(graph.import("color of shaded image", *color), 1, &texels)},
+             sampled(
+                 graph.import("normals of shaded image", *normals), layout::kShadedNormalsUnit,
+                 &texels),
+             sampled(
+                 graph.import("color of shaded image", *color), layout::kShadedColorUnit, &texels)},
             {target_level(discarded(shaded), 0)}, program,
             [&array, rotation, shade](PassContext&, const gpu::Program& shader) {
                 shader.set("size", Vec2(array.width(), array.height()));

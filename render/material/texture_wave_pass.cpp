@@ -1,6 +1,7 @@
 #include "render/material/texture_wave_pass.h"
 
 #include "render/fullscreen.h"
+#include "render/shaders/water_detail_gpu.h"
 #include "render/water/water_surfaces.h"
 
 // Techniques: water.geometric-texture-split
@@ -35,7 +36,7 @@ void draw_texture_waves(
                 waves.set("first", static_cast<int>(first));
                 waves.set("count", static_cast<int>(end - first));
                 waves.set("texels", static_cast<float>(kWaveTileSize));
-                waters.texture_waves.bind(context.device(), 0);
+                waters.texture_waves.bind(context.device(), layout::kTextureWavesUnit);
             });
         first = end;
     }

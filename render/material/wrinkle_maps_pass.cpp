@@ -7,6 +7,7 @@
 #include "render/geometry/surface_draws.h"
 #include "render/material/drawn_image.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/wrinkle_maps_gpu.h"
 
 #include <algorithm>
 #include <array>
@@ -76,7 +77,8 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         }
         const auto read = [&](unsigned i) {
             const gpu::Texture& texture = *images.find_texture(sources[i]);
-            return sampled(graph.import("wrinkle map", texture), i, &texels);
+            return sampled(
+                graph.import("wrinkle map", texture), layout::kWrinkleBaseUnit + i, &texels);
         };
         const auto array_of = [&](unsigned i) {
             return graph.import("images", images.array(images.find(sources[i]).array));

@@ -1,11 +1,14 @@
 #include "render/material/wrinkle_pass.h"
 
 #include "ecs/components/transform.h"
+#include "ecs/components/wrinkle_comparison.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/device.h"
 #include "render/gpu/grown_buffer.h"
 #include "render/gpu/shader_library.h"
+#include "render/material/wrinkle_hook.h"
+#include "render/shaders/wrinkle_columns_gpu.h"
 #include "render/shaders/wrinkle_gpu.h"
 #include "render/skinning/deformed_list.h"
 
@@ -23,12 +26,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kWrinkleJobsUnit = 0;
-constexpr unsigned kWrinkleGroupsUnit = 1;
-constexpr unsigned kWrinkleRestUnit = 2;
-constexpr unsigned kWrinklePositionsBinding = 0;
-constexpr unsigned kWrinklesBinding = 1;
-constexpr unsigned kFoldHeightsBinding = 2;
 constexpr std::uint32_t kInitialTexels = 1 << 14;
 
 static_assert(kFoldSteps == layout::kFoldSteps);
@@ -41,6 +38,18 @@ static_assert(static_cast<std::uint32_t>(WrinkleMethod::Model) == layout::kWrink
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Photo) == layout::kWrinklePhoto);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
 static_assert(static_cast<std::uint32_t>(WrinkleMethod::Bump) == layout::kWrinkleBump);
+
+layout::WrinkleColumns
+pack_columns(const std::vector<WrinkleMethod>& methods, const Vec2& borders) {
+    layout::WrinkleColumns packed{};
+    packed.left = borders.x;
+    packed.right = borders.y;
+    for (const WrinkleMethod method : methods) {
+        packed.methods |= static_cast<std::uint32_t>(method) << (4 * packed.count);
+        ++packed.count;
+    }
+    return packed;
+}
 
 struct Texel {
     std::uint32_t x;
@@ -247,6 +256,19 @@ Result<WrinkleEffect> WrinkleEffect::create(gpu::Device& device, const RenderSet
     return effect;
 }
 
+bool WrinkleEffect::prepare(const FrameData& frame, ViewData& view) {
+    const auto* comparison = frame.world->find_resource<WrinkleComparison>();
+    view.publish_block(
+        layout::kWrinkleColumnsBinding,
+        pack_columns(wrinkle_columns(comparison), column_borders(comparison)));
+    Variant& lit = view.lighting.variant;
+    const auto has = [&](unsigned bits) { return frame.shapes->has_hook(kWrinkleHook, bits); };
+    lit.add_if(has(kWrinkleBlend | kWrinkleFade | kWrinkleBounce), "SMOOTH_NORMALS");
+    lit.add_if(has(kWrinkleBlend), "BLENDED_SKIN");
+    lit.add_if(has(kWrinkleBounce), "FOLD_LIGHT");
+    return true;
+}
+
 void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     forget_others(pool, frame.assets_identity);
     std::vector<layout::WrinkleJob> job_list;
@@ -302,18 +324,20 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         [this, &vertices, aligned, end, group_count, displaced](PassContext& context) {
             gpu::Device& device = context.device();
             device.use(*program);
-            jobs.bind(device, kWrinkleJobsUnit);
-            groups.bind(device, kWrinkleGroupsUnit);
-            rest.bind(device, kWrinkleRestUnit);
+            jobs.bind(device, layout::kWrinkleJobsUnit);
+            groups.bind(device, layout::kWrinkleGroupsUnit);
+            rest.bind(device, layout::kWrinkleRestUnit);
             const auto bind = [&](unsigned binding, const gpu::Buffer& buffer, std::size_t stride) {
                 device.bind_storage(
                     binding, buffer.id(), aligned * stride, (end - aligned) * stride);
             };
-            bind(kWrinklePositionsBinding, vertices.positions(), sizeof(Vec3));
-            bind(kWrinklesBinding, vertices.wrinkles(), stream_stride(VertexStream::Wrinkle));
-            // Without displaced skin no heights are written.
+            bind(layout::kWrinklePositionsBinding, vertices.positions(), sizeof(Vec3));
+            bind(
+                layout::kWrinklesBinding, vertices.wrinkles(),
+                stream_stride(VertexStream::Wrinkle));
+            // Without displaced skin none are written.
             const VertexStream last = displaced ? VertexStream::FoldHeight : VertexStream::Wrinkle;
-            bind(kFoldHeightsBinding, vertices.streams().buffer(last), stream_stride(last));
+            bind(layout::kFoldHeightsBinding, vertices.streams().buffer(last), stream_stride(last));
             program->set("group_count", group_count);
             program->set("first_vertex", aligned);
             const unsigned wide = std::min(group_count, layout::kWrinkleGroupsWide);

@@ -15,7 +15,9 @@ namespace limn {
 // the strength of its wrinkles (wrinkle.compression.*). lib/material.glsl draws them.
 //
 // Reads    WrinkleState, WrinkleSurface; positions of DeformedVertices
-// Writes   DeformedVertices: strengths by kind of drawing; heights of folds that move the skin
+// Writes   DeformedVertices: strengths by kind of drawing; heights of folds that move the skin; the
+// view's WrinkleColumns
+//          and what lit programs must do for wrinkled skin
 // Order    after deform_pass, before everything that draws meshes
 // Shaders  wrinkle.comp, lib/wrinkle.glsl; layout in wrinkle_gpu.h. lib/mesh_vertex.glsl displaces
 // the vertices
@@ -42,6 +44,7 @@ struct WrinkleEffect {
 
     [[nodiscard]] static bool is_used(const FrameData& frame);
     [[nodiscard]] static Result<WrinkleEffect> create(gpu::Device& device, const RenderSettings&);
+    bool prepare(const FrameData& frame, ViewData& view);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
 };
 

@@ -1,7 +1,8 @@
 // Adds one sample image to a sum, by blending.
 #version 450
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
 
 uniform float weight;
 

@@ -4,16 +4,17 @@
 #version 450
 #include "lib/gbuffer.glsl"
 #include "lib/view.glsl"
+#include "gbuffer_gpu.h"
 
-layout(binding = 5) uniform usampler2D gbuffer;
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kGbufferUnit) uniform usampler2D gbuffer;
+layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 #if AOV == 3
-layout(binding = 14) uniform sampler2D scene_velocity;
+layout(binding = kVelocityUnit) uniform sampler2D scene_velocity;
 #endif
 
 #if AOV == 5
 #include "shadow_gpu.h"
-layout(binding = 16) uniform samplerBuffer shadow_views;  // ShadowViewRecord
+layout(binding = kShadowViewsUnit) uniform samplerBuffer shadow_views;  // ShadowViewRecord
 uniform int shadow_view_count;
 #endif
 

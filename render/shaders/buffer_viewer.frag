@@ -2,8 +2,9 @@
 // three. NaN is magenta, infinity cyan. The target has the texture's size.
 #version 450
 #include "lib/numbers.glsl"
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D buffer_image;
+layout(binding = kSourceUnit) uniform sampler2D buffer_image;
 uniform vec2 shown_range;    // the values shown as black and white
 uniform int shown_channel;   // 0 .. 3: this one in gray; 4: red, green and blue
 uniform int encode_srgb;     // 1: the values are linear light

@@ -63,6 +63,14 @@ const float kCausticsMirrored = 2.0;   // above the water
 
 const uint kRayGroup = 64u;  // consecutive rays of one map, per work group
 
+// Bindings.
+const uint kWaterLightsUnit = 20u;
+const uint kCausticMapsUnit = 21u;
+const uint kCausticRecordsUnit = 20u;
+const uint kCausticRaysBinding = 0u;
+const uint kCausticLightBinding = 1u;
+const uint kCausticMapsImage = 0u;
+
 #ifdef __cplusplus
 static_assert(sizeof(WaterLightHeader) == 16 * kHeaderTexels);
 static_assert(sizeof(UnderwaterRecord) == 16 * kUnderwaterTexels);

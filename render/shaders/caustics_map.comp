@@ -1,13 +1,14 @@
 // Converts the sums of caustics_splat.comp to a texture: light relative to that under flat water.
 #version 450
 #include "lib/caustic_record.glsl"
+#include "caustics_gpu.h"
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 1) readonly buffer Light {
+layout(std430, binding = kCausticLightBinding) readonly buffer Light {
     uint light[];
 };
-layout(binding = 0, r32f) writeonly uniform image2D maps;
+layout(binding = kCausticMapsImage, r32f) writeonly uniform image2D maps;
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);

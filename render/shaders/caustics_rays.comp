@@ -8,6 +8,7 @@
 #include "lib/caustic_record.glsl"
 #include "lib/optics.glsl"
 #include "lib/view.glsl"
+#include "caustics_gpu.h"
 const float kPi = 3.14159265358979;
 #include "lib/water_surface.glsl"
 #include "light_gpu.h"
@@ -17,7 +18,7 @@ const float kPi = 3.14159265358979;
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) writeonly buffer Rays {
+layout(std430, binding = kCausticRaysBinding) writeonly buffer Rays {
     vec4 rays[];  // texel of the map, light, height above rest [m]
 };
 

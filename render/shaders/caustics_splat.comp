@@ -4,13 +4,14 @@
 // Techniques: caustic.projected-vertices
 #version 450
 #include "lib/caustic_record.glsl"
+#include "caustics_gpu.h"
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer Rays {
+layout(std430, binding = kCausticRaysBinding) readonly buffer Rays {
     vec4 rays[];
 };
-layout(std430, binding = 1) buffer Light {
+layout(std430, binding = kCausticLightBinding) buffer Light {
     uint light[];
 };
 uniform int width;  // of the atlas [texels]

@@ -5,9 +5,9 @@
 #include "lib/cluster.glsl"
 
 layout(local_size_x = 32) in;  // blocks
-layout(binding = 0) uniform samplerBuffer cluster_lights;  // ClusterLight
-layout(binding = 1) uniform usamplerBuffer boxes;  // ClusterLights::boxes
-layout(std430, binding = 0) writeonly buffer Masks {
+layout(binding = kClusterLightsUnit) uniform samplerBuffer cluster_lights;  // ClusterLight
+layout(binding = kClusterBoxesUnit) uniform usamplerBuffer boxes;  // ClusterLights::boxes
+layout(std430, binding = kClusterMasksBinding) writeonly buffer Masks {
     uint masks[];  // words of block 0, of block 1 ...
 };
 

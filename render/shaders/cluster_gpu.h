@@ -20,6 +20,13 @@ const uint kBlockRows = 4u;
 const uint kBlockSlices = 2u;
 const uint kBlockCells = 32u;
 
+// Bindings.
+const uint kClusterLightsUnit = 0u;
+const uint kClusterBoxesUnit = 1u;
+const uint kClusterMasksBinding = 0u;
+const uint kClusterCellsBinding = 1u;
+const uint kClusterIndicesBinding = 2u;
+
 #ifdef __cplusplus
 static_assert(sizeof(ClusterLight) == 16 * kClusterLightTexels);
 static_assert(kBlockColumns * kBlockRows * kBlockSlices == kBlockCells);

@@ -6,16 +6,16 @@
 #include "lib/cluster.glsl"
 
 layout(local_size_x = 32) in;  // the cells of a block
-layout(binding = 0) uniform samplerBuffer cluster_lights;  // ClusterLight
-layout(binding = 1) uniform usamplerBuffer boxes;
-layout(std430, binding = 0) readonly buffer Masks {
+layout(binding = kClusterLightsUnit) uniform samplerBuffer cluster_lights;  // ClusterLight
+layout(binding = kClusterBoxesUnit) uniform usamplerBuffer boxes;
+layout(std430, binding = kClusterMasksBinding) readonly buffer Masks {
     uint masks[];
 };
-layout(std430, binding = 1) buffer Cells {
+layout(std430, binding = kClusterCellsBinding) buffer Cells {
     uvec2 cells[];  // begin and length of each list
 };
 #ifdef FILL
-layout(std430, binding = 2) writeonly buffer Indices {
+layout(std430, binding = kClusterIndicesBinding) writeonly buffer Indices {
     uint indices[];
 };
 #endif

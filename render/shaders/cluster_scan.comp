@@ -1,9 +1,10 @@
 // The begin of each cell's list: the exclusive prefix sum of the lengths. One group; each invocation sums a run of
 // cells, the group scans the runs.
 #version 450
+#include "cluster_gpu.h"
 
 layout(local_size_x = 1024) in;  // the largest that OpenGL promises: runs are read one cell after another
-layout(std430, binding = 1) buffer Cells {
+layout(std430, binding = kClusterCellsBinding) buffer Cells {
     uvec2 cells[];  // begin and length of each list
 };
 

@@ -1,10 +1,13 @@
 // Mixes the image with the color of each point that dazzles, as far as it is in sight (dazzle_pass.h).
 // Techniques: engine.obfuscating-point
 #version 450
+#include "dazzle_gpu.h"
+#include "disk_visibility_gpu.h"
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D visibility;  // of each point
-layout(binding = 2) uniform samplerBuffer points;  // DazzlePoint
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(binding = kVisibilityUnit) uniform sampler2D visibility;  // of each point
+layout(binding = kDazzlePointsUnit) uniform samplerBuffer points;  // DazzlePoint
 
 uniform int count;
 

@@ -6,23 +6,23 @@
 #include "deform_gpu.h"
 #include "lib/skinning.glsl"
 
-layout(binding = 5) uniform samplerBuffer controls;  // packed deformers
+layout(binding = kDeformControlsUnit) uniform samplerBuffer controls;  // packed deformers
 #include "lib/deformers.glsl"
 #include "lib/surface_patches.glsl"
 
 layout(local_size_x = 64) in;  // kDeformGroup
-layout(binding = 0) uniform usamplerBuffer jobs;        // DeformJob
-layout(binding = 1) uniform usamplerBuffer group_jobs;  // job of each work group
-layout(binding = 2) uniform usamplerBuffer rest;        // see deform_gpu.h
-layout(binding = 3) uniform samplerBuffer palettes;
-layout(binding = 4) uniform samplerBuffer weights;
-layout(std430, binding = 0) buffer Positions {
+layout(binding = kDeformJobsUnit) uniform usamplerBuffer jobs;        // DeformJob
+layout(binding = kDeformGroupJobsUnit) uniform usamplerBuffer group_jobs;  // job of each work group
+layout(binding = kDeformRestUnit) uniform usamplerBuffer rest;        // see deform_gpu.h
+layout(binding = kDeformPalettesUnit) uniform samplerBuffer palettes;
+layout(binding = kDeformWeightsUnit) uniform samplerBuffer weights;
+layout(std430, binding = kDeformPositionsBinding) buffer Positions {
     float positions[];
 };
-layout(std430, binding = 1) writeonly buffer Previous {
+layout(std430, binding = kDeformPreviousBinding) writeonly buffer Previous {
     float previous[];
 };
-layout(std430, binding = 2) writeonly buffer Frames {
+layout(std430, binding = kDeformFramesBinding) writeonly buffer Frames {
     uvec4 frames[];  // PackedFrame
 };
 

@@ -47,6 +47,17 @@ const uint kDeformMorphs = 32u;     // has morph weights, one per target
 const uint kDeformControls = 64u;   // has deformers
 const uint kDeformPatches = 128u;   // is on the patches of a surface
 
+// Bindings.
+const uint kDeformJobsUnit = 0u;
+const uint kDeformGroupJobsUnit = 1u;
+const uint kDeformRestUnit = 2u;
+const uint kDeformPalettesUnit = 3u;
+const uint kDeformWeightsUnit = 4u;
+const uint kDeformControlsUnit = 5u;
+const uint kDeformPositionsBinding = 0u;
+const uint kDeformPreviousBinding = 1u;
+const uint kDeformFramesBinding = 2u;
+
 #ifdef __cplusplus
 static_assert(sizeof(DeformJob) == 16 * kDeformJobTexels);
 }  // namespace limn::layout

@@ -2,8 +2,9 @@
 // and of those among them that are gathered finely. Separately, of small circles in front of and behind the focus.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 1) uniform sampler2D scene_depth;
+layout(binding = kFocusDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 block;
 layout(location = 1) out vec2 small;

@@ -2,11 +2,12 @@
 // texel. The wider the circles, the coarser the mip level that is read, so that taps leave no gaps.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D far_rest;  // with mip levels
-layout(binding = 1) uniform sampler2D near_rest;
-layout(binding = 2) uniform sampler2D rest_radii;
-layout(binding = 7) uniform sampler2D focus_tiles;
+layout(binding = kFocusFarRestUnit) uniform sampler2D far_rest;  // with mip levels
+layout(binding = kFocusNearRestUnit) uniform sampler2D near_rest;
+layout(binding = kFocusRestRadiiUnit) uniform sampler2D rest_radii;
+layout(binding = kFocusTilesUnit) uniform sampler2D focus_tiles;
 
 layout(location = 0) out vec4 far_coarse;   // alpha: its share of the texel
 layout(location = 1) out vec4 near_coarse;  // alpha: coverage

@@ -2,14 +2,15 @@
 // and the near layer over both.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D packed_pixels;
-layout(binding = 2) uniform sampler2D far_blurred;
-layout(binding = 3) uniform sampler2D near_blurred;
-layout(binding = 4) uniform sampler2D behind_near;
-layout(binding = 5) uniform sampler2D near_reach;  // of small circles, per block
-layout(binding = 6) uniform sampler2D near_coarse;  // quarter resolution
+layout(binding = kFocusRadianceUnit) uniform sampler2D scene_radiance;
+layout(binding = kFocusPackedUnit) uniform sampler2D packed_pixels;
+layout(binding = kFocusFarBlurredUnit) uniform sampler2D far_blurred;
+layout(binding = kFocusNearBlurredUnit) uniform sampler2D near_blurred;
+layout(binding = kFocusBehindNearUnit) uniform sampler2D behind_near;
+layout(binding = kFocusNearReachUnit) uniform sampler2D near_reach;  // of small circles, per block
+layout(binding = kFocusNearCoarseUnit) uniform sampler2D near_coarse;  // quarter resolution
 
 flat in vec4 tile;
 

@@ -1,9 +1,10 @@
 // The disc of a highlight at full resolution, occluded by nearer surfaces.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 5) uniform sampler2D near_blurred;
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kFocusNearBlurredUnit) uniform sampler2D near_blurred;
+layout(binding = kFocusDepthUnit) uniform sampler2D scene_depth;
 
 flat in vec3 light;
 flat in float radius;

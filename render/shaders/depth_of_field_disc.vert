@@ -1,13 +1,14 @@
 // A point sprite for the disc of each highlight removed by depth_of_field_rest.frag, first far and then near ones.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D far_wide;
-layout(binding = 1) uniform sampler2D near_wide;
-layout(binding = 2) uniform sampler2D far_rest;
-layout(binding = 3) uniform sampler2D near_rest;
-layout(binding = 4) uniform sampler2D packed_pixels;
-layout(binding = 7) uniform sampler2D focus_tiles;
+layout(binding = kFocusFarWideUnit) uniform sampler2D far_wide;
+layout(binding = kFocusNearWideUnit) uniform sampler2D near_wide;
+layout(binding = kFocusFarRestUnit) uniform sampler2D far_rest;
+layout(binding = kFocusNearRestUnit) uniform sampler2D near_rest;
+layout(binding = kFocusPackedUnit) uniform sampler2D packed_pixels;
+layout(binding = kFocusTilesUnit) uniform sampler2D focus_tiles;
 
 uniform ivec2 texels;  // at quarter resolution
 

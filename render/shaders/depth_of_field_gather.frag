@@ -2,15 +2,16 @@
 // circle reaches here; its light is weighted by 1 / the area of the circle.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D far_light;
-layout(binding = 1) uniform sampler2D near_light;
-layout(binding = 2) uniform sampler2D far_kernels;
-layout(binding = 3) uniform sampler2D near_kernels;
-layout(binding = 4) uniform sampler2D far_wide;
-layout(binding = 5) uniform sampler2D far_coarse;  // quarter resolution
-layout(binding = 6) uniform sampler2D near_coarse;
-layout(binding = 9) uniform sampler2D near_radius;
+layout(binding = kFocusFarLightUnit) uniform sampler2D far_light;
+layout(binding = kFocusNearLightUnit) uniform sampler2D near_light;
+layout(binding = kFocusFarKernelsUnit) uniform sampler2D far_kernels;
+layout(binding = kFocusNearKernelsUnit) uniform sampler2D near_kernels;
+layout(binding = kFocusFarWideUnit) uniform sampler2D far_wide;
+layout(binding = kFocusFarCoarseUnit) uniform sampler2D far_coarse;  // quarter resolution
+layout(binding = kFocusNearCoarseUnit) uniform sampler2D near_coarse;
+layout(binding = kFocusNearRadiusUnit) uniform sampler2D near_radius;
 
 flat in vec4 tile;
 

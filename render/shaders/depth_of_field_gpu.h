@@ -33,6 +33,36 @@ struct FocusBlock {
     vec4 area[21];    // 1 / pixels covered by small circles of radius i / kSlightStep [px]
 };
 
+// Bindings.
+const uint kFocusBinding = 2u;
+const uint kFocusRadianceUnit = 0u;
+const uint kFocusDepthUnit = 1u;
+const uint kFocusBlocksUnit = 2u;
+const uint kFocusSmallBlocksUnit = 3u;
+const uint kFocusOwnTilesUnit = 4u;
+const uint kFocusOwnSmallUnit = 5u;
+const uint kFocusPackedUnit = 6u;
+const uint kFocusTilesUnit = 7u;
+const uint kFocusSlightTilesUnit = 8u;
+const uint kFocusNearLightUnit = 9u;
+const uint kFocusNearWideUnit = 10u;
+const uint kFocusBehindNearUnit = 11u;
+const uint kFocusFarLightUnit = 12u;
+const uint kFocusFarKernelsUnit = 13u;
+const uint kFocusNearKernelsUnit = 14u;
+const uint kFocusFarWideUnit = 15u;
+const uint kFocusWideRadiiUnit = 16u;
+const uint kFocusLuminanceUnit = 17u;
+const uint kFocusFarRestUnit = 18u;
+const uint kFocusNearRestUnit = 19u;
+const uint kFocusRestRadiiUnit = 20u;
+const uint kFocusFarCoarseUnit = 21u;
+const uint kFocusNearCoarseUnit = 22u;
+const uint kFocusNearRadiusUnit = 23u;
+const uint kFocusFarBlurredUnit = 24u;
+const uint kFocusNearBlurredUnit = 25u;
+const uint kFocusNearReachUnit = 26u;
+
 #ifdef __cplusplus
 static_assert(sizeof(FocusBlock) == 16 * (4 + 48 + 25 + 69 + 36 + 21));
 }  // namespace limn::layout

@@ -1,10 +1,11 @@
 // Luminance at quarter resolution, with its weight: highlights are detected against it.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D near_light;
-layout(binding = 1) uniform sampler2D near_wide;
-layout(binding = 2) uniform sampler2D behind_near;
+layout(binding = kFocusNearLightUnit) uniform sampler2D near_light;
+layout(binding = kFocusNearWideUnit) uniform sampler2D near_wide;
+layout(binding = kFocusBehindNearUnit) uniform sampler2D behind_near;
 
 layout(location = 0) out vec2 luminance;
 

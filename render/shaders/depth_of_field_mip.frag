@@ -2,9 +2,10 @@
 // Techniques: post.dof-mip
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;  // with mip levels
-layout(binding = 1) uniform sampler2D scene_depth;
+layout(binding = kFocusRadianceUnit) uniform sampler2D scene_radiance;  // with mip levels
+layout(binding = kFocusDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 color;
 

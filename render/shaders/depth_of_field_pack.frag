@@ -1,9 +1,10 @@
 // Packs the radius of the circle of each pixel with its radiance, so that later passes need one fetch.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D scene_depth;
+layout(binding = kFocusRadianceUnit) uniform sampler2D scene_radiance;
+layout(binding = kFocusDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 seen;
 

@@ -1,9 +1,10 @@
 // Classifies a tile by its own content and that of its neighbors.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D own_tiles;
-layout(binding = 1) uniform sampler2D own_small;
+layout(binding = kFocusOwnTilesUnit) uniform sampler2D own_tiles;
+layout(binding = kFocusOwnSmallUnit) uniform sampler2D own_small;
 
 // Widest radius [px] of the near circles that reach the tile, fine and coarse; if it has far pixels, of the fine far
 // circles that reach it, at least slightly above 0; of the wide far circles in it or next to it.

@@ -2,12 +2,13 @@
 // taps could not render their discs. depth_of_field_disc.vert draws what is removed here.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D far_wide;
-layout(binding = 1) uniform sampler2D near_wide;
-layout(binding = 2) uniform sampler2D wide_radii;
-layout(binding = 3) uniform sampler2D behind_near;
-layout(binding = 4) uniform sampler2D mean_luminance;
+layout(binding = kFocusFarWideUnit) uniform sampler2D far_wide;
+layout(binding = kFocusNearWideUnit) uniform sampler2D near_wide;
+layout(binding = kFocusWideRadiiUnit) uniform sampler2D wide_radii;
+layout(binding = kFocusBehindNearUnit) uniform sampler2D behind_near;
+layout(binding = kFocusLuminanceUnit) uniform sampler2D mean_luminance;
 
 layout(location = 0) out vec4 far_rest;
 layout(location = 1) out vec4 near_rest;

@@ -2,8 +2,9 @@
 // into fine and wide circles. Alpha: share of the texel.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D packed_pixels;
+layout(binding = kFocusPackedUnit) uniform sampler2D packed_pixels;
 
 layout(location = 0) out vec4 far_light;     // fine
 layout(location = 1) out vec4 near_light;    // fine

@@ -1,8 +1,9 @@
 // Widest radius [px] of the small near circles that reach a block.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D small_of_blocks;
+layout(binding = kFocusSmallBlocksUnit) uniform sampler2D small_of_blocks;
 
 layout(location = 0) out float widest;
 

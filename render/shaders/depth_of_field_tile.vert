@@ -1,9 +1,10 @@
 // A quad for every tile of the given kinds.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 7) uniform sampler2D focus_tiles;
-layout(binding = 8) uniform sampler2D slight_tiles;
+layout(binding = kFocusTilesUnit) uniform sampler2D focus_tiles;
+layout(binding = kFocusSlightTilesUnit) uniform sampler2D slight_tiles;
 
 uniform int kind;          // bits of the tiles to draw, see below
 uniform vec2 target_size;  // in full-resolution [px]: slightly larger than the image if its half is rounded up

@@ -2,9 +2,10 @@
 // far circles next to it: they may be visible past the rim of something in it.
 #version 450
 #include "lib/depth_of_field.glsl"
+#include "depth_of_field_gpu.h"
 
-layout(binding = 0) uniform sampler2D blocks;
-layout(binding = 1) uniform sampler2D small_of_blocks;
+layout(binding = kFocusBlocksUnit) uniform sampler2D blocks;
+layout(binding = kFocusSmallBlocksUnit) uniform sampler2D small_of_blocks;
 
 layout(location = 0) out vec4 tile;
 layout(location = 1) out vec2 small;

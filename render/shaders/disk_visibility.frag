@@ -1,9 +1,10 @@
 // The part of each disk in the image that nothing hides, one texel per disk (disk_visibility.h).
 // Techniques: engine.lens-flare
 #version 450
+#include "disk_visibility_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_depth;
-layout(binding = 1) uniform samplerBuffer sources;  // DiskSource
+layout(binding = kDiskDepthUnit) uniform sampler2D scene_depth;
+layout(binding = kDiskSourcesUnit) uniform samplerBuffer sources;  // DiskSource
 
 layout(location = 0) out float visible;
 

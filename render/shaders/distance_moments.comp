@@ -1,10 +1,11 @@
 // The moments of the distance at each pixel, as distance_moments.frag writes them.
 #version 450
 #include "lib/distance_moments.glsl"
+#include "material_subsurface_gpu.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0, rg32f) writeonly uniform image2D moments;
+layout(binding = kDistanceMomentsImage, rg32f) writeonly uniform image2D moments;
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

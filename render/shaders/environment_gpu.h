@@ -45,6 +45,17 @@ struct ProbeBlock {
     ProbeRecord probes[kMaxProbes];
 };
 
+// Bindings.
+const uint kEnvironmentBinding = 1u;
+const uint kSkyCubeUnit = 5u;
+const uint kPanoramaUnit = 5u;
+const uint kProbeFaceUnit = 5u;
+const uint kIrradianceSumsBinding = 0u;
+const uint kReflectionMapsUnit = 7u;
+const uint kSpecularAlbedoUnit = 8u;
+const uint kSurroundingsBinding = 5u;
+const uint kProbesBinding = 6u;
+
 #ifdef __cplusplus
 static_assert(sizeof(ProbeBlock) == 16 * (1 + 5 * kMaxProbes));
 static_assert(sizeof(EnvironmentBlock) == 16 * (6 + 4 * kStudioLamps));

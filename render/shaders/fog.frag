@@ -2,8 +2,9 @@
 #version 450
 #include "lib/view.glsl"
 #include "lib/height_fog.glsl"
+#include "fog_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_depth;
+layout(binding = kFogDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 radiance;
 

@@ -2,8 +2,9 @@
 // Techniques: wrinkle.furrow.view-modes
 #version 450
 #include "lib/scene_hides.glsl"
+#include "furrow_gpu.h"
 
-layout(binding = 2) uniform sampler2D heights;
+layout(binding = kFurrowHeightsUnit) uniform sampler2D heights;
 
 layout(location = 0) in vec3 position_ms;
 layout(location = 1) in vec2 uv;

@@ -1,8 +1,9 @@
 // Corners of a mesh on which furrows are visualized (furrow_pass.h).
 #version 450
+#include "furrow_gpu.h"
 
-layout(binding = 0) uniform samplerBuffer vertices;  // two texels each: position and u; v
-layout(binding = 1) uniform usamplerBuffer indices;
+layout(binding = kFurrowVerticesUnit) uniform samplerBuffer vertices;  // two texels each: position and u; v
+layout(binding = kFurrowIndicesUnit) uniform usamplerBuffer indices;
 
 layout(location = 0) out vec3 position_ms;
 layout(location = 1) out vec2 uv;

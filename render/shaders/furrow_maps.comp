@@ -4,20 +4,21 @@
 #version 450
 #include "lib/furrow.glsl"
 #include "lib/philox.glsl"
+#include "furrow_gpu.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std430, binding = 0) readonly buffer Triangles {
+layout(std430, binding = kFurrowTrianglesBinding) readonly buffer Triangles {
     float triangles[];  // FurrowTriangle, tightly packed
 };
-layout(std430, binding = 1) readonly buffer Cover {
+layout(std430, binding = kFurrowCoverBinding) readonly buffer Cover {
     int cover[];
 };
-layout(std430, binding = 3) readonly buffer Heights {
+layout(std430, binding = kFurrowHeightsBinding) readonly buffer Heights {
     uint heights[];  // of field 0, then of field 1
 };
-layout(rgba32f, binding = 0) writeonly uniform image2D height_map;  // first, second, with noise, 1
-layout(rgba16f, binding = 1) writeonly uniform image2D normal_map;
+layout(rgba32f, binding = kFurrowHeightImage) writeonly uniform image2D height_map;  // first, second, with noise, 1
+layout(rgba16f, binding = kFurrowNormalImage) writeonly uniform image2D normal_map;
 
 uniform float noise;
 uniform float bump;

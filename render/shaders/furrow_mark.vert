@@ -2,8 +2,9 @@
 // (furrow_pass.h).
 // Techniques: wrinkle.furrow.view-modes
 #version 450
+#include "furrow_gpu.h"
 
-layout(binding = 0) uniform samplerBuffer marks;
+layout(binding = kFurrowMarksUnit) uniform samplerBuffer marks;
 
 layout(location = 0) out vec4 color;
 layout(location = 1) noperspective out vec2 place_px;  // along the line from its beginning, and across

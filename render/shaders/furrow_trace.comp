@@ -6,20 +6,21 @@
 #include "lib/furrow.glsl"
 #include "lib/philox.glsl"
 #include "lib/repeatable.glsl"
+#include "furrow_gpu.h"
 
 const uint kThreads = 64u;
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer Triangles {
+layout(std430, binding = kFurrowTrianglesBinding) readonly buffer Triangles {
     float triangles[];  // FurrowTriangle, tightly packed
 };
-layout(std430, binding = 1) readonly buffer Cover {
+layout(std430, binding = kFurrowCoverBinding) readonly buffer Cover {
     int cover[];
 };
-layout(std430, binding = 2) coherent buffer Cells {
+layout(std430, binding = kFurrowCellsBinding) coherent buffer Cells {
     uint cells[];  // of field 0, then of field 1
 };
-layout(std430, binding = 3) coherent buffer Heights {
+layout(std430, binding = kFurrowHeightsBinding) coherent buffer Heights {
     uint heights[];  // bits of floats that are not negative
 };
 // Progress of a field.
@@ -33,7 +34,7 @@ struct Progress {
     int left;  // segments
     int unused;
 };
-layout(std430, binding = 4) buffer ProgressOfFields {
+layout(std430, binding = kFurrowProgressBinding) buffer ProgressOfFields {
     Progress progress[2];
 };
 

@@ -1,9 +1,11 @@
 // Adds a half-resolution star to the image, with the colors of diffraction: longer wavelengths spread farther.
 #version 450
 #include "lib/radiance.glsl"
+#include "fullscreen_gpu.h"
+#include "glare_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D star;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(binding = kGlareSumUnit) uniform sampler2D star;
 
 uniform float strength;
 

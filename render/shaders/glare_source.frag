@@ -2,8 +2,9 @@
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
 
 uniform float threshold;  // luminance
 

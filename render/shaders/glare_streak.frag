@@ -1,8 +1,10 @@
 // Spreads the sum so far, and a share of the source, along a line with [1 2 1] / 4 at a distance. Black outside.
 #version 450
+#include "fullscreen_gpu.h"
+#include "glare_gpu.h"
 
-layout(binding = 0) uniform sampler2D source;
-layout(binding = 1) uniform sampler2D sum;
+layout(binding = kSourceUnit) uniform sampler2D source;
+layout(binding = kGlareSumUnit) uniform sampler2D sum;
 
 uniform vec2 offset;   // [texels]
 uniform float share;   // weight of the source

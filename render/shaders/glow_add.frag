@@ -1,9 +1,11 @@
 // Adds a half-resolution mask to the image.
 #version 450
 #include "lib/radiance.glsl"
+#include "fullscreen_gpu.h"
+#include "glow_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D mask;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(binding = kGlowUnit) uniform sampler2D mask;
 
 uniform float strength;
 

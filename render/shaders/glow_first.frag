@@ -4,8 +4,9 @@
 #include "lib/pyramid.glsl"
 #include "lib/tone.glsl"
 #include "tone_gpu.h"
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
 
 uniform ivec2 size;         // of the target
 uniform float inverse_firefly;  // 1 / luminance of a firefly; 0: no clamp

@@ -1,9 +1,10 @@
 // Emission of surfaces at half resolution: the mean of four pixels, so that small lamps do not flicker.
 #version 450
 #include "lib/gbuffer.glsl"
+#include "glow_gpu.h"
 
-layout(binding = 0) uniform usampler2D gbuffer;
-layout(binding = 1) uniform sampler2D scene_depth;
+layout(binding = kGlowSurfaceUnit) uniform usampler2D gbuffer;
+layout(binding = kGlowDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 mask;
 

@@ -3,9 +3,11 @@
 #version 450
 #include "lib/pyramid.glsl"
 #include "lib/radiance.glsl"
+#include "fullscreen_gpu.h"
+#include "glow_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D glow;  // alpha: share of its light that a texel keeps, see glow_first.frag
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(binding = kGlowUnit) uniform sampler2D glow;  // alpha: share of its light that a texel keeps, see glow_first.frag
 
 uniform float strength;
 

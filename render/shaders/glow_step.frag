@@ -3,8 +3,9 @@
 // the source at least five.
 #version 450
 #include "lib/pyramid.glsl"
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D source;
+layout(binding = kSourceUnit) uniform sampler2D source;
 
 uniform ivec2 axis;  // (1, 0) or (0, 1)
 uniform int sizes;   // texels of the target along it

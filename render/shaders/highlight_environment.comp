@@ -8,12 +8,13 @@
 #include "lib/light.glsl"
 #include "lib/view.glsl"
 #include "light_gpu.h"
+#include "highlight_gpu.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 7) uniform samplerBuffer layers;  // middle of its objects [m]; w: exponent n
-layout(binding = 9) uniform samplerBuffer lights;  // LightRecord
-layout(binding = 0, rgba16f) writeonly uniform image2DArray maps;
+layout(binding = kHighlightRecordsUnit) uniform samplerBuffer layers;  // middle of its objects [m]; w: exponent n
+layout(binding = kLightsUnit) uniform samplerBuffer lights;  // LightRecord
+layout(binding = kHighlightMapsImage, rgba16f) writeonly uniform image2DArray maps;
 
 uniform int light_count;
 

@@ -3,11 +3,12 @@
 // beyond the disc.
 // Techniques: fakephong.blinn-texture
 #version 450
+#include "highlight_gpu.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 7) uniform samplerBuffer layers;  // w: exponent n
-layout(binding = 0, r16f) writeonly uniform image2DArray maps;
+layout(binding = kHighlightRecordsUnit) uniform samplerBuffer layers;  // w: exponent n
+layout(binding = kHighlightMapsImage, r16f) writeonly uniform image2DArray maps;
 
 void main() {
     ivec2 size = imageSize(maps).xy;

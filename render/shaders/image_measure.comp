@@ -7,13 +7,13 @@
 
 layout(local_size_x = 256) in;
 
-layout(std430, binding = 0) readonly buffer Parts {
+layout(std430, binding = kStatisticsPartsBinding) readonly buffer Parts {
     StatisticsPart parts[];
 };
-layout(std430, binding = 1) buffer Histogram {
+layout(std430, binding = kHistogramBinding) buffer Histogram {
     uint histogram[];
 };
-layout(std430, binding = 2) buffer Measure {
+layout(std430, binding = kStatisticsBinding) buffer Measure {
     ImageStatistics measure;
 };
 

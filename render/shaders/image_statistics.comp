@@ -6,18 +6,19 @@
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"
+#include "fullscreen_gpu.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0) uniform sampler2D image;
+layout(binding = kSourceUnit) uniform sampler2D image;
 #ifdef SURFACES
-layout(binding = 1) uniform sampler2D depth;
+layout(binding = kStatisticsDepthUnit) uniform sampler2D depth;
 #endif
-layout(std430, binding = 0) writeonly buffer Parts {
+layout(std430, binding = kStatisticsPartsBinding) writeonly buffer Parts {
     StatisticsPart parts[];
 };
 #ifdef HISTOGRAM
-layout(std430, binding = 1) buffer Histogram {
+layout(std430, binding = kHistogramBinding) buffer Histogram {
     uint histogram[];
 };
 

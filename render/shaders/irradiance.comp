@@ -3,12 +3,13 @@
 #version 450
 #include "lib/cube_map.glsl"
 #include "lib/irradiance.glsl"
+#include "environment_gpu.h"
 
 const uint kThreads = 128u;
 layout(local_size_x = 128) in;
 
-layout(binding = 5) uniform samplerCube cube;
-layout(std430, binding = 0) writeonly buffer Sums {
+layout(binding = kSkyCubeUnit) uniform samplerCube cube;
+layout(std430, binding = kIrradianceSumsBinding) writeonly buffer Sums {
     Irradiance sums[];
 };
 

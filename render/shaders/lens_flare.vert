@@ -1,8 +1,10 @@
 // The square about each sprite of a lens flare, from FlareSprite records (lens_flare_pass.h).
 #version 450
+#include "disk_visibility_gpu.h"
+#include "lens_flare_gpu.h"
 
-layout(binding = 0) uniform samplerBuffer sprites;
-layout(binding = 1) uniform sampler2D visibility;  // of each light
+layout(binding = kLensSpritesUnit) uniform samplerBuffer sprites;
+layout(binding = kVisibilityUnit) uniform sampler2D visibility;  // of each light
 
 uniform vec2 tangent;  // of half the field of view
 

@@ -26,6 +26,11 @@ const float kShadowCube = 2.0;      // six faces: a point light
 const float kShadowCascades = 3.0;  // a sun's, near to far
 const float kShadowMask = 4.0;      // a layer of the screen-space shadow mask: shadow volumes
 
+// Bindings.
+const uint kLightsUnit = 9u;
+const uint kLightIndicesUnit = 10u;
+const uint kLightCellsUnit = 11u;
+
 #ifdef __cplusplus
 static_assert(sizeof(LightRecord) == 16 * kLightTexels);
 }  // namespace limn::layout

@@ -5,9 +5,10 @@
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D source;
-layout(std140, binding = 2) uniform Weights {
+layout(binding = kSourceUnit) uniform sampler2D source;
+layout(std140, binding = kBlurWeightsBinding) uniform Weights {
     BlurWeights weights;
 };
 

@@ -1,7 +1,8 @@
 // Downsamples the widest blur: each texel is the mean of the four about its center.
 #version 450
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D source;
+layout(binding = kSourceUnit) uniform sampler2D source;
 
 uniform vec2 texel;  // of the target, in texture coordinates
 

@@ -11,6 +11,10 @@ struct ClearBlock {
     vec4 absorption;  // [1/m]; w unused
 };
 
+// Bindings.
+const uint kBehindClearUnit = 22u;
+const uint kBehindClearDepthUnit = 23u;
+
 #ifdef __cplusplus
 }  // namespace limn::layout
 #endif

@@ -17,6 +17,9 @@ struct MaterialRecord {
 
 const uint kMaterialTexels = 5u;
 
+// Bindings.
+const uint kMaterialsUnit = 12u;
+
 #ifdef __cplusplus
 static_assert(sizeof(MaterialRecord) == 16 * kMaterialTexels);
 }  // namespace limn::layout

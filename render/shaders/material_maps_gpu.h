@@ -18,7 +18,8 @@ const uint kDetailSlot = 6u;   // as the normals
 
 const uint kMaxMapSlots = 12u;
 
-// Texture units 0 .. kMapUnits - 1 are those of the maps.
+// Texture units of the maps.
+const uint kFirstMapUnit = 0u;
 const uint kMapUnits = 5u;
 
 // MaterialRecord::maps: the layers of all slots, three to a float, as an integer that a float stores exactly.

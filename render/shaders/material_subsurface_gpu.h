@@ -31,6 +31,11 @@ const int kSamplesTexel = 2;
 const int kFewSamplesTexel = kSamplesTexel + int(kDiffusionSamples);
 const int kFewestSamplesTexel = kFewSamplesTexel + int(kFewDiffusionSamples);
 
+// Bindings.
+const uint kScatteredUnit = 0u;
+const uint kDistancesUnit = 1u;
+const uint kDistanceMomentsImage = 0u;
+
 #ifdef __cplusplus
 }  // namespace limn::layout
 #endif

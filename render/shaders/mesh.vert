@@ -3,11 +3,10 @@
 //   VELOCITY  also the position in the previous frame
 //   DEFORMED  with VELOCITY: vertices also move in mesh space
 //   OBJECT_LIGHTS  also the index of the instance
-//   WRINKLE_MAP, WRINKLE_VIEW  also the strengths of its wrinkles, or its strain; WRINKLE_FLAT: without interpolation
 //   TRANSMISSION  also the scale of the instance
 //   CLIPPED  only on one side of view.clip_plane
-// Techniques: shade.passthrough-cube, wrinkle.compression.interpolation,
-//     wrinkle.compression.tangent-frame
+// What single effects add is called where hook_vertex() stands (render/material/surface_hooks.h).
+// Techniques: shade.passthrough-cube
 #version 450
 #include "lib/material_record.glsl"
 #include "lib/mesh_vertex.glsl"
@@ -28,18 +27,13 @@ layout(location = 5) out vec3 previous_clip;  // clip x, y, w
 #ifdef OBJECT_LIGHTS
 layout(location = 6) flat out uint object;
 #endif
-#ifdef WRINKLE_STREAM
-#ifdef WRINKLE_FLAT
-flat
-#endif
-layout(location = 8) out vec4 wrinkle_strength;
-#endif
 #ifdef TRANSMISSION
 layout(location = 9) flat out float scale;  // mean of the axes
 #endif
 #ifdef CLIPPED
 out float gl_ClipDistance[1];
 #endif
+#include "generated/vertex_hooks.glsl"
 invariant gl_Position;  // passes that redraw the nearest surface test for equal depth
 
 void main() {
@@ -49,16 +43,10 @@ void main() {
 #endif
     normal_ws = vertex_normal_ws();
     vec3 t = vec3(dot(world_row0.xyz, tangent_ms.xyz), dot(world_row1.xyz, tangent_ms.xyz), dot(world_row2.xyz, tangent_ms.xyz));
-#ifdef WRINKLE_STREAM
-    // Texture space of wrinkles: perpendicular to the normal, whatever skinning did (wrinkle.compression.tangent-frame).
-    t -= normal_ws * dot(normal_ws, t);
-#endif
+    hook_vertex(t, normal_ws);
     tangent_ws = vec4(t * inversesqrt(max(dot(t, t), 1e-30)), tangent_ms.w * vertex_side());
     uv = vec4(first_uv, second_uv);
     vertex_color = color;
-#ifdef WRINKLE_STREAM
-    wrinkle_strength = wrinkle;
-#endif
     material_and_flags = instance.xy;
 #ifdef MAP_LAYERS
     map_layers = map_layers_of(instance.x);

@@ -1,10 +1,11 @@
 // A mip level from the next larger one: at the center of each texel, filtered linearly.
 #version 450
+#include "fullscreen_gpu.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0) uniform sampler2D source;  // all levels
-layout(binding = 0) writeonly uniform image2D level;  // of any format
+layout(binding = kSourceUnit) uniform sampler2D source;  // all levels
+layout(binding = kTargetImage) writeonly uniform image2D level;  // of any format
 
 uniform int source_level;
 

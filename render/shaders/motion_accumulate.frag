@@ -1,8 +1,9 @@
 // The mean of the last frames (post.motion-blur-accumulation). Sums differences from the newest, so that the mean of
 // equal frames is bit-identical.
 #version 450
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2DArray frames;
+layout(binding = kSourceUnit) uniform sampler2DArray frames;
 
 uniform int newest;  // layer
 uniform int count;   // of frames, including the newest, in the layers of the ring before it

@@ -2,10 +2,12 @@
 #version 450
 #include "lib/motion.glsl"
 #include "lib/noise.glsl"
+#include "fullscreen_gpu.h"
+#include "motion_blur_gpu.h"
 
-layout(binding = 0) uniform sampler2D radiance;
-layout(binding = 1) uniform sampler2D motion_map;  // motion_pack.frag
-layout(binding = 2) uniform sampler2D neighbors;   // motion_neighbor.frag
+layout(binding = kSourceUnit) uniform sampler2D radiance;
+layout(binding = kMotionUnit) uniform sampler2D motion_map;  // motion_pack.frag
+layout(binding = kMotionNeighborsUnit) uniform sampler2D neighbors;   // motion_neighbor.frag
 
 uniform int side;     // of a tile [px]
 uniform int samples;  // along the motion

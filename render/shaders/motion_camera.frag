@@ -3,9 +3,11 @@
 #include "lib/motion.glsl"
 #include "lib/noise.glsl"
 #include "lib/view.glsl"
+#include "fullscreen_gpu.h"
+#include "motion_modes_gpu.h"
 
-layout(binding = 0) uniform sampler2D radiance;
-layout(binding = 1) uniform sampler2D depth_map;
+layout(binding = kSourceUnit) uniform sampler2D radiance;
+layout(binding = kCameraMotionDepthUnit) uniform sampler2D depth_map;
 
 uniform float half_exposure;  // share of the frame time
 uniform float longest;        // [px]

@@ -1,8 +1,10 @@
 // One step of optic-flow motion blur: blends the image half and half with itself warped along the field.
 #version 450
+#include "fullscreen_gpu.h"
+#include "motion_modes_gpu.h"
 
-layout(binding = 0) uniform sampler2D image;
-layout(binding = 1) uniform sampler2D field_map;
+layout(binding = kSourceUnit) uniform sampler2D image;
+layout(binding = kFlowUnit) uniform sampler2D field_map;
 
 uniform float scale;  // of the field; negative: against it
 

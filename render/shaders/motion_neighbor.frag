@@ -3,8 +3,9 @@
 //   xy  longest [px]
 //   zw  the other; equal to xy for uniform motion in the neighborhood; 0 if there is none
 #version 450
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D tiles;
+layout(binding = kSourceUnit) uniform sampler2D tiles;
 
 uniform int side;    // of a tile [px]
 uniform int radius;  // of the neighborhood [tiles]

@@ -5,9 +5,10 @@
 #version 450
 #include "lib/motion.glsl"
 #include "lib/view.glsl"
+#include "motion_blur_gpu.h"
 
-layout(binding = 0) uniform sampler2D velocity_map;
-layout(binding = 1) uniform sampler2D depth_map;
+layout(binding = kPackVelocityUnit) uniform sampler2D velocity_map;
+layout(binding = kPackDepthUnit) uniform sampler2D depth_map;
 
 uniform float half_exposure;  // share of the frame time
 uniform float longest;        // [px]

@@ -3,10 +3,12 @@
 #version 450
 #include "lib/motion.glsl"
 #include "lib/view.glsl"
+#include "fullscreen_gpu.h"
+#include "motion_modes_gpu.h"
 
-layout(binding = 0) uniform sampler2D radiance;         // of this frame
-layout(binding = 1) uniform sampler2D previous_radiance;  // of the previous frame
-layout(binding = 2) uniform sampler2D depth_map;        // of this frame
+layout(binding = kSourceUnit) uniform sampler2D radiance;         // of this frame
+layout(binding = kPreviousRadianceUnit) uniform sampler2D previous_radiance;  // of the previous frame
+layout(binding = kStretchDepthUnit) uniform sampler2D depth_map;        // of this frame
 
 uniform int samples;     // >= 2
 uniform float exposure;  // share of the motion

@@ -2,8 +2,9 @@
 //   xy  longest motion [px]
 //   z   largest difference of another motion from it [px]
 #version 450
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D source;
+layout(binding = kSourceUnit) uniform sampler2D source;
 
 uniform ivec2 along;  // (1, 0), (0, 1)
 uniform int side;     // of a tile [texels of the source]

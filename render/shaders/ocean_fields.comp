@@ -2,12 +2,13 @@
 // OceanFields.
 #version 450
 #include "lib/fft_line.glsl"
+#include "ocean_gpu.h"
 
-layout(std430, binding = 2) readonly buffer Lines {
+layout(std430, binding = kOceanLinesBinding) readonly buffer Lines {
     Quad lines[];
 };
-layout(binding = 0, rgba32f) writeonly uniform image2DArray displacement;
-layout(binding = 1, rgba32f) writeonly uniform image2DArray derivatives;
+layout(binding = kOceanDisplacementImage, rgba32f) writeonly uniform image2DArray displacement;
+layout(binding = kOceanDerivativesImage, rgba32f) writeonly uniform image2DArray derivatives;
 
 void main() {
     uint cascade = gl_WorkGroupID.y;

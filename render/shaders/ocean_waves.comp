@@ -3,17 +3,18 @@
 // systems/water/ocean_kernels.h.
 #version 450
 #include "lib/fft_line.glsl"
+#include "ocean_gpu.h"
 
 // Wave (n, m) of cascade c, with n periods across the patch along x and m along z, is at (c * SIZE + n) * SIZE + m;
 // indices from SIZE / 2 on are negative wave numbers from -SIZE / 2 on.
-layout(std430, binding = 0) readonly buffer Waves {
+layout(std430, binding = kOceanWavesBinding) readonly buffer Waves {
     vec4 waves[];  // height ahead.xy e^(-i omega t) + behind.zw e^(i omega t) [m]
 };
-layout(std430, binding = 1) readonly buffer Frequencies {
+layout(std430, binding = kOceanFrequenciesBinding) readonly buffer Frequencies {
     float frequencies[];  // omega [rad/s]
 };
 // Point z of line n is at (c * SIZE + z) * SIZE + n, for the second half.
-layout(std430, binding = 2) writeonly buffer Lines {
+layout(std430, binding = kOceanLinesBinding) writeonly buffer Lines {
     Quad lines[];
 };
 

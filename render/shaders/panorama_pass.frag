@@ -4,8 +4,9 @@
 #include "lib/cube_map.glsl"
 #include "lib/panorama.glsl"
 #include "lib/tone.glsl"
+#include "environment_gpu.h"
 
-layout(binding = 5) uniform sampler2D panorama;  // its first row is the top one
+layout(binding = kPanoramaUnit) uniform sampler2D panorama;  // its first row is the top one
 
 uniform int face;
 uniform float size;       // side of the face [px]

@@ -1,8 +1,9 @@
 // One face of a probe's cube map, without negative, infinite and NaN radiance, which would spoil every mean.
 #version 450
 #include "lib/tone.glsl"
+#include "environment_gpu.h"
 
-layout(binding = 5) uniform sampler2D scene_radiance;
+layout(binding = kProbeFaceUnit) uniform sampler2D scene_radiance;
 
 layout(location = 0) out vec4 radiance;
 

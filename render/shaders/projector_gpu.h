@@ -16,6 +16,10 @@ struct ProjectorRecord {
 
 const uint kProjectorTexels = 5u;
 
+// Bindings.
+const uint kProjectorImagesUnit = 18u;
+const uint kProjectorsUnit = 19u;
+
 #ifdef __cplusplus
 static_assert(sizeof(ProjectorRecord) == 16 * kProjectorTexels);
 }  // namespace limn::layout

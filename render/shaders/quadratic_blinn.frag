@@ -3,8 +3,9 @@
 // Techniques: fakephong.quadratic-blinn
 #version 450
 #include "lib/facet_pixel.glsl"
+#include "highlight_gpu.h"
 
-layout(binding = 5) uniform sampler2DArray highlight_maps;
+layout(binding = kHighlightMapsUnit) uniform sampler2DArray highlight_maps;
 
 layout(location = 1) INTERPOLATED in vec3 diffuse;
 layout(location = 5) INTERPOLATED in vec3 specular;

@@ -6,8 +6,9 @@
 #include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"
 #include "lib/highlight_map.glsl"
+#include "highlight_gpu.h"
 
-layout(binding = 6) uniform usamplerBuffer highlight_layers;  // by material
+layout(binding = kHighlightLayersUnit) uniform usamplerBuffer highlight_layers;  // by material
 
 layout(location = 1) out vec3 diffuse;
 layout(location = 5) out vec3 specular;

@@ -3,8 +3,9 @@
 #version 450
 #include "lib/noise.glsl"
 #include "lib/view.glsl"
+#include "gbuffer_gpu.h"
 
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 
 uniform mat4 local_from_world;  // half-extent 1
 uniform bool is_ball;

@@ -1,10 +1,13 @@
 // The image at shifted positions. Of the four texels around a position, those in front of the rippling region are
 // ignored; where all are, and where nothing ripples, the pixel stays bit-identical.
 #version 450
+#include "fullscreen_gpu.h"
+#include "gbuffer_gpu.h"
+#include "ripple_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D ripple_field;
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(binding = kRippleFieldUnit) uniform sampler2D ripple_field;
+layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 radiance;
 

@@ -1,8 +1,9 @@
 // A spherical shell that bends the rays which graze it.
 #version 450
 #include "lib/view.glsl"
+#include "gbuffer_gpu.h"
 
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 
 uniform vec3 center;       // [m]
 uniform float radius;      // [m]

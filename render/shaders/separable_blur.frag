@@ -1,7 +1,8 @@
 // One axis of a blur of 7 x 7 pixels. Clamps to the edge.
 #version 450
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D source;
+layout(binding = kSourceUnit) uniform sampler2D source;
 
 uniform ivec2 axis;  // (1, 0) or (0, 1)
 uniform vec3 negative_weights;  // weights of the pixels -3, -2, -1

@@ -4,8 +4,9 @@
 
 #include "lib/brdf.glsl"
 #include "lib/material_record.glsl"
+#include "environment_gpu.h"
 
-layout(binding = 8) uniform sampler2D specular_albedo;  // (scale, bias) of f0 by n.v and roughness
+layout(binding = kSpecularAlbedoUnit) uniform sampler2D specular_albedo;  // (scale, bias) of f0 by n.v and roughness
 
 const float kDielectric = 0.04;  // reflectance head on, index of refraction 1.5
 

@@ -3,9 +3,10 @@
 // Techniques: fakephong.metric-diffimage
 #version 450
 #include "lib/tone.glsl"
+#include "shading_comparison_gpu.h"
 
-layout(binding = 0) uniform sampler2D left_radiance;
-layout(binding = 1) uniform sampler2D right_radiance;
+layout(binding = kLeftRadianceUnit) uniform sampler2D left_radiance;
+layout(binding = kRightRadianceUnit) uniform sampler2D right_radiance;
 
 uniform int shows_difference;
 uniform float divider;   // of the width

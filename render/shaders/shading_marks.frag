@@ -3,10 +3,12 @@
 #version 450
 #include "lib/small_text.glsl"
 #include "lib/tone.glsl"
+#include "fullscreen_gpu.h"
+#include "shading_comparison_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D left_radiance;
-layout(binding = 2) uniform sampler2D right_radiance;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(binding = kLeftRadianceUnit) uniform sampler2D left_radiance;
+layout(binding = kRightRadianceUnit) uniform sampler2D right_radiance;
 
 uniform float row;          // 0 .. 1 from below
 uniform float plot_height;  // of the image; 0: no plot

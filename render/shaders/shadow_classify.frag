@@ -9,12 +9,13 @@
 #include "light_gpu.h"
 #include "lib/shadow.glsl"
 #include "shadow_volume_gpu.h"
+#include "gbuffer_gpu.h"
 
-layout(binding = 2, std140) uniform Volume {
+layout(binding = kShadowVolumeBinding, std140) uniform Volume {
     VolumeBlock volume;
 };
-layout(binding = 5) uniform usampler2D gbuffer;
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kGbufferUnit) uniform usampler2D gbuffer;
+layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 
 uniform vec4 map;  // LightRecord::shadow
 

@@ -1,7 +1,8 @@
 // Keeps the pixels that shadow_classify.frag left undecided, for the stencil.
 #version 450
+#include "shadow_gpu.h"
 
-layout(binding = 17) uniform sampler2DArray shadow_masks;
+layout(binding = kShadowMasksUnit) uniform sampler2DArray shadow_masks;
 
 uniform int layer;
 

@@ -21,6 +21,11 @@ struct ShadowViewRecord {
 
 const uint kShadowViewTexels = 10u;
 
+// Bindings.
+const uint kShadowAtlasUnit = 15u;
+const uint kShadowViewsUnit = 16u;
+const uint kShadowMasksUnit = 17u;
+
 #ifdef __cplusplus
 static_assert(sizeof(ShadowViewRecord) == 16 * kShadowViewTexels);
 }  // namespace limn::layout

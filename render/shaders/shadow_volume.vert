@@ -7,7 +7,7 @@
 #include "lib/view.glsl"
 #include "shadow_volume_gpu.h"
 
-layout(binding = 2, std140) uniform Volume {
+layout(binding = kShadowVolumeBinding, std140) uniform Volume {
     VolumeBlock volume;
 };
 

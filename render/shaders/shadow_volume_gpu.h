@@ -59,6 +59,9 @@ LIMN_SHARED vec4 extrude_corner(vec3 p, vec4 light, vec4 extrusion, float height
 
 #undef LIMN_SHARED
 
+// Bindings.
+const uint kShadowVolumeBinding = 2u;
+
 #ifdef __cplusplus
 static_assert(sizeof(VolumeInstance) == 64);
 static_assert(sizeof(VolumeBlock) == 32);

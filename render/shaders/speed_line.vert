@@ -1,8 +1,9 @@
 // A line as a quad that faces the camera, from SpeedLine records of three texels (speed_line_pass.h).
 #version 450
 #include "lib/view.glsl"
+#include "speed_line_gpu.h"
 
-layout(binding = 0) uniform samplerBuffer lines;
+layout(binding = kSpeedLinesUnit) uniform samplerBuffer lines;
 
 layout(location = 0) out vec4 color;  // premultiplied
 

@@ -2,12 +2,14 @@
 #version 450
 #include "lib/numbers.glsl"
 #include "lib/view.glsl"
+#include "fullscreen_gpu.h"
+#include "temporal_gpu.h"
 
-layout(binding = 0) uniform sampler2D radiance;
-layout(binding = 1) uniform sampler2D history;
-layout(binding = 2) uniform sampler2D velocity_map;
-layout(binding = 3) uniform sampler2D depth_map;
-layout(binding = 4) uniform sampler2D moments;  // x: frames in history, y: temporal variance of static pixels
+layout(binding = kSourceUnit) uniform sampler2D radiance;
+layout(binding = kHistoryUnit) uniform sampler2D history;
+layout(binding = kTemporalVelocityUnit) uniform sampler2D velocity_map;
+layout(binding = kTemporalDepthUnit) uniform sampler2D depth_map;
+layout(binding = kMomentsUnit) uniform sampler2D moments;  // x: frames in history, y: temporal variance of static pixels
 
 uniform int has_history;
 

@@ -2,9 +2,10 @@
 // Techniques: tex.combine
 #version 450
 #include "lib/tone.glsl"
+#include "texture_combine_gpu.h"
 
-layout(binding = 0) uniform sampler2D water;    // repeats
-layout(binding = 1) uniform sampler2D grating;  // repeats
+layout(binding = kCombinedWaterUnit) uniform sampler2D water;    // repeats
+layout(binding = kCombinedGratingUnit) uniform sampler2D grating;  // repeats
 
 uniform vec2 size;     // of the target [px]
 uniform vec2 offset;   // of the first copy along u, of the second along v, 0 .. 1

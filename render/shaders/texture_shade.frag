@@ -3,9 +3,10 @@
 // Techniques: wrinkle.furrow.texture-space-shading
 #version 450
 #include "lib/tone.glsl"
+#include "texture_shade_gpu.h"
 
-layout(binding = 0) uniform sampler2D normals;  // s to the right, t up, outwards
-layout(binding = 1) uniform sampler2D surface;  // its color
+layout(binding = kShadedNormalsUnit) uniform sampler2D normals;  // s to the right, t up, outwards
+layout(binding = kShadedColorUnit) uniform sampler2D surface;  // its color
 
 uniform vec2 size;              // of the target [px]
 uniform mat3 camera_from_mesh;  // may scale

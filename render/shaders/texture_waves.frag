@@ -4,7 +4,7 @@
 #version 450
 #include "water_detail_gpu.h"
 
-layout(binding = 0) uniform samplerBuffer waves;  // TextureWaveRecord
+layout(binding = kTextureWavesUnit) uniform samplerBuffer waves;  // TextureWaveRecord
 
 uniform int first;
 uniform int count;

@@ -39,6 +39,17 @@ const uint kSurfaceWeight = 256u;    // of a pixel with a surface, where one wit
 const int kStatisticsTile = 64;      // side of the tile that one work group of stage 1 sums up [px]
 const int kStatisticsGroup = 8;      // side of that group [invocations]
 
+// Bindings.
+const uint kBlurWeightsBinding = 2u;
+const uint kToneMeasureBinding = 2u;
+const uint kLocalFineUnit = 1u;
+const uint kLocalMediumUnit = 2u;
+const uint kLocalCoarseUnit = 3u;
+const uint kStatisticsDepthUnit = 1u;
+const uint kStatisticsPartsBinding = 0u;
+const uint kHistogramBinding = 1u;
+const uint kStatisticsBinding = 2u;
+
 #ifdef __cplusplus
 static_assert(sizeof(StatisticsPart) == 32);
 static_assert(sizeof(ImageStatistics) == 64);

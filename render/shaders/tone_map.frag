@@ -4,9 +4,10 @@
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(std140, binding = 2) uniform Measure {
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(std140, binding = kToneMeasureBinding) uniform Measure {
     ImageStatistics measure;
 };
 
@@ -23,9 +24,9 @@ const float kKneeScale = 0.3333;   // of codes: linear 1 lies some 3.5 stops bel
 layout(location = 0) out vec4 display;
 
 #if TONE_CURVE == 4
-layout(binding = 1) uniform sampler2D local_fine;    // luminance blurred with scales 0 .. 3
-layout(binding = 2) uniform sampler2D local_middle;  // 4 .. 7
-layout(binding = 3) uniform sampler2D local_coarse;  // 8, 9
+layout(binding = kLocalFineUnit) uniform sampler2D local_fine;    // luminance blurred with scales 0 .. 3
+layout(binding = kLocalMediumUnit) uniform sampler2D local_middle;  // 4 .. 7
+layout(binding = kLocalCoarseUnit) uniform sampler2D local_coarse;  // 8, 9
 
 uniform float key;
 

@@ -18,16 +18,17 @@ struct ViewBlock {
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first point or
                                // spot light with a shadow or a cookie
     vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
-    vec4 blinn_axis;           // world: fixes the axes of Blinn maps, unit or zero (lib/highlight_map.glsl)
-    uvec4 wrinkle_columns;     // x: columns with wrinkles by different methods; y: those, four bits each, the first lowest;
-                               // z, w: floats, where they begin and end, 0 .. 1 of the width
-    vec4 fog;                  // extinction at the camera [1/m], 0: none; 1 / its scale height; forward scattering
-    vec4 fog_ambient;          // radiance that it scatters from all around
-    vec4 fog_sun;              // irradiance of the sun that it scatters
-    vec4 fog_to_sun;           // world, unit
 };
 
+const uint kViewBinding = 0u;
+
+// Blocks that effects publish for a view (ViewData::publish_block). Each has a number of its own, kEffectBlocks + n, which
+// its effect's header states; in a view for which nobody publishes it, it is all zeros.
+const uint kEffectBlocks = 8u;
+const uint kMaxEffectBlocks = 4u;
+const uint kEffectBlockBytes = 256u;  // of each, at most
+
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 352);
+static_assert(sizeof(ViewBlock) == 256);
 }  // namespace limn::layout
 #endif

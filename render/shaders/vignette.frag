@@ -1,7 +1,8 @@
 // Darkens toward the corners: cos^4 law and overlap of pupil and rim (vignette_pass.h).
 #version 450
+#include "fullscreen_gpu.h"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
 
 uniform vec2 tangent;      // of half the field of view
 uniform float natural;     // 0 .. 1

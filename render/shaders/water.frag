@@ -11,6 +11,7 @@
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
 #include "lib/water_detail.glsl"
+#include "water_gpu.h"
 #ifdef OCEAN
 #include "lib/water_foam.glsl"
 #endif
@@ -18,7 +19,7 @@
 #include "lib/water_tracing.glsl"
 #include "lib/water_refraction.glsl"
 
-layout(binding = 0) uniform usampler2DArray seen_water;  // water_surface.frag
+layout(binding = kSeenWaterUnit) uniform usampler2DArray seen_water;  // water_surface.frag
 
 #ifdef ATTRIBUTES
 layout(location = 1) out uvec4 surface;

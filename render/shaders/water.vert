@@ -1,10 +1,11 @@
 // A body of water as displaced patches of its rest surface (water_patches.h). Definition VELOCITY.
 #version 450
 #include "lib/view.glsl"
+#include "water_gpu.h"
 const float kPi = 3.14159265358979;
 #include "lib/water_surface.glsl"
 
-layout(binding = 0) uniform samplerBuffer patches;  // WaterPatch
+layout(binding = kWaterPatchesUnit) uniform samplerBuffer patches;  // WaterPatch
 
 uniform int first_patch;
 

@@ -1,9 +1,11 @@
 // The scene without water: its radiance and, in w, its distance along the view axis [m], 0 where there is no surface.
 #version 450
 #include "lib/view.glsl"
+#include "fullscreen_gpu.h"
+#include "water_gpu.h"
 
-layout(binding = 0) uniform sampler2D radiance;
-layout(binding = 1) uniform sampler2D depth;
+layout(binding = kSourceUnit) uniform sampler2D radiance;
+layout(binding = kWaterCopyDepthUnit) uniform sampler2D depth;
 
 layout(location = 0) out vec4 scene;
 

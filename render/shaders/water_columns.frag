@@ -1,8 +1,9 @@
 // Beside the highest surface in each tile (water_highest.frag), the highest one in it and all tiles above it, so that rays
 // that go up in the image cross a column at once (lib/water_tracing.glsl).
 #version 450
+#include "water_gpu.h"
 
-layout(binding = 0) uniform sampler2D highest_surfaces;  // water_highest.frag
+layout(binding = kColumnSourceUnit) uniform sampler2D highest_surfaces;  // water_highest.frag
 
 layout(location = 0) out vec2 highest;  // [m]
 

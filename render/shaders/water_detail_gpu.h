@@ -18,6 +18,12 @@ struct TextureWaveRecord {
 
 const uint kWaterDetailTexels = 5u;
 
+// Bindings.
+const uint kDetailMapUnit = 23u;
+const uint kDetailWavesUnit = 24u;
+const uint kWaterDetailsUnit = 25u;
+const uint kTextureWavesUnit = 0u;
+
 #ifdef __cplusplus
 static_assert(sizeof(WaterDetailRecord) == 16 * kWaterDetailTexels);
 }  // namespace limn::layout

@@ -41,6 +41,27 @@ const uint kWaterTexels = 10u;
 const uint kWaveLineTexels = 2u;
 const uint kWaveRingTexels = 3u;
 
+// Bindings.
+const uint kWaterPatchesUnit = 0u;
+const uint kSeenWaterUnit = 0u;
+const uint kWatersUnit = 1u;
+const uint kWaveLinesUnit = 2u;
+const uint kWaveRingsUnit = 3u;
+const uint kRippleAtlasUnit = 4u;
+const uint kOceanShiftUnit = 6u;
+const uint kPreviousOceanShiftUnit = 28u;
+const uint kOceanSlopeUnit = 14u;
+const uint kOceanFoamUnit = 17u;
+const uint kBehindWaterUnit = 5u;
+const uint kBehindWaterDepthUnit = 26u;
+const uint kHighestWaterUnit = 13u;
+const uint kColumnSourceUnit = 0u;
+const uint kWaterCopyDepthUnit = 1u;
+const uint kWaterReflectionUnit = 22u;
+const uint kFoamPatternUnit = 29u;
+const uint kFloorMapUnit = 27u;
+const uint kWaterVeilDepthUnit = 5u;
+
 #ifdef __cplusplus
 static_assert(sizeof(WaterRecord) == 16 * kWaterTexels);
 static_assert(sizeof(WaveLineRecord) == 16 * kWaveLineTexels);

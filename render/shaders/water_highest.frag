@@ -4,7 +4,7 @@
 #include "lib/view.glsl"
 #include "water_gpu.h"
 
-layout(binding = 26) uniform sampler2D behind_depth;  // without the water
+layout(binding = kBehindWaterDepthUnit) uniform sampler2D behind_depth;  // without the water
 
 layout(location = 0) out float highest;  // [m]; -kNoHeight: there is nothing
 

@@ -1,8 +1,9 @@
 // Where water is seen, as the depth at which water.frag is drawn.
 #version 450
 #include "generated/model_numbers.glsl"
+#include "water_gpu.h"
 
-layout(binding = 0) uniform usampler2DArray seen_water;  // water_surface.frag
+layout(binding = kSeenWaterUnit) uniform usampler2DArray seen_water;  // water_surface.frag
 
 void main() {
     bool is_water = texelFetch(seen_water, ivec3(gl_FragCoord.xy, 0), 0).w != 0u;

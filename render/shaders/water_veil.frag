@@ -7,12 +7,14 @@
 #include "lib/optics.glsl"
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
+#include "fullscreen_gpu.h"
+#include "water_gpu.h"
 #ifdef UNDER_WATER
 #include "lib/water_shafts.glsl"
 #endif
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 5) uniform sampler2D scene_depth;
+layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
+layout(binding = kWaterVeilDepthUnit) uniform sampler2D scene_depth;
 
 uniform int body;         // index of the water around the camera
 uniform bool at_surface;  // its waves may reach the camera

@@ -6,19 +6,20 @@
 //     wrinkle.resting, wrinkle.smoothing
 #version 450
 #include "lib/wrinkle.glsl"
+#include "wrinkle_gpu.h"
 
 layout(local_size_x = 64) in;  // kWrinkleGroup
-layout(binding = 0) uniform usamplerBuffer jobs;        // WrinkleJob
-layout(binding = 1) uniform usamplerBuffer group_jobs;  // job of each work group
-layout(binding = 2) uniform usamplerBuffer rest;        // see wrinkle_gpu.h
-layout(std430, binding = 0) readonly buffer Positions {
+layout(binding = kWrinkleJobsUnit) uniform usamplerBuffer jobs;        // WrinkleJob
+layout(binding = kWrinkleGroupsUnit) uniform usamplerBuffer group_jobs;  // job of each work group
+layout(binding = kWrinkleRestUnit) uniform usamplerBuffer rest;        // see wrinkle_gpu.h
+layout(std430, binding = kWrinklePositionsBinding) readonly buffer Positions {
     float positions[];
 };
-layout(std430, binding = 1) writeonly buffer Wrinkles {
+layout(std430, binding = kWrinklesBinding) writeonly buffer Wrinkles {
     uvec2 wrinkles[];  // four half floats, as mesh.vert reads them
 };
-layout(std430, binding = 2) writeonly buffer FoldHeights {
-    float fold_heights[];  // along the normal, in mesh space [m]; written only for displaced skin
+layout(std430, binding = kFoldHeightsBinding) writeonly buffer FoldHeights {
+    float fold_heights[];  // along the normal, in mesh space [m]; written for displaced skin alone
 };
 
 uniform uint group_count;

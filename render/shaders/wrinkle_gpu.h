@@ -55,7 +55,7 @@ const uint kWrinkleBlend = 6u;
 const uint kWrinkleStrainView = 7u;
 const uint kWrinkleModel = 8u;
 const uint kWrinklePhoto = 9u;
-const uint kWrinkleColumns = 15u;  // none of them: the fragments choose, by ViewBlock::wrinkle_columns
+const uint kWrinkleColumns = 15u;  // none of them: the fragments choose, by WrinkleColumns
 
 // WrinkleDriver
 const uint kWrinkleByStrain = 2u;
@@ -64,6 +64,14 @@ const uint kWrinkleByRadius = 3u;
 const uint kFoldSteps = 16u;
 const uint kWrinkleStretch = 0x80000000u;
 const uint kWrinkleAway = 0x40000000u;
+
+// Bindings.
+const uint kWrinkleJobsUnit = 0u;
+const uint kWrinkleGroupsUnit = 1u;
+const uint kWrinkleRestUnit = 2u;
+const uint kWrinklePositionsBinding = 0u;
+const uint kWrinklesBinding = 1u;
+const uint kFoldHeightsBinding = 2u;
 
 #ifdef __cplusplus
 static_assert(sizeof(WrinkleJob) == 16 * kWrinkleJobTexels);

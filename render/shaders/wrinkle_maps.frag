@@ -2,12 +2,13 @@
 // Techniques: skin.pipeline
 #version 450
 #include "lib/wrinkle_maps.glsl"
+#include "wrinkle_maps_gpu.h"
 
-layout(binding = 0) uniform sampler2D base;
-layout(binding = 1) uniform sampler2D stretched;
-layout(binding = 2) uniform sampler2D compressed;
-layout(binding = 3) uniform sampler2D first_masks;
-layout(binding = 4) uniform sampler2D second_masks;
+layout(binding = kWrinkleBaseUnit) uniform sampler2D base;
+layout(binding = kWrinkleStretchedUnit) uniform sampler2D stretched;
+layout(binding = kWrinkleCompressedUnit) uniform sampler2D compressed;
+layout(binding = kWrinkleFirstMasksUnit) uniform sampler2D first_masks;
+layout(binding = kWrinkleSecondMasksUnit) uniform sampler2D second_masks;
 
 uniform vec2 size;            // of the target [px]
 uniform vec4 first_weights;   // -1 .. 1

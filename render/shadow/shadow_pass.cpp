@@ -9,6 +9,8 @@
 #include "render/gpu/device.h"
 #include "render/light/lighting.h"
 #include "render/render_frame.h"
+#include "render/shaders/shadow_gpu.h"
+#include "render/shaders/view_gpu.h"
 
 #include <utility>
 
@@ -40,8 +42,8 @@ void grow_atlas(gpu::Texture& atlas, int size) {
 }
 
 void bind_shadows(PassContext& context, const ShadowBindings& shadows) {
-    context.device().bind_texture(kShadowAtlasUnit, *shadows.atlas);
-    shadows.records.bind(context.device(), kShadowViewsUnit);
+    context.device().bind_texture(layout::kShadowAtlasUnit, *shadows.atlas);
+    shadows.records.bind(context.device(), layout::kShadowViewsUnit);
 }
 
 /// Not by a scissored clear, for which a software OpenGL draws every pixel.
@@ -60,9 +62,8 @@ void draw_map(
     device.set_viewport(place.x, place.y, place.size, place.size);
     device.set_scissor(place.x, place.y, place.size, place.size);
     device.apply(state);
-    constexpr unsigned kViewBinding = 0;
     const gpu::RingSlice& block = draw.view_block;
-    device.bind_uniforms(kViewBinding, block.buffer, block.offset, block.size);
+    device.bind_uniforms(layout::kViewBinding, block.buffer, block.offset, block.size);
     draw_casters(context, view, draw.casters, programs, state);
 }
 

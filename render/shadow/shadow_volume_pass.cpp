@@ -3,6 +3,9 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/light/lighting.h"
+#include "render/shaders/gbuffer_gpu.h"
+#include "render/shaders/shadow_gpu.h"
+#include "render/shaders/shadow_volume_gpu.h"
 #include "render/shadow/shadow_list.h"
 #include "render/shadow/volume_list.h"
 #include "render/view_block.h"
@@ -12,8 +15,6 @@
 
 namespace limn {
 namespace {
-
-constexpr unsigned kVolumeBinding = 2;
 
 /// Bit 7 of the stencil: the pixel lies on a shadow edge of the light's map.
 constexpr std::uint8_t kEdgeBit = 0x80;
@@ -59,7 +60,8 @@ template <typename StateOf>
 void draw_volumes(
     gpu::Device& device, const VolumeList& list, const VolumeLight& light,
     const gpu::Program* const* programs, StateOf&& state_of) {
-    device.bind_uniforms(kVolumeBinding, light.block.buffer, light.block.offset, light.block.size);
+    device.bind_uniforms(
+        layout::kShadowVolumeBinding, light.block.buffer, light.block.offset, light.block.size);
     for (std::uint32_t i = 0; i < light.run_count; ++i) {
         const VolumeRun& run = list.runs[light.first_run + i];
         device.use(gpu::Pipeline{programs[run.prisms ? 1 : 0], state_of(run)});
@@ -126,8 +128,9 @@ const VolumeLight& light_of(const ViewData& view, int layer) {
 void add_classification(
     FrameGraph& graph, ShadowVolumePass& pass, const ViewData& view, TextureId mask, int layer) {
     const Use reads[] = {
-        sampled(view.gbuffer.surface, kGbufferUnit),
-        sampled(depth_tested(view.gbuffer.depth), kDepthUnit), view.data.get<ShadowMaps>().atlas};
+        sampled(view.gbuffer.surface, layout::kGbufferUnit),
+        sampled(depth_tested(view.gbuffer.depth), layout::kDepthUnit),
+        view.data.get<ShadowMaps>().atlas};
     const Use writes[] = {target_level(cleared(mask), 0, layer)};
     graph.add_pass("shadow classes", reads, writes, [&pass, &view, layer](PassContext& context) {
         const ShadowKinds& kinds = view.data.get<ShadowList>().kinds;
@@ -148,7 +151,7 @@ void add_classification(
         program->set("map", light.map);
         bind_lighting(context, view);
         device.bind_uniforms(
-            kVolumeBinding, light.block.buffer, light.block.offset, light.block.size);
+            layout::kShadowVolumeBinding, light.block.buffer, light.block.offset, light.block.size);
         device.draw_fullscreen();
         clear_bounds(device);
     });
@@ -159,7 +162,7 @@ void add_classification(
         .front = {.pass = GL_REPLACE},
         .back = {.pass = GL_REPLACE}};
     graph.add_pass(
-        "shadow edges", {sampled(mask, kShadowMasksUnit)}, {view.gbuffer.depth},
+        "shadow edges", {sampled(mask, layout::kShadowMasksUnit)}, {view.gbuffer.depth},
         [&pass, &view, state, layer](PassContext& context) {
             set_bounds(context.device(), light_of(view, layer).bounds);
             context.device().use(gpu::Pipeline{pass.edges, state});

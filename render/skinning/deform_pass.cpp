@@ -4,6 +4,7 @@
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/shader_library.h"
 #include "render/render_frame.h"
+#include "render/shaders/deform_gpu.h"
 
 #include <algorithm>
 #include <string>
@@ -12,16 +13,6 @@
 
 namespace limn {
 namespace {
-
-constexpr unsigned kJobsUnit = 0;
-constexpr unsigned kGroupsUnit = 1;
-constexpr unsigned kRestUnit = 2;
-constexpr unsigned kPalettesUnit = 3;
-constexpr unsigned kWeightsUnit = 4;
-constexpr unsigned kControlsUnit = 5;
-constexpr unsigned kPositionsBinding = 0;
-constexpr unsigned kBeforeBinding = 1;
-constexpr unsigned kFramesBinding = 2;
 
 /// Binds the vertices of a batch in one of their streams.
 void bind_stream(
@@ -74,9 +65,10 @@ void run_batch(
     }
     device.use(*program);
     const gpu::Buffer& before = vertices.before() ? vertices.before() : vertices.positions();
-    bind_stream(device, kPositionsBinding, vertices.positions(), batch, sizeof(Vec3));
-    bind_stream(device, kBeforeBinding, before, batch, sizeof(Vec3));
-    bind_stream(device, kFramesBinding, vertices.frames(), batch, sizeof(PackedFrame));
+    bind_stream(device, layout::kDeformPositionsBinding, vertices.positions(), batch, sizeof(Vec3));
+    bind_stream(device, layout::kDeformPreviousBinding, before, batch, sizeof(Vec3));
+    bind_stream(
+        device, layout::kDeformFramesBinding, vertices.frames(), batch, sizeof(PackedFrame));
     program->set("first_group", batch.first_group);
     program->set("group_count", batch.group_count);
     program->set("first_vertex", batch.first_vertex);
@@ -109,12 +101,12 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bo
     }
     graph.add_pass("deform", {}, writes, [&pass, &shapes, warm_up](PassContext& context) {
         gpu::Device& device = context.device();
-        pass.jobs.bind(device, kJobsUnit);
-        pass.groups.bind(device, kGroupsUnit);
-        pass.rest.bind(device, kRestUnit);
-        pass.palettes.bind(device, kPalettesUnit);
-        pass.weights.bind(device, kWeightsUnit);
-        pass.controls.bind(device, kControlsUnit);
+        pass.jobs.bind(device, layout::kDeformJobsUnit);
+        pass.groups.bind(device, layout::kDeformGroupJobsUnit);
+        pass.rest.bind(device, layout::kDeformRestUnit);
+        pass.palettes.bind(device, layout::kDeformPalettesUnit);
+        pass.weights.bind(device, layout::kDeformWeightsUnit);
+        pass.controls.bind(device, layout::kDeformControlsUnit);
         for (const DeformBatch& batch : shapes.work().batches) {
             if (warm_up) {
                 const bool before{shapes.vertices().before()};

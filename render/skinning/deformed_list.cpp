@@ -9,7 +9,7 @@
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/buffer_texture.h"
-#include "render/material/surface_features.h"
+#include "render/material/wrinkle_hook.h"
 #include "render/skinning/deform_source.h"
 #include "render/skinning/skin_palette.h"
 
@@ -25,35 +25,6 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kEvaluateGrain = 16;
-
-std::uint32_t layer_features(const WrinkleSurface& surface) {
-    const bool independent = surface.combine == WrinkleCombine::Independent;
-    return !has_layers(surface) ? 0u : kWrinkleLayers | (independent ? kWrinkleIndependent : 0u);
-}
-
-/// What its program must do, beside adding its wrinkles to the normals.
-std::uint32_t wrinkle_features(const WrinkleSurface& surface) {
-    if (surface.method == WrinkleMethod::StrainView) {
-        return kWrinkleView;
-    }
-    return (surface.method == WrinkleMethod::Blend ? kWrinkleBlend : 0u)
-           | (surface.method == WrinkleMethod::Isometric && surface.bounce ? kWrinkleBounce : 0u)
-           | (surface.method == WrinkleMethod::Model ? kWrinkleModel : 0u)
-           | (surface.method == WrinkleMethod::Photo ? kWrinklePhoto : 0u) | layer_features(surface)
-           | (surface.fade ? kWrinkleFade : 0u) | (surface.interpolate ? 0u : kWrinkleFlat);
-}
-
-/// The same where each column of the image has one of these methods.
-std::uint32_t
-column_features(const WrinkleSurface& surface, const std::vector<WrinkleMethod>& columns) {
-    const auto shown = [&](WrinkleMethod method) {
-        return std::ranges::find(columns, method) != columns.end();
-    };
-    const bool bounces = surface.bounce && shown(WrinkleMethod::Isometric);
-    return kWrinkleColumns | (shown(WrinkleMethod::Blend) ? kWrinkleBlend : 0u)
-           | (bounces ? kWrinkleBounce : 0u) | (surface.fade ? kWrinkleFade : 0u)
-           | (surface.interpolate ? 0u : kWrinkleFlat);
-}
 
 /// Of all by which folds move vertices, beside the positions. Not 0.
 std::uint64_t hash_folds(const WrinkleSurface& surface, std::uint64_t source, float displacement) {
@@ -219,18 +190,24 @@ void DeformedList::find_wrinkles(
                      && wrinkles->mask.size() == entry.rest->vertex_count;
     entry.wrinkle_columns = entry.wrinkled && !columns.empty() && has_columns(*surface)
                             && meshes_->meshes()[entry.mesh.index].tangents;
-    entry.wrinkle_features = !entry.wrinkled         ? 0
-                             : entry.wrinkle_columns ? column_features(*surface, columns)
-                                                     : wrinkle_features(*surface);
+    unsigned features = 0;
+    if (entry.wrinkled) {
+        features =
+            entry.wrinkle_columns ? column_features(*surface, columns) : wrinkle_features(*surface);
+    }
+    const bool displaced = entry.wrinkled && !entry.wrinkle_columns && is_displaced(*surface)
+                           && wrinkles->heights.size() == entry.rest->vertex_count;
+    if (displaced) {
+        features |= kWrinkleDisplaced;
+    }
+    entry.hooks.set(kWrinkleHook, static_cast<std::uint16_t>(features));
     entry.resting_shape = entry.wrinkled ? wrinkles->resting_shape : kNoAsset;
     entry.displacement = 0;
     entry.folds = 0;
     entry.largest_fold = 0;
-    if (!entry.wrinkled || entry.wrinkle_columns || !is_displaced(*surface)
-        || wrinkles->heights.size() != entry.rest->vertex_count) {
+    if (!displaced) {
         return;
     }
-    entry.wrinkle_features |= kWrinkleDisplaced;
     const Vec3 middle = transform_point(
         world.get<WorldTransform>(entry.entity).world,
         center(meshes_->meshes()[entry.mesh.index].bounds));
@@ -375,10 +352,9 @@ void DeformedList::update(
     }
 }
 
-bool DeformedList::has_wrinkles(std::uint32_t features) const {
-    return std::ranges::any_of(active_, [this, features](std::uint32_t i) {
-        return (entries_[i].wrinkle_features & features) != 0;
-    });
+bool DeformedList::has_hook(const SurfaceHook& hook, unsigned bits) const {
+    return std::ranges::any_of(
+        active_, [&](std::uint32_t i) { return (entries_[i].hooks.of(hook) & bits) != 0; });
 }
 
 std::int32_t DeformedList::request(std::uint32_t index, bool before) {

@@ -6,6 +6,7 @@
 #include "ecs/components/wrinkle.h"
 #include "ecs/entity.h"
 #include "render/gpu/ring_buffer.h"
+#include "render/material/surface_hooks.h"
 #include "render/shaders/deform_gpu.h"
 #include "render/skinning/deformed_vertices.h"
 #include "render/skinning/rest_pool.h"
@@ -38,11 +39,11 @@ struct DeformedInstance {
     Bounds bounds;            ///< of the shape, in mesh space; conservative
     std::uint64_t shape = 0;  ///< hash: equal for equal shapes; never 0
     MeshId mesh;
-    bool wrinkled = false;               ///< has a WrinkleState, and draws it
-    bool wrinkle_columns = false;        ///< by the methods of a WrinkleComparison
-    std::uint32_t wrinkle_features = 0;  ///< of SurfaceFeature, if it is wrinkled
-    float resting = 1;                   ///< share of WrinkleState::resting
-    float displacement = 0;  ///< fraction of their heights by which folds displace the skin
+    HookBits hooks;                ///< what effects add to its surface
+    bool wrinkled = false;         ///< has a WrinkleState, and draws it
+    bool wrinkle_columns = false;  ///< by the methods of a WrinkleComparison
+    float resting = 1;             ///< share of WrinkleState::resting
+    float displacement = 0;        ///< share of their heights by which folds move the skin
 };
 
 /// Jobs that share one dispatch: of the same kind, with their vertices within the range that a
@@ -92,8 +93,8 @@ class DeformedList {
         return entries_[index];
     }
 
-    /// Whether some wrinkled skin has one of these features (SurfaceFeature).
-    [[nodiscard]] bool has_wrinkles(std::uint32_t features) const;
+    /// Whether some instance has one of these bits of a hook.
+    [[nodiscard]] bool has_hook(const SurfaceHook& hook, unsigned bits) const;
 
     /// Requests an instance's vertices, with `before` also its previous positions. Returns its base
     /// vertex.

@@ -2,6 +2,7 @@
 
 #include "ecs/base/check.h"
 #include "render/gpu/shader_library.h"
+#include "render/shaders/ocean_gpu.h"
 
 #include <string>
 #include <vector>
@@ -11,11 +12,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kWavesBinding = 0;
-constexpr unsigned kFrequenciesBinding = 1;
-constexpr unsigned kLinesBinding = 2;
-constexpr unsigned kDisplacementUnit = 0;
-constexpr unsigned kDerivativesUnit = 1;
 constexpr std::size_t kLineElement = 32;  ///< four complex numbers [bytes]
 
 void upload_spectra(const OceanState& state, OceanFft& fft) {
@@ -92,9 +88,9 @@ synthesize_ocean(FrameGraph& graph, const OceanFft& fft, float choppiness, doubl
         fft.waves_program->set("patches", fft.patches);
         fft.waves_program->set("choppiness", choppiness);
         fft.waves_program->set("time_in_periods", time_in_periods);
-        device.bind_storage(kWavesBinding, fft.waves);
-        device.bind_storage(kFrequenciesBinding, fft.frequencies);
-        context.bind_storage(kLinesBinding, lines);
+        device.bind_storage(layout::kOceanWavesBinding, fft.waves);
+        device.bind_storage(layout::kOceanFrequenciesBinding, fft.frequencies);
+        context.bind_storage(layout::kOceanLinesBinding, lines);
         device.dispatch(size, cascades);
     });
     graph.add_pass(
@@ -102,9 +98,9 @@ synthesize_ocean(FrameGraph& graph, const OceanFft& fft, float choppiness, doubl
         [=, &fft](PassContext& context) {
             gpu::Device& device = context.device();
             device.use(*fft.fields_program);
-            context.bind_storage(kLinesBinding, lines);
-            context.bind_image(kDisplacementUnit, fields.displacement, GL_WRITE_ONLY);
-            context.bind_image(kDerivativesUnit, fields.derivatives, GL_WRITE_ONLY);
+            context.bind_storage(layout::kOceanLinesBinding, lines);
+            context.bind_image(layout::kOceanDisplacementImage, fields.displacement, GL_WRITE_ONLY);
+            context.bind_image(layout::kOceanDerivativesImage, fields.derivatives, GL_WRITE_ONLY);
             device.dispatch(size, cascades);
         });
     return fields;

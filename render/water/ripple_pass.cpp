@@ -5,6 +5,9 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/light/lighting.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/gbuffer_gpu.h"
+#include "render/shaders/ripple_gpu.h"
 #include "render/shadow/light_bounds.h"
 #include "render/view_block.h"
 
@@ -20,8 +23,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kRadianceUnit = 0;
-constexpr unsigned kFieldUnit = 1;
 constexpr double kRainCycle = 1024;  // [s] period of the rain: keeps float time precise enough
 
 /// Screen rectangle of a sphere; nullopt if it is off screen.
@@ -239,7 +240,7 @@ void RippleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const TextureId field =
         create_target(graph, "ripple.field", GL_RGBA32F, size_of(graph, view.radiance));
     graph.add_pass(
-        "ripple field", {sampled(depth, kDepthUnit)},
+        "ripple field", {sampled(depth, layout::kDepthUnit)},
         {cleared(field, {0, 0, 0, 1})},  // depth limit: the near plane
         [this, &view](PassContext& context) {
             bind_view(context, view);
@@ -250,8 +251,8 @@ void RippleEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const TextureId rippled = create_like(graph, "radiance with ripples", view.radiance);
     add_fullscreen_pass(
         graph, "ripple",
-        {sampled(view.radiance, kRadianceUnit), sampled(field, kFieldUnit),
-         sampled(depth, kDepthUnit)},
+        {sampled(view.radiance, layout::kSourceUnit), sampled(field, layout::kRippleFieldUnit),
+         sampled(depth, layout::kDepthUnit)},
         {discarded(rippled)}, resolve);
     view.radiance = rippled;
 }

@@ -12,6 +12,9 @@
 #include "render/material/shading_models.h"
 #include "render/material/texture_wave_pass.h"
 #include "render/render_frame.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/water_detail_gpu.h"
+#include "render/shaders/water_gpu.h"
 #include "render/view_block.h"
 #include "render/water/foam_pattern.h"
 #include "render/water/water_reflection.h"
@@ -26,17 +29,6 @@ namespace limn {
 
 namespace {
 
-constexpr unsigned kPatchesUnit = 0;
-constexpr unsigned kSeenUnit = 0;
-constexpr unsigned kBehindUnit = 5;
-constexpr unsigned kHighestUnit = 13;
-constexpr unsigned kReflectionMapUnit = 22;
-constexpr unsigned kDetailMapUnit = 23;
-constexpr unsigned kDetailWavesUnit = 24;
-constexpr unsigned kDetailsUnit = 25;
-constexpr unsigned kBehindDepthUnit = 26;
-constexpr unsigned kFoamUnit = 29;
-constexpr unsigned kFloorMapUnit = 27;
 constexpr int kLobe = static_cast<int>(lobe_number(ShadingModel::Pbr));
 constexpr int kCells = layout::kWaterGrid;
 constexpr int kSide = kCells + 1;
@@ -120,12 +112,12 @@ Variant light_variant(const ViewData& view, const WaterSurfaces& waters) {
 void bind_details(
     gpu::Device& device, const WaterEffect& effect, const FrameData& frame,
     const WaterSurfaces& waters) {
-    waters.details.bind(device, kDetailsUnit);
+    waters.details.bind(device, layout::kWaterDetailsUnit);
     if (const gpu::Texture* map = detail_map(frame, waters)) {
-        device.bind_texture(kDetailMapUnit, *map, &effect.repeat);
+        device.bind_texture(layout::kDetailMapUnit, *map, &effect.repeat);
     }
     if (effect.wave_tiles) {
-        device.bind_texture(kDetailWavesUnit, effect.wave_tiles);
+        device.bind_texture(layout::kDetailWavesUnit, effect.wave_tiles);
     }
 }
 
@@ -140,7 +132,7 @@ void bind_foam(gpu::Device& device, WaterEffect& pass) {
             pass.foam.upload(std::as_bytes(std::span(pattern)), level++);
         }
     }
-    device.bind_texture(kFoamUnit, pass.foam);
+    device.bind_texture(layout::kFoamPatternUnit, pass.foam);
 }
 
 /// Copies of radiance and depth, which the water is drawn over.
@@ -170,13 +162,13 @@ find_highest(FrameGraph& graph, const WaterEffect& effect, const ViewData& view,
     const IVec2 tiles = (view.size() + layout::kHighestTile - 1) / layout::kHighestTile;
     const TextureId highest = create_target(graph, "highest surfaces", GL_R32F, tiles);
     add_fullscreen_pass(
-        graph, "highest surfaces", {sampled(depth, kBehindDepthUnit)}, {discarded(highest)},
-        effect.highest,
+        graph, "highest surfaces", {sampled(depth, layout::kBehindWaterDepthUnit)},
+        {discarded(highest)}, effect.highest,
         [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
     const TextureId columns = create_target(graph, "highest in columns", GL_RG32F, tiles);
     add_fullscreen_pass(
-        graph, "highest in columns", {sampled(highest, 0)}, {discarded(columns)}, effect.columns,
-        [](PassContext&, const gpu::Program&) {});
+        graph, "highest in columns", {sampled(highest, layout::kColumnSourceUnit)},
+        {discarded(columns)}, effect.columns, [](PassContext&, const gpu::Program&) {});
     return columns;
 }
 
@@ -215,7 +207,7 @@ SeenWater draw_surfaces(
             gpu::Device& device = context.device();
             device.use(gpu::Pipeline{program, {.cull = GL_NONE}});
             bind_view(context, view);
-            waters.patches.bind(device, kPatchesUnit);
+            waters.patches.bind(device, layout::kWaterPatchesUnit);
             bind_water_surfaces(device, waters);
             device.bind_vertex_array(effect.grid);
             const auto draw = [&](int count, std::size_t offset, std::size_t first,
@@ -234,8 +226,8 @@ SeenWater draw_surfaces(
     gpu::PipelineState state = gpu::kFullscreenState;
     state.depth = {.test = true, .write = true, .func = GL_ALWAYS};
     add_fullscreen_pass(
-        graph, "water pixels", {sampled(seen.surfaces, kSeenUnit)}, {discarded(seen.pixels)},
-        effect.pixels, state, [](PassContext&, const gpu::Program&) {});
+        graph, "water pixels", {sampled(seen.surfaces, layout::kSeenWaterUnit)},
+        {discarded(seen.pixels)}, effect.pixels, state, [](PassContext&, const gpu::Program&) {});
     return seen;
 }
 
@@ -313,16 +305,17 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
     const BehindWater behind = copy_behind(graph, view);
     const SeenWater seen = draw_surfaces(graph, *this, view, *waters);
     std::vector<Use> reads = lighting_reads(
-        view, {sampled(behind.radiance, kBehindUnit), sampled(behind.depth, kBehindDepthUnit),
-               sampled(seen.surfaces, kSeenUnit), depth_tested(seen.pixels)});
+        view, {sampled(behind.radiance, layout::kBehindWaterUnit),
+               sampled(behind.depth, layout::kBehindWaterDepthUnit),
+               sampled(seen.surfaces, layout::kSeenWaterUnit), depth_tested(seen.pixels)});
     if (waters->list.traced || waters->list.seen_from_below) {
         const TextureId surfaces = find_highest(graph, *this, view, behind.depth);
-        reads.push_back(sampled(surfaces, kHighestUnit));
+        reads.push_back(sampled(surfaces, layout::kHighestWaterUnit));
     }
     const auto* reflection = frame.data.find<PlanarReflection>();
     if (waters->list.planar) {
-        reads.push_back(
-            sampled(graph.import("water reflection", *reflection->map), kReflectionMapUnit));
+        reads.push_back(sampled(
+            graph.import("water reflection", *reflection->map), layout::kWaterReflectionUnit));
     }
     if (waters->list.details.needed && wave_tiles) {
         reads.emplace_back(graph.import("wave tiles", wave_tiles));
@@ -354,7 +347,7 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
                 bind_details(device, *this, *view.frame, *waters);
             }
             if (const gpu::Texture* floor = floor_map(*view.frame, *waters)) {
-                device.bind_texture(kFloorMapUnit, *floor, &repeat);
+                device.bind_texture(layout::kFloorMapUnit, *floor, &repeat);
                 program->set("floor_tile", waters->list.floor->floor_tile);
             }
             device.draw_fullscreen();
@@ -393,7 +386,9 @@ void WaterMirrorEffect::request_views(FrameData& frame) {
 void WaterMirrorEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const TextureId target = graph.import("water reflection", map);
     add_fullscreen_pass(
-        graph, "water reflection", {sampled(view.radiance, 0), sampled(view.gbuffer.depth, 1)},
+        graph, "water reflection",
+        {sampled(view.radiance, layout::kSourceUnit),
+         sampled(view.gbuffer.depth, layout::kWaterCopyDepthUnit)},
         {target_level(discarded(target), 0)}, copy,
         [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
     graph.add_pass("water reflection, blurred", {}, {image(target)}, [this](PassContext&) {

@@ -3,33 +3,24 @@
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/light/light_list.h"
+#include "render/shaders/water_gpu.h"
 #include "render/water/caustic_list.h"
 
 namespace limn {
 
-namespace {
-
-constexpr unsigned kWatersUnit = 1;
-constexpr unsigned kWaveLinesUnit = 2;
-constexpr unsigned kWaveRingsUnit = 3;
-constexpr unsigned kRipplesUnit = 4;
-constexpr unsigned kOceanShiftUnit = 6;
-constexpr unsigned kPreviousOceanShiftUnit = 28;
-constexpr unsigned kOceanSlopeUnit = 14;
-constexpr unsigned kOceanFoamUnit = 17;
-
-}  // namespace
+namespace {}  // namespace
 
 void bind_water_surfaces(gpu::Device& device, const WaterSurfaces& waters) {
-    waters.bodies.bind(device, kWatersUnit);
-    waters.lines.bind(device, kWaveLinesUnit);
-    waters.rings.bind(device, kWaveRingsUnit);
-    device.bind_texture(kRipplesUnit, waters.textures->ripples.texture());
+    waters.bodies.bind(device, layout::kWatersUnit);
+    waters.lines.bind(device, layout::kWaveLinesUnit);
+    waters.rings.bind(device, layout::kWaveRingsUnit);
+    device.bind_texture(layout::kRippleAtlasUnit, waters.textures->ripples.texture());
     if (waters.any_seas()) {
-        device.bind_texture(kOceanShiftUnit, waters.textures->seas.shift());
-        device.bind_texture(kPreviousOceanShiftUnit, waters.textures->seas.previous_shift());
-        device.bind_texture(kOceanSlopeUnit, waters.textures->seas.slope());
-        device.bind_texture(kOceanFoamUnit, waters.textures->seas.foam());
+        device.bind_texture(layout::kOceanShiftUnit, waters.textures->seas.shift());
+        device.bind_texture(
+            layout::kPreviousOceanShiftUnit, waters.textures->seas.previous_shift());
+        device.bind_texture(layout::kOceanSlopeUnit, waters.textures->seas.slope());
+        device.bind_texture(layout::kOceanFoamUnit, waters.textures->seas.foam());
     }
 }
 

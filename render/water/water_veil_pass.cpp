@@ -3,15 +3,12 @@
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/light/lighting.h"
+#include "render/shaders/fullscreen_gpu.h"
+#include "render/shaders/water_gpu.h"
 #include "render/water/water_surfaces.h"
 
 namespace limn {
-namespace {
-
-constexpr unsigned kVeilRadianceUnit = 0;
-constexpr unsigned kVeilSceneDepthUnit = 5;
-
-}  // namespace
+namespace {}  // namespace
 
 bool WaterVeilEffect::is_used(const FrameData& frame) {
     return !frame.world->query<const Water>().empty();
@@ -28,8 +25,8 @@ void WaterVeilEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) 
     }
     const TextureId veiled = create_radiance(graph, view, "radiance under water");
     const std::vector<Use> reads = lighting_reads(
-        view, {sampled(view.radiance, kVeilRadianceUnit),
-               sampled(view.gbuffer.depth, kVeilSceneDepthUnit)});
+        view, {sampled(view.radiance, layout::kSourceUnit),
+               sampled(view.gbuffer.depth, layout::kWaterVeilDepthUnit)});
     const Use writes[] = {cleared(veiled)};
     graph.add_pass(
         "water veil", std::span(reads), writes,

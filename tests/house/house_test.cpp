@@ -23,13 +23,13 @@ struct SourceFile {
     std::vector<std::string> lines;
 };
 
-std::vector<SourceFile> own_sources() {
+std::vector<SourceFile>
+files_in(const std::vector<const char*>& folders, const std::set<std::string>& extensions) {
     const fs::path root = LIMN_SOURCE_DIR;
     std::vector<SourceFile> sources;
-    for (const char* folder : {"ecs", "systems", "render", "content", "tests", "bench"}) {
+    for (const char* folder : folders) {
         for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
-            const std::string extension = entry.path().extension().string();
-            if (extension != ".h" && extension != ".cpp") {
+            if (!extensions.contains(entry.path().extension().string())) {
                 continue;
             }
             SourceFile source{fs::relative(entry.path(), root).generic_string(), {}};
@@ -41,6 +41,10 @@ std::vector<SourceFile> own_sources() {
         }
     }
     return sources;
+}
+
+std::vector<SourceFile> own_sources() {
+    return files_in({"ecs", "systems", "render", "content", "tests", "bench"}, {".h", ".cpp"});
 }
 
 bool starts_with(const std::string& text, const std::string& prefix) {
@@ -379,6 +383,27 @@ TEST_CASE("house: each of the five packages of the project does its work, where 
             CHECK(std::any_of(packages[i].places.begin(), packages[i].places.end(), allows));
         }
     }
+}
+
+TEST_CASE("house: bindings have names, in a header that shaders and C++ share") {
+    const std::regex in_shaders(R"(binding = \d)");
+    const std::regex in_sources(
+        R"(bind_(texture|texture_name|image|storage|uniforms)\(\d|sampled\(.*, \d+[,)]|bind\([^,]*device[^,]*, \d)");
+    // Particles have theirs in numbers still.
+    const std::regex numbered("(particle|sprite|seen_depth|billboard|ribbon)");
+    const auto check = [&](const std::vector<SourceFile>& sources, const std::regex& number) {
+        for (const SourceFile& source : sources) {
+            for (std::size_t i = 0; i < source.lines.size(); ++i) {
+                const std::string& line = source.lines[i];
+                if (!starts_with(line, "//") && std::regex_search(line, number)
+                    && !std::regex_search(source.path, numbered)) {
+                    FAIL_CHECK(source.path << ":" << i + 1 << ": " << line << ", expected a name");
+                }
+            }
+        }
+    };
+    check(files_in({"render/shaders"}, {".vert", ".geom", ".frag", ".comp", ".glsl"}), in_shaders);
+    check(files_in({"render", "content"}, {".h", ".cpp"}), in_sources);
 }
 
 TEST_CASE("house: tests compare by near(), because a bare Approx passes every small number") {

@@ -10,6 +10,7 @@
 #include "render/gpu/buffer_texture.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
+#include "render/shaders/caustics_gpu.h"
 #include "render/water/caustic_splat.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_wave_table.h"
@@ -428,9 +429,9 @@ TEST_CASE_FIXTURE(
     device().use(**splat);
     (*splat)->set("groups", static_cast<int>(groups));
     (*splat)->set("width", kWidth);
-    texels.bind(device(), 20);
-    device().bind_storage(0, landed);
-    device().bind_storage(1, light);
+    texels.bind(device(), layout::kCausticRecordsUnit);
+    device().bind_storage(layout::kCausticRaysBinding, landed);
+    device().bind_storage(layout::kCausticLightBinding, light);
     device().dispatch(static_cast<unsigned>(groups));
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     std::vector<std::uint32_t> found(none.size());

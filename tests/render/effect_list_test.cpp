@@ -1,9 +1,12 @@
 #include "render/fullscreen.h"
 #include "render/graph/frame_graph.h"
 #include "render/image.h"
+#include "render/shaders/fog_gpu.h"
+#include "render/shaders/fullscreen_gpu.h"
 #include "tests/render/scene_fixture.h"
 
 #include <doctest/doctest.h>
+#include <glm/geometric.hpp>
 
 namespace limn::test::effect_list_test {
 namespace {
@@ -20,26 +23,45 @@ struct DoubleEffect {
     void draw(FrameGraph& graph, const FrameData&, ViewData& view) {
         const TextureId doubled = create_like(graph, "doubled", view.radiance);
         add_fullscreen_pass(
-            graph, "double", {sampled(view.radiance, 0)}, {discarded(doubled)}, copy,
-            [](PassContext&, const gpu::Program& program) { program.set("weight", 2.0f); });
+            graph, "double", {sampled(view.radiance, layout::kSourceUnit)}, {discarded(doubled)},
+            copy, [](PassContext&, const gpu::Program& program) { program.set("weight", 2.0f); });
         view.radiance = doubled;
     }
 };
 
-/// Before everything that the lens does.
-std::vector<EffectEntry> image_with_double() {
+/// The standard image and one more effect, before everything that the lens does.
+template <typename Effect>
+std::vector<EffectEntry> image_with() {
     const std::span<const EffectEntry> standard = standard_image();
     std::vector<EffectEntry> image(standard.begin(), standard.end());
-    image.insert(image.end() - 1, effect<DoubleEffect>(kMainViews));
+    image.insert(image.end() - 1, effect<Effect>(kMainViews));
     return image;
 }
+
+constexpr Vec3 kHaze = {0.25f, 0.5f, 1};
+
+/// Publishes a fog that hides everything, but draws none.
+struct HazeEffect {
+    static inline bool publishes = false;
+
+    static Result<HazeEffect> create(gpu::Device&, const RenderSettings&) { return HazeEffect{}; }
+    bool prepare(const FrameData&, ViewData& view) {
+        if (publishes) {
+            layout::FogBlock block{};
+            block.density = {1e3f, 1e-6f, 0, 0};
+            block.ambient = Vec4(kHaze, 0);
+            view.publish_block(layout::kFogBinding, block);
+        }
+        return true;
+    }
+};
 
 }  // namespace
 
 TEST_CASE_FIXTURE(Scene, "image: an effect from outside the library is one entry of the list") {
     place(add(make_square()), add(Material{.emission = Vec3(0.25f, 0.5f, 1)}), at({0, 0, 0}));
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
-    const std::vector<EffectEntry> image = image_with_double();
+    const std::vector<EffectEntry> image = image_with<DoubleEffect>();
     const RendererPtr renderer =
         *create_renderer(shared_device(), {.full_float = true, .image = image});
     const Vec3 plain = rgb_at(radiance(view), 16, 16);
@@ -50,6 +72,26 @@ TEST_CASE_FIXTURE(Scene, "image: an effect from outside the library is one entry
     CHECK(doubled.y == 2 * plain.y);
     CHECK(doubled.z == 2 * plain.z);
     CHECK(frame_graph(*renderer).was_run("double"));
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "image: the block that an effect publishes is that of all programs, for this frame") {
+    const Material glowing = {
+        .shading = ShadingModel::Unlit, .alpha_mode = AlphaMode::Blend, .base_color = {1, 0, 0, 1}};
+    place(add(make_square()), add(glowing), at({0, 0, 0}));
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
+    const std::vector<EffectEntry> image = image_with<HazeEffect>();
+    const RendererPtr renderer =
+        *create_renderer(shared_device(), {.full_float = true, .image = image});
+    const auto draw = [&](bool publishes) {
+        HazeEffect::publishes = publishes;
+        return rgb_at(gpu::read_floats(*render_frame(*renderer, world, view).radiance), 16, 16);
+    };
+    const Vec3 clear = draw(false);
+    CHECK(clear.x > 0.5f);
+    CHECK(clear.z == 0);
+    CHECK(glm::distance(draw(true), kHaze) < 1e-4f);
+    CHECK(draw(false) == clear);
 }
 
 TEST_CASE("image: a view's passes are named by its scope, so that times of views stay apart") {
@@ -103,7 +145,7 @@ TEST_CASE_FIXTURE(TwoPasses, "image: reading what a pass writes without declarin
         written = &context.texture(first);
     });
     graph.add_pass("sneak", {}, {second}, [&](PassContext& context) {
-        context.device().bind_texture(0, *written);
+        context.device().bind_texture(layout::kSourceUnit, *written);
         draw(context);
     });
     graph.execute();
@@ -114,7 +156,7 @@ TEST_CASE_FIXTURE(TwoPasses, "image: reading what a pass writes without declarin
 
 TEST_CASE_FIXTURE(TwoPasses, "image: reading the texture that the pass draws to is a hazard") {
     graph.add_pass("feedback", {}, {cleared(second)}, [&](PassContext& context) {
-        context.device().bind_texture(0, context.texture(second));
+        context.device().bind_texture(layout::kSourceUnit, context.texture(second));
         draw(context);
     });
     graph.execute();
@@ -123,9 +165,9 @@ TEST_CASE_FIXTURE(TwoPasses, "image: reading the texture that the pass draws to 
 }
 
 TEST_CASE_FIXTURE(TwoPasses, "image: a declared read is no hazard") {
-    graph.add_pass("copy", {sampled(first, 0)}, {discarded(second)}, [&](PassContext& context) {
-        draw(context);
-    });
+    graph.add_pass(
+        "copy", {sampled(first, layout::kSourceUnit)}, {discarded(second)},
+        [&](PassContext& context) { draw(context); });
     graph.execute();
     CHECK(graph.hazards().empty());
 }

@@ -1,5 +1,6 @@
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/shader_library.h"
+#include "render/shaders/shadow_gpu.h"
 #include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 #include "tests/technique.h"
@@ -39,7 +40,7 @@ class FilterTest : public RenderTest {
         const gpu::Framebuffer framebuffer("probe", std::span(&attachment, 1));
         device().bind_framebuffer(framebuffer);
         device().use(gpu::Pipeline{*program, gpu::kFullscreenState});
-        device().bind_texture(15, atlas_);
+        device().bind_texture(layout::kShadowAtlasUnit, atlas_);
         (*program)->set("st", st);
         (*program)->set("filter_kind", soft ? 2.0f : hard ? 0.0f : 1.0f);
         device().draw_fullscreen();

@@ -7,6 +7,7 @@
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
 #include "render/render_frame.h"
+#include "render/shaders/fullscreen_gpu.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -126,7 +127,7 @@ void BufferViewer::after_frame(
     pipeline_.program->set("shown_range", range_);
     pipeline_.program->set("shown_channel", channel_);
     pipeline_.program->set("encode_srgb", srgb_ ? 1 : 0);
-    device.bind_texture(0, *texture);
+    device.bind_texture(layout::kSourceUnit, *texture);
     device.draw_fullscreen();
     source_ = texture;
 }

@@ -2,8 +2,8 @@
 
 #include "caustics_gpu.h"
 
-layout(binding = 20) uniform samplerBuffer water_lights;  // WaterLightHeader, UnderwaterRecord, MirrorRecord, CausticPlace
-layout(binding = 21) uniform sampler2D caustic_maps;      // light relative to that under flat water
+layout(binding = kWaterLightsUnit) uniform samplerBuffer water_lights;  // WaterLightHeader, UnderwaterRecord, MirrorRecord, CausticPlace
+layout(binding = kCausticMapsUnit) uniform sampler2D caustic_maps;      // light relative to that under flat water
 
 CausticPlace caustic_place(int index) {
     vec4 counts = texelFetch(water_lights, 0);

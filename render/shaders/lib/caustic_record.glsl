@@ -3,7 +3,7 @@
 #include "caustics_gpu.h"
 
 // One texel per work group of rays: its map, its first ray; then CausticRecord.
-layout(binding = 20) uniform samplerBuffer caustics;
+layout(binding = kCausticRecordsUnit) uniform samplerBuffer caustics;
 
 uniform int groups;  // work groups of rays in all maps
 

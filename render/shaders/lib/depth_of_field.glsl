@@ -4,7 +4,7 @@
 #include "depth_of_field_gpu.h"
 #include "lib/numbers.glsl"
 
-layout(std140, binding = 2) uniform Focus {
+layout(std140, binding = kFocusBinding) uniform Focus {
     FocusBlock focus;
 };
 

@@ -7,9 +7,9 @@
 #include "lib/view.glsl"
 #include "material_subsurface_gpu.h"
 
-layout(binding = 0) uniform sampler2D scattered;  // light before the albedo, alpha 1 where it spreads; with mip levels
+layout(binding = kScatteredUnit) uniform sampler2D scattered;  // light before the albedo, alpha 1 where it spreads; with mip levels
 
-layout(binding = 1) uniform sampler2D distances;  // along the view axis, and their squares; with mip levels
+layout(binding = kDistancesUnit) uniform sampler2D distances;  // along the view axis, and their squares; with mip levels
 
 const vec2 kGoldenTurn = vec2(-0.73736888, 0.67549029);  // cosine and sine of the golden angle
 const float kFewWithin = 24.0;   // radius of the last ring [px] below which few rings differ by less than 1 % of an edge

@@ -1,8 +1,9 @@
 // Distance along the view axis [m] and its square, whose mip levels are means of both. Background is far away.
 
 #include "lib/view.glsl"
+#include "gbuffer_gpu.h"
 
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 
 const float kFar = 1e4;
 

@@ -1,17 +1,22 @@
-// Fog that thins with height, from the camera on (render/environment/fog_block.h). Include after lib/view.glsl.
+// Fog that thins with height, from the camera on (render/environment/fog_block.h).
 // Techniques: light.height-fog
+
+#include "lib/view.glsl"
+#include "fog_gpu.h"
+
+UNIFORM_BLOCK(kFogBinding, HeightFog, FogBlock, height_fog, height_fogs);
 
 const float kMaxOpticalDepth = 80.0;
 
 float fog_optical_depth(float rise, float path) {
-    float x = view.fog.y * rise * path;
+    float x = height_fog.density.y * rise * path;
     float mean = abs(x) < 1e-2 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(min(-x, kMaxOpticalDepth))) / x;
-    return min(view.fog.x * path * mean, kMaxOpticalDepth);
+    return min(height_fog.density.x * path * mean, kMaxOpticalDepth);
 }
 
 // Henyey and Greenstein's.
 float fog_phase(float cosine) {
-    float g = view.fog.z;
+    float g = height_fog.density.z;
     float d = 1.0 + g * g - 2.0 * g * cosine;
     return (1.0 - g * g) / (4.0 * 3.14159265 * d * sqrt(d));
 }
@@ -19,12 +24,12 @@ float fog_phase(float cosine) {
 // Radiance that `path` meters scatter toward the camera, and their opacity; `direction`: unit.
 vec4 fog_along(vec3 direction, float path) {
     float opacity = 1.0 - exp(-fog_optical_depth(direction.y, path));
-    vec3 scattered = view.fog_ambient.rgb + view.fog_sun.rgb * fog_phase(dot(direction, view.fog_to_sun.xyz));
+    vec3 scattered = height_fog.ambient.rgb + height_fog.sun.rgb * fog_phase(dot(direction, height_fog.to_sun.xyz));
     return vec4(scattered * opacity, opacity);
 }
 
 vec4 fog_before(vec3 position_ws) {
-    if (view.fog.x <= 0.0) {
+    if (height_fog.density.x <= 0.0) {
         return vec4(0.0);
     }
     vec3 way = position_ws - view.camera_ws.xyz;

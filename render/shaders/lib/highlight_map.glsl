@@ -1,8 +1,11 @@
 // Where light is read in textures over the unit disc, whose address is 0.5 + 0.5 (x, y). Definition:
-//   WORST_AXIS  axes along the projected normal itself, with which all of v is 0, in place of view.blinn_axis
+//   WORST_AXIS  axes along the projected normal itself, with which all of v is 0, in place of HighlightBlock::blinn_axis
 // Techniques: fakephong.blinn-axis, fakephong.hw-blinn
 
 #include "lib/view.glsl"
+#include "highlight_gpu.h"
+
+UNIFORM_BLOCK(kHighlightBinding, Highlight, HighlightBlock, highlight, highlights);
 
 vec3 unit_or(vec3 v, vec3 otherwise) {
     float squared = dot(v, v);
@@ -15,7 +18,7 @@ vec3 plane_axis(vec3 normal, vec3 projected) {
 #ifdef WORST_AXIS
     vec3 global = projected;
 #else
-    vec3 global = view.blinn_axis.xyz;
+    vec3 global = highlight.blinn_axis.xyz;
 #endif
     vec3 right = normalize(view.ray_right.xyz);
     vec3 other = unit_or(right - dot(right, normal) * normal, vec3(0.0));
@@ -54,7 +57,7 @@ vec2 hardware_blinn_coordinates(vec3 normal, vec3 to_light, vec3 to_camera) {
 #else
     vec3 axis = plane_axis(h, projected);
 #ifdef HW_AXIS
-    axis = view.blinn_axis.xyz - dot(view.blinn_axis.xyz, h) * h;
+    axis = highlight.blinn_axis.xyz - dot(highlight.blinn_axis.xyz, h) * h;
 #endif
 #endif
 #ifndef HW_BACKS

@@ -39,9 +39,9 @@
 #include "lib/under_water.glsl"
 #endif
 
-layout(binding = 9) uniform samplerBuffer lights;           // LightRecord
-layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the cells, one after the other
-layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
+layout(binding = kLightsUnit) uniform samplerBuffer lights;           // LightRecord
+layout(binding = kLightIndicesUnit) uniform usamplerBuffer light_indices;  // the lists of the cells, one after the other
+layout(binding = kLightCellsUnit) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
 #if defined(UNDER_WATER) && defined(MIRRORS)
 #define OVER_WATER
 #include "lib/over_water.glsl"

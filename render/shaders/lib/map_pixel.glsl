@@ -2,8 +2,9 @@
 #define LIT_AT_VERTICES
 #include "lib/material.glsl"
 #include "lib/radiance.glsl"
+#include "highlight_gpu.h"
 
-layout(binding = 5) uniform sampler2DArray highlight_maps;
+layout(binding = kHighlightMapsUnit) uniform sampler2DArray highlight_maps;
 
 layout(location = 0) INTERPOLATED in vec3 diffuse;
 layout(location = 1) INTERPOLATED in vec3 specular;

@@ -7,8 +7,9 @@
 #include "lib/light_at.glsl"
 #include "lib/single_lights.glsl"
 #include "lib/highlight_map.glsl"
+#include "highlight_gpu.h"
 
-layout(binding = 6) uniform usamplerBuffer highlight_layers;  // by material
+layout(binding = kHighlightLayersUnit) uniform usamplerBuffer highlight_layers;  // by material
 
 layout(location = 0) out vec3 diffuse;   // still to be multiplied by the base color map
 layout(location = 1) out vec3 specular;

@@ -8,47 +8,21 @@
 //   SRGB_BASE_COLOR  the texture is sRGB, filtered encoded and decoded here, because a software
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
-//   LIT_AT_VERTICES  no normals, only colors
+//   LIT_AT_VERTICES  no normals, only colors; hooks do nothing
 //   STRANDS        of hair, which lies along v
-//   WRINKLE_BLEND  light of wrinkles in full and of smooth skin is blended
-//   WRINKLE_FADE   light that grazes smooth skin fades
-//   WRINKLE_BOUNCE  light bounces within isometric folds (lib/fold_light.glsl)
-//   WRINKLE_VIEW   in place of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and w
-//                  1 where that frame is known. After lib/view.glsl
-//   WRINKLE_MODEL  the wrinkle map is a model of the strain: wrinkle_strength is (tt, bb, tb), and w the share of its slopes
-//   WRINKLE_LAYERS  the wrinkle map has two layers: wrinkle_strength is of the slopes and then the shade of both
-//   WRINKLE_INDEPENDENT  the second one covers the first
-//   WRINKLE_PHOTO  light from above the map is painted on
-//   WRINKLE_COLUMNS  each column of the image has a method of its own (ViewBlock): wrinkle_strength is that of isometric
-//                  folds, and that of all others. After lib/view.glsl
-//   WRINKLE_FLAT   strengths are those of one vertex of each triangle
+//   FINE_NORMALS   normals vary within a pixel; defined here or by the file of a hook
+// What single effects add is called where hook_*() stands (render/material/surface_hooks.h).
 // Techniques: bump.normal-encoding, bump.normal-map, bump.tangent-space, env.control-map,
-//     face.wrinkle-model, face.wrinkle-options, light.phong-pixel, shade.derivatives, skin.detail,
-//     wrinkle.comparison, wrinkle.compression.alpha-directional, wrinkle.compression.alpha-shading,
-//     wrinkle.compression.bump-blend, wrinkle.compression.interp-bump,
-//     wrinkle.compression.interpolation, wrinkle.compression.map, wrinkle.compression.normal-fit,
-//     wrinkle.compression.overlap, wrinkle.compression.tangent-frame
+//     light.phong-pixel, shade.derivatives, skin.detail
 // Source of skin.detail: Barré-Brisebois and Hill 2012
 
 #include "lib/gbuffer.glsl"
 #include "lib/interpolation.glsl"
 #include "lib/material_maps.glsl"
-#include "lib/wrinkle.glsl"
-#include "lib/wrinkle_model.glsl"
-
-#if defined(WRINKLE_MAP) && !defined(LIT_AT_VERTICES)
-#define WRINKLES
-#endif
 
 #ifndef LIT_AT_VERTICES
 layout(location = 0) INTERPOLATED in vec3 normal_ws;
 layout(location = 1) INTERPOLATED in vec4 tangent_ws;
-#endif
-#if defined(WRINKLES) || (defined(WRINKLE_VIEW) && !defined(LIT_AT_VERTICES))
-#ifdef WRINKLE_FLAT
-flat
-#endif
-layout(location = 8) in vec4 wrinkle_strength;  // x, y: of slopes, as they are and lifted; z, w: of shade
 #endif
 layout(location = 2) INTERPOLATED in vec4 uv;
 layout(location = 3) INTERPOLATED in vec4 vertex_color;
@@ -61,6 +35,8 @@ vec4 material_texel(int i) {
     return material_texel(material_and_flags.x, i);
 }
 
+vec4 map_uv = uv;  // where maps are read: hooks may shift it
+
 #ifdef MAP_LAYERS
 // Where a map is read: texture coordinates and layer.
 vec3 map_place(uint slot) {
@@ -71,10 +47,10 @@ vec3 map_place(uint slot) {
 #endif
     vec4 rows = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot));
     vec4 offset = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot) + 1);
-    vec2 set = offset.z > 0.5 ? uv.zw : uv.xy;
+    vec2 set = offset.z > 0.5 ? map_uv.zw : map_uv.xy;
     return vec3(vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset.xy, layer);
 #else
-    return vec3(uv.xy, layer);
+    return vec3(map_uv.xy, layer);
 #endif
 }
 #endif
@@ -96,97 +72,16 @@ vec4 base_color_texel() {
     return texel;
 }
 
-#ifdef WRINKLES
-#ifdef WRINKLE_MODEL
-vec4 model_tile(vec3 place, int tile, int tiles, float half_texel) {
-    place.y = (float(tile) + clamp(place.y, half_texel, 1.0 - half_texel)) / float(tiles);
-    return texture(material_maps[WRINKLE_MAP], place);
-}
+#include "generated/surface_hooks.glsl"
 
-// The slope of wrinkles of skin strained like this.
-vec2 wrinkle_slope_here() {
-    vec3 place = map_place(kWrinkleSlot);
-    vec2 size = vec2(textureSize(material_maps[WRINKLE_MAP], 0).xy);
-    int tiles = int(size.y / size.x + 0.5);
-    float half_texel = 0.5 / size.x;
-    vec4 range = model_tile(place, 0, tiles, half_texel);
-    vec4 range_tb = model_tile(place, 1, tiles, half_texel);
-    vec3 x = model_strain(wrinkle_strength.xyz, range, range_tb);
-    vec2 slope = vec2(0.0);
-    for (int tile = 2; tile < tiles; ++tile) {
-        vec4 coefficients = model_tile(place, tile, tiles, half_texel);
-        slope += coefficients.xy * model_term(x, 2 * tile - 4) + coefficients.zw * model_term(x, 2 * tile - 3);
-    }
-    return slope;
-}
-#elif defined(WRINKLE_LAYERS)
-vec4 wrinkle_slopes_here() {
-    return wrinkle_slopes(texture(material_maps[WRINKLE_MAP], map_place(kWrinkleSlot)));
-}
-
-vec2 wrinkle_slope_here() {
-    vec4 slopes = wrinkle_slopes_here();
-#ifdef WRINKLE_INDEPENDENT
-    return covered_slope(slopes, clamp(wrinkle_strength.xy, 0.0, 1.0));
-#else
-    return wrinkle_strength.x * slopes.xy + wrinkle_strength.y * slopes.zw;
-#endif
-}
-#else
-vec2 wrinkle_slope_here() {
-    return wrinkle_slope(texture(material_maps[WRINKLE_MAP], map_place(kWrinkleSlot)).xyz);
-}
-#endif
-#endif
-
-#if defined(WRINKLES) && defined(WRINKLE_COLUMNS)
-// The method of this pixel's column.
-uint column_method() {
-    vec2 borders = uintBitsToFloat(view.wrinkle_columns.zw);
-    float place = (gl_FragCoord.x * view.size.z - borders.x) / (borders.y - borders.x);
-    int column = clamp(int(floor(place * float(view.wrinkle_columns.x))), 0, int(view.wrinkle_columns.x) - 1);
-    return view.wrinkle_columns.y >> (4 * column) & 15u;
-}
-
-// Its strengths, as wrinkle_strength has them where all of the image has one method.
-vec4 column_strength(uint method) {
-    bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
-    return (method == kWrinkleIsometric ? wrinkle_strength.x : wrinkle_strength.y) * vec4(
-        steep ? 1.0 : 0.0,
-        method == kWrinkleSphere ? 1.0 : 0.0,
-        method == kWrinkleAlpha || method == kWrinklePhoto ? 1.0 : 0.0,
-        method == kWrinkleDirectional ? 1.0 : 0.0);
-}
-#endif
-
-#ifdef WRINKLES
-// What is left of the color of slopes that are darkened.
-float shaded_slope(vec2 slope, vec4 strength) {
-    return 1.0 - clamp(strength.z * wrinkle_shade(slope, false) + strength.w * wrinkle_shade(slope, true), 0.0, 1.0);
-}
-
-// The same of slopes in painted light.
-float painted_slope(vec2 slope, float strength) {
-    return mix(1.0, painted_light(slope), clamp(strength, 0.0, 1.0));
-}
+#ifdef NORMAL_MAP
+#define FINE_NORMALS
 #endif
 
 vec4 surface_color() {
+    hook_uv(map_uv);
     vec4 color = material_texel(0) * base_color_texel();
-#if defined(WRINKLES) && defined(WRINKLE_LAYERS) && !defined(WRINKLE_MODEL)
-    vec4 slopes = wrinkle_slopes_here();
-    color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slopes.xy, false), 0.0, 1.0);
-    color.rgb *= 1.0 - clamp(wrinkle_strength.w * wrinkle_shade(slopes.zw, false), 0.0, 1.0);
-#elif defined(WRINKLES) && defined(WRINKLE_COLUMNS)
-    uint method = column_method();
-    vec4 strength = column_strength(method);
-    vec2 slope = wrinkle_slope_here();
-    color.rgb *= method == kWrinklePhoto ? painted_slope(slope, strength.z) : shaded_slope(slope, strength);
-#elif defined(WRINKLES) && defined(WRINKLE_PHOTO)
-    color.rgb *= painted_slope(wrinkle_slope_here(), wrinkle_strength.z);
-#elif defined(WRINKLES) && !defined(WRINKLE_MODEL)
-    color.rgb *= shaded_slope(wrinkle_slope_here(), wrinkle_strength);
-#endif
+    hook_color(color);
 #ifdef VERTEX_COLOR
     color *= max(vertex_color, 0.0);
 #endif
@@ -202,11 +97,11 @@ vec3 surface_emission() {
 }
 
 #ifndef LIT_AT_VERTICES
-// The normal of the skin, and without its wrinkles.
+// The normal, and as it is without what hooks add.
 vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n = normal_ws;
     smooth_normal = n;
-#if defined(NORMAL_MAP) || defined(WRINKLES) || defined(DETAIL_MAP)
+#if defined(FINE_NORMALS) || defined(DETAIL_MAP)
     vec3 n_ts = vec3(0.0, 0.0, 1.0);
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
 #ifdef NORMAL_MAP
@@ -217,22 +112,8 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 detail = texture(material_maps[DETAIL_MAP], map_place(kDetailSlot)).xyz * 2.0 - 1.0;
     n_ts.xy += n_ts.z * detail.xy / max(detail.z, 0.1);  // slopes of both heights add up
 #endif
-#ifdef WRINKLES
     smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
-    vec2 slope = wrinkle_slope_here();
-#ifdef WRINKLE_MODEL
-    slope *= wrinkle_strength.w;
-#elif defined(WRINKLE_LAYERS)
-#elif defined(WRINKLE_COLUMNS)
-    uint method = column_method();
-    vec4 strength_here = column_strength(method);
-    vec2 raised = strength_here.x * slope + lifted_slope(slope, strength_here.y);
-    slope = method == kWrinkleBlend ? slope : raised;
-#elif !defined(WRINKLE_BLEND)
-    slope = wrinkle_strength.x * slope + lifted_slope(slope, wrinkle_strength.y);
-#endif
-    n_ts.xy -= n_ts.z * slope;  // slopes of both heights add up
-#endif
+    hook_normal(n_ts);
     n = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
 #endif
     n *= inversesqrt(max(dot(n, n), 1e-20));
@@ -261,7 +142,7 @@ vec3 strand_direction(vec3 normal) {
 // of meshes, since roughness blurs their reflections too.
 // Tokuyoshi and Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
 float widen_roughness(float roughness, vec3 normal) {
-#if defined(NORMAL_MAP) || defined(WRINKLES)
+#ifdef FINE_NORMALS
     vec3 dx = dFdx(normal);
     vec3 dy = dFdy(normal);
     float variance = 0.159 * (dot(dx, dx) + dot(dy, dy));
@@ -271,37 +152,7 @@ float widen_roughness(float roughness, vec3 normal) {
     return roughness;
 }
 
-#ifdef WRINKLE_VIEW
-const float kCrossCell = 22.0;  // [px]
-
-// A direction on the surface, as seen [px]; a unit vector that faces the viewer has half the size of a cell.
-vec2 seen_direction(vec3 direction_ws) {
-    vec4 moved = view.clip_from_world * vec4(direction_ws, 0.0);
-    vec2 ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0;
-    vec2 seen = (moved.xy - ndc * moved.w) * view.size.xy;
-    float scale = view.size.x * length(vec3(view.clip_from_world[0].x, view.clip_from_world[1].x, view.clip_from_world[2].x));
-    return seen * (0.5 * kCrossCell / scale);
-}
-
-vec3 strain_view() {
-    vec4 principal = principal_strain(wrinkle_strength.xyz);
-    vec3 color = strain_color(principal);
-    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
-    vec2 cover = strain_cross(
-        mod(gl_FragCoord.xy, kCrossCell) - 0.5 * kCrossCell, principal,
-        seen_direction(principal.z * tangent_ws.xyz + principal.w * bitangent),
-        seen_direction(-principal.w * tangent_ws.xyz + principal.z * bitangent));
-    cover *= wrinkle_strength.w;
-    vec2 stretched = step(vec2(0.0), principal.xy);
-    color = mix(color, mix(vec3(0.12, 0.0, 0.0), vec3(0.0, 0.0, 0.15), stretched.x), cover.x);
-    return mix(color, mix(vec3(0.12, 0.0, 0.0), vec3(0.0, 0.0, 0.15), stretched.y), cover.y);
-}
-#endif
-
 SurfaceSample surface_sample(vec3 albedo) {
-#ifdef WRINKLE_VIEW
-    albedo = strain_view();
-#endif
     vec4 factors = material_texel(2);
     SurfaceSample s;
     vec3 smooth_normal;
@@ -330,37 +181,7 @@ SurfaceSample surface_sample(vec3 albedo) {
 #ifdef STRANDS
     s.strand_ws = strand_direction(s.normal_ws);
 #endif
-#if defined(WRINKLES) && defined(SMOOTH_NORMALS)
-    s.smooth_normal_ws = smooth_normal;
-    bool stores = s.model != kModelUnlit && s.model != kModelHair;  // in place of the emission
-#ifdef WRINKLE_BLEND
-#ifdef WRINKLE_COLUMNS
-    bool blends = column_method() == kWrinkleBlend;
-    float raised = wrinkle_strength.y;
-#else
-    const bool blends = true;
-    float raised = wrinkle_strength.x;
-#endif
-    if (blends) {
-        s.raised = clamp(raised, 0.0, 1.0);
-        s.smooth_is_stored = stores && s.raised > 0.0;
-        s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
-    }
-#endif
-#ifdef WRINKLE_BOUNCE
-#ifdef WRINKLE_COLUMNS
-    bool folds = column_method() == kWrinkleIsometric;
-#else
-    const bool folds = true;
-#endif
-    s.bounces = folds && stores && s.emission == vec3(0.0) && s.normal_ws != smooth_normal;
-    s.smooth_is_stored = s.smooth_is_stored || s.bounces;
-#endif
-#ifdef WRINKLE_FADE
-    s.fades = true;
-    s.smooth_is_stored = stores;
-#endif
-#endif
+    hook_sample(s, smooth_normal);
     split_unlit(s);
     return s;
 }

@@ -5,7 +5,7 @@
 #include "material_gpu.h"
 #include "material_maps_gpu.h"
 
-layout(binding = 12) uniform samplerBuffer materials;  // MaterialRecord, then blocks
+layout(binding = kMaterialsUnit) uniform samplerBuffer materials;  // MaterialRecord, then blocks
 
 // Texel `i` of a MaterialRecord.
 vec4 material_texel(uint material, int i) {

@@ -1,7 +1,7 @@
 // Inputs and transforms of vertex shaders of mesh instances. Definition:
 //   INFLATE  vertices move along their normals
-//   WRINKLE_DISPLACED  vertices of skin move with its folds
-// Techniques: bump.tangent-space, shade.lighting-space, wrinkle.displacement
+// Hooks move vertices, too (render/material/surface_hooks.h).
+// Techniques: bump.tangent-space, shade.lighting-space
 
 #include "lib/inflate.glsl"
 
@@ -15,20 +15,12 @@ layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
 layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
 layout(location = 13) in vec2 second_uv;
-#if defined(WRINKLE_MAP) || defined(WRINKLE_VIEW)
-#define WRINKLE_STREAM
-layout(location = 14) in vec4 wrinkle;    // strengths, see lib/material.glsl
-#endif
 
-#ifdef WRINKLE_DISPLACED
-layout(location = 15) in float fold_height;  // along the normal [m]
-#endif
+#include "generated/position_hooks.glsl"
 
-// Inflated or not, folded or not.
+// Moved by hooks, inflated or not.
 vec3 moved_vertex(vec3 position) {
-#ifdef WRINKLE_DISPLACED
-    position += fold_height * normal_ms;
-#endif
+    hook_position(position);
 #ifdef INFLATE
     return inflate(position, normal_ms, uintBitsToFloat(instance.w));
 #else

@@ -4,8 +4,8 @@
 #include "lib/view.glsl"
 #include "projector_gpu.h"
 
-layout(binding = 18) uniform sampler2DArray projector_images;  // linear, with mip levels
-layout(binding = 19) uniform samplerBuffer projectors;         // ProjectorRecord
+layout(binding = kProjectorImagesUnit) uniform sampler2DArray projector_images;  // linear, with mip levels
+layout(binding = kProjectorsUnit) uniform samplerBuffer projectors;         // ProjectorRecord
 
 // Color by which cookie `number` (from 1; 0 is none) filters the light at `position_ws`.
 vec3 projected_color(float number, vec3 position_ws) {

@@ -2,11 +2,12 @@
 //   FULL_FLOATS  it has 32-bit floats, not 16-bit ones
 
 #include "lib/radiance.glsl"
+#include "fullscreen_gpu.h"
 
 #ifdef FULL_FLOATS
-layout(binding = 0, rgba32f) uniform image2D radiance;
+layout(binding = kTargetImage, rgba32f) uniform image2D radiance;
 #else
-layout(binding = 0, rgba16f) uniform image2D radiance;
+layout(binding = kTargetImage, rgba16f) uniform image2D radiance;
 #endif
 
 void add_radiance(ivec2 pixel, vec3 light) {

@@ -1,6 +1,8 @@
 // Whether surfaces of the scene hide what is drawn over its finished image.
 
-layout(binding = 3) uniform sampler2D scene_depth;  // reversed: near / distance
+#include "furrow_gpu.h"
+
+layout(binding = kFurrowSceneUnit) uniform sampler2D scene_depth;  // reversed: near / distance
 uniform int has_scene;                              // 0: nothing hides it
 
 const float kSceneSlack = 1.01;  // of the distance: the scene has the surface itself, which is drawn with jitter

@@ -20,8 +20,8 @@
 #include "lib/noise.glsl"
 #include "shadow_gpu.h"
 
-layout(binding = 15) uniform sampler2D shadow_atlas;     // reversed depth, 0 where empty
-layout(binding = 16) uniform samplerBuffer shadow_views;  // ShadowViewRecord
+layout(binding = kShadowAtlasUnit) uniform sampler2D shadow_atlas;     // reversed depth, 0 where empty
+layout(binding = kShadowViewsUnit) uniform samplerBuffer shadow_views;  // ShadowViewRecord
 
 const float kCascadeBlend = 0.1;  // share of a cascade over which it blends into the next one
 
@@ -204,7 +204,7 @@ float mask_visibility(float layer, vec2 pixel) {
     return 1.0;
 }
 #else
-layout(binding = 17) uniform sampler2DArray shadow_masks;  // one layer per light with shadow volumes
+layout(binding = kShadowMasksUnit) uniform sampler2DArray shadow_masks;  // one layer per light with shadow volumes
 
 float mask_visibility(float layer, vec2 pixel) {
     return texelFetch(shadow_masks, ivec3(pixel, layer), 0).r;

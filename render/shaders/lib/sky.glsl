@@ -4,13 +4,13 @@
 
 #include "environment_gpu.h"
 
-layout(std140, binding = 1) uniform Environment {
+layout(std140, binding = kEnvironmentBinding) uniform Environment {
     EnvironmentBlock environment;
 };
 
 #ifdef SKY_KIND
 #if SKY_KIND == 3
-layout(binding = 5) uniform samplerCube sky_cube;  // with all its mip levels
+layout(binding = kSkyCubeUnit) uniform samplerCube sky_cube;  // with all its mip levels
 #endif
 
 // The color between horizon and zenith falls off like haze, fast near the horizon; distant ground takes the color of

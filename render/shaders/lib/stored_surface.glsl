@@ -2,11 +2,12 @@
 // record of its material when lit.
 
 #include "lib/gbuffer.glsl"
+#include "gbuffer_gpu.h"
 
-layout(binding = 5) uniform usampler2D gbuffer;
-layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = kGbufferUnit) uniform usampler2D gbuffer;
+layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 #ifdef MATERIAL_RECORDS
-layout(binding = 13) uniform usampler2D gbuffer_material;
+layout(binding = kGbufferMaterialUnit) uniform usampler2D gbuffer_material;
 #endif
 
 SurfaceSample stored_surface(ivec2 pixel) {

@@ -5,9 +5,10 @@
 #include "lib/reflection_map.glsl"
 #include "lib/sky.glsl"
 #include "lib/view.glsl"
+#include "environment_gpu.h"
 
-layout(binding = 7) uniform sampler2DArray reflection_maps;
-layout(std140, binding = 5) uniform Surroundings {
+layout(binding = kReflectionMapsUnit) uniform sampler2DArray reflection_maps;
+layout(std140, binding = kSurroundingsBinding) uniform Surroundings {
     Irradiance surroundings[kReflectionLayers];
 };
 
@@ -18,11 +19,11 @@ struct EnvironmentLight {
 
 #ifdef PROBES
 #ifndef OPAQUE_UNIFORMS
-layout(std140, binding = 6) uniform Probes {
+layout(std140, binding = kProbesBinding) uniform Probes {
     ProbeBlock probe_block;
 };
 #else  // see lib/view.glsl
-layout(std140, binding = 6) uniform Probes {
+layout(std140, binding = kProbesBinding) uniform Probes {
     ProbeBlock probe_blocks[1];
 };
 #define probe_block probe_blocks[min(int(view.size.x), 0)]

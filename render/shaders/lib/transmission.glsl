@@ -5,9 +5,10 @@
 // thickness. Include after lib/lighting.glsl.
 
 #include "lib/optics.glsl"
+#include "material_clear_gpu.h"
 
-layout(binding = 22) uniform sampler2D behind_radiance;  // with mip levels
-layout(binding = 23) uniform sampler2D behind_depth;
+layout(binding = kBehindClearUnit) uniform sampler2D behind_radiance;  // with mip levels
+layout(binding = kBehindClearDepthUnit) uniform sampler2D behind_depth;
 
 layout(location = 9) flat in float scale;
 

@@ -4,15 +4,20 @@
 #include "view_gpu.h"
 
 #ifndef OPAQUE_UNIFORMS
-layout(std140, binding = 0) uniform View {
+layout(std140, binding = kViewBinding) uniform View {
     ViewBlock view;
 };
+// A uniform block of one struct, for conditions and loops: of `Type`, read as `name`. `names` is for the workaround below.
+#define UNIFORM_BLOCK(number, Block, Type, name, names) layout(std140, binding = number) uniform Block { Type name; }
 #else
 // Driver workaround (DeviceCaps::opaque_uniforms): the same block, read at an index that is 0 only at run time.
-layout(std140, binding = 0) uniform View {
+layout(std140, binding = kViewBinding) uniform View {
     ViewBlock view_blocks[1];
 };
 ViewBlock view = view_blocks[min(int(view_blocks[0].size.x), 0)];
+#define UNIFORM_BLOCK(number, Block, Type, name, names)                    \
+    layout(std140, binding = number) uniform Block { Type names[1]; }; \
+    Type name = names[min(int(view.size.x), 0)]
 #endif
 
 // Ray through a pixel (gl_FragCoord.xy), of length 1 m along the view axis.

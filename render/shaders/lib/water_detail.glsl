@@ -5,11 +5,11 @@
 #ifdef DETAIL
 #include "water_detail_gpu.h"
 
-layout(binding = 24) uniform sampler2DArray detail_waves;  // texture_waves.frag
-layout(binding = 25) uniform samplerBuffer water_details;  // WaterDetailRecord
+layout(binding = kDetailWavesUnit) uniform sampler2DArray detail_waves;  // texture_waves.frag
+layout(binding = kWaterDetailsUnit) uniform samplerBuffer water_details;  // WaterDetailRecord
 
 #ifdef DETAIL_MAP
-layout(binding = 23) uniform sampler2D detail_map;         // tangent space, green toward -z; repeats
+layout(binding = kDetailMapUnit) uniform sampler2D detail_map;         // tangent space, green toward -z; repeats
 
 // Slope variance within a texel of a filtered normal map: the more its unit vectors differ, the shorter their mean
 // (Toksvig 2005).

@@ -1,6 +1,8 @@
 // Foam on water: a cover that breaks up into lace as it dissolves (foam_pattern.h).
 
-layout(binding = 29) uniform sampler2D foam_pattern;
+#include "water_gpu.h"
+
+layout(binding = kFoamPatternUnit) uniform sampler2D foam_pattern;
 
 const float kFoamTile = 6.0;  // side of the pattern [m]
 const float kFoamEdge = 0.12;

@@ -5,6 +5,8 @@
 //   NO_SCREEN_REFLECTION  none has screen-space reflections
 // Techniques: water.fresnel-approx, water.reflection-refraction-maps
 
+#include "water_gpu.h"
+
 const int kSchlick = 1;
 const int kByAngle = 2;
 const int kScreenReflection = 0;
@@ -32,7 +34,7 @@ int reflection_of(WaterRecord water) {
 #ifdef PLANAR
 // The scene from a camera mirrored in the surface at rest, upside down; w: distance along its axis [m], 0 where empty.
 // Its mip levels are blurred.
-layout(binding = 22) uniform sampler2D reflection_map;
+layout(binding = kWaterReflectionUnit) uniform sampler2D reflection_map;
 
 const int kPlanarSteps = 3;
 const float kFarAway = 1e4;  // [m]

@@ -5,13 +5,15 @@
 //   NO_TRACED_REFRACTION     none has screen-space traced refraction from above
 // Techniques: water.reflection-refraction-maps, water.refraction-map
 
+#include "water_gpu.h"
+
 const int kTracedRefraction = 0;
 const int kShiftedRefraction = 1;
 const int kFloorRefraction = 2;
 const float kShift = 0.02;  // share of the image, for a horizontal normal
 
 #ifdef FLOOR_MAP
-layout(binding = 27) uniform sampler2D floor_map;  // repeats
+layout(binding = kFloorMapUnit) uniform sampler2D floor_map;  // repeats
 uniform float floor_tile;                          // side of a copy [m]
 
 // The floor map where a refracted ray hits it, lit by downwelling light.

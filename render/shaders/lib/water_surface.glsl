@@ -3,15 +3,15 @@
 
 #include "water_gpu.h"
 
-layout(binding = 1) uniform samplerBuffer waters;      // WaterRecord
-layout(binding = 2) uniform samplerBuffer wave_lines;  // WaveLineRecord
-layout(binding = 3) uniform samplerBuffer wave_rings;  // WaveRingRecord
-layout(binding = 4) uniform sampler2D ripple_atlas;    // height, velocity, slopes (ripple_atlas.h)
+layout(binding = kWatersUnit) uniform samplerBuffer waters;      // WaterRecord
+layout(binding = kWaveLinesUnit) uniform samplerBuffer wave_lines;  // WaveLineRecord
+layout(binding = kWaveRingsUnit) uniform samplerBuffer wave_rings;  // WaveRingRecord
+layout(binding = kRippleAtlasUnit) uniform sampler2D ripple_atlas;    // height, velocity, slopes (ripple_atlas.h)
 #ifdef OCEAN  // ocean_textures.h
-layout(binding = 6) uniform sampler2DArray ocean_shift;         // shift_x, height, shift_z, current
-layout(binding = 28) uniform sampler2DArray previous_ocean_shift;  // previous frame
-layout(binding = 14) uniform sampler2DArray ocean_slope;        // slope_x, slope_z, shift_xx, shift_zz
-layout(binding = 17) uniform sampler2DArray ocean_foam;         // shift_xz, foam
+layout(binding = kOceanShiftUnit) uniform sampler2DArray ocean_shift;         // shift_x, height, shift_z, current
+layout(binding = kPreviousOceanShiftUnit) uniform sampler2DArray previous_ocean_shift;  // previous frame
+layout(binding = kOceanSlopeUnit) uniform sampler2DArray ocean_slope;        // slope_x, slope_z, shift_xx, shift_zz
+layout(binding = kOceanFoamUnit) uniform sampler2DArray ocean_foam;         // shift_xz, foam
 #endif
 
 WaterRecord water_record(int body) {

@@ -1,9 +1,11 @@
 // Screen-space tracing of rays from a water surface, in the image of the scene without water. Include after
 // lib/view.glsl.
 
-layout(binding = 5) uniform sampler2D behind_radiance;  // without the water
-layout(binding = 26) uniform sampler2D behind_depth;
-layout(binding = 13) uniform sampler2D highest_surfaces;  // water_columns.frag
+#include "water_gpu.h"
+
+layout(binding = kBehindWaterUnit) uniform sampler2D behind_radiance;  // without the water
+layout(binding = kBehindWaterDepthUnit) uniform sampler2D behind_depth;
+layout(binding = kHighestWaterUnit) uniform sampler2D highest_surfaces;  // water_columns.frag
 
 // Of reflected rays.
 const float kMirrorStep = 10.0;       // [px] on average; what is narrower may be missed

@@ -1,0 +1,123 @@
+#include "render/material/surface_hooks.h"
+
+#include "ecs/base/check.h"
+#include "render/material/surface_features.h"
+#include "render/material/wrinkle_hook.h"
+#include "render/variant.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+
+namespace limn {
+namespace {
+
+constexpr const SurfaceHook* kSurfaceHooks[] = {
+    &kWrinkleHook,
+};
+static_assert(std::size(kSurfaceHooks) <= kMaxSurfaceHooks);
+
+constexpr std::uint64_t kHookBits = 16;
+
+/// Where the bits of a hook begin in HookBits.
+std::size_t first_bit(const SurfaceHook& hook) {
+    const auto* const found = std::find(std::begin(kSurfaceHooks), std::end(kSurfaceHooks), &hook);
+    LIMN_CHECK_NOTE(found != std::end(kSurfaceHooks), "the hook is not in the list");
+    return kHookBits * static_cast<std::size_t>(found - std::begin(kSurfaceHooks));
+}
+
+/// How GLSL declares a point, and passes on its arguments.
+struct PointText {
+    const char* name;
+    const char* parameters;
+    const char* arguments;
+};
+/// In the order of HookPoint.
+constexpr PointText kPointTexts[] = {
+    {"position", "inout vec3 position", "position"},
+    {"vertex", "inout vec3 tangent, vec3 normal", "tangent, normal"},
+    {"uv", "inout vec4 uv", "uv"},
+    {"color", "inout vec4 color", "color"},
+    {"normal", "inout vec3 normal", "normal"},
+    {"sample", "inout SurfaceSample s, vec3 smooth_normal", "s, smooth_normal"},
+};
+
+}  // namespace
+
+std::uint16_t HookBits::of(const SurfaceHook& hook) const {
+    return static_cast<std::uint16_t>(bits_ >> first_bit(hook));
+}
+
+void HookBits::set(const SurfaceHook& hook, std::uint16_t bits) {
+    const std::size_t first = first_bit(hook);
+    bits_ = (bits_ & ~(std::uint64_t{0xffff} << first)) | std::uint64_t{bits} << first;
+}
+
+std::span<const SurfaceHook* const> surface_hooks() {
+    return kSurfaceHooks;
+}
+
+void add_hooks(SurfaceFeatures& features, const HookBits& instance) {
+    for (const SurfaceHook* hook : kSurfaceHooks) {
+        hook->add(features, instance.of(*hook));
+    }
+}
+
+HookBits moving_hooks(const HookBits& hooks) {
+    HookBits moving;
+    for (const SurfaceHook* hook : kSurfaceHooks) {
+        moving.set(*hook, static_cast<std::uint16_t>(hooks.of(*hook) & hook->moving));
+    }
+    return moving;
+}
+
+void add_hook_definitions(Variant& variant, const HookBits& hooks) {
+    for (const SurfaceHook* hook : kSurfaceHooks) {
+        const std::uint16_t bits = hooks.of(*hook);
+        for (const HookDefinition& definition : hook->definitions) {
+            variant.add_if((bits & definition.bit) != 0, definition.name);
+        }
+    }
+}
+
+std::string hooks_glsl(
+    std::span<const SurfaceHook* const> hooks, const char* SurfaceHook::*file,
+    std::span<const HookPoint> points) {
+    std::string text;
+    for (const SurfaceHook* hook : hooks) {
+        if (hook->*file != nullptr) {
+            text += fmt::format("#include \"{}\"\n", hook->*file);
+        }
+    }
+    for (const HookPoint point : points) {
+        const PointText& glsl = kPointTexts[static_cast<std::size_t>(point)];
+        text += fmt::format("void hook_{}({}) {{\n", glsl.name, glsl.parameters);
+        for (const SurfaceHook* hook : hooks) {
+            if (std::find(hook->points.begin(), hook->points.end(), point) != hook->points.end()) {
+                text += fmt::format("    {}_{}({});\n", hook->name, glsl.name, glsl.arguments);
+            }
+        }
+        text += "}\n";
+    }
+    return text;
+}
+
+std::string position_hooks_glsl() {
+    constexpr HookPoint kPoints[] = {HookPoint::Position};
+    return hooks_glsl(kSurfaceHooks, &SurfaceHook::position_file, kPoints);
+}
+
+std::string vertex_hooks_glsl() {
+    constexpr HookPoint kPoints[] = {HookPoint::Vertex};
+    return hooks_glsl(kSurfaceHooks, &SurfaceHook::vertex_file, kPoints);
+}
+
+std::string surface_hooks_glsl() {
+    constexpr HookPoint kPoints[] = {
+        HookPoint::Uv, HookPoint::Color, HookPoint::Normal, HookPoint::Sample};
+    return hooks_glsl(kSurfaceHooks, &SurfaceHook::surface_file, kPoints);
+}
+
+}  // namespace limn

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace limn {
+
+class Variant;
+struct SurfaceFeatures;
+struct SurfaceHook;
+
+// How effects take part in the programs that draw surfaces. What any surface may need is a
+// SurfaceFeature and lib/material.glsl; what one effect adds, such as wrinkles, is a SurfaceHook: a
+// small set of bits that only the effect knows the meaning of, their definitions, and GLSL files
+// with functions that the shaders call. A hook is declared in a file of its effect
+// (wrinkle_hook.h) and has a line in the list of surface_hooks.cpp, whose order is that of the
+// calls.
+//
+// Shaders include what is generated from the list:
+//
+//     generated/position_hooks.glsl   HookPoint::Position, of all that draws meshes
+//     generated/vertex_hooks.glsl     HookPoint::Vertex, of mesh.vert
+//     generated/surface_hooks.glsl    all other points, of lib/material.glsl
+//
+// The file of a hook is part of every such program and has a function for each of its points,
+// which does nothing unless its definitions are set.
+
+/// Where a hook is called: each is a function `<hook>_<point>`.
+enum class HookPoint : std::uint8_t {
+    Position,  ///< (inout vec3 position): moves a vertex in mesh space
+    Vertex,    ///< (inout vec3 tangent, vec3 normal): in world space; passes on what fragments need
+    Uv,        ///< (inout vec4 uv): both sets of texture coordinates, before any map is read
+    Color,     ///< (inout vec4 color): before the colors of vertices
+    Normal,    ///< (inout vec3 normal): in tangent space, not unit; after the normal maps
+    Sample,    ///< (inout SurfaceSample s, vec3 smooth_normal): the finished sample, and its unit
+               ///< normal as it was before the hooks
+};
+
+inline constexpr std::size_t kMaxSurfaceHooks = 4;
+
+/// The bits of all hooks, 16 each.
+class HookBits {
+  public:
+    [[nodiscard]] std::uint16_t of(const SurfaceHook& hook) const;
+    void set(const SurfaceHook& hook, std::uint16_t bits);
+    /// Different for different bits.
+    [[nodiscard]] std::uint64_t key() const { return bits_; }
+    bool operator==(const HookBits&) const = default;
+
+  private:
+    std::uint64_t bits_ = 0;
+};
+
+struct HookDefinition {
+    std::uint16_t bit;
+    const char* name;
+};
+
+struct SurfaceHook {
+    const char* name;                   ///< prefix of its functions
+    std::span<const HookPoint> points;  ///< where it is called
+    std::span<const HookDefinition> definitions;
+    std::uint16_t moving = 0;             ///< bits with which it moves vertices
+    const char* position_file = nullptr;  ///< with HookPoint::Position
+    const char* vertex_file = nullptr;    ///< with HookPoint::Vertex
+    const char* surface_file = nullptr;   ///< with any other point
+    /// Adds what the hook does for an instance with these bits to the features of its material;
+    /// also called for instances that have none.
+    void (*add)(SurfaceFeatures& features, std::uint16_t instance);
+};
+
+/// In the order of their calls.
+[[nodiscard]] std::span<const SurfaceHook* const> surface_hooks();
+
+/// Calls SurfaceHook::add of each.
+void add_hooks(SurfaceFeatures& features, const HookBits& instance);
+
+/// Those that move vertices, which passes that draw no color need, too.
+[[nodiscard]] HookBits moving_hooks(const HookBits& hooks);
+
+/// Adds the definition of each bit.
+void add_hook_definitions(Variant& variant, const HookBits& hooks);
+
+// ---- generated GLSL ----
+
+[[nodiscard]] std::string hooks_glsl(
+    std::span<const SurfaceHook* const> hooks, const char* SurfaceHook::*file,
+    std::span<const HookPoint> points);
+[[nodiscard]] std::string position_hooks_glsl();
+[[nodiscard]] std::string vertex_hooks_glsl();
+[[nodiscard]] std::string surface_hooks_glsl();
+
+}  // namespace limn

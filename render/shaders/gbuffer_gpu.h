@@ -1,0 +1,16 @@
+// Texture units of the G-buffer, for all that reads a view's. Shared by C++ and GLSL.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+const uint kGbufferUnit = 5u;
+const uint kDepthUnit = 6u;
+const uint kGbufferMaterialUnit = 13u;
+const uint kVelocityUnit = 14u;
+
+#ifdef __cplusplus
+}  // namespace limn::layout
+#endif
