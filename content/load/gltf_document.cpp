@@ -218,6 +218,10 @@ float number_of(const tinygltf::Value& object, const char* name, double missing)
 }
 
 std::span<const std::byte> view_bytes(const GltfDocument& document, std::int32_t view) {
+    if (const std::vector<std::byte>& decoded = item_at(document.decoded_views, view);
+        !decoded.empty()) {
+        return decoded;
+    }
     const tinygltf::BufferView& source = item_at(document.model.bufferViews, view);
     const auto bytes =
         std::as_bytes(std::span(item_at(document.model.buffers, source.buffer).data));
