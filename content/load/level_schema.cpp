@@ -335,6 +335,9 @@ JsonValue schema_of_node() {
          schema_member(
              "gltf", described(of_type("string"), "a .gltf or .glb beside the level, placed here")),
          schema_member(
+             "variant",
+             described(of_type("string"), "of the materials of \"gltf\"; default: its own")),
+         schema_member(
              "nodes",
              described(
                  map_of(reference("components")), "changes of the nodes of \"gltf\", or of "

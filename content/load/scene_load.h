@@ -37,7 +37,8 @@ struct LoadedScene {
     std::vector<LevelShow> shows;
     std::optional<LevelShow> show;   ///< the chosen one
     LevelFields fields;              ///< of a level, for update_level
-    std::optional<ModelView> model;  ///< of a model by itself
+    std::optional<ModelView> model;     ///< of a model by itself
+    std::vector<std::string> variants;  ///< of its materials: choices for ModelViewOptions
 };
 
 /// Fills `world`, which afterwards has the resources Assets, Environment, Rendering, Exposure,
