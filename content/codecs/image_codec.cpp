@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <span>
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -54,6 +56,16 @@ bool read_pixels(OIIO::ImageInput& input, OIIO::TypeDesc type, std::vector<std::
     return true;
 }
 
+/// Undoes what OpenImageIO does to WebP, whatever it is told: colors are multiplied by alpha.
+void divide_by_alpha(std::span<std::uint8_t> rgba) {
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+        const int alpha = std::max<int>(rgba[i + 3], 1);
+        for (std::size_t k = i; k < i + 3; ++k) {
+            rgba[k] = static_cast<std::uint8_t>(std::min((255 * rgba[k] + alpha / 2) / alpha, 255));
+        }
+    }
+}
+
 bool decode(
     std::span<const std::byte> bytes, const char* format, const ImageLimits& limits,
     ImageData& image, std::string& error) {
@@ -87,6 +99,9 @@ bool decode(
     if (!complete || input->has_error()) {
         error = fmt::format("corrupt {} image: {}", format, input->geterror());
         return false;
+    }
+    if (std::string_view(format) == "webp" && !floats && spec.nchannels == 4) {
+        divide_by_alpha(image.pixels);
     }
     return true;
 }

@@ -23,6 +23,7 @@ class World;
 struct ModelViewOptions {
     std::string backdrop = "studio";  ///< studio, sky, gray, black, or an image: a panorama
     double turntable = 0;             ///< seconds per turn of the camera; 0: fixed
+    std::string variant = {};         ///< of the materials of a glTF file; empty: its default
     LoadOptions load = {};            ///< how bad parts of the file are handled
 };
 

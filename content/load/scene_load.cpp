@@ -140,17 +140,23 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
     const bool is_obj = ends_with_any(path, {".obj"});
     const LoadOptions& load = options.model.load;
-    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path, {}, load));
+    const std::string& variant = options.model.variant;
+    if (is_obj && !variant.empty()) {
+        return fail("{}: found an OBJ file, expected glTF with --variant", path);
+    }
+    GltfScene model =
+        LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path, {}, load, variant));
     LoadedScene scene;
     scene.name = model.name;
     scene.path = path;
+    scene.variants = model.variants;
     insert_missing<Assets>(world);
     const std::string file = std::filesystem::path(path).filename().string();
     const std::vector<Entity> roots =
         spawn_gltf(world, world.resource<Assets>(), std::move(model)).roots;
     for (const Entity root : roots) {
         if (!is_obj) {  // which levels cannot use
-            world.add(root, GltfSource{file});
+            world.add(root, GltfSource{file, variant});
         }
     }
     if (world.query<const MeshInstance>().empty()) {
@@ -218,9 +224,11 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
         return load_model_scene(world, scene, options);
     }
     if (options.model.backdrop != ModelViewOptions{}.backdrop || options.model.turntable > 0
-        || options.model.load.strict) {
+        || !options.model.variant.empty() || options.model.load.strict) {
         return fail(
-            "{}: found a level, expected a model with --backdrop, --turntable and --strict", scene);
+            "{}: found a level, expected a model with --backdrop, --turntable, --variant and "
+            "--strict",
+            scene);
     }
     const bool is_path = ends_with_any(scene, {".json"}) || scene.find('/') != std::string::npos;
     const Result<std::string> path = is_path ? scene : find_level(scene);

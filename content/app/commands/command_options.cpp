@@ -72,6 +72,10 @@ void add_model_view(CLI::App& app, ModelViewOptions& options) {
     add_number(
         app, "--turntable", "of a model: seconds per full turn", options.turntable, 0.1, 3600)
         ->type_name("SECONDS");
+    app.add_option(
+           "--variant", options.variant,
+           "of a glTF model: a variant of its materials, which `limn info` lists")
+        ->type_name("NAME");
     app.add_flag(
         "--strict", options.load.strict,
         "of a model: fail on a bad part, which otherwise is skipped with a warning");

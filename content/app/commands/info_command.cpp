@@ -333,6 +333,7 @@ Status print_scene(const std::string& file) {
     if (scene->duration > 0.0) {
         fmt::print("camera path of {:.1f} s\n", scene->duration);
     }
+    print_list("material variant", scene->variants);
     const std::vector<Entity> entities = own_entities(world, *scene);
     print_components(world, entities);
     print_cameras_and_lights(world, entities);

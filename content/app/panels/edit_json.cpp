@@ -82,6 +82,13 @@ bool names_others(const std::vector<FieldInfo>& fields) {
     });
 }
 
+void set_source(JsonValue& object, const GltfSource& source) {
+    set_member(object, "gltf", json_of(std::string_view(source.file)));
+    if (!source.variant.empty()) {
+        set_member(object, "variant", json_of(std::string_view(source.variant)));
+    }
+}
+
 /// {"name": ..., "gltf": ..., "nodes": {NODE: components}}: how a level changes a node of a file.
 std::string node_as_json(const World& world, Entity node, JsonValue components) {
     const Entity source = source_of(world, node);
@@ -93,7 +100,7 @@ std::string node_as_json(const World& world, Entity node, JsonValue components) 
     if (owner != nullptr && !world.has<FromGltf>(source)) {
         set_member(object, "name", json_of(std::string_view(owner->text)));
     }
-    set_member(object, "gltf", json_of(std::string_view(world.get<const GltfSource>(source).file)));
+    set_source(object, world.get<const GltfSource>(source));
     const Name* const name = name_of(world, node);
     if (name == nullptr) {
         return write_json(object) + "  // unnamed node: a level cannot refer to it";
@@ -182,7 +189,7 @@ class CopiedTree {
         }
         if (const auto* const source = world_.find<GltfSource>(entity);
             source != nullptr && !is_node) {
-            set_member(object, "gltf", json_of(std::string_view(source->file)));
+            set_source(object, *source);
         }
         for (const ComponentId id : world_.components_of(entity)) {
             const ComponentInfo& info = component_info(id);

@@ -211,7 +211,7 @@ void fill_weights(const ChannelGroup& group, ClipSheet& sheet) {
     }
 }
 
-Vec3 vector_of(const float* numbers) {
+Vec3 key_vector(const float* numbers) {
     return {numbers[0], numbers[1], numbers[2]};
 }
 Quat quaternion_of(const float* numbers) {
@@ -541,8 +541,8 @@ class AnimationBuilder {
         sheet.times = group.times;
         sheet.interpolation = group.interpolation;
         fill_rows(group, Path::Rotation, sheet.rotating, sheet.rotations, quaternion_of);
-        fill_rows(group, Path::Translation, sheet.translating, sheet.translations, vector_of);
-        fill_rows(group, Path::Scale, sheet.scaling, sheet.scales, vector_of);
+        fill_rows(group, Path::Translation, sheet.translating, sheet.translations, key_vector);
+        fill_rows(group, Path::Scale, sheet.scaling, sheet.scales, key_vector);
         fill_weights(group, sheet);
         normalize_rotations(sheet);
         return sheet;

@@ -220,6 +220,10 @@ Result<std::span<const std::byte>> view_bytes(const GltfDocument& document, std:
             find_bad_part(document, "bufferViews", static_cast<std::size_t>(view))) {
         return fail("{}: {}", document.file, *reason);
     }
+    if (const std::vector<std::byte>& decoded = item_at(document.decoded_views, view);
+        !decoded.empty()) {
+        return std::span<const std::byte>(decoded);
+    }
     const tinygltf::BufferView& source = item_at(document.model.bufferViews, view);
     const auto bytes =
         std::as_bytes(std::span(item_at(document.model.buffers, source.buffer).data));

@@ -42,7 +42,8 @@ struct GltfDocument {
     tinygltf::Model model;
     JsonValue json;                 ///< of the file, without URIs; see extras_of
     std::vector<GltfImage> images;  ///< indexed as in the file
-    std::uint64_t values_left = 0;  ///< remaining of limits.max_values
+    std::vector<std::vector<std::byte>> decoded_views;  ///< bytes of those that were compressed
+    std::uint64_t values_left = 0;                      ///< remaining of limits.max_values
     /// "accessors[3]" and other items that are left out, and why: stand-ins are in their place.
     std::map<std::string, std::string> bad_parts;
     /// Scene node of each file node, or -1; set by build_nodes.
@@ -134,6 +135,11 @@ read_floats(GltfDocument& document, std::int32_t index, int components, const st
 read_indices(GltfDocument& document, std::int32_t index, const std::string& place);
 
 // ---- readers ------------------------------------------------------------------------------------
+
+/// Fills `scene.variants` and gives the primitives the materials of the variant `name`; "" is the
+/// default. Fails where there is none of that name. Before the meshes and materials are built.
+[[nodiscard]] Status
+choose_variant(GltfDocument& document, const std::string& name, GltfScene& scene);
 
 /// Fills `scene.materials`, in the file's order with the default material after them, and
 /// `scene.images` with the images they use. An image used both as color and as data is stored

@@ -1,6 +1,8 @@
 #include "content/load/gltf/gltf_file.h"
 
 #include "content/load/files/file_uri.h"
+#include "content/load/gltf/gltf_extensions.h"
+#include "content/load/gltf/gltf_meshopt.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -11,7 +13,6 @@
 #include <cstring>
 #include <exception>
 #include <limits>
-#include <set>
 #include <sstream>
 #include <utility>
 
@@ -29,13 +30,6 @@
 namespace limn {
 
 namespace {
-
-constexpr std::array kExtensions = {
-    std::string_view("KHR_lights_punctual"),   std::string_view("KHR_materials_emissive_strength"),
-    std::string_view("KHR_materials_ior"),     std::string_view("KHR_materials_transmission"),
-    std::string_view("KHR_materials_unlit"),   std::string_view("KHR_materials_volume"),
-    std::string_view("KHR_mesh_quantization"), std::string_view("KHR_texture_transform"),
-};
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67;   // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a;  // "JSON"
@@ -106,53 +100,10 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
     return chunks;
 }
 
-bool has_extension(std::string_view name) {
-    return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
-}
-
-/// Names of the extensions in `json`, whether the file lists them or not.
-void find_extensions(const JsonValue& json, std::set<std::string_view>& names) {
-    for (const JsonValue& item : json.items) {
-        find_extensions(item, names);
-    }
-    for (const JsonMember& member : json.members) {
-        if (member.key == "extensions") {
-            for (const JsonMember& extension : member.value.members) {
-                names.insert(extension.key);
-            }
-        } else if (member.key != "extras") {
-            find_extensions(member.value, names);
-        }
-    }
-}
-
-void warn_of_extensions(GltfDocument& document) {
-    std::set<std::string_view> used;
-    for (const JsonValue& name : document.json["extensionsUsed"].items) {
-        used.insert(name.text);
-    }
-    find_extensions(document.json, used);
-    for (const std::string_view name : used) {
-        if (!has_extension(name)) {
-            document.warnings.push_back(
-                fmt::format("{}: the extension {} is ignored", document.file, in_quotes(name)));
-        }
-    }
-}
-
 Status check_version(const JsonValue& json, const std::string& file) {
     const std::string& version = json["asset"]["version"].text;
     if (!version.starts_with("2.")) {
         return fail("{}: asset.version: found {}, expected 2.x", file, in_quotes(version));
-    }
-    const std::vector<JsonValue>& required = json["extensionsRequired"].items;
-    for (std::size_t i = 0; i < required.size(); ++i) {
-        const std::string& name = required[i].text;
-        if (!has_extension(name)) {
-            return fail(
-                "{}: extensionsRequired[{}]: found {}, expected one of {}", file, i,
-                in_quotes(name), join_text(kExtensions, ", "));
-        }
     }
     return Done{};
 }
@@ -224,7 +175,9 @@ Result<BufferBytes> take_buffers(GltfDocument& document, const GltfChunks& chunk
             bytes.assign(chunks.binary.begin(), chunks.binary.end());
         } else {
             // An extension that Limn does not have may tell where the data are.
-            document.warnings.push_back(place + ": it has no data");
+            if (!buffer["extensions"]["EXT_meshopt_compression"]["fallback"].truth) {
+                document.warnings.push_back(place + ": it has no data");
+            }
             set_member(buffer, "byteLength", json_of(std::uint64_t{1}));
             continue;
         }
@@ -389,7 +342,9 @@ void check_views(GltfDocument& document) {
         }
         const tinygltf::BufferView& view = views[i];
         const std::size_t size = item_at(document.model.buffers, view.buffer).data.size();
-        if (size > 0 && (view.byteOffset > size || view.byteLength > size - view.byteOffset)) {
+        const bool is_read = document.decoded_views[i].empty();
+        if (is_read && size > 0
+            && (view.byteOffset > size || view.byteLength > size - view.byteOffset)) {
             const std::string part = fmt::format("bufferViews[{}]", i);
             const std::string reason = fmt::format(
                 "{}: found {} bytes from byte {}, expected to stay within the {} of buffers[{}]",
@@ -446,12 +401,13 @@ Result<GltfDocument> open_gltf(
         document.warnings.push_back(
             fmt::format("{}: {} bytes after the GLB are ignored", file, chunks.trailing));
     }
-    warn_of_extensions(document);
+    LIMN_TRY(check_gltf_extensions(document.json, file, document.warnings));
     warn_of_empty_accessors(document);
     take_images(document);
     add_missing_targets(document.json);
     BufferBytes buffers = LIMN_TRY(take_buffers(document, chunks));
     LIMN_TRY(load_model(document, std::move(buffers)));
+    LIMN_TRY(decode_meshopt_views(document));
     check_views(document);
     return document;
 }

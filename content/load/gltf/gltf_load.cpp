@@ -78,10 +78,11 @@ GltfParts build_meshes(GltfDocument& document, GltfScene& scene) {
 
 Result<GltfScene> parse(
     std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
-    const GltfLimits& limits) {
+    const GltfLimits& limits, const std::string& variant) {
     GltfDocument document = LIMN_TRY(open_gltf(bytes, file, folder, limits));
     GltfScene scene;
     scene.name = std::filesystem::path(file).stem().string();
+    LIMN_TRY(choose_variant(document, variant, scene));
     LIMN_TRY(build_materials(document, scene));
     const GltfParts parts = build_meshes(document, scene);
     LIMN_TRY(build_nodes(document, parts, scene));
@@ -95,20 +96,21 @@ Result<GltfScene> parse(
 
 Result<GltfScene> parse_gltf(
     std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
-    const GltfLimits& limits) {
+    const GltfLimits& limits, const std::string& variant) {
     try {
-        return parse(bytes, file, folder, limits);
+        return parse(bytes, file, folder, limits, variant);
     } catch (const std::exception& exception) {  // out of memory, or thrown by a library
         return fail("{}: cannot be loaded: {}", file, exception.what());
     }
 }
 
-Result<GltfScene>
-load_gltf(const std::string& path, const GltfLimits& limits, const LoadOptions& options) {
+Result<GltfScene> load_gltf(
+    const std::string& path, const GltfLimits& limits, const LoadOptions& options,
+    const std::string& variant) {
     const std::vector<std::byte> bytes = LIMN_TRY(read_file(path, limits.max_bytes));
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     GltfScene scene =
-        LIMN_TRY(parse_gltf(bytes, path, folder.empty() ? "." : folder.string(), limits));
+        LIMN_TRY(parse_gltf(bytes, path, folder.empty() ? "." : folder.string(), limits, variant));
     LIMN_TRY(report_load_warnings(path, scene.warnings, options));
     return scene;
 }

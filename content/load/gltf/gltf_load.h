@@ -20,12 +20,13 @@ namespace limn {
 // sets, normalized and sparse accessors, metal-rough materials, textures, samplers, perspective
 // cameras, KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
 // KHR_materials_transmission without its texture, KHR_materials_ior and KHR_materials_volume of
-// what transmits, KHR_mesh_quantization, KHR_texture_transform, points and lines (gltf_strokes.h),
-// skeletons, skins with any number of joints per vertex, morph targets with their action units,
-// named regions of vertices (surface.h), animation clips, and our components in extras.limn of a
-// node. Ignored with a warning: orthographic cameras, lights of unknown type, bytes after a GLB,
-// textures in unsupported image formats, morph targets of texture coordinates and colors, other
-// extensions unless they are required.
+// what transmits, KHR_materials_variants, KHR_mesh_quantization, KHR_texture_transform,
+// EXT_mesh_gpu_instancing, EXT_meshopt_compression, EXT_texture_webp, points and lines
+// (gltf_strokes.h), skeletons, skins with any number of joints per vertex, morph targets with their
+// action units, named regions of vertices (surface.h), animation clips, and our components in
+// extras.limn of a node. Ignored with a warning: orthographic cameras, lights of unknown type,
+// bytes after a GLB, textures in unsupported image formats, morph targets of texture coordinates
+// and colors, other extensions unless they are required.
 //
 // Missing normals are generated with a crease angle of 50 degrees, not flat as the specification
 // demands: models without normals are mostly organic scans and low-poly animals, which look better
@@ -45,15 +46,16 @@ struct GltfLimits {
     ImageLimits image;
 };
 
-/// Loads `path`. Components of extras.limn must be registered (ecs/components/all.h). Reports the
-/// warnings; see load_warnings.h.
-[[nodiscard]] Result<GltfScene>
-load_gltf(const std::string& path, const GltfLimits& limits = {}, const LoadOptions& options = {});
+/// Loads `path`. Components of extras.limn must be registered (ecs/components/all.h). `variant`: of
+/// its materials, by name; "" is the default. Reports the warnings; see load_warnings.h.
+[[nodiscard]] Result<GltfScene> load_gltf(
+    const std::string& path, const GltfLimits& limits = {}, const LoadOptions& options = {},
+    const std::string& variant = {});
 
 /// The same from memory. `file` is the prefix of messages; URIs are resolved under `folder`, and if
 /// that is empty, a reference to another file is an error.
 [[nodiscard]] Result<GltfScene> parse_gltf(
     std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
-    const GltfLimits& limits = {});
+    const GltfLimits& limits = {}, const std::string& variant = {});
 
 }  // namespace limn

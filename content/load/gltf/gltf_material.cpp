@@ -40,6 +40,13 @@ Wrap to_wrap(std::int32_t mode) {
     }
 }
 
+/// In whichever format is offered, WebP first; -1 where there is none.
+int image_of(const tinygltf::Texture& texture) {
+    const tinygltf::Value& webp =
+        member_of(extension_of(texture.extensions, "EXT_texture_webp"), "source");
+    return webp.IsNumber() ? webp.GetNumberAsInt() : texture.source;
+}
+
 class MaterialBuilder {
   public:
     explicit MaterialBuilder(GltfDocument& document)
@@ -128,11 +135,12 @@ class MaterialBuilder {
             return result;
         }
         const tinygltf::Texture& texture = item_at(document_.model.textures, info.index);
-        if (texture.source < 0) {
+        const int source = image_of(texture);
+        if (source < 0) {
             warn(fmt::format("textures[{}] has no image in a supported format", info.index));
             return result;
         }
-        result.image.index = use_image(static_cast<std::size_t>(texture.source), srgb);
+        result.image.index = use_image(static_cast<std::size_t>(source), srgb);
         if (texture.sampler >= 0) {
             const tinygltf::Sampler& sampler = item_at(document_.model.samplers, texture.sampler);
             result.wrap_u = to_wrap(sampler.wrapS);

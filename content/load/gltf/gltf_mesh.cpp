@@ -59,6 +59,12 @@ class MeshBuilder {
         if (find_attribute("POSITION") < 0) {
             return skip("it has no POSITION attribute");
         }
+        if (!has_data(find_attribute("POSITION")) && source_.targets.empty()) {
+            return skip("its positions are not in the file");
+        }
+        if (source_.indices >= 0 && !has_data(source_.indices)) {
+            return skip("its indices are not in the file");
+        }
         LIMN_TRY(read_positions());
         if (positions_.empty()) {
             return skip("it has no vertices");
@@ -84,6 +90,12 @@ class MeshBuilder {
     [[nodiscard]] int find_attribute(const char* name) const {
         const auto found = source_.attributes.find(name);
         return found != source_.attributes.end() ? found->second : -1;
+    }
+
+    /// Whether anything is stored; all zeros otherwise, as where an extension has the data.
+    [[nodiscard]] bool has_data(int accessor) const {
+        const tinygltf::Accessor& source = item_at(document_.model.accessors, accessor);
+        return source.bufferView >= 0 || source.sparse.isSparse;
     }
 
     Result<std::optional<MeshData>> skip(std::string_view why) {

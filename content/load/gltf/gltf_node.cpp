@@ -15,6 +15,8 @@ namespace limn {
 namespace {
 
 constexpr const char* kLightExtension = "KHR_lights_punctual";
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+constexpr std::size_t kMaxInstances = 100'000;  ///< of all nodes of a file
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 constexpr std::size_t kMaxMorphs = std::numeric_limits<std::uint16_t>::max();
@@ -202,8 +204,10 @@ class NodeBuilder {
             node.parent = static_cast<std::int32_t>(parent->second);
         }
         LIMN_TRY(read_transform(index, node.transform));
+        std::vector<Transform> instances;
         if (source.mesh >= 0 && source.skin < 0) {
             LIMN_TRY(add_parts(index, node));
+            instances = LIMN_TRY(read_instances(index));
         }
         read_camera(source, node);
         const tinygltf::Value& light =
@@ -213,7 +217,74 @@ class NodeBuilder {
         }
         number_[index] = static_cast<std::uint32_t>(scene_.nodes.size());
         scene_.nodes.push_back(std::move(node));
+        add_instances(instances);
         return Done{};
+    }
+
+    /// Those of the mesh of node `index`; none where it is drawn once.
+    Result<std::vector<Transform>> read_instances(std::uint32_t index) {
+        const tinygltf::Value& attributes =
+            member_of(extension_of(nodes_[index].extensions, kInstancing), "attributes");
+        std::vector<Transform> instances;
+        for (const auto& [name, width] :
+             {std::pair<const char*, int>{"TRANSLATION", 3}, {"ROTATION", 4}, {"SCALE", 3}}) {
+            if (!attributes.Has(name)) {
+                continue;
+            }
+            const std::string here =
+                fmt::format("{}.extensions.{}.attributes.{}", place(index), kInstancing, name);
+            const std::vector<float> values = LIMN_TRY(
+                read_floats(document_, attributes.Get(name).GetNumberAsInt(), width, here));
+            const std::size_t count = values.size() / static_cast<std::size_t>(width);
+            if (!instances.empty() && count != instances.size()) {
+                return fail(
+                    "{}: found {} elements, expected {} as in the attribute before it", here, count,
+                    instances.size());
+            }
+            instances.resize(count);
+            for (std::size_t i = 0; i < count; ++i) {
+                set_instance(
+                    instances[i], width, name, &values[i * static_cast<std::size_t>(width)]);
+            }
+        }
+        if (instances.size() > kMaxInstances - instance_count_) {
+            document_.warnings.push_back(fmt::format(
+                "{}.extensions.{}: {} of its {} instances are drawn", place(index), kInstancing,
+                kMaxInstances - instance_count_, instances.size()));
+            instances.resize(kMaxInstances - instance_count_);
+        }
+        instance_count_ += instances.size();
+        return instances;
+    }
+
+    static void
+    set_instance(Transform& instance, int width, std::string_view name, const float* values) {
+        if (width == 4) {
+            const Quat rotation(values[3], values[0], values[1], values[2]);
+            const float length = glm::length(rotation);
+            instance.rotation = length > 1e-6f ? rotation / length : Quat(1, 0, 0, 0);
+            return;
+        }
+        const Vec3 vector(values[0], values[1], values[2]);
+        (name == "SCALE" ? instance.scale : instance.position) = vector;
+        avoid_zero_scale(instance);
+    }
+
+    /// Moves the parts of the last node to a child for each instance.
+    void add_instances(const std::vector<Transform>& instances) {
+        const std::size_t parent = scene_.nodes.size() - 1;
+        for (const Transform& instance : instances) {
+            GltfNode node;
+            node.parent = static_cast<std::int32_t>(parent);
+            node.transform = instance;
+            node.parts = scene_.nodes[parent].parts;
+            node.first_morph = scene_.nodes[parent].first_morph;
+            scene_.nodes.push_back(std::move(node));
+        }
+        if (!instances.empty()) {
+            scene_.nodes[parent].parts.clear();
+            scene_.nodes[parent].first_morph = -1;
+        }
     }
 
     Status read_transform(std::uint32_t index, Transform& transform) {
@@ -384,6 +455,7 @@ class NodeBuilder {
     const std::vector<tinygltf::Node>& nodes_;
     const GltfParts& parts_;
     GltfScene& scene_;
+    std::size_t instance_count_ = 0;     ///< so far, of all nodes
     std::vector<std::uint32_t> parent_;  ///< of each node of the file
     std::vector<std::uint32_t> order_;   ///< nodes of the scene, parents first
     std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< node of the file -> of the scene

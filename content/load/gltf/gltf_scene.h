@@ -53,6 +53,7 @@ struct GltfScene {
     std::vector<SkinData> skins;
     std::vector<ClipData> clips;
     std::vector<float> morph_weights;   ///< initial weights of all nodes with morph targets
+    std::vector<std::string> variants;  ///< names of the choices of materials
     std::vector<std::string> warnings;  ///< one line per ignored feature of the file
 };
 

@@ -30,7 +30,13 @@ constexpr std::string_view kSchema =
     R"(: asset! object; extensionsUsed[] text; extensionsRequired[] text
 asset: version! text
 buffers[]: uri text; byteLength! size
+buffers[].extensions.EXT_meshopt_compression: fallback bool
 bufferViews[]: buffer! index buffers; byteOffset size; byteLength! size 1; byteStride size 4 252 4
+bufferViews[].extensions.EXT_meshopt_compression: buffer! index buffers; byteOffset size
+bufferViews[].extensions.EXT_meshopt_compression: byteLength! size 1; count! size 1 4294967295
+bufferViews[].extensions.EXT_meshopt_compression: byteStride! size 2 256
+bufferViews[].extensions.EXT_meshopt_compression: mode! text ATTRIBUTES TRIANGLES INDICES
+bufferViews[].extensions.EXT_meshopt_compression: filter text NONE OCTAHEDRAL QUATERNION EXPONENTIAL
 accessors[]: bufferView index bufferViews; byteOffset size; normalized bool
 accessors[]: componentType! code 5120 5121 5122 5123 5125 5126; count! size 0 4294967295
 accessors[]: type! text SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4
@@ -41,6 +47,7 @@ accessors[].sparse.values: bufferView! index bufferViews; byteOffset size 0 2147
 images[]: name text; uri text; bufferView index bufferViews
 samplers[]: magFilter size 0 65535; minFilter size 0 65535; wrapS size 0 65535; wrapT size 0 65535
 textures[]: source index images; sampler index samplers
+textures[].extensions.EXT_texture_webp: source index images
 materials[]: name text; alphaMode text OPAQUE MASK BLEND; alphaCutoff factor 0 1e9
 materials[]: doubleSided bool; emissiveFactor factor3 0 1e9
 materials[].extensions.KHR_materials_transmission: transmissionFactor factor 0 1
@@ -59,6 +66,9 @@ extensions.KHR_lights_punctual.lights[]: name text; type! text; color vec3 0 1e9
 extensions.KHR_lights_punctual.lights[]: intensity number 0 1e9; range number 1e-6 1e9
 extensions.KHR_lights_punctual.lights[].spot: innerConeAngle factor 0 1.5707964
 extensions.KHR_lights_punctual.lights[].spot: outerConeAngle factor 0 1.5707964
+extensions.KHR_materials_variants.variants[]: name! text
+meshes[].primitives[].extensions.KHR_materials_variants.mappings[]: material! index materials; variants! array
+meshes[].primitives[].extensions.KHR_materials_variants.mappings[]: variants[] index extensions.KHR_materials_variants.variants
 meshes[]: name text; primitives! array 1; weights[] number
 meshes[].primitives[]: attributes! object; indices index accessors; material index materials
 meshes[].primitives[]: mode size 0 6
@@ -74,6 +84,8 @@ nodes[]: name text; children[] index nodes; mesh index meshes; camera index came
 nodes[]: skin index skins; matrix vec16; translation vec3; rotation vec4; scale vec3
 nodes[]: weights[] number
 nodes[].extensions.KHR_lights_punctual: light! index extensions.KHR_lights_punctual.lights
+nodes[].extensions.EXT_mesh_gpu_instancing: attributes! object
+nodes[].extensions.EXT_mesh_gpu_instancing.attributes: * index accessors
 scenes[]: nodes[] index nodes
 : scene index scenes)";
 
@@ -116,6 +128,7 @@ constexpr std::string_view kMembers[] = {
     "extensionsUsed",
     "extensions",
     "extensions.KHR_lights_punctual",
+    "extensions.KHR_materials_variants",
     "extensions.KHR_lights_punctual.lights[].range",
     "images",
     "samplers",
@@ -127,6 +140,8 @@ constexpr std::string_view kMembers[] = {
     "meshes[].weights",
     "meshes[].primitives!",
     "meshes[].primitives[].material",
+    "meshes[].primitives[].extensions",
+    "meshes[].primitives[].extensions.",
     "meshes[].primitives[].attributes.*",
     "meshes[].primitives[].targets[].*",
     "skins",
@@ -135,6 +150,7 @@ constexpr std::string_view kMembers[] = {
     "nodes[].skin",
     "nodes[].weights",
     "nodes[].extensions.",
+    "buffers[].extensions.",
 };
 
 /// What a light or a camera must have by its type.

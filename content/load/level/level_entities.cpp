@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint32_t kUseGeneration = 0xfffffffdu;  // marks a placeholder for a NameUse
 constexpr std::size_t kMaxLayers = 64;
 
-const std::vector<std::string_view> kNodeKeys = {"name",  "prefab", "gltf",
+const std::vector<std::string_view> kNodeKeys = {"name",  "prefab", "gltf",    "variant",
                                                  "nodes", "repeat", "children"};
 
 bool is_node_key(std::string_view key) {
@@ -420,15 +420,24 @@ void LevelEntities::add_copy(
 Status LevelEntities::add_gltf(List& list, const Node& node, std::uint32_t index) {
     const JsonLocation location{file_, node.path};
     const JsonValue* const gltf = find_in_layers(node.layers, "gltf");
+    const JsonValue* const variant = find_in_layers(node.layers, "variant");
+    if (variant != nullptr) {
+        LIMN_TRY(expect(*variant, JsonKind::String, location, "a material variant of the file"));
+        if (gltf == nullptr) {
+            return refuse(
+                node.path, variant->at, "a variant without a glTF file", "\"gltf\" as well");
+        }
+    }
     if (gltf != nullptr) {
         LIMN_TRY(expect(*gltf, JsonKind::String, location, "the path of a .gltf or .glb file"));
+        const std::string chosen = variant != nullptr ? variant->text : "";
         const auto known =
             std::find_if(list.gltfs.begin(), list.gltfs.end(), [&](const GltfUse& use) {
-                return use.file == gltf->text;
+                return use.file == gltf->text && use.variant == chosen;
             });
         GltfUse& use = known != list.gltfs.end()
                            ? *known
-                           : list.gltfs.emplace_back(GltfUse{gltf->text, gltf->at, {}});
+                           : list.gltfs.emplace_back(GltfUse{gltf->text, chosen, gltf->at, {}});
         use.entities.push_back(index);
     }
     for (const JsonValue* const layer : node.layers) {
@@ -481,7 +490,7 @@ Status LevelEntities::read_member(
         }
         return refuse(
             node.path, member.at, "the component " + in_quotes(member.key),
-            "one of `limn components`, or one of name prefab gltf nodes repeat children"
+            "one of `limn components`, or one of name prefab gltf variant nodes repeat children"
                 + where_it_belongs(member.key, did_you_mean(member.key, known)));
     }
     if (is_internal(*info)) {

@@ -34,6 +34,7 @@ struct EntityLimits {
 /// A glTF file and the entities that use it.
 struct GltfUse {
     std::string file;
+    std::string variant;  ///< of its materials; empty: the default
     SourcePosition at;
     std::vector<std::uint32_t> entities;  ///< indices into the list
 };

@@ -667,7 +667,7 @@ Result<GltfScene> load_scene_file(
     const std::vector<std::byte> bytes = LIMN_TRY(
         fetch_uri(use.file, folder, location_of(level, use.at, "gltf"), limits.gltf.max_bytes));
     const std::filesystem::path path = std::filesystem::path(folder) / use.file;
-    return parse_gltf(bytes, path.string(), path.parent_path().string(), limits.gltf);
+    return parse_gltf(bytes, path.string(), path.parent_path().string(), limits.gltf, use.variant);
 }
 
 }  // namespace

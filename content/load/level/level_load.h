@@ -63,6 +63,7 @@ class World;
 //       "point_light": {"color": "#ffcc80", "intensity": 30},
 //       "spin": null,              // removes the prefab's
 //       "gltf": "fox.glb",         // its roots become children
+//       "variant": "street",       // of its materials
 //       "nodes": NODES,            // changes of them: level_nodes.h
 //       "clip_player": {"clip": "Run"},     // a clip of that file
 //       "repeat": REPEAT,          // copies of it and its descendants

@@ -340,6 +340,9 @@ JsonValue schema_of_node() {
                          of_type("string"),
                          "a .gltf or .glb file beside the level, whose roots become children")),
          schema_member(
+             "variant",
+             described(of_type("string"), "of the materials of \"gltf\"; default: its own")),
+         schema_member(
              "nodes",
              described(
                  map_of(reference("components")), "changes of the nodes of \"gltf\", or of "

@@ -86,7 +86,7 @@ void spawn_scene(
     World& world, Assets& assets, GltfScene scene, const GltfUse& use,
     const std::vector<Entity>& entities) {
     for (const std::uint32_t index : use.entities) {
-        world.add(entities[index], GltfSource{use.file});
+        world.add(entities[index], GltfSource{use.file, use.variant});
     }
     const Entity first = entities[use.entities.front()];
     const SpawnedGltf spawned = spawn_gltf(world, assets, std::move(scene), first);
