@@ -140,8 +140,7 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
     const bool is_obj = ends_with_any(path, {".obj"});
     const LoadOptions& load = options.model.load;
-    GltfScene model =
-        LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path, {}, load));
+    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path, {}, load));
     LoadedScene scene;
     scene.name = model.name;
     scene.path = path;

@@ -243,8 +243,7 @@ TEST_CASE("gltf: a bad normal becomes that of the triangles about it, the others
             == std::vector<Vec3>{{0, 0, -1}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}});
         REQUIRE(scene.warnings.size() == 1);
         CHECK(
-            scene.warnings[0].find(
-                "square.glb: meshes[0].primitives[0].attributes.NORMAL: found ")
+            scene.warnings[0].find("square.glb: meshes[0].primitives[0].attributes.NORMAL: found ")
             == 0);
         CHECK(scene.warnings[0].find(" in element 1, expected ") != std::string::npos);
     }
@@ -260,8 +259,8 @@ TEST_CASE("gltf: bad tangents are made anew, bad texture coordinates are 0, bad 
         CHECK(scene.meshes[0].tangents == plain.meshes[0].tangents);
     }
     const float nan = std::nanf("");
-    const GltfScene uvs = load_with_attribute<float>(
-        "TEXCOORD_0", {0, 0, 1, nan, 1, 1, 0, 1}, 5126, "VEC2", false);
+    const GltfScene uvs =
+        load_with_attribute<float>("TEXCOORD_0", {0, 0, 1, nan, 1, 1, 0, 1}, 5126, "VEC2", false);
     CHECK(uvs.warnings.size() == 1);
     CHECK(uvs.meshes[0].uvs == std::vector<Vec2>{{0, 0}, {0, 0}, {1, 1}, {0, 1}});
     const GltfScene colors = load_with_attribute<float>(
