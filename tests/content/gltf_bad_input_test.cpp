@@ -74,8 +74,8 @@ void check_square(const Result<GltfScene>& scene, const std::string& expected, s
     CHECK(scene->meshes[0].positions.size() == 4);
     CHECK(scene->meshes[0].normals[0] == Vec3(0, 0, 1));
     CHECK(scene->nodes.size() == 2);
-    CHECK_MESSAGE(scene->warnings.size() == count, scene->warnings[0]);
     REQUIRE(!scene->warnings.empty());
+    CHECK_MESSAGE(scene->warnings.size() == count, scene->warnings[0]);
     CHECK_MESSAGE(contains(scene->warnings[0], "square.glb: " + expected), scene->warnings[0]);
     CHECK_FALSE(contains(scene->warnings[0], "\n"));
 }
