@@ -74,8 +74,8 @@ void check_square(const Result<GltfScene>& scene, const std::string& expected, s
     CHECK(scene->meshes[0].positions.size() == 4);
     CHECK(scene->meshes[0].normals[0] == Vec3(0, 0, 1));
     CHECK(scene->nodes.size() == 2);
-    CHECK_MESSAGE(scene->warnings.size() == count, scene->warnings[0]);
     REQUIRE(!scene->warnings.empty());
+    CHECK_MESSAGE(scene->warnings.size() == count, scene->warnings[0]);
     CHECK_MESSAGE(contains(scene->warnings[0], "square.glb: " + expected), scene->warnings[0]);
     CHECK_FALSE(contains(scene->warnings[0], "\n"));
 }
@@ -183,10 +183,10 @@ TEST_CASE("gltf: empty lists and bad parts that nothing needs are left out") {
     const std::string triangle = R"("indices": 1, "material": 0}]})";
     check_all_drawn({
         {R"("scene": 0)", R"("scene": 0, "animations": [{"channels": [], "samplers": []}])",
-         "animations[0].samplers: found an array of 0, expected an array of at least 1; "
+         "animations[0].channels: found an array of 0, expected an array of at least 1; "
          "animations[0] is left out"},
         {R"("scene": 0)", R"("scene": 0, "animations": [{}])",
-         "animations[0].samplers: found nothing"},
+         "animations[0].channels: found nothing"},
         {R"("scene": 0)", R"("scene": 0, "animations": 7)", "animations: found the number 7"},
         {R"("scene": 0)", R"("scene": 0, "extensionsUsed": 7)", "extensionsUsed: found"},
         {R"("scene": 0)", R"("scene": 0, "skins": [{"joints": []}])",
@@ -370,7 +370,7 @@ TEST_CASE("gltf: the reports of factors, empty lists and images show what they s
     load("03-empty-arrays/plain.gltf", {});
     load("03-empty-arrays/empty-lists.gltf", {});
     load("03-empty-arrays/count-zero.gltf", {"accessors[4].count: found 0"});
-    load("03-empty-arrays/no-channels.gltf", {"animations[0].samplers: found an array of 0"});
+    load("03-empty-arrays/no-channels.gltf", {"animations[0].channels: found an array of 0"});
     load("03-empty-arrays/no-joints.gltf", {"skins[0].joints: found an array of 0"});
     load("03-empty-arrays/no-primitives.gltf", {"meshes[1].primitives: found an array of 0"});
 

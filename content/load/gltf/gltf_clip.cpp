@@ -33,6 +33,7 @@ void join_buffers(tinygltf::Model& model) {
         joined.insert(joined.end(), buffer.data.begin(), buffer.data.end());
         joined.resize((joined.size() + 3) / 4 * 4);
     }
+    offsets.resize(std::max<std::size_t>(offsets.size(), 1));  // for views that are left out
     for (tinygltf::BufferView& view : model.bufferViews) {
         view.byteOffset += item_at(offsets, view.buffer);
         view.buffer = 0;

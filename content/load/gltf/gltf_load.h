@@ -28,6 +28,11 @@ namespace limn {
 // bytes after a GLB, textures in unsupported image formats, morph targets of texture coordinates
 // and colors, other extensions unless they are required.
 //
+// A bad part costs that part and a warning (load_warnings.h): an image its textures, a channel its
+// movement, a skin or an attribute itself; factors are clamped; bad normals and tangents are made
+// anew. What nothing that is drawn needs may be bad. Refused: what is no glTF, buffers that are not
+// there or too short, positions and indices out of range, node graphs with cycles.
+//
 // Missing normals are generated with a crease angle of 50 degrees, not flat as the specification
 // demands: models without normals are mostly organic scans and low-poly animals, which look better
 // smooth, and boxes keep their edges. Missing tangents: content/bake/tangents.h.

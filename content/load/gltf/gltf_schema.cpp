@@ -75,7 +75,7 @@ meshes[].primitives[]: mode size 0 6
 meshes[].primitives[].attributes: POSITION index accessors; * index accessors
 meshes[].primitives[].targets[]: * index accessors
 skins[]: name text; joints! array 1; joints[] index nodes; inverseBindMatrices index accessors
-animations[]: name text; samplers! array 1; channels! array 1
+animations[]: name text; channels! array 1; samplers! array 1
 animations[].samplers[]: input! index accessors; output! index accessors
 animations[].samplers[]: interpolation text LINEAR STEP CUBICSPLINE
 animations[].channels[]: sampler! size 0 2147483647; target! object
