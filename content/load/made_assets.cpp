@@ -18,7 +18,7 @@ std::uint64_t hash_of(std::uint64_t hash, const std::vector<T>& values) {
     return hash_bytes(values.data(), values.size() * sizeof(T), hash_combine(hash, values.size()));
 }
 
-/// Of all that another mesh can be made from.
+/// Hash of everything that another mesh can be made from.
 std::uint64_t hash_of(const MeshData& mesh) {
     std::uint64_t hash = hash_text(mesh.name);
     hash = hash_of(hash, mesh.positions);
@@ -50,7 +50,7 @@ std::uint64_t hash_of(const MeshData& mesh) {
     return hash;
 }
 
-/// The kind and all parameters as text; meshes that they name by their content.
+/// The kind and all parameters as text; referenced meshes by their content.
 std::string key_of(const char* kind, const AnyComponent& parameters, const Assets* assets) {
     const NameProvider names = {
         .asset =
@@ -63,7 +63,7 @@ std::string key_of(const char* kind, const AnyComponent& parameters, const Asset
     return kind + write_json(write_component(parameters.info(), parameters.data(), names));
 }
 
-/// Names assets other than meshes, or meshes in pieces.
+/// Whether it refers to assets other than meshes, or to meshes in pieces.
 bool names_more_than_meshes(AnyComponent parameters, const Assets& assets) {
     bool found = false;
     for_each_asset(
@@ -76,7 +76,7 @@ bool names_more_than_meshes(AnyComponent parameters, const Assets& assets) {
     return found;
 }
 
-/// Calls `make` and, where it took long, `keep` with the result.
+/// Calls `make` and, if it took long, `keep` with the result.
 template <typename Make, typename Keep>
 auto make_and_keep(Make&& make, Keep&& keep) {
     constexpr std::chrono::milliseconds kLong{20};
@@ -114,7 +114,7 @@ MadeAssets::mesh(const MeshKind& kind, const AnyComponent& parameters, const Ass
         std::optional<MeshData> data = files_.find_mesh(key);
         found->second.value =
             data ? *std::move(data) : make_and_keep(generate, [&](const MeshData& made) {
-                if (made.pieces.empty()) {  // which name other meshes
+                if (made.pieces.empty()) {  // pieces refer to other meshes
                     files_.keep(key, made);
                 }
             });

@@ -11,9 +11,8 @@
 
 namespace limn {
 
-// Meshes and patterns that levels have generated, so that a level that is loaded again, or with a
-// show on and off, need not generate them again. Keeps what the last loads used, and in files what
-// takes long to generate.
+// Cache of generated meshes and patterns, for levels that are reloaded, or loaded with a show on
+// and off. Keeps in memory what the last loads used, and in files what takes long to generate.
 
 struct MadeMesh {
     MeshData data;
@@ -24,11 +23,11 @@ class MadeAssets {
   public:
     explicit MadeAssets(AssetCache files = AssetCache::of_user()) : files_(std::move(files)) {}
 
-    /// Forgets what the last kKeptLoads levels did not use.
+    /// Drops assets that the last kKeptLoads levels did not use.
     void begin_level();
 
-    /// Of equal parameters, and equal meshes that they name, an equal mesh. One whose parameters
-    /// name other assets is generated each time.
+    /// Returns equal meshes for equal parameters and referenced meshes. A mesh whose parameters
+    /// refer to other assets is generated each time.
     [[nodiscard]] MadeMesh
     mesh(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets);
     [[nodiscard]] PatternMaps pattern(const PatternKind& kind, const AnyComponent& parameters);
@@ -41,7 +40,7 @@ class MadeAssets {
     template <typename T>
     struct Entry {
         T value;
-        int used = 0;  ///< the load that used it last
+        int used = 0;  ///< the last load that used it
     };
     AssetCache files_;
     std::map<std::string, Entry<MeshData>> meshes_;

@@ -23,12 +23,12 @@ namespace limn {
 namespace {
 
 constexpr float kGroundRadius = 6.0f;  // of the subject's
-constexpr float kFadeRadius = 12.0f;   // of the subject's, of a ground of the file; by eye
-constexpr float kFlatGround = 0.02f;   // height of a ground, of its width
-constexpr float kEdgeLength = 0.35f;   // of the distance from the subject's middle
+constexpr float kFadeRadius = 12.0f;   // of the subject's, for a ground in the file; by eye
+constexpr float kFlatGround = 0.02f;   // height of a ground / width
+constexpr float kEdgeLength = 0.35f;   // of the distance from the subject's center
 constexpr std::size_t kMaxCorners = 300'000;
 
-/// A disc whose vertices fade from opaque to nothing, into whatever is behind it.
+/// A disc whose vertices fade from opaque to transparent.
 MeshData make_ground(float radius) {
     constexpr int kSegments = 96;
     constexpr int kRings = 24;
@@ -60,15 +60,15 @@ MeshData make_ground(float radius) {
     return mesh;
 }
 
-/// Divides the triangles of a ground until opacity can be a value per vertex.
+/// Subdivides the triangles of a ground until opacity per vertex is smooth.
 class FadingGround {
   public:
     FadingGround(const MeshData& mesh, const Affine& world_from_mesh, const Bounds& subject)
-        : mesh_(mesh), world_from_mesh_(world_from_mesh), middle_(center(subject)),
+        : mesh_(mesh), world_from_mesh_(world_from_mesh), center_(center(subject)),
           radius_(glm::length(half_extent(subject))) {
         mesh_.colors.resize(mesh_.positions.size(), Vec4(1));
         for (const Vec3& position : mesh_.positions) {
-            places_.push_back(place(position));
+            offsets_.push_back(offset_of(position));
         }
     }
 
@@ -85,10 +85,10 @@ class FadingGround {
                 longest = length(t, edge) > length(t, longest) ? edge : longest;
             }
             const float size = length(t, longest);
-            const Vec2 middle = (places_[t[0]] + places_[t[1]] + places_[t[2]]) / 3.0f;
-            const float nearest = std::max(glm::length(middle) - size, 0.0f);
+            const Vec2 centroid = (offsets_[t[0]] + offsets_[t[1]] + offsets_[t[2]]) / 3.0f;
+            const float nearest = std::max(glm::length(centroid) - size, 0.0f);
             if (nearest > kFadeRadius * radius_) {
-                continue;  // all of it is transparent
+                continue;  // completely transparent
             }
             const bool full = mesh_.indices.size() + waiting.size() > kMaxCorners;
             if (size <= kEdgeLength * std::max(nearest, radius_) || full) {
@@ -101,52 +101,52 @@ class FadingGround {
             const std::uint32_t half = halve(a, b);
             waiting.insert(waiting.end(), {a, half, c, half, b, c});
         }
-        for (std::size_t i = 0; i < places_.size(); ++i) {
-            const float t = std::min(glm::length(places_[i]) / (kFadeRadius * radius_), 1.0f);
+        for (std::size_t i = 0; i < offsets_.size(); ++i) {
+            const float t = std::min(glm::length(offsets_[i]) / (kFadeRadius * radius_), 1.0f);
             mesh_.colors[i].w *= square(1 - square(t));
         }
         return std::move(mesh_);
     }
 
   private:
-    [[nodiscard]] Vec2 place(const Vec3& position) const {
-        const Vec3 p = transform_point(world_from_mesh_, position) - middle_;
+    [[nodiscard]] Vec2 offset_of(const Vec3& position) const {
+        const Vec3 p = transform_point(world_from_mesh_, position) - center_;
         return {p.x, p.z};
     }
     [[nodiscard]] float length(const std::array<std::uint32_t, 3>& t, int edge) const {
         return glm::length(
-            places_[t[static_cast<std::size_t>((edge + 1) % 3)]]
-            - places_[t[static_cast<std::size_t>(edge)]]);
+            offsets_[t[static_cast<std::size_t>((edge + 1) % 3)]]
+            - offsets_[t[static_cast<std::size_t>(edge)]]);
     }
 
-    /// The vertex in the middle of an edge.
+    /// The vertex at the midpoint of an edge.
     std::uint32_t halve(std::uint32_t a, std::uint32_t b) {
         const auto next = static_cast<std::uint32_t>(mesh_.positions.size());
         const auto [found, is_new] = halves_.try_emplace(std::minmax(a, b), next);
         if (!is_new) {
             return found->second;
         }
-        const auto middle = [&](auto& values) {
+        const auto append_mean = [&](auto& values) {
             if (!values.empty()) {
                 values.push_back(0.5f * (values[a] + values[b]));
             }
         };
-        middle(mesh_.positions);
-        middle(mesh_.uvs);
-        middle(mesh_.uvs1);
-        middle(mesh_.colors);
-        middle(mesh_.normals);
+        append_mean(mesh_.positions);
+        append_mean(mesh_.uvs);
+        append_mean(mesh_.uvs1);
+        append_mean(mesh_.colors);
+        append_mean(mesh_.normals);
         mesh_.normals.back() = normalize_or(mesh_.normals.back(), mesh_.normals[a]);
         mesh_.tangents.push_back(mesh_.tangents[a]);
-        places_.push_back(place(mesh_.positions.back()));
+        offsets_.push_back(offset_of(mesh_.positions.back()));
         return next;
     }
 
     MeshData mesh_;
     Affine world_from_mesh_;
-    Vec3 middle_;               ///< of the subject
-    float radius_;              ///< of the subject [m]
-    std::vector<Vec2> places_;  ///< x and z of each vertex from there, in the world [m]
+    Vec3 center_;                ///< of the subject
+    float radius_;               ///< of the subject [m]
+    std::vector<Vec2> offsets_;  ///< x and z of each vertex from the center, in the world [m]
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> halves_;
 };
 
@@ -166,10 +166,10 @@ void add_ground(World& world, ModelView& view) {
     assets.meshes.push_back(make_ground(kGroundRadius * radius));
     ++view.meshes;
     ++view.materials;
-    Vec3 place = center(view.subject);
-    place.y = view.subject.min.y - 1e-3f * radius;
+    Vec3 ground_center = center(view.subject);
+    ground_center.y = view.subject.min.y - 1e-3f * radius;
     view.added.push_back(world.create(
-        Name{"ground"}, Transform{.position = place},
+        Name{"ground"}, Transform{.position = ground_center},
         MeshInstance{.mesh = mesh, .material = material}, NoShadow{}));
 }
 

@@ -34,14 +34,14 @@ namespace limn {
 namespace {
 
 constexpr float kFovY = radians(35.0f);  // like a portrait lens: little distortion
-constexpr float kAspect = 16.0f / 9.0f;  // of the image that the distance is for
+constexpr float kAspect = 16.0f / 9.0f;  // of the image for which the distance is chosen
 
 /// Illuminance [lx] at which exposure 0 shows white surfaces just below the shoulder of the
 /// neutral tone curve.
 constexpr float kReferenceLux = 2.4f;
 constexpr float kNoLight = 1e-6f;  // [lx]
 constexpr float kMinReflectance = 0.08f;
-/// The studio around lights of kReferenceLux: weak enough that they shape the form.
+/// The studio around lights of kReferenceLux: weak enough that they define the form.
 constexpr float kStudioIntensity = 0.32f;
 constexpr float kMaxStudioIntensity = 2000.0f;  // its lamps stay within half floats
 constexpr float kNearPlane = 0.005f;            // of the subject's radius
@@ -54,8 +54,8 @@ float luminance(const Vec3& color) {
     return glm::dot(color, Vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
-/// Illuminance at `distance` of an intensity of 1 cd; within a tenth of the subject's radius no
-/// brighter than there.
+/// Illuminance at `distance` of an intensity of 1 cd, clamped within a tenth of the subject's
+/// radius.
 float falloff_at(float distance, float nearest, float radius) {
     const float d = std::max(distance, nearest);
     const float window =
@@ -69,7 +69,7 @@ float cone_at(const SpotLight& light, float cosine) {
     return std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f);
 }
 
-/// The lights of a scene that are on, each as its illuminance at a point.
+/// The enabled lights of a scene, by their illuminance at a point.
 class LightMeter {
   public:
     LightMeter(World& world, const Bounds& subject) : matrices_(world) {
@@ -154,7 +154,7 @@ Shadow shadow_for(float radius) {
         .distance = kShadowDistance * radius};
 }
 
-/// How flat `subject` lies: 1 without height, 0 from 0.4 of its width on.
+/// Flatness of `subject`: 1 without height, 0 from a height of 0.4 of its width.
 float flatness(const Bounds& subject) {
     const Vec3 half = half_extent(subject);
     const float width = std::max(half.x, half.z);
@@ -163,7 +163,7 @@ float flatness(const Bounds& subject) {
 
 /// A warm key from the upper right, where the studio has its large soft box, and a rim light from
 /// behind on the left that separates the model from the backdrop; the studio itself fills. The key
-/// grazes what lies flat, or its relief would not show.
+/// grazes flat subjects to show their relief.
 void add_studio_lights(World& world, const Quat& camera, float radius, ModelView& view) {
     struct RigLight {
         const char* name;
@@ -214,11 +214,11 @@ void add_model_camera(World& world, double turntable, ModelView& view) {
         view.added.push_back(view.camera);
         return;
     }
-    const Vec3 middle = is_empty(view.subject) ? Vec3(0) : center(view.subject);
+    const Vec3 pivot_position = is_empty(view.subject) ? Vec3(0) : center(view.subject);
     const float speed = 2 * kPi / static_cast<float>(turntable);
-    const Entity pivot =
-        world.create(Name{"turntable"}, Transform{.position = middle}, Spin{.speed = speed});
-    position.position -= middle;
+    const Entity pivot = world.create(
+        Name{"turntable"}, Transform{.position = pivot_position}, Spin{.speed = speed});
+    position.position -= pivot_position;
     view.camera = world.create(Name{"framing camera"}, position, camera, state, Parent{pivot});
     view.added.insert(view.added.end(), {pivot, view.camera});
 }
@@ -252,8 +252,8 @@ float mean_luminance(const ImageData& image) {
     return static_cast<float>(sum / weights);
 }
 
-/// For light of 2^-manual_ev times kReferenceLux. Metered, the subject is taken to reflect no less
-/// than kMinReflectance: metal before a black backdrop would be burnt.
+/// For light of 2^-manual_ev times kReferenceLux. Metering assumes that the subject reflects at
+/// least kMinReflectance, or metal in front of a black backdrop would be overexposed.
 Exposure model_exposure(float manual_ev) {
     manual_ev = std::clamp(manual_ev, -24.0f, 24.0f);
     const float lux = kReferenceLux * std::exp2(-manual_ev);
@@ -330,7 +330,8 @@ ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
         add_panorama(world, *std::move(backdrop.panorama));
     } else {
         Environment environment = backdrop_environment(backdrop.name);
-        if (environment.sky == SkyKind::Studio) {  // its ceiling would level what lies flat
+        if (environment.sky
+            == SkyKind::Studio) {  // its ceiling would wash out the relief of flat subjects
             environment.intensity *= 1 - 0.6f * flatness(view.subject);
         }
         float ev = 0;

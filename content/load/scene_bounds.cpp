@@ -20,16 +20,16 @@
 namespace limn {
 namespace {
 
-constexpr float kFlat = 0.02f;        // thickness of a ground, of its width
-constexpr float kGroundWidth = 2.5f;  // of what stands on it
-constexpr float kDomeSize = 30.0f;    // of what is inside
+constexpr float kFlat = 0.02f;        // thickness of a ground / width
+constexpr float kGroundWidth = 2.5f;  // relative to what stands on it
+constexpr float kDomeSize = 30.0f;    // relative to what is inside
 
 Affine local_matrix(const World& world, Entity entity) {
     const Transform* const t = world.find<Transform>(entity);
     return t == nullptr ? Affine{} : affine_from(t->position, t->rotation, t->scale);
 }
 
-/// Matrices of joints in the rest pose: a Transform attached to one has lost their shear.
+/// Matrices of joints in the rest pose, with the shear that a Transform attached to one lacks.
 class RestJoints {
   public:
     explicit RestJoints(const World& world)
@@ -145,10 +145,11 @@ bool is_ground(const Bounds& box, const Bounds& others) {
 }
 
 bool is_dome(const Bounds& box, const Bounds& others) {
-    const Vec3 middle = center(others);
+    const Vec3 others_center = center(others);
     bool inside = true;
     for (int axis = 0; axis < 3; ++axis) {
-        inside = inside && box.min[axis] < middle[axis] && middle[axis] < box.max[axis];
+        inside =
+            inside && box.min[axis] < others_center[axis] && others_center[axis] < box.max[axis];
     }
     return inside && glm::length(half_extent(box)) >= kDomeSize * glm::length(half_extent(others));
 }

@@ -50,7 +50,7 @@ bool ends_with_any(std::string_view text, std::initializer_list<std::string_view
     });
 }
 
-/// The first few scenes that a folder holds: ", as DIR/a.glb DIR/b.obj"; nothing if it has none.
+/// The first few scenes in a folder: ", as DIR/a.glb DIR/b.obj"; empty if there are none.
 std::string scenes_in(const std::string& folder) {
     std::vector<std::string> found;
     std::error_code error;
@@ -113,7 +113,7 @@ void complete_scene(World& world, const SceneOptions& options, LoadedScene& scen
     });
 }
 
-/// Moves a model that is far from the origin there: floats at 80 km have steps of 8 mm.
+/// Moves a model that is far from the origin to it: floats at 80 km have steps of 8 mm.
 void move_to_origin(World& world, const std::vector<Entity>& roots) {
     constexpr float kFar = 100;  // of its radius
     const std::vector<Bounds> boxes = find_boxes(world, SceneMatrices(world));
@@ -127,10 +127,10 @@ void move_to_origin(World& world, const std::vector<Entity>& roots) {
     if (is_empty(subject)) {
         return;
     }
-    const Vec3 middle = center(subject);
-    if (glm::length(middle) > kFar * glm::length(half_extent(subject))) {
+    const Vec3 subject_center = center(subject);
+    if (glm::length(subject_center) > kFar * glm::length(half_extent(subject))) {
         for (const Entity root : roots) {
-            world.get<Transform>(root).position -= middle;
+            world.get<Transform>(root).position -= subject_center;
         }
     }
 }
@@ -149,7 +149,7 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
     const std::vector<Entity> roots =
         spawn_gltf(world, world.resource<Assets>(), std::move(model)).roots;
     for (const Entity root : roots) {
-        if (!is_obj) {  // which levels cannot place
+        if (!is_obj) {  // which levels cannot use
             world.add(root, GltfSource{file});
         }
     }

@@ -19,7 +19,7 @@ template <typename Kinds>
     return nullptr;
 }
 
-/// "one of box sphere teapot", to say what is expected where a kind is unknown.
+/// "one of box sphere teapot", the expectation in errors about an unknown kind.
 template <typename Kinds>
 [[nodiscard]] std::string kind_names(const Kinds& kinds) {
     std::string names = "one of";
@@ -29,7 +29,7 @@ template <typename Kinds>
     return names;
 }
 
-/// "" or " (did you mean teapot?)", to end a message about an unknown kind.
+/// "" or " (did you mean teapot?)", to append to an error about an unknown kind.
 template <typename Kinds>
 [[nodiscard]] std::string kind_suggestion(const Kinds& kinds, std::string_view name) {
     std::vector<std::string> names;

@@ -5,8 +5,8 @@
 
 namespace limn {
 
-// Functions of a point that are templates over their numbers evaluate one point (float) or four at
-// once (Four), by the same operations and to the same bits.
+// Functions of a point, templated on the number type, evaluate one point (float) or four at
+// once (Four), with the same operations and identical bits.
 
 /// A number of each of four points.
 using Four = float __attribute__((vector_size(16)));

@@ -36,7 +36,7 @@ MeshKind mesh_kind(const char* name, const char* doc) {
     return {name, doc, &component_info<Shape>(), call, nullptr};
 }
 
-/// A kind whose meshes have a skeleton.
+/// A kind of meshes with a skeleton.
 template <typename Shape, auto make, auto make_rig>
 MeshKind rigged_kind(const char* name, const char* doc) {
     MeshKind kind = mesh_kind<Shape, make>(name, doc);
@@ -66,7 +66,8 @@ std::span<const MeshKind> mesh_kinds() {
             "head", "a part of a human head that faces z, with expressions, skeleton and clips"),
         mesh_kind<HovercraftShape, make_hovercraft>(
             "hovercraft", "a racing craft that hovers, facing z"),
-        mesh_kind<JoinedShape, make_joined>("joined", "other meshes of the level as one, at rest"),
+        mesh_kind<JoinedShape, make_joined>(
+            "joined", "several meshes of the level as one, at rest"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<PlantShape, make_plants>(

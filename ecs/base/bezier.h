@@ -37,10 +37,10 @@ template <typename T>
         return u <= 0.0f ? p[0] : p[3];
     }
     const Vec4 b = bernstein(u);
-    const T middle = 0.5f * (p[0] + p[3]);
-    return middle
-           + ((b.x * (p[0] - middle) + b.w * (p[3] - middle))
-              + (b.y * (p[1] - middle) + b.z * (p[2] - middle)));
+    const T midpoint = 0.5f * (p[0] + p[3]);
+    return midpoint
+           + ((b.x * (p[0] - midpoint) + b.w * (p[3] - midpoint))
+              + (b.y * (p[1] - midpoint) + b.z * (p[2] - midpoint)));
 }
 
 /// dQ/du of the same cubic; exactly 0 where all control points coincide.
@@ -58,13 +58,13 @@ struct ChordTable {
 
     [[nodiscard]] float total() const { return length[kSteps]; }
 
-    /// The u at fraction `share` in 0 .. 1 of the total length; `share` itself on a curve of
+    /// The u at `fraction` in 0 .. 1 of the total length; `fraction` itself on a curve of
     /// length 0.
-    [[nodiscard]] float parameter_at(float share) const {
+    [[nodiscard]] float parameter_at(float fraction) const {
         if (!(total() > 0.0f)) {
-            return std::clamp(share, 0.0f, 1.0f);
+            return std::clamp(fraction, 0.0f, 1.0f);
         }
-        const float wanted = std::clamp(share, 0.0f, 1.0f) * total();
+        const float wanted = std::clamp(fraction, 0.0f, 1.0f) * total();
         const auto after = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
         const float from = after[-1];
         const float step = *after - from;

@@ -79,7 +79,8 @@ struct MirrorFalloff {
 };
 
 /// Projects a vertex of a mirror to where it reflects the point light at `light`. A vertex that
-/// faces away stays in place and is black; one whose ray points away from the plane is black too.
+/// faces away stays where it is and is black; one whose ray points away from the plane is black
+/// too.
 [[nodiscard]] inline MirroredVertex mirror_vertex(
     const Vec3& vertex, const Vec3& normal, const Vec3& light, const Plane& plane,
     const MirrorFalloff& look = {}) {

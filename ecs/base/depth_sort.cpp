@@ -108,9 +108,9 @@ void sort_16(
     }
 }
 
-/// Three passes of kBits. The fewer digits, the fewer places that are written in turn: 512 of them
-/// stay in the cache. On one thread a pass counts the digits of the next one. False, and nothing is
-/// sorted, where keys differ by more than the highest digit can tell.
+/// Three passes of kBits. The fewer digits, the fewer positions that are written in turn: 512 of
+/// them stay in the cache. On one thread a pass counts the digits of the next one. False, and
+/// nothing is sorted, where keys differ by more than the highest digit can tell.
 template <int kBits>
 bool sort_32(
     std::span<const std::uint32_t> keys, std::span<std::uint32_t> order, SortScratch& scratch,
@@ -143,7 +143,7 @@ bool sort_32(
     const auto read_a = [a](std::size_t i) { return a[i]; };
     const auto read_b = [b](std::size_t i) { return b[i]; };
     const auto low = [](SortItem item) { return (item >> 32) & kMask; };
-    const auto middle = [](SortItem item) { return (item >> (32 + kBits)) & kMask; };
+    const auto middle_digit = [](SortItem item) { return (item >> (32 + kBits)) & kMask; };
     const auto high = [base](SortItem item) { return (item >> (32 + 2 * kBits)) - base; };
     const auto write_a = [a](std::uint32_t slot, SortItem item) { a[slot] = item; };
     const auto write_b = [b](std::uint32_t slot, SortItem item) { b[slot] = item; };
@@ -152,16 +152,18 @@ bool sort_32(
     };
     if (threads == SortThreads::All && count > kGrain) {
         sort_digit(count, kDigits, scratch.slots, read_key, low, write_a);
-        sort_digit(count, kDigits, scratch.slots, read_a, middle, write_b);
+        sort_digit(count, kDigits, scratch.slots, read_a, middle_digit, write_b);
         sort_digit(count, kDigits, scratch.slots, read_b, high, write_index);
         return true;
     }
-    const auto see_middle = [second, middle](SortItem item) { ++second[middle(item)]; };
+    const auto count_middle = [second, middle_digit](SortItem item) {
+        ++second[middle_digit(item)];
+    };
     const auto see_high = [third, high](SortItem item) { ++third[high(item)]; };
     place_digits({first, kDigits}, kDigits);
-    move_by_digit(count, first, read_key, low, write_a, see_middle);
+    move_by_digit(count, first, read_key, low, write_a, count_middle);
     place_digits({second, kDigits}, kDigits);
-    move_by_digit(count, second, read_a, middle, write_b, see_high);
+    move_by_digit(count, second, read_a, middle_digit, write_b, see_high);
     place_digits({third, kDigits}, kDigits);
     move_by_digit(count, third, read_b, high, write_index, [](SortItem) {});
     return true;
@@ -182,8 +184,8 @@ std::uint16_t depth_key16(float depth, float nearest, float farthest) {
     if (std::isnan(depth)) {
         return 0;
     }
-    const float share = std::clamp((farthest - depth) / (farthest - nearest), 0.0f, 1.0f);
-    return static_cast<std::uint16_t>(1.0f + share * 65534.0f);
+    const float nearness = std::clamp((farthest - depth) / (farthest - nearest), 0.0f, 1.0f);
+    return static_cast<std::uint16_t>(1.0f + nearness * 65534.0f);
 }
 
 void sort_by_depth(

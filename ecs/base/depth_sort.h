@@ -45,7 +45,7 @@ void sort_by_depth(
 
 // ---- passes of a bitonic sort
 
-/// Entries i and i xor partner change places where they are out of order: descending if i & run,
+/// Entries i and i xor partner are swapped where they are out of order: descending if i & run,
 /// else ascending.
 struct BitonicPass {
     std::uint32_t run = 2;      ///< length of the bitonic sequences being merged: 2, 4, 8, ...

@@ -168,13 +168,13 @@ gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0
 
 /// Noise in 0 .. 1 (shade.noise) of one, two or three coordinates; octave i has frequency 2^i and
 /// amplitude 2^-i. 0.5 where |coordinate| is too large for fractional bits, and for NaN.
-template <typename Place>
-[[nodiscard]] float noise(const Place& place, std::uint32_t seed = 0, int octaves = 1) {
-    const auto has_fraction = [](const Place& p) {
-        if constexpr (std::is_same_v<Place, float>) {
+template <typename Point>
+[[nodiscard]] float noise(const Point& point, std::uint32_t seed = 0, int octaves = 1) {
+    const auto has_fraction = [](const Point& p) {
+        if constexpr (std::is_same_v<Point, float>) {
             return std::abs(p) < 0x1p23f;
         } else {
-            for (int i = 0; i < Place::length(); ++i) {
+            for (int i = 0; i < Point::length(); ++i) {
                 if (!(std::abs(p[i]) < 0x1p23f)) {
                     return false;
                 }
@@ -187,7 +187,7 @@ template <typename Place>
     float amplitude = 1;
     float frequency = 1;
     for (int i = 0; i < octaves; ++i) {
-        const Place p = place * frequency;
+        const Point p = point * frequency;
         sum += has_fraction(p) ? amplitude * gradient_noise(p, seed + static_cast<std::uint32_t>(i))
                                : 0.0f;
         total += amplitude;

@@ -81,16 +81,16 @@ namespace {
 
 // The distribution's libtbb is not instrumented, so the thread sanitizer cannot see how it passes
 // tasks between threads. CMake exempts this file, and these two annotate the happens-before
-// relations: everything before a release(place) happens before everything after a later
-// acquire(place). Unordered tasks are not annotated.
-void release([[maybe_unused]] void* place) {
+// relations: everything before a release(address) happens before everything after a later
+// acquire(address). Unordered tasks are not annotated.
+void release([[maybe_unused]] void* address) {
 #if defined(LIMN_THREAD_SANITIZER)
-    __tsan_release(place);
+    __tsan_release(address);
 #endif
 }
-void acquire([[maybe_unused]] void* place) {
+void acquire([[maybe_unused]] void* address) {
 #if defined(LIMN_THREAD_SANITIZER)
-    __tsan_acquire(place);
+    __tsan_acquire(address);
 #endif
 }
 

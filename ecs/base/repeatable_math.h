@@ -8,9 +8,9 @@
 namespace limn {
 
 // Functions made of additions, multiplications and operations on bits alone, which IEEE 754 and
-// GLSL 4.50 both round in one way. Division, square roots and sines differ between processors and
+// GLSL 4.50 round alike. Division, square roots and sines differ between processors and
 // GPUs; an algorithm whose every step depends on the previous one, such as a furrow that ends where
-// it meets another, then takes another way on each. The same functions in GLSL:
+// it meets another, then moves differently on each. The same functions in GLSL:
 // render/shaders/lib/repeatable.glsl.
 // Techniques: wrinkle.furrow.trace
 

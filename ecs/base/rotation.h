@@ -89,7 +89,7 @@ inline void align_rotations(std::span<Quat> keys) {
     }
 }
 
-/// Normalized linear interpolation along the shorter arc: slower at the ends than in the middle by
+/// Normalized linear interpolation along the shorter arc: slower at the ends than halfway by
 /// cos^2 of a quarter of the angle (anim.quat-lerp).
 [[nodiscard]] inline Quat nlerp(const Quat& a, const Quat& b, float u) {
     return normalize_or_identity((1.0f - u) * a + u * to_same_hemisphere(a, b));

@@ -92,10 +92,10 @@ std::string replace_placeholders(std::string_view pattern, std::span<const TextP
     std::string text;
     text.reserve(pattern.size() + 16 * parts.size());
     for (const TextPart& part : parts) {
-        const std::size_t place = pattern.find("{}");
-        text += pattern.substr(0, place);
+        const std::size_t position = pattern.find("{}");
+        text += pattern.substr(0, position);
         part.append_to(text);
-        pattern.remove_prefix(place + 2);
+        pattern.remove_prefix(position + 2);
     }
     return text += pattern;
 }

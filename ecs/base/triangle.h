@@ -14,8 +14,8 @@ namespace limn {
 [[nodiscard]] inline Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 ab = b - a;
     const float length2 = glm::dot(ab, ab);
-    const float share = length2 > 0 ? std::clamp(glm::dot(p - a, ab) / length2, 0.0f, 1.0f) : 0.0f;
-    return a + share * ab;
+    const float t = length2 > 0 ? std::clamp(glm::dot(p - a, ab) / length2, 0.0f, 1.0f) : 0.0f;
+    return a + t * ab;
 }
 
 /// The point of a triangle, which may be a line or a point, that is nearest to `p`.
@@ -50,7 +50,7 @@ distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
 /// Where a ray meets a triangle a b c.
 struct TriangleHit {
     float distance = 0;  ///< along the ray, in units of its direction
-    float b = 0;         ///< share of the corner b in the point, 0 .. 1
+    float b = 0;         ///< barycentric weight of the corner b, 0 .. 1
     float c = 0;
 };
 

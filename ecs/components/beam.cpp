@@ -11,10 +11,10 @@ void make_bolt(
     const Vec3& start, const Vec3& end, float jag, std::uint32_t detail, Random& random,
     std::vector<Vec3>& points) {
     const std::size_t pieces = std::size_t{1} << std::min(detail, 16u);
-    const Vec3 way = end - start;
-    const float length = glm::length(way);
-    const Vec3 right = any_perpendicular(normalize_or(way, Vec3(0, 1, 0)));
-    const Vec3 up = glm::cross(normalize_or(way, Vec3(0, 1, 0)), right);
+    const Vec3 span = end - start;
+    const float length = glm::length(span);
+    const Vec3 right = any_perpendicular(normalize_or(span, Vec3(0, 1, 0)));
+    const Vec3 up = glm::cross(normalize_or(span, Vec3(0, 1, 0)), right);
     points.assign(pieces + 1, start);
     points.back() = end;
     float radius = 0.5f * jag * length;  // halves with the pieces: at most twice that in all

@@ -32,7 +32,7 @@ LIMN_FIELDS(Beam) {
     LIMN_FIELD(stops, "along -z: at the first particle_collider");
     LIMN_FIELD(
         jag,
-        "how far it strays at most, share of its length, by midpoint displacement; 0: straight", "",
+        "largest deviation, as a fraction of its length, by midpoint displacement; 0: straight", "",
         0, 1);
     LIMN_FIELD(detail, "how often a jagged one is halved", "", 1, 9);
     LIMN_FIELD(branches, "of a jagged one", "", 0, 32);

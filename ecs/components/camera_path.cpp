@@ -11,9 +11,9 @@ namespace limn {
 
 namespace {
 
-constexpr float kStill = 1e-6f;  // keys nearer than this are one place [m]
+constexpr float kStill = 1e-6f;  // keys nearer than this are at one position [m]
 
-/// Four points of the spline and the segment between the middle two.
+/// Four points of the spline and the segment between the inner two.
 struct Segment {
     Vec3 before;
     Vec3 from;
@@ -45,24 +45,23 @@ Vec3 velocity_on(const Curve& c, float u) {
 
 /// The segment's cubic with centripetal knots: knot spacing is the square root of the distance.
 Curve centripetal(const Segment& s) {
-    const float middle = std::sqrt(glm::length(s.to - s.from));
-    if (middle < kStill) {
+    const float mid = std::sqrt(glm::length(s.to - s.from));
+    if (mid < kStill) {
         return {s.from, s.from, Vec3(0), Vec3(0)};
     }
-    // A neighbor at the same place gives no direction: the curve starts straight.
-    const auto knot = [middle](const Vec3& a, const Vec3& b) {
+    // A neighbor at the same position gives no direction: the curve starts straight.
+    const auto knot = [mid](const Vec3& a, const Vec3& b) {
         const float d = std::sqrt(glm::length(b - a));
-        return d < kStill ? middle : d;
+        return d < kStill ? mid : d;
     };
     const float first = knot(s.before, s.from);
     const float last = knot(s.to, s.after);
     const Vec3 before = glm::length(s.from - s.before) < kStill ? 2.0f * s.from - s.to : s.before;
     const Vec3 after = glm::length(s.after - s.to) < kStill ? 2.0f * s.to - s.from : s.after;
-    const Vec3 between = (s.to - s.from) / middle;
+    const Vec3 between = (s.to - s.from) / mid;
     Curve c{s.from, s.to, {}, {}};
-    c.velocity_from =
-        middle * ((s.from - before) / first - (s.to - before) / (first + middle) + between);
-    c.velocity_to = middle * (between - (after - s.from) / (middle + last) + (after - s.to) / last);
+    c.velocity_from = mid * ((s.from - before) / first - (s.to - before) / (first + mid) + between);
+    c.velocity_to = mid * (between - (after - s.from) / (mid + last) + (after - s.to) / last);
     return c;
 }
 
@@ -76,22 +75,22 @@ float length_until(const Curve& c, float u) {
     const float half = 0.5f * u / static_cast<float>(kParts);
     float length = 0.0f;
     for (int part = 0; part < kParts; ++part) {
-        const float middle = half * static_cast<float>(2 * part + 1);
+        const float mid = half * static_cast<float>(2 * part + 1);
         for (int i = 0; i < 5; ++i) {
-            length += kWeights[i] * half * glm::length(velocity_on(c, middle + half * kPoints[i]));
+            length += kWeights[i] * half * glm::length(velocity_on(c, mid + half * kPoints[i]));
         }
     }
     return length;
 }
 
-/// The u at the fraction `share` of the arc length: bisection, then Newton's method.
-float parameter_at(const Curve& c, float share) {
-    const float target = std::clamp(share, 0.0f, 1.0f) * length_until(c, 1.0f);
+/// The u at a fraction of the arc length: bisection, then Newton's method.
+float parameter_at(const Curve& c, float fraction) {
+    const float target = std::clamp(fraction, 0.0f, 1.0f) * length_until(c, 1.0f);
     float low = 0.0f;
     float high = 1.0f;
     for (int i = 0; i < 6; ++i) {
-        const float middle = 0.5f * (low + high);
-        (length_until(c, middle) < target ? low : high) = middle;
+        const float mid = 0.5f * (low + high);
+        (length_until(c, mid) < target ? low : high) = mid;
     }
     float u = 0.5f * (low + high);
     for (int i = 0; i < 3; ++i) {
@@ -199,8 +198,8 @@ Vec3 position_at(const KeyWindow& keys) {
     const float start = keys.step(-1) > 0.0 ? monotone_slope(mean_speed(-1), speed)
                                             : speed;  // along the curve, at from()
     const float end = keys.step(1) > 0.0 ? monotone_slope(speed, mean_speed(1)) : speed;
-    const float share = hermite(0.0f, 1.0f, start / speed, end / speed, keys.u());
-    return position_on(curve, parameter_at(curve, share));
+    const float fraction = hermite(0.0f, 1.0f, start / speed, end / speed, keys.u());
+    return position_on(curve, parameter_at(curve, fraction));
 }
 
 /// For look_at and roll: a cubic in time through the keys, with central-difference slopes.

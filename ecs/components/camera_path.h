@@ -13,7 +13,7 @@ namespace limn {
 // centripetal Catmull-Rom spline, which has no cusps or self-intersections within a segment
 // (Yuksel, Schaefer and Keyser 2011). Keys fix the time at which the camera passes; between them
 // the arc length is a monotone cubic of time (Fritsch and Butland 1984), so that speed is
-// continuous, the camera never moves backward, and it rests between two keys at the same place.
+// continuous, the camera never moves backward, and it rests between two keys at the same position.
 
 /// What determines the orientation of the camera.
 enum class CameraAim : std::uint8_t {

@@ -16,7 +16,7 @@ enum class CausticMethod : std::uint8_t {
 
 /// With a Water: its waves focus the brightest directional light (the first of equals) onto
 /// surfaces below, where objects in the water also cast shadows. Without it, light is refracted and
-/// absorbed on its way down as by flat water. Optionally, reflected caustics appear on walls and
+/// absorbed on its path down as by flat water. Optionally, reflected caustics appear on walls and
 /// ceilings; for reflectors other than water see MirrorCaustic.
 struct Caustics {
     CausticMethod method = CausticMethod::Simulated;

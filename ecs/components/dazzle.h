@@ -8,7 +8,7 @@ namespace limn {
 // Techniques: engine.obfuscating-point
 
 /// Dazzles whoever looks toward the entity: the whole image goes to a color, as far as the entity
-/// is in sight and near the middle of the view (engine.obfuscating-point). With a
+/// is visible and near the center of the view (engine.obfuscating-point). With a
 /// DirectionalLight, toward where that comes from.
 struct Dazzle {
     Vec3 color = {1.0f, 0.9f, 0.75f};
@@ -21,7 +21,7 @@ LIMN_FIELDS(Dazzle) {
     LIMN_FIELD(
         color, .doc = "radiance that the image goes to, linear RGB", .min = 0, .max = 1000,
         .color = true);
-    LIMN_FIELD(opacity, "share of it for one who looks straight there", "", 0, 1);
+    LIMN_FIELD(opacity, "opacity when the camera looks straight at it", "", 0, 1);
     LIMN_FIELD(angle, "from the view direction, where it has faded to 0", "rad", 0, 1.5708);
     LIMN_FIELD(
         source_size,

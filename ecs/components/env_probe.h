@@ -17,7 +17,7 @@ enum class ProbeUpdate : std::uint8_t {
 
 /// Environment probe: a cube map of the scene from the entity's position, without the entity and
 /// its descendants, for reflections on nearby surfaces. Place one on each moving metal object and
-/// one in the middle of a room. Its influence is full within `radius` or `box` and fades out
+/// one in the center of a room. Its influence is full within `radius` or `box` and fades out
 /// beyond; where several overlap, smaller ones take precedence.
 struct EnvProbe {
     float radius = 2.0f;

@@ -44,12 +44,12 @@ LIMN_FIELDS(Environment) {
     LIMN_FIELD(horizon, .doc = "radiance at the horizon", .min = 0, .max = 1e5, .color = true);
     LIMN_FIELD(ground, .doc = "radiance from below", .min = 0, .max = 1e5, .color = true);
     LIMN_FIELD(intensity, "factor on all radiances", "", 0, 1e5);
-    LIMN_FIELD(visible, "drawn as background; lights the scene either way");
+    LIMN_FIELD(visible, "drawn as background; lights the scene even if it is not drawn");
     LIMN_FIELD(panorama, "an image of the level, by name");
     LIMN_FIELD(
         mapping, .doc = "projection of the panorama",
         .values = "equirectangular cylindrical angular");
-    LIMN_FIELD(rotation, "rotation of the panorama, counter-clockwise seen from above", "rad");
+    LIMN_FIELD(rotation, "rotation of the panorama, counter-clockwise as seen from above", "rad");
     LIMN_FIELD(
         half_angle, "elevation of the upper edge of a cylindrical panorama", "rad", 0.01, 1.55);
 }

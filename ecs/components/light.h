@@ -106,7 +106,7 @@ struct LightPulse {
 LIMN_FIELDS(LightPulse) {
     visit_fields(self.function, visit);
     LIMN_FIELD(color, .doc = "other color, which color_function leads to", .min = 0, .color = true);
-    LIMN_FIELD(color_function, "share of the other color, clamped to 0 .. 1");
+    LIMN_FIELD(color_function, "weight of the other color, clamped to 0 .. 1");
 }
 
 }  // namespace limn

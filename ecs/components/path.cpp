@@ -50,12 +50,12 @@ void edit_knot(PathKnot& knot) {
     knot.after = edited.after - edited.key;
 }
 
-struct PathPlace {
+struct PathPosition {
     std::size_t segment = 0;
     float u = 0;
 };
 
-PathPlace find_place(const PathData& path, double distance) {
+PathPosition find_position(const PathData& path, double distance) {
     const double length = path.length();
     double along = std::isfinite(distance) ? distance : 0.0;
     if (path.closed) {
@@ -66,9 +66,9 @@ PathPlace find_place(const PathData& path, double distance) {
         std::upper_bound(path.begins.begin() + 1, path.begins.end() - 1, static_cast<float>(along));
     const auto segment = static_cast<std::size_t>(after - path.begins.begin() - 1);
     const double from = path.begins[segment];
-    const double way = path.begins[segment + 1] - from;
-    const double share = way > 0.0 ? (along - from) / way : 0.0;
-    return {segment, path.chords[segment].parameter_at(static_cast<float>(share))};
+    const double segment_length = path.begins[segment + 1] - from;
+    const double fraction = segment_length > 0.0 ? (along - from) / segment_length : 0.0;
+    return {segment, path.chords[segment].parameter_at(static_cast<float>(fraction))};
 }
 
 }  // namespace
@@ -127,19 +127,19 @@ PathFrame path_frame_at(const PathData& path, double distance) {
     if (path.segments.empty()) {
         return {};
     }
-    const PathPlace place = find_place(path, distance);
-    const Bezier<Vec3>& points = path.segments[place.segment];
+    const PathPosition at = find_position(path, distance);
+    const Bezier<Vec3>& points = path.segments[at.segment];
     PathFrame frame;
-    frame.position = bezier_point(points, place.u);
+    frame.position = bezier_point(points, at.u);
     // Where a control point coincides with its knot, the derivative is 0; use the next difference.
-    const Vec3 slope = bezier_derivative(points, place.u);
+    const Vec3 slope = bezier_derivative(points, at.u);
     frame.ahead = normalize_or(
         glm::length(slope) > 1e-6f * glm::length(points[3] - points[0]) ? slope
-        : place.u < 0.5f                                                ? points[2] - points[0]
+        : at.u < 0.5f                                                   ? points[2] - points[0]
                                                                         : points[3] - points[1],
         {0, 0, 1});
-    const float ease = place.u * place.u * (3.0f - 2.0f * place.u);
-    frame.roll = glm::mix(path.rolls[place.segment], path.rolls[place.segment + 1], ease);
+    const float ease = at.u * at.u * (3.0f - 2.0f * at.u);
+    frame.roll = glm::mix(path.rolls[at.segment], path.rolls[at.segment + 1], ease);
     const Vec3 right =
         normalize_or(glm::cross(frame.ahead, {0, 1, 0}), any_perpendicular(frame.ahead));
     const Vec3 level_up = glm::cross(right, frame.ahead);
@@ -160,14 +160,14 @@ float path_curvature(const PathData& path, double distance) {
     if (path.segments.empty()) {
         return 0.0f;
     }
-    const PathPlace place = find_place(path, distance);
-    const Bezier<Vec3>& points = path.segments[place.segment];
-    const Vec3 slope = bezier_derivative(points, place.u);
+    const PathPosition at = find_position(path, distance);
+    const Bezier<Vec3>& points = path.segments[at.segment];
+    const Vec3 slope = bezier_derivative(points, at.u);
     const float speed = glm::length(slope);
     if (!(speed > 1e-6f)) {
         return 0.0f;
     }
-    const Vec3 turn = glm::cross(slope, second_derivative(points, place.u));
+    const Vec3 turn = glm::cross(slope, second_derivative(points, at.u));
     return glm::dot(turn, path_frame_at(path, distance).up) / (speed * speed * speed);
 }
 

@@ -33,7 +33,7 @@ LIMN_FIELDS(PeriodicFunction) {
         .values = "sine triangle square sawtooth noise");
     LIMN_FIELD(base, "what it varies about", "", -1000, 1000);
     LIMN_FIELD(amplitude, "how far it goes from there; 0: constant", "", -1000, 1000);
-    LIMN_FIELD(phase, "share of a period at time 0; of noise, another sequence for each");
+    LIMN_FIELD(phase, "fraction of a period at time 0; of noise, another sequence for each");
     LIMN_FIELD(frequency, "periods per second", "Hz", 0, 1000);
 }
 
@@ -46,7 +46,7 @@ LIMN_FIELDS(PeriodicFunction) {
 /// reduced to one period in double precision. Without NaN, whatever the function and time.
 [[nodiscard]] float evaluate(const PeriodicFunction& function, double time);
 
-/// The same, clamped to 0 .. 1: share of something.
+/// The same, clamped to 0 .. 1: a fraction.
 [[nodiscard]] float evaluate_share(const PeriodicFunction& function, double time);
 
 }  // namespace limn

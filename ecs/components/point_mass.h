@@ -43,7 +43,7 @@ LIMN_FIELDS(AirDrag) {
     LIMN_FIELD(coefficient, "of drag; a sphere: 0.47", "", 0, 100);
     LIMN_FIELD(radius, "of the cross-section, a disc", "m", 0, 1e3);
     LIMN_FIELD(density, "of the air", "kg/m^3", 0, 1e5);
-    LIMN_FIELD(weather, "share of the wind of the resource weather", "", 0, 10);
+    LIMN_FIELD(weather, "fraction of the wind of the resource weather", "", 0, 10);
 }
 
 /// What becomes of the momentum of the mass that leaves.

@@ -72,7 +72,7 @@ LIMN_FIELDS(HardwareDefects) {
     LIMN_FIELD(first_light, "hw_quadratic, hw_blinn: lights after the first are left out");
     LIMN_FIELD(
         color_register,
-        "hw_quadratic: the place in a triangle is rounded to 8 bits, as colors are");
+        "hw_quadratic: the position in a triangle is rounded to 8 bits, as colors are");
     LIMN_FIELD(
         midpoint_normals,
         "hw_quadratic: normals of midpoints are scaled with the object and not renormalized");

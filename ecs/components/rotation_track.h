@@ -18,7 +18,7 @@ enum class RotationMethod : std::uint8_t {
 /// When keys are reached.
 enum class RotationTiming : std::uint8_t {
     Keys,       ///< at their own times
-    EvenSpeed,  ///< so that the angular speed is the same all the way
+    EvenSpeed,  ///< so that the angular speed is constant
 };
 
 struct RotationKey {
@@ -31,8 +31,8 @@ LIMN_FIELDS(RotationKey) {
     LIMN_FIELD(rotation, "x y z w, or [yaw, pitch, roll] in degrees");
 }
 
-/// Rotates its entity from key to key, always the shorter way (anim.shortest-arc). After the last
-/// key it stays there or starts over.
+/// Rotates its entity from key to key, always along the shorter arc (anim.shortest-arc). After the
+/// last key it stays there or starts over.
 struct RotationTrack {
     std::vector<RotationKey> keys;
     RotationMethod method = RotationMethod::Slerp;

@@ -31,7 +31,7 @@ LIMN_FIELDS(ShoalingWaves) {
     LIMN_FIELD(direction, "direction of travel, from +x toward +z", "rad");
     LIMN_FIELD(amplitude, "half the crest-to-trough height", "m", 0, 100);
     LIMN_FIELD(depth, "depth away from the shoal", "m", 0.05, 12000);
-    LIMN_FIELD(shoal_depth, "depth in the middle of the shoal", "m", 0.05, 12000);
+    LIMN_FIELD(shoal_depth, "depth at the center of the shoal", "m", 0.05, 12000);
     LIMN_FIELD(shoal_radius, "radius at which the bottom has fallen to the depth", "m", 0, 1e5);
 }
 

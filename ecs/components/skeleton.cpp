@@ -40,41 +40,41 @@ bool are_rotations(const ClipSheet& sheet) {
 /// Checks the values of `subjects`: indices of joints or morph weights, each less than `count`.
 template <typename T>
 Status check_rows(
-    const std::string& place, const char* what, const ClipSheet& sheet,
+    const std::string& where, const char* what, const ClipSheet& sheet,
     const std::vector<std::uint16_t>& subjects, const std::vector<T>& values, std::size_t count) {
     const std::size_t row = subjects.size() * (sheet.interpolation == Interpolation::Cubic ? 3 : 1);
     if (values.size() != sheet.times.size() * row) {
         return fail(
-            "{}: {} {}, expected {} for {} keys", place, values.size(), what,
+            "{}: {} {}, expected {} for {} keys", where, values.size(), what,
             sheet.times.size() * row, sheet.times.size());
     }
     std::vector<bool> is_named(count, false);
     for (const std::uint16_t subject : subjects) {
         if (subject >= count) {
-            return fail("{}: {} of index {}, expected less than {}", place, what, subject, count);
+            return fail("{}: {} of index {}, expected less than {}", where, what, subject, count);
         }
         if (is_named[subject]) {
-            return fail("{}: {} of index {} twice", place, what, subject);
+            return fail("{}: {} of index {} twice", where, what, subject);
         }
         is_named[subject] = true;
     }
     if (!are_finite(values)) {
-        return fail("{}: {} that are not finite", place, what);
+        return fail("{}: {} that are not finite", where, what);
     }
     return Done{};
 }
 
-Status check_times(const std::string& place, const std::vector<float>& times) {
+Status check_times(const std::string& where, const std::vector<float>& times) {
     if (times.empty()) {
-        return fail("{}: no keys", place);
+        return fail("{}: no keys", where);
     }
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (!std::isfinite(times[i])) {
-            return fail("{}: the time of key {} is not finite", place, i);
+            return fail("{}: the time of key {} is not finite", where, i);
         }
         if (i > 0 && times[i] <= times[i - 1]) {
             return fail(
-                "{}: key {} at {} s, expected later than {} s", place, i, times[i], times[i - 1]);
+                "{}: key {} at {} s, expected later than {} s", where, i, times[i], times[i - 1]);
         }
     }
     return Done{};
@@ -112,22 +112,22 @@ Status check_skeleton(const SkeletonData& skeleton) {
 Status check_clip(const ClipData& clip, std::size_t joints, std::size_t morphs) {
     for (std::size_t i = 0; i < clip.sheets.size(); ++i) {
         const ClipSheet& sheet = clip.sheets[i];
-        const std::string place = format_text("clip {}, sheet {}", clip.name, i);
-        if (Status status = check_times(place, sheet.times); !status) {
+        const std::string where = format_text("clip {}, sheet {}", clip.name, i);
+        if (Status status = check_times(where, sheet.times); !status) {
             return status;
         }
         for (Status status :
-             {check_rows(place, "rotations", sheet, sheet.rotating, sheet.rotations, joints),
+             {check_rows(where, "rotations", sheet, sheet.rotating, sheet.rotations, joints),
               check_rows(
-                  place, "translations", sheet, sheet.translating, sheet.translations, joints),
-              check_rows(place, "scales", sheet, sheet.scaling, sheet.scales, joints),
-              check_rows(place, "weights", sheet, sheet.morphing, sheet.weights, morphs)}) {
+                  where, "translations", sheet, sheet.translating, sheet.translations, joints),
+              check_rows(where, "scales", sheet, sheet.scaling, sheet.scales, joints),
+              check_rows(where, "weights", sheet, sheet.morphing, sheet.weights, morphs)}) {
             if (!status) {
                 return status;
             }
         }
         if (!are_rotations(sheet)) {
-            return fail("{}: a rotation of length 0", place);
+            return fail("{}: a rotation of length 0", where);
         }
     }
     return Done{};

@@ -12,7 +12,7 @@ namespace limn {
 ///
 ///     color (ambient + light max(N.L, 0)) + light specular (N.H)^shininess    (Bando 2001, 4.12)
 ///
-/// `normals` are seen along z of the entity, x to the right and y up.
+/// `normals` are viewed along z of the entity, x to the right and y up.
 struct TextureShade {
     ImageId normals = {};
     ImageId color = {};

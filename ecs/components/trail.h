@@ -93,7 +93,7 @@ LIMN_FIELDS(TrailStrand) {
     LIMN_FIELD(before, "its end two steps earlier", "m");
     LIMN_FIELD(live, "still grows");
     LIMN_FIELD(key, "random bits of its particle");
-    LIMN_FIELD(slot, "place of its points");
+    LIMN_FIELD(slot, "index of its points");
     LIMN_FIELD(first, "oldest point");
     LIMN_FIELD(count, "number of points");
     LIMN_FIELD(number, "points so far");
@@ -111,7 +111,7 @@ LIMN_FIELDS(TrailState) {
     LIMN_FIELD(capacity, "points of a strand at most");
     LIMN_FIELD(strands, "unbroken trails");
     LIMN_FIELD(points, "of all strands");
-    LIMN_FIELD(free_slots, "places without a strand");
+    LIMN_FIELD(free_slots, "slots without a strand");
 }
 
 [[nodiscard]] inline const TrailPoint&

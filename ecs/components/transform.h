@@ -29,7 +29,7 @@ struct PreviousWorldTransform {
     Affine world = {{Vec4(0), Vec4(0), Vec4(0)}};  ///< all 0: no step has been taken yet
 };
 
-/// Not copied with a prefab, since an instance has another place and no history:
+/// Not copied with a prefab, since an instance has another position and no history:
 /// add_world_transforms adds both.
 template <>
 struct ComponentTraits<WorldTransform> : DefaultTraits {

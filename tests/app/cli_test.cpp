@@ -287,7 +287,7 @@ void find_properties(const JsonValue& schema, std::set<std::string>& names) {
     }
     for (const auto& [key, at, value] : schema.members) {
         if (key == "properties") {
-            for (const auto& [property, place, its_schema] : value.members) {
+            for (const auto& [property, position, its_schema] : value.members) {
                 names.insert(property);
                 find_properties(its_schema, names);
             }

@@ -258,7 +258,7 @@ TEST_CASE("edit_json: edits of children and of copies survive being pasted into 
     std::sort(lights.begin(), lights.end());
     CHECK(lights == std::vector<float>{5, 5, 30});  // that of `left`, not those of the copies
 
-    // Of a child of a copy it says that it has no place.
+    // A child of a copy is reported as left out.
     edit(other, component_info<PointLight>(), brighten);
     CHECK(edits_as_json(world, edits).find("// without edits of children") != std::string::npos);
 }

@@ -118,9 +118,9 @@ TEST_CASE(
         std::size_t near_first = 0;
         std::size_t all = 0;
         stage->world.query<const ParticlePool, const WorldTransform>().each(
-            [&](const ParticlePool&, const WorldTransform& place) {
+            [&](const ParticlePool&, const WorldTransform& transform) {
                 ++all;
-                near_first += transform_point(place.world, Vec3(0)).x > 15 ? 1 : 0;
+                near_first += transform_point(transform.world, Vec3(0)).x > 15 ? 1 : 0;
             });
         return std::pair(near_first, all);
     };

@@ -206,7 +206,7 @@ TEST_CASE(
     CHECK(tube.furrows().arrows.size() == 2);
     again.weight = 3;
     CHECK(tube.furrows().arrows[1].weight == 3);
-    // Its twin across the seam of the texture is the same place.
+    // Its twin across the seam of the texture is at the same position.
     const std::uint32_t twin[2] = {33 * 5, 33 * 5 + 32};
     REQUIRE(glm::distance(tube.mesh().positions[twin[0]], tube.mesh().positions[twin[1]]) < 1e-6f);
 }

@@ -43,7 +43,7 @@ TEST_CASE("key list: a drag moves the selected key, even past others, but not ou
     int selected = -1;
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {12, 69}, .pressed = true}, keys, selected));
     CHECK(selected == 0);
-    // A click beside the middle of a key does not move it.
+    // A click beside the center of a key does not move it.
     keys[0] = {0, 1};
     CHECK_FALSE(edit_keys(kPlot, {.pointer = {10.5f, 70.5f}, .held = true}, keys, selected));
     CHECK(keys[0].value == 1);

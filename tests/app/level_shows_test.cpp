@@ -24,9 +24,9 @@ namespace {
 
 constexpr int kWidth = 160;
 constexpr int kHeight = 90;
-constexpr int kVisible = 8;          // of 255: a difference of a channel that can be seen
-constexpr double kMinShare = 0.002;  // of the pixels that must differ so much
-constexpr double kMaxShare = 0.001;  // of the pixels that may, where methods must agree
+constexpr int kVisible = 8;              // of 255: a visible difference in a channel
+constexpr double kMinDifferent = 0.002;  // of the pixels that must differ so much
+constexpr double kMaxDifferent = 0.001;  // of the pixels that may, where methods must agree
 
 /// Takes the environment probes away, whose six faces are half the work of an image, where a show
 /// is not about them.
@@ -56,7 +56,7 @@ gpu::ByteImage draw_show(const FoundShow& found, bool off) {
 }
 
 /// Fraction of the pixels with a visible difference.
-double different_share(const gpu::ByteImage& a, const gpu::ByteImage& b) {
+double different_fraction(const gpu::ByteImage& a, const gpu::ByteImage& b) {
     REQUIRE(a.pixels.size() == b.pixels.size());
     const auto channels = static_cast<std::size_t>(a.channels);
     std::size_t different = 0;
@@ -80,11 +80,11 @@ TEST_CASE("shows: each changes the image where it is on, or nothing where method
     for (const FoundShow& found : *shows) {
         CAPTURE(found.level.name);
         CAPTURE(found.show.technique);
-        const double share = different_share(draw_show(found, false), draw_show(found, true));
+        const double fraction = different_fraction(draw_show(found, false), draw_show(found, true));
         if (found.show.equal) {
-            CHECK(share <= kMaxShare);
+            CHECK(fraction <= kMaxDifferent);
         } else {
-            CHECK(share >= kMinShare);
+            CHECK(fraction >= kMinDifferent);
         }
     }
 }

@@ -31,7 +31,7 @@ RenderView view_from(const Stage& stage, const Affine& pose) {
     return view;
 }
 
-/// Along the whole camera path, and from the middle of the level and below it to all sides.
+/// Along the whole camera path, and from the center of the level and below it in all directions.
 std::vector<RenderView> many_views(const Stage& stage) {
     std::vector<RenderView> views;
     if (const auto* path = stage.world.find<CameraPath>(stage.scene.camera)) {
@@ -40,11 +40,11 @@ std::vector<RenderView> many_views(const Stage& stage) {
             views.push_back(view_from(stage, affine_from(pose.position, pose.rotation, Vec3(1))));
         }
     }
-    const Vec3 middle = is_empty(stage.scene.bounds) ? Vec3(0) : center(stage.scene.bounds);
+    const Vec3 level_center = is_empty(stage.scene.bounds) ? Vec3(0) : center(stage.scene.bounds);
     const Vec3 toward[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     for (const Vec3& direction : toward) {
         for (const float height : {-0.5f, 2.0f, 40.0f}) {
-            const Vec3 eye = {middle.x, height, middle.z};
+            const Vec3 eye = {level_center.x, height, level_center.z};
             views.push_back(view_from(stage, look_at(eye, eye + direction)));
         }
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Vec3 kCenter = {0.2f, 1.5f, -0.1f};
 
-/// A lamp at `place` in the world, carried by an arm that is turned and moved.
+/// A lamp at kLamp in the world, optionally with a rotated and translated parent.
 struct Studio {
     explicit Studio(bool carried) {
         const Transform arm = {
@@ -36,7 +36,7 @@ struct Studio {
         world.run(add_world_transforms);
         world.run(update_transforms);
     }
-    [[nodiscard]] Affine place() const { return world.get<WorldTransform>(lamp).world; }
+    [[nodiscard]] Affine transform() const { return world.get<WorldTransform>(lamp).world; }
 
     static constexpr Vec3 kLamp = {-0.8f, 2.0f, 0.9f};
     World world;
@@ -58,20 +58,20 @@ TEST_CASE("light drag: a lamp with a parent turns like a free one") {
     const Affine camera = affine_from({0, 1.5f, 2}, glm::angleAxis(0.2f, Vec3(0, 1, 0)), Vec3(1));
     Studio free(false);
     Studio carried(true);
-    CHECK(difference(free.place(), carried.place()) < 1e-5f);
+    CHECK(difference(free.transform(), carried.transform()) < 1e-5f);
     for (Studio* const studio : {&free, &carried}) {
         LightDrag drag;
         drag.drag(studio->world, studio->undo, kCenter, {90, 40}, 720, camera);
         drag.drag(studio->world, studio->undo, kCenter, {-20, 10}, 720, camera);
         studio->update();
     }
-    CHECK(difference(free.place(), carried.place()) < 1e-5f);
-    const Vec3 now = transform_point(carried.place(), Vec3(0));
+    CHECK(difference(free.transform(), carried.transform()) < 1e-5f);
+    const Vec3 now = transform_point(carried.transform(), Vec3(0));
     CHECK(glm::distance(now, Studio::kLamp) > 0.2f);
     CHECK(std::abs(glm::distance(now, kCenter) - glm::distance(Studio::kLamp, kCenter)) < 1e-5f);
     carried.undo.undo(carried.world);  // one edit
     carried.update();
-    CHECK(glm::distance(transform_point(carried.place(), Vec3(0)), Studio::kLamp) < 1e-5f);
+    CHECK(glm::distance(transform_point(carried.transform(), Vec3(0)), Studio::kLamp) < 1e-5f);
 }
 
 TEST_CASE("light drag: it takes the brightest light on the visible side, whatever its parent") {
@@ -100,9 +100,9 @@ TEST_CASE("light drag: facing makes a light shine on the center from the given d
     studio.update();
     const float distance = glm::distance(Studio::kLamp, kCenter);
     CHECK(
-        glm::distance(transform_point(studio.place(), Vec3(0)), kCenter + distance * direction)
+        glm::distance(transform_point(studio.transform(), Vec3(0)), kCenter + distance * direction)
         < 1e-5f);
-    CHECK(glm::distance(transform_vector(studio.place(), {0, 0, -1}), -direction) < 1e-5f);
+    CHECK(glm::distance(transform_vector(studio.transform(), {0, 0, -1}), -direction) < 1e-5f);
 }
 
 }  // namespace limn::light_drag_test

@@ -27,7 +27,7 @@ MeshData half_square() {
     return mesh;
 }
 
-Entity place(World& world, const Vec3& position, const Vec3& scale = Vec3(1)) {
+Entity add_mesh(World& world, const Vec3& position, const Vec3& scale = Vec3(1)) {
     return world.create(
         WorldTransform{affine_from(position, {1, 0, 0, 0}, scale)}, MeshInstance{{0}, {}});
 }
@@ -37,8 +37,8 @@ Entity place(World& world, const Vec3& position, const Vec3& scale = Vec3(1)) {
 TEST_CASE("pick: the nearest triangle wins, not the nearest box") {
     World world;
     world.insert_resource(Assets{}).meshes.push_back(half_square());
-    const Entity front = place(world, {0, 0, -1});
-    const Entity back = place(world, {1, 0, -2}, Vec3(4));
+    const Entity front = add_mesh(world, {0, 0, -1});
+    const Entity back = add_mesh(world, {1, 0, -2}, Vec3(4));
 
     const auto left = pick_entity(world, {{-0.2f, 0.2f, 0}, {0, 0, -1}});
     REQUIRE(left);
@@ -59,7 +59,7 @@ TEST_CASE("pick: an inflated mesh is hit where it is drawn") {
     MeshData mesh = half_square();
     mesh.normals.assign(3, {0, 0, 2});  // of any length
     world.insert_resource(Assets{}).meshes.push_back(mesh);
-    const Entity entity = place(world, {0, 0, -3}, Vec3(2));
+    const Entity entity = add_mesh(world, {0, 0, -3}, Vec3(2));
     world.add(entity, Inflate{.distance = 0.5f});
     const auto hit = pick_entity(world, {{-0.4f, 0.4f, 0}, {0, 0, -1}});
     REQUIRE(hit);
@@ -82,7 +82,7 @@ TEST_CASE("pick: a posed mesh is hit where its joints move it") {
     auto& assets = world.insert_resource(Assets{});
     assets.meshes.push_back(mesh);
     assets.skins.push_back({.name = "one", .joints = {0}, .joint_from_mesh = {Affine{}}});
-    const Entity entity = place(world, {0, 0, -3});
+    const Entity entity = add_mesh(world, {0, 0, -3});
     const Affine aside = affine_from({5, 0, 0}, {1, 0, 0, 0}, Vec3(1));
     world.add(entity, Pose{.joints = {aside}, .previous = {aside}});
     world.add(entity, MorphWeights{.weights = {0.5f}, .previous = {0.5f}});
@@ -107,7 +107,7 @@ TEST_CASE("pick: nothing is hit behind the camera or without meshes") {
     World world;
     CHECK_FALSE(pick_entity(world, {}));
     world.insert_resource(Assets{}).meshes.push_back(half_square());
-    place(world, {0, 0, 1});
+    add_mesh(world, {0, 0, 1});
     CHECK_FALSE(pick_entity(world, {{-0.2f, 0.2f, 0}, {0, 0, -1}}));
 }
 
@@ -132,9 +132,9 @@ TEST_CASE(
     * technique("face.pull")) {
     World world;
     world.insert_resource(Assets{}).meshes.push_back(half_square());
-    const Entity face = place(world, {0, 0, -1});
-    const Entity brow = place(world, {2, 0, -1});
-    const Entity wall = place(world, {4, 0, -1});
+    const Entity face = add_mesh(world, {0, 0, -1});
+    const Entity brow = add_mesh(world, {2, 0, -1});
+    const Entity wall = add_mesh(world, {4, 0, -1});
     for (const Entity entity : {face, brow, wall}) {
         world.add(entity, Deformed{entity == wall ? wall : face, {}});
     }

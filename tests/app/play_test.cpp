@@ -37,7 +37,7 @@ constexpr const char* kLevel = R"({
   ]
 })";
 
-/// Somebody to drive, seen by a camera that stays where it is.
+/// A racer to drive, viewed by a fixed camera.
 constexpr const char* kRace = R"({
   "title": "A box to drive",
   "resources": {"environment": {"sky": "gradient"}},
@@ -343,19 +343,19 @@ TEST_CASE("play: F7 shows a technique with, without and side by side, F6 lists t
     const Pixels with = session.wait_until_still();
     const int left = test::kDisplayWidth / 2 - 40;
     const int right = test::kDisplayWidth / 2 + 40;
-    const int middle = test::kDisplayHeight / 2;
-    CHECK(is_red(with, left, middle));
-    CHECK(is_red(with, right, middle));
+    const int center_row = test::kDisplayHeight / 2;
+    CHECK(is_red(with, left, center_row));
+    CHECK(is_red(with, right, center_row));
     xdotool("key F7");
     REQUIRE(session.changes_from(with, 2000));
     const Pixels without = session.wait_until_still();
-    CHECK_FALSE(is_red(without, left, middle));
-    CHECK_FALSE(is_red(without, right, middle));
+    CHECK_FALSE(is_red(without, left, center_row));
+    CHECK_FALSE(is_red(without, right, center_row));
     xdotool("key F7");
     REQUIRE(session.changes_from(without, 2000));
     const Pixels both = session.wait_until_still();
-    CHECK_FALSE(is_red(both, left, middle));
-    CHECK(is_red(both, right, middle));
+    CHECK_FALSE(is_red(both, left, center_row));
+    CHECK(is_red(both, right, center_row));
     xdotool("key F6");
     CHECK(session.changes_from(both, 20000));
     session.quit();
@@ -407,7 +407,7 @@ TEST_CASE("play: a model orbits with a drag, pans with a right drag, zooms with 
     xdotool("click 5 click 5 click 5");
     CHECK(session.changes_from(moved, 2000));
     const Pixels far = session.wait_until_still();
-    xdotool("click --repeat 2 --delay 60 1");  // what is under the pointer comes to the middle
+    xdotool("click --repeat 2 --delay 60 1");  // centers what is under the pointer
     CHECK(session.changes_from(far, 1000));
     session.quit();
     CHECK(session.program->wait().exit_code == 0);

@@ -115,26 +115,26 @@ TEST_CASE(
         std::vector<Vec3> positions;
         gpu::ByteImage image;
     };
-    std::vector<Seen> seen;
+    std::vector<Seen> views;
     Rectangle forehead;
     for (const TrialStage stage : {TrialStage::FirstClip, TrialStage::SecondClip}) {
         for (const float time : {0.1f, 1.3f}) {  // at rest, and with raised brows
             viewer.wait_for(stage, time);
-            seen.push_back({viewer.positions(), viewer.draw()});
+            views.push_back({viewer.positions(), viewer.draw()});
             forehead = viewer.forehead();
         }
     }
-    REQUIRE(!seen[0].positions.empty());
-    CHECK(seen[0].positions == seen[2].positions);
-    CHECK(seen[1].positions == seen[3].positions);
-    CHECK(seen[0].positions != seen[1].positions);
+    REQUIRE(!views[0].positions.empty());
+    CHECK(views[0].positions == views[2].positions);
+    CHECK(views[1].positions == views[3].positions);
+    CHECK(views[0].positions != views[1].positions);
     int on_forehead = 0;
     int elsewhere = 0;
     int at_rest = 0;
     for (int y = 0; y < kSize.y; ++y) {
         for (int x = 0; x < kSize.x; ++x) {
-            at_rest += differ(seen[0].image, seen[2].image, x, y) ? 1 : 0;
-            if (differ(seen[1].image, seen[3].image, x, y)) {
+            at_rest += differ(views[0].image, views[2].image, x, y) ? 1 : 0;
+            if (differ(views[1].image, views[3].image, x, y)) {
                 ++(forehead.has(x, y, 2) ? on_forehead : elsewhere);
             }
         }

@@ -128,7 +128,7 @@ TEST_CASE(
         R"json(, "transform": {"position": [0, 0, 0]},
            "sway": {"amplitude": [24, 0, 0], "frequency": [0.1, 1, 1], "phase": [0, 0, 0]})json",
         "");
-    // The middle of the way is at 1 s: 24 sin(0.1) = 2.396 m, so the camera looks there.
+    // The center of the path is at 1 s: 24 sin(0.1) = 2.396 m, so the camera looks there.
     const Picture blurred = render(
         folder, text,
         {"--frames", "2:2", "--fps", "2", "--spp", "256", "--set",
@@ -137,28 +137,28 @@ TEST_CASE(
         folder, text,
         {"--frames", "2:2", "--fps", "2", "--spp", "256", "--set", "motion_blur.shutter=0", "--set",
          "view.transform.position=[2.396,0,2]"});
-    const double way = 24 * 0.1 * std::cos(0.1) * 0.25 * 27;  // [px]
+    const double path = 24 * 0.1 * std::cos(0.1) * 0.25 * 27;  // [px]
     const double width = 0.5 * 27;
-    const double middle = 0.5 * kWidth;
+    const double center = 0.5 * kWidth;
     for (int x = 8; x < kWidth - 8; ++x) {
         CAPTURE(x);
-        // The share of the time that the pixel's middle is covered.
-        const double at = x + 0.5 - middle;
-        const double low = std::max(at - 0.5 * width, -0.5 * way);
-        const double high = std::min(at + 0.5 * width, 0.5 * way);
-        const double covered = std::max(high - low, 0.0) / way;
+        // The fraction of the time in which the pixel's center is covered.
+        const double at = x + 0.5 - center;
+        const double low = std::max(at - 0.5 * width, -0.5 * path);
+        const double high = std::min(at + 0.5 * width, 0.5 * path);
+        const double covered = std::max(high - low, 0.0) / path;
         CHECK(std::abs(red(blurred, x, kHeight / 2) - covered) < 0.05);
     }
     CHECK(sum(blurred) == test::near(sum(still)).epsilon(0.01));
-    CHECK(red(still, static_cast<int>(middle + 0.4 * width), kHeight / 2) == test::near(1));
+    CHECK(red(still, static_cast<int>(center + 0.4 * width), kHeight / 2) == test::near(1));
     CHECK(
-        red(still, static_cast<int>(middle + 0.7 * width), kHeight / 2) == test::near(0).scale(1));
+        red(still, static_cast<int>(center + 0.7 * width), kHeight / 2) == test::near(0).scale(1));
 }
 
 TEST_CASE(
     "render sampled: an object that moves less than its width has a ramp at each edge"
     * technique("post.distributed-sampling")) {
-    // As above with half the exposure: 8.1 px of way, 13.5 px of width.
+    // As above with half the exposure: 8.1 px of path, 13.5 px of width.
     const TemporaryFolder folder;
     const std::string text = level(
         R"json(, "motion_blur": {"shutter": 90}, "frame_time": {"step": 0.005})json",
@@ -173,12 +173,12 @@ TEST_CASE(
         return render(folder, text, more);
     };
     const Picture blurred = with("256");
-    const double way = 24 * 0.1 * std::cos(0.1) * 0.125 * 27;  // [px]
+    const double path = 24 * 0.1 * std::cos(0.1) * 0.125 * 27;  // [px]
     const double half = 0.25 * 27;
     for (int x = 8; x < kWidth - 8; ++x) {
         CAPTURE(x);
-        const double from_edge = half + 0.5 * way - std::abs(x + 0.5 - 0.5 * kWidth);
-        const double covered = std::clamp(from_edge / way, 0.0, 1.0);
+        const double from_edge = half + 0.5 * path - std::abs(x + 0.5 - 0.5 * kWidth);
+        const double covered = std::clamp(from_edge / path, 0.0, 1.0);
         CHECK(std::abs(red(blurred, x, kHeight / 2) - covered) < 0.04);
     }
 }
@@ -196,7 +196,7 @@ TEST_CASE(
     const double v = 0.024;
     const double focal = 1 / (1 / v + 1);
     const double diameter = focal / 0.125 * v * (1.0 - 1.0 / 2.0) / 0.024 * kHeight;
-    // The second moment of a disc about its middle is d^2 / 8, of the square of side a, a^2 / 6.
+    // The second moment of a disc about its center is d^2 / 8, of the square of side a, a^2 / 6.
     double moment = 0;
     double total = 0;
     for (int y = 0; y < kHeight; ++y) {
@@ -247,8 +247,8 @@ TEST_CASE(
     CHECK(of_16 / of_64 > 1.5);  // 2 by chance alone
     // Depth is no mean: 2 m where the square is at that moment.
     const auto depth = static_cast<std::size_t>(few.channel("depth.Z"));
-    const std::size_t middle = static_cast<std::size_t>(kHeight / 2 * kWidth + kWidth / 2);
-    CHECK(few.values[middle * few.channels.size() + depth] == test::near(1.9995).epsilon(1e-3));
+    const std::size_t center = static_cast<std::size_t>(kHeight / 2 * kWidth + kWidth / 2);
+    CHECK(few.values[center * few.channels.size() + depth] == test::near(1.9995).epsilon(1e-3));
     CHECK(few.values[depth] > 1e9f);
 }
 

@@ -59,7 +59,7 @@ TEST_CASE("typing queue: a key pressed and released within a frame is down for o
         frames_of(queue, {press(kBack), release(kBack), press(kBack), release(kBack)})
         == Frames{"+Back", "-Back", "+Back", "-Back"});
     CHECK(frames_of(queue, {press(kControl), release(kControl)}) == Frames{"+Ctrl", "-Ctrl"});
-    // Ctrl is still down when A is seen.
+    // Ctrl is still down when A is processed.
     CHECK(
         frames_of(queue, {press(kControl), press('A'), release('A'), release(kControl)})
         == Frames{"+Ctrl+A", "-A-Ctrl"});

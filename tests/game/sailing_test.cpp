@@ -40,17 +40,18 @@ struct Boat {
         .center_of_mass = {0, -0.55f, 0},
         .drag = {1.1f, 1.1f, 0.06f},
         .damping = 0.03f};
-    Transform place{.position = {0, 0.05f, 0}};
+    Transform transform{.position = {0, 0.05f, 0}};
     Sailboat settings{};
     SailboatState boat{};
     Vec3 wind = {0, 0, 0};
 
     void step() {
         if (boat.auto_trim) {
-            trim_sail(settings, floating, body, place.rotation, place.scale, wind, kStep, boat);
+            trim_sail(
+                settings, floating, body, transform.rotation, transform.scale, wind, kStep, boat);
         }
-        step_sailboat({&surface, 1}, wind, touch, floating, place, settings, kStep, boat, body);
-        (void)step_floating_body({&surface, 1}, touch, floating, kStep, body, place);
+        step_sailboat({&surface, 1}, wind, touch, floating, transform, settings, kStep, boat, body);
+        (void)step_floating_body({&surface, 1}, touch, floating, kStep, body, transform);
     }
     void run(float seconds) {
         for (int i = 0; i < static_cast<int>(seconds / kStep); ++i) {
@@ -59,30 +60,30 @@ struct Boat {
     }
     /// As a hand at the helm does it who wants to go straight on.
     void run_straight(float seconds) {
-        const float wanted = heading_of(place.rotation);
+        const float wanted = heading_of(transform.rotation);
         for (int i = 0; i < static_cast<int>(seconds / kStep); ++i) {
-            const float off = std::remainder(wanted - heading_of(place.rotation), 2 * kPi);
+            const float off = std::remainder(wanted - heading_of(transform.rotation), 2 * kPi);
             const float astern = ahead() < -0.05f ? -1.0f : 1.0f;
             boat.rudder = std::clamp(astern * (2.5f * off + 1.5f * body.spin.y), -1.0f, 1.0f);
             step();
         }
     }
     [[nodiscard]] float ahead() const {
-        return glm::dot(body.velocity, place.rotation * Vec3(0, 0, 1));
+        return glm::dot(body.velocity, transform.rotation * Vec3(0, 0, 1));
     }
     /// > 0: to port (+x) [rad].
     [[nodiscard]] float heel() const {
-        return -std::asin(std::clamp((place.rotation * Vec3(1, 0, 0)).y, -1.0f, 1.0f));
+        return -std::asin(std::clamp((transform.rotation * Vec3(1, 0, 0)).y, -1.0f, 1.0f));
     }
     [[nodiscard]] float energy() const {
-        const BodyMass mass = body_mass(touch, floating, place.scale);
-        const Vec3 spin = glm::conjugate(place.rotation) * body.spin;
+        const BodyMass mass = body_mass(touch, floating, transform.scale);
+        const Vec3 spin = glm::conjugate(transform.rotation) * body.spin;
         return 0.5f * mass.mass * glm::dot(body.velocity, body.velocity)
                + 0.5f * glm::dot(mass.inertia * spin, spin);
     }
     [[nodiscard]] bool is_finite() const {
-        const Vec3 sum = place.position + body.velocity + body.spin;
-        return std::isfinite(sum.x + sum.y + sum.z + place.rotation.w + boat.boom + boat.sheet);
+        const Vec3 sum = transform.position + body.velocity + body.spin;
+        return std::isfinite(sum.x + sum.y + sum.z + transform.rotation.w + boat.boom + boat.sheet);
     }
 };
 
@@ -144,7 +145,7 @@ TEST_CASE("sailing: nobody sails into the wind") {
             boat.run_straight(8);
             CHECK(boat.ahead() < 0.15f);
         }
-        CHECK(boat.place.position.z < 0.5f);
+        CHECK(boat.transform.position.z < 0.5f);
     }
 }
 
@@ -188,11 +189,11 @@ TEST_CASE("sailing: it turns to the side that the rudder is on") {
         Boat boat;
         boat.body.velocity = {0, 0, 3};
         boat.boat.rudder = rudder;
-        const float before = heading_of(boat.place.rotation);
+        const float before = heading_of(boat.transform.rotation);
         boat.run(2);
-        const float turned = std::remainder(heading_of(boat.place.rotation) - before, 2 * kPi);
+        const float turned = std::remainder(heading_of(boat.transform.rotation) - before, 2 * kPi);
         CHECK(turned * rudder > 0.02f);  // to starboard headings grow
-        CHECK(boat.place.position.x * rudder < 0);
+        CHECK(boat.transform.position.x * rudder < 0);
     }
 }
 
@@ -201,7 +202,7 @@ TEST_CASE("sailing: the rudder of a boat at rest has no effect") {
     boat.run(3);
     boat.boat.rudder = 1;
     boat.run(3);
-    CHECK(heading_of(boat.place.rotation) == test::near(kPi / 2).epsilon(1e-3));
+    CHECK(heading_of(boat.transform.rotation) == test::near(kPi / 2).epsilon(1e-3));
 }
 
 TEST_CASE("sailing: a mirrored boat sails the mirrored course") {
@@ -216,12 +217,12 @@ TEST_CASE("sailing: a mirrored boat sails the mirrored course") {
     for (int second = 0; second < 20; ++second) {
         one.run(1);
         other.run(1);
-        CHECK(one.place.position.x == test::near(-other.place.position.x).epsilon(1e-3));
-        CHECK(one.place.position.z == test::near(other.place.position.z).epsilon(1e-3));
+        CHECK(one.transform.position.x == test::near(-other.transform.position.x).epsilon(1e-3));
+        CHECK(one.transform.position.z == test::near(other.transform.position.z).epsilon(1e-3));
         CHECK(one.heel() == test::near(-other.heel()).epsilon(1e-2));
         CHECK(one.boat.boom == test::near(-other.boat.boom).epsilon(1e-2));
     }
-    CHECK(std::abs(one.place.position.x) > 1);
+    CHECK(std::abs(one.transform.position.x) > 1);
 }
 
 TEST_CASE("sailing: no rig makes the boat much faster than the wind") {
@@ -287,8 +288,8 @@ TEST_CASE("sailing: NaN, infinite and extreme values give finite results") {
                 break;
             }
             boat.run(1);
-            const Vec3 sum = boat.place.position + boat.body.velocity + boat.body.spin;
-            CHECK(std::isfinite(sum.x + sum.y + sum.z + boat.place.rotation.w));
+            const Vec3 sum = boat.transform.position + boat.body.velocity + boat.body.spin;
+            CHECK(std::isfinite(sum.x + sum.y + sum.z + boat.transform.rotation.w));
         }
     }
 }
@@ -301,17 +302,17 @@ TEST_CASE("sailing: it reaches a mark to windward by tacks, and one to leeward s
         const PathData course = *make_path(shape);
         Boat boat;
         boat.wind = {0.3f, 0, -7};  // from +z
-        boat.place.rotation = rotation_about({0, 1, 0}, 0.8f);
+        boat.transform.rotation = rotation_about({0, 1, 0}, 0.8f);
         int tacks = 0;
         float wide = 0;
         bool there = false;
         for (int i = 0; i < 60 * 240 && !there; ++i) {
             const int before = boat.boat.tack;
-            follow_course(course, boat.touch, boat.body, boat.place, boat.wind, boat.boat);
+            follow_course(course, boat.touch, boat.body, boat.transform, boat.wind, boat.boat);
             boat.step();
             tacks += static_cast<int>(boat.boat.tack != before);
-            wide = std::max(wide, std::abs(boat.place.position.x));
-            there = std::abs(boat.place.position.z - z) < 20;
+            wide = std::max(wide, std::abs(boat.transform.position.x));
+            there = std::abs(boat.transform.position.z - z) < 20;
         }
         CHECK(there);
         if (z > 0) {

@@ -49,8 +49,8 @@ struct Poolside {
             std::max_element(state.height.begin(), state.height.end(), [](float a, float b) {
                 return std::abs(a) < std::abs(b);
             });
-        const auto place = static_cast<int>(most - state.height.begin());
-        const Vec2 cell(place % state.stride - 1, place / state.stride - 1);
+        const auto index = static_cast<int>(most - state.height.begin());
+        const Vec2 cell(index % state.stride - 1, index / state.stride - 1);
         return std::abs(*most) < 1e-3f ? Vec2(std::numeric_limits<float>::infinity())
                                        : state.cell * (cell + 0.5f - 0.5f * Vec2(state.cells));
     }
@@ -99,7 +99,7 @@ TEST_CASE("water stones: a stone flies, falls in where it was aimed at, and sink
     scene.click_on({-2, 0, 1});
     CHECK(scene.stones() == 1);
     scene.run(3);
-    CHECK(std::isinf(scene.disturbed().x));  // on its way
+    CHECK(std::isinf(scene.disturbed().x));  // still in flight
     int steps = 0;
     while (std::isinf(scene.disturbed().x) && steps < 120) {
         scene.run(1);
@@ -109,7 +109,7 @@ TEST_CASE("water stones: a stone flies, falls in where it was aimed at, and sink
     scene.run(60 * 5);
     float depth = 0;
     scene.world.query<const ThrownStone, const Transform>().each(
-        [&](const ThrownStone&, const Transform& place) { depth = -place.position.y; });
+        [&](const ThrownStone&, const Transform& transform) { depth = -transform.position.y; });
     CHECK(depth == test::near(2 - 0.15).epsilon(0.01).scale(0));
 }
 

@@ -22,8 +22,8 @@ namespace {
 
 constexpr float kStep = 1.0f / 60;
 
-Ground slab(const Vec3& middle, const Vec3& half) {
-    return make_ground({.half = half}, affine_from(middle, {1, 0, 0, 0}, Vec3(1)));
+Ground slab(const Vec3& center, const Vec3& half) {
+    return make_ground({.half = half}, affine_from(center, {1, 0, 0, 0}, Vec3(1)));
 }
 
 /// A terrace at y = 0 for z > 0; five steps of 0.32 m down to a floor 1.6 m below, at z < -2.
