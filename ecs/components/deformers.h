@@ -42,7 +42,7 @@ struct SphincterMuscle {
     Vec3 center{0, 0, 0};
     Vec3 right{0.03f, 0, 0};   ///< semi-axis [m]
     Vec3 up{0, 0.02f, 0};      ///< semi-axis; its part along `right` is ignored [m]
-    float depth = 0.03f;       ///< range perpendicular to the ellipse [m]
+    float depth = 0.03f;       ///< extent perpendicular to the ellipse [m]
     float contraction = 0.0f;  ///< fraction of the distance to the center
 };
 
@@ -50,7 +50,7 @@ LIMN_FIELDS(SphincterMuscle) {
     LIMN_FIELD(center, "center of the ellipse", "m");
     LIMN_FIELD(right, "semi-axis of the ellipse", "m");
     LIMN_FIELD(up, "other semi-axis", "m");
-    LIMN_FIELD(depth, "range perpendicular to the ellipse", "m", 1e-4f, 1e4f);
+    LIMN_FIELD(depth, "extent perpendicular to the ellipse", "m", 1e-4f, 1e4f);
     LIMN_FIELD(contraction, "fraction of the distance to the center; negative: apart", "", -1, 1);
 }
 
