@@ -1,5 +1,6 @@
 #include "content/load/file_uri.h"
 #include "content/load/gltf_document.h"
+#include "content/load/gltf_glossiness.h"
 #include "content/load/image_load.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/text.h"
@@ -43,6 +44,21 @@ int image_of(const tinygltf::Texture& texture) {
     return webp.IsNumber() ? webp.GetNumberAsInt() : texture.source;
 }
 
+/// A textureInfo of an extension; tinygltf knows only those of the standard.
+tinygltf::TextureInfo texture_of(const tinygltf::Value& owner, const char* name) {
+    tinygltf::TextureInfo info;
+    const tinygltf::Value& source = member_of(owner, name);
+    if (source.IsObject()) {
+        info.index = member_of(source, "index").GetNumberAsInt();
+        info.texCoord = static_cast<int>(number_of(source, "texCoord", 0));
+        const tinygltf::Value& extensions = member_of(source, "extensions");
+        for (const std::string& key : extensions.Keys()) {
+            info.extensions[key] = extensions.Get(key);
+        }
+    }
+    return info;
+}
+
 class MaterialBuilder {
   public:
     explicit MaterialBuilder(GltfDocument& document)
@@ -73,8 +89,14 @@ class MaterialBuilder {
             material.shading = ShadingModel::Unlit;
             material.metalness = 0;  // no reflections, whatever the fallback is
         }
-        material.base_color_texture = slot(pbr.baseColorTexture, true);
-        if (material.shading != ShadingModel::Unlit) {
+        const tinygltf::Value& glossiness =
+            extension_of(source.extensions, "KHR_materials_pbrSpecularGlossiness");
+        if (material.shading == ShadingModel::Unlit) {
+            material.base_color_texture = slot(pbr.baseColorTexture, true);
+        } else if (glossiness.IsObject()) {
+            read_glossiness(glossiness, static_cast<std::uint32_t>(index), material);
+        } else {
+            material.base_color_texture = slot(pbr.baseColorTexture, true);
             material.metal_rough_texture = slot(pbr.metallicRoughnessTexture, false);
         }
         material.normal_texture = slot(source.normalTexture, false);
@@ -85,8 +107,18 @@ class MaterialBuilder {
     }
 
     [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
+    [[nodiscard]] const std::vector<GlossyMaterial>& glossy() const { return glossy_; }
 
   private:
+    void read_glossiness(const tinygltf::Value& source, std::uint32_t index, Material& material) {
+        material.base_color = vector_of(source, "diffuseFactor", Vec4(1));
+        material.base_color_texture = slot(texture_of(source, "diffuseTexture"), true);
+        material.metal_rough_texture = slot(texture_of(source, "specularGlossinessTexture"), true);
+        glossy_.push_back(
+            {index, vector_of(source, "specularFactor", Vec3(1)),
+             number_of(source, "glossinessFactor", 1)});
+    }
+
     void transmit(const tinygltf::ExtensionMap& extensions, Material& material) {
         const tinygltf::Value& transmission =
             extension_of(extensions, "KHR_materials_transmission");
@@ -106,6 +138,9 @@ class MaterialBuilder {
         material.transmission = factor;
         material.refractive_index = std::clamp(index, 1.0f, kMaxIndex);
         material.thickness = std::min(number_of(volume, "thicknessFactor", 0), kMaxThickness);
+        if (material.thickness > 0) {
+            material.thickness_texture = slot(texture_of(volume, "thicknessTexture"), false);
+        }
         const float distance = number_of(volume, "attenuationDistance", 0);
         if (distance > 0) {
             material.attenuation_distance = distance;
@@ -161,6 +196,7 @@ class MaterialBuilder {
     GltfDocument& document_;
     std::string place_;
     std::vector<UsedImage> used_;
+    std::vector<GlossyMaterial> glossy_;
     std::vector<std::uint32_t> number_;  ///< index into used_ of image i as data, as color
 };
 
@@ -235,7 +271,7 @@ Status build_materials(GltfDocument& document, GltfScene& scene) {
             scene.images.push_back(std::move(data));
         }
     }
-    return Done{};
+    return convert_glossy_materials(document, scene, builder.glossy());
 }
 
 }  // namespace limn

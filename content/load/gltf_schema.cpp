@@ -46,6 +46,9 @@ materials[]: name text; alphaMode text OPAQUE MASK BLEND; alphaCutoff number 0 1
 materials[]: doubleSided bool; emissiveFactor vec3 0 1
 materials[].extensions.KHR_materials_transmission: transmissionFactor number 0 1
 materials[].extensions.KHR_materials_ior: ior number 0 1e9
+materials[].extensions.KHR_materials_pbrSpecularGlossiness: diffuseFactor vec4 0 1
+materials[].extensions.KHR_materials_pbrSpecularGlossiness: specularFactor vec3 0 1
+materials[].extensions.KHR_materials_pbrSpecularGlossiness: glossinessFactor number 0 1
 materials[].extensions.KHR_materials_volume: thicknessFactor number 0 1e9
 materials[].extensions.KHR_materials_volume: attenuationDistance number 0 1e9
 materials[].extensions.KHR_materials_volume: attenuationColor vec3 0 1
@@ -55,6 +58,7 @@ materials[].pbrMetallicRoughness: roughnessFactor number 0 1
 materials[].normalTexture: scale number
 materials[].occlusionTexture: strength number 0 1
 cameras[]: name text; type! text perspective orthographic
+cameras[].orthographic: xmag! number; ymag! number; znear! number 0 1e9
 cameras[].perspective: yfov! number 1e-6 3.1415928; znear! number 1e-9 1e9
 extensions.KHR_lights_punctual.lights[]: name text; type! text; color vec3 0 1e9
 extensions.KHR_lights_punctual.lights[]: intensity number 0 1e9; range number 1e-6 1e9
@@ -90,6 +94,9 @@ constexpr std::string_view kTextureInfos[] = {
     "materials[].normalTexture",
     "materials[].occlusionTexture",
     "materials[].emissiveTexture",
+    "materials[].extensions.KHR_materials_volume.thicknessTexture",
+    "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
+    "materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture",
 };
 constexpr std::string_view kTextureSchema =
     R"(: index! index textures; texCoord size 0 255
