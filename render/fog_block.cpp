@@ -18,9 +18,11 @@ void describe_fog(const HeightFog* fog, const LightList& lights, layout::ViewBlo
         return;
     }
     const HeightFog settings = within_ranges(*fog);
-    const float above = (block.camera_ws.y - settings.base) / settings.scale_height;
+    const float begin = block.fog.w;
+    const float height = block.camera_ws.y + begin * block.ray_forward.y;
+    const float above = (height - settings.base) / settings.scale_height;
     const float density = settings.density * std::exp(std::min(-above, kMaxExponent));
-    block.fog = {density, 1 / settings.scale_height, settings.forward, 0};
+    block.fog = {density, 1 / settings.scale_height, settings.forward, begin};
     block.fog_ambient = Vec4(settings.ambient, 0);
     block.fog_sun = Vec4(settings.sun * lights.sun_color, 0);
     block.fog_to_sun = Vec4(lights.sun_direction, 0);

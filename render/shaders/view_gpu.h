@@ -21,7 +21,8 @@ struct ViewBlock {
     vec4 blinn_axis;           // world: fixes the axes of Blinn maps, unit or zero (lib/highlight_map.glsl)
     uvec4 wrinkle_columns;     // x: columns with wrinkles by different methods; y: those, four bits each, the first lowest;
                                // z, w: floats, where they begin and end, 0 .. 1 of the width
-    vec4 fog;                  // extinction at the camera [1/m], 0: none; 1 / its scale height; forward scattering
+    vec4 fog;                  // extinction at the camera [1/m], 0: none; 1 / its scale height; forward scattering; w:
+                               // how far the eye is behind an orthographic camera [m], where fog and shadow cascades begin
     vec4 fog_ambient;          // radiance that it scatters from all around
     vec4 fog_sun;              // irradiance of the sun that it scatters
     vec4 fog_to_sun;           // world, unit
