@@ -35,8 +35,8 @@ struct LoadedScene {
     Entity camera;          ///< the camera to render from, never null
     double duration = 0.0;  ///< of the longest camera path [s]; 0: none
     std::vector<LevelShow> shows;
-    std::optional<LevelShow> show;   ///< the chosen one
-    LevelFields fields;              ///< of a level, for update_level
+    std::optional<LevelShow> show;      ///< the chosen one
+    LevelFields fields;                 ///< of a level, for update_level
     std::optional<ModelView> model;     ///< of a model by itself
     std::vector<std::string> variants;  ///< of its materials: choices for ModelViewOptions
 };

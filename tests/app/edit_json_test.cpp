@@ -48,7 +48,7 @@ constexpr const char* kLamp = R"({
   "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "bufferView": 0}],
   "bufferViews": [{"buffer": 0, "byteLength": 36}],
   "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
-    R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]
+                              R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]
 })";
 
 struct OpenLevel {
