@@ -6,6 +6,7 @@
 #include "ecs/world.h"
 
 #include <glm/common.hpp>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -36,8 +37,20 @@ Affine without_scale(const Affine& a) {
     return rigid;
 }
 
-Mat4 view_from_world(const Affine& rigid) {
-    return glm::inverse(to_mat4(rigid));
+/// In doubles where the eye is far away, or all points would be shifted by its rounding.
+Mat4 view_from_world(const Affine& rigid, float pullback) {
+    if (pullback == 0) {
+        return glm::inverse(to_mat4(rigid));
+    }
+    const glm::dmat4 inverse = glm::inverse(glm::dmat4(to_mat4(rigid)));
+    return glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -pullback)) * inverse;
+}
+
+Affine pulled_back(Affine rigid, float pullback) {
+    for (Vec4& row : rigid.row) {
+        row.w += pullback * row.z;
+    }
+    return rigid;
 }
 
 }  // namespace
@@ -77,12 +90,14 @@ RenderView make_render_view(
     const Affine& previous =
         is_cut(its_previous, world_from_camera) ? world_from_camera : its_previous;
 
-    const float tangent = std::tan(0.5f * camera.fov_y);
+    const bool orthographic = camera.ortho_height > 0;
+    const float tangent = orthographic ? 0.5f / kOrthoDistance : std::tan(0.5f * camera.fov_y);
     const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
     RenderView view;
     view.width = request.width;
     view.height = request.height;
-    view.near = camera.near;
+    view.pullback = orthographic ? kOrthoDistance * camera.ortho_height : 0;
+    view.near = view.pullback + camera.near;
     view.tangent = {tangent * aspect, tangent};
     view.alpha = request.alpha;
     view.previous_alpha = request.previous_alpha;
@@ -91,16 +106,17 @@ RenderView make_render_view(
     clip_from_view[0][0] = 1.0f / view.tangent.x;
     clip_from_view[1][1] = 1.0f / view.tangent.y;
     clip_from_view[2][3] = -1.0f;
-    clip_from_view[3][2] = camera.near;
+    clip_from_view[3][2] = view.near;
 
     // Without interpolation use the pose itself, so that goldens do not depend on rounding.
-    view.world_from_camera = without_scale(
+    const Affine now = without_scale(
         request.alpha == 1.0f ? world_from_camera
                               : mix_affine(previous, world_from_camera, request.alpha));
     const Affine before =
         without_scale(mix_affine(previous, world_from_camera, request.previous_alpha));
-    view.unjittered_from_world = clip_from_view * view_from_world(view.world_from_camera);
-    view.previous_clip_from_world = clip_from_view * view_from_world(before);
+    view.world_from_camera = pulled_back(now, view.pullback);
+    view.unjittered_from_world = clip_from_view * view_from_world(now, view.pullback);
+    view.previous_clip_from_world = clip_from_view * view_from_world(before, view.pullback);
 
     return with_jitter(view, request.jitter);
 }
@@ -170,7 +186,7 @@ RenderView make_render_view(const World& world, Entity camera, const ViewRequest
     }
     RenderView view = make_render_view(lens, *current, *previous, request);
     view.cut = jump != nullptr && request.previous_alpha <= jump->at && jump->at <= request.alpha;
-    view.lens = lens_view(world, camera);
+    view.lens = lens.ortho_height > 0 ? LensView{} : lens_view(world, camera);
     view.entity = camera;
     return view;
 }

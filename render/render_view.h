@@ -25,12 +25,20 @@ class World;
 // What jumped within the last step (StepJumps) is shown on one side or the other, by the time of
 // the jump, and moves neither in this frame nor from the previous one.
 //
+// An orthographic camera is a perspective view from kOrthoDistance image heights farther back, with
+// as narrow a field of view: depth, clusters, shadows and motion vectors need no second kind of
+// projection, and what is one image height farther away is smaller by 1 / kOrthoDistance, a fifth
+// of a pixel of 400. Fog begins at the camera itself.
+//
 // Depth is reversed with an infinite far plane: 1 at the near plane, near / distance beyond it.
+
+inline constexpr float kOrthoDistance = 2048;
 
 struct RenderView {
     int width = 1;                        ///< of the image [px], > 0
     int height = 1;                       ///< [px], > 0
     float near = 0.05f;                   ///< [m], > 0
+    float pullback = 0;                   ///< of the eye, behind an orthographic camera [m]
     Affine world_from_camera;             ///< unit scale; looks along -z
     Mat4 clip_from_world{1.0f};           ///< with jitter
     Mat4 unjittered_from_world{1.0f};     ///< clip_from_world without jitter

@@ -16,6 +16,7 @@ layout::ViewBlock make_view_block(
     block.clip_from_world = camera.clip_from_world;
     block.previous_clip_from_world = camera.previous_clip_from_world;
     block.camera_ws = Vec4(column(3), camera.near);
+    block.orthographic.x = camera.pullback;
     block.ray_right = Vec4(column(0) * camera.tangent.x, jitter.x);
     block.ray_up = Vec4(column(1) * camera.tangent.y, jitter.y);
     block.ray_forward = Vec4(-column(2), infinite_viewer ? 1.0f : 0.0f);

@@ -15,9 +15,12 @@ Vec3 position_of(const WorldTransform& transform) {
 
 /// Length of the image of `span` meters along the entity's x axis, in an image `rows` high [px].
 float projected_span(
-    const MeshLevels& levels, const Affine& world, float distance, float fov_y, float rows) {
+    const MeshLevels& levels, const Affine& world, float distance, const Camera& camera,
+    float rows) {
     const float scale = glm::length(Vec3(world.row[0].x, world.row[1].x, world.row[2].x));
-    const float height = 2.0f * std::max(distance, 1e-6f) * std::tan(0.5f * fov_y);
+    const float height = camera.ortho_height > 0
+                             ? camera.ortho_height
+                             : 2.0f * std::max(distance, 1e-6f) * std::tan(0.5f * camera.fov_y);
     return levels.span * scale / height * rows;
 }
 
@@ -64,7 +67,7 @@ void choose_mesh_levels(
                 now != levels.meshes.end() ? static_cast<int>(now - levels.meshes.begin()) : 0;
             const float distance = glm::length(position_of(transform) - eye);
             const int level = choose_mesh_level(
-                projected_span(levels, transform.world, distance, active->fov_y, rows),
+                projected_span(levels, transform.world, distance, *active, rows),
                 static_cast<int>(levels.meshes.size()), current, levels.pixels_per_quad);
             instance.mesh = levels.meshes[static_cast<std::size_t>(level)];
         });

@@ -9,13 +9,17 @@ namespace limn {
 /// Camera that looks along the entity's local -z, +y up (as in glTF).
 struct Camera {
     float fov_y = radians(50.0f);
-    float near = 0.05f;  ///< near plane [m], > 0; no far plane: reversed depth, 0 at infinity
+    float ortho_height = 0;  ///< > 0: orthographic, with an image that is so high [m]
+    float near = 0.05f;      ///< near plane [m], > 0; no far plane: reversed depth, 0 at infinity
     bool active = true;  ///< the first active camera in world order is rendered, unless another is
                          ///< selected by name
 };
 
 LIMN_FIELDS(Camera) {
     LIMN_FIELD(fov_y, "full vertical field of view", "rad", 0.01, 3.1);
+    LIMN_FIELD(
+        ortho_height, "of an orthographic camera: height of what fills the image; 0 = perspective",
+        "m", 0, 1e6);
     LIMN_FIELD(near, "distance of the near plane", "m", 1e-4, 100);
     LIMN_FIELD(active, "eligible for rendering; the first active camera is used");
 }

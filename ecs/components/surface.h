@@ -192,6 +192,7 @@ struct Material {
     TextureSlot emission_texture = {};
     TextureSlot wrinkle_texture = {};
     TextureSlot detail_texture = {};
+    TextureSlot thickness_texture = {};
 };
 
 LIMN_FIELDS(Material) {
@@ -274,6 +275,7 @@ LIMN_FIELDS(Material) {
         detail_texture,
         "tangent-space normals, green up, of finer relief, added to normal_texture: give it a "
         "scale to tile it");
+    LIMN_FIELD(thickness_texture, "green = share of the thickness");
 }
 
 /// Whether what is behind the surface is visible through it.

@@ -22,7 +22,8 @@ Result<FogEffect> FogEffect::create(gpu::Device& device, const RenderSettings&) 
 }
 
 bool FogEffect::prepare(const FrameData& frame, ViewData& view) {
-    const float y = view.camera.world_from_camera.row[1].w;
+    const Vec4& row = view.camera.world_from_camera.row[1];
+    const float y = row.w - view.camera.pullback * row.z;  // of the camera, not of its eye
     view.publish_block(
         layout::kFogBinding,
         make_fog_block(*frame.world->find_resource<HeightFog>(), view.data.get<LightList>(), y));

@@ -19,6 +19,7 @@ constexpr MapSlot kSlots[] = {
     {layout::kEmissionSlot, "EMISSION_MAP", &Material::emission_texture, false},
     {layout::kWrinkleSlot, "WRINKLE_MAP", &Material::wrinkle_texture, false},
     {layout::kDetailSlot, "DETAIL_MAP", &Material::detail_texture, false},
+    {layout::kThicknessSlot, "THICKNESS_MAP", &Material::thickness_texture, false},
 };
 
 constexpr bool numbers_fit() {

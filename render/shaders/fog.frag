@@ -13,6 +13,6 @@ const float kInfiniteDistance = 1e6;  // [m]
 void main() {
     float depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
     vec3 ray = view_ray(gl_FragCoord.xy);
-    float path = depth > 0.0 ? view_distance(depth) * length(ray) : kInfiniteDistance;
+    float path = depth > 0.0 ? view_distance(depth) * length(ray) - view.orthographic.x : kInfiniteDistance;
     radiance = fog_along(normalize(ray), path);
 }

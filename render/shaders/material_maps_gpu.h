@@ -15,6 +15,7 @@ const uint kOcclusionSlot = 3u;   // r
 const uint kEmissionSlot = 4u;
 const uint kWrinkleSlot = 5u;  // as the normals; 128 of 255 is flat
 const uint kDetailSlot = 6u;   // as the normals
+const uint kThicknessSlot = 7u;  // g
 
 const uint kMaxMapSlots = 12u;
 

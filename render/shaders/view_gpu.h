@@ -18,6 +18,7 @@ struct ViewBlock {
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first point or
                                // spot light with a shadow or a cookie
     vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
+    vec4 orthographic;         // x: how far the eye is behind an orthographic camera [m], where fog and shadow cascades begin
 };
 
 const uint kViewBinding = 0u;
@@ -29,6 +30,6 @@ const uint kMaxEffectBlocks = 4u;
 const uint kEffectBlockBytes = 256u;  // of each, at most
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 256);
+static_assert(sizeof(ViewBlock) == 272);
 }  // namespace limn::layout
 #endif

@@ -47,7 +47,7 @@ float near_of(const Shadow& shadow) {
 std::optional<ViewSlice>
 slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     const Vec2 widest = widest_tangent(view);
-    ViewSlice slice = {view.near, distance, -widest, widest};
+    ViewSlice slice = {view.near, view.pullback + distance, -widest, widest};
     if (light.kind == LightKind::Directional) {
         return slice;
     }
@@ -71,7 +71,8 @@ slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     slice.high.x = slope(bounds.x + bounds.width + 1, jitter.x, view.width, view.tangent.x);
     slice.high.y = slope(bounds.y + bounds.height + 1, jitter.y, view.height, view.tangent.y);
     slice.near = view.near / std::min(bounds.depth_max, 1.0f);
-    slice.far = bounds.depth_min > 0 ? double(view.near) / bounds.depth_min : double(distance);
+    slice.far = bounds.depth_min > 0 ? double(view.near) / bounds.depth_min
+                                     : double(view.pullback + distance);
     return slice;
 }
 
@@ -100,13 +101,14 @@ Shadow sanitize(const Shadow& shadow) {
 void ShadowCollector::request_cascades(const RenderView& view, LightViews& request) {
     const Shadow& settings = request.settings;
     const float far = settings.distance;
-    const float near = std::min(std::max(view.near, 0.01f * far), 0.5f * far);
+    const float near = std::min(std::max(view.near - view.pullback, 0.01f * far), 0.5f * far);
     const auto ends = split_cascades(near, far, settings.cascades);
     float begin = 0;
     for (int i = 0; i < settings.cascades; ++i) {
         const float end = ends[static_cast<std::size_t>(i)];
         views_.push_back(make_cascade_view(
-            view, -request.light->axis, begin, end, settings.resolution, guard_of(settings)));
+            view, -request.light->axis, view.pullback + begin, view.pullback + end,
+            settings.resolution, guard_of(settings)));
         begin = (1 - kCascadeBlend) * end;
     }
     request.kind = layout::kShadowCascades;

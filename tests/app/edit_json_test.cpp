@@ -38,14 +38,18 @@ constexpr const char* kLevel = R"({
 /// A bulb with a light, and a nameless triangle.
 constexpr const char* kLamp = R"({
   "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
-  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 7}]}},
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 7}]},
+                 "KHR_materials_variants": {"variants": [{"name": "red"}]}},
   "scene": 0, "scenes": [{"nodes": [0, 1]}],
   "nodes": [
     {"name": "Bulb.001", "translation": [1, 2, 3], "scale": [2, 2, 2], "mesh": 0,
      "extensions": {"KHR_lights_punctual": {"light": 0}}},
     {"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-  "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}]
+  "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "bufferView": 0}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}],
+  "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+                              R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]
 })";
 
 struct OpenLevel {
@@ -149,7 +153,7 @@ TEST_CASE("edit_json: a copy refers to its glTF file, and has rotations in degre
 
 TEST_CASE("edit_json: a copied node of a glTF file, pasted into a level, changes that node") {
     const char* const kLamps = R"({"entities": [
-        {"name": "lamps", "children": [{"name": "left", "gltf": "lamp.gltf"}]},
+        {"name": "lamps", "children": [{"name": "left", "gltf": "lamp.gltf", "variant": "red"}]},
         {"name": "eye", "camera": {}}]})";
     OpenLevel level(kLamps);
     const Entity bulb = level.find("Bulb.001");
@@ -160,7 +164,8 @@ TEST_CASE("edit_json: a copied node of a glTF file, pasted into a level, changes
     REQUIRE_MESSAGE(json.ok(), text);
     CHECK((*json)["name"].text == "left");
     CHECK((*json)["gltf"].text == "lamp.gltf");
-    CHECK(json->members.size() == 3);
+    CHECK((*json)["variant"].text == "red");
+    CHECK(json->members.size() == 4);
     CHECK((*json)["nodes"]["Bulb.001"].find("mesh_instance") == nullptr);
     OpenLevel other(R"({"entities": [)" + text + R"(, {"name": "eye", "camera": {}}]})");
     const Entity pasted = other.find("Bulb.001");

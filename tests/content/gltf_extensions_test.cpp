@@ -4,7 +4,11 @@
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace limn::gltf_extensions_test {
@@ -120,6 +124,24 @@ TEST_CASE("gltf extensions: a texture in WebP is read, and preferred to its fall
     }
 }
 
+TEST_CASE("gltf extensions: the thickness of a volume has a texture with its transform") {
+    const std::string json = replace_once(
+        kSquareJson, R"({"name": "paint"}])",
+        R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_volume": {"thicknessFactor": 0.2, "thicknessTexture": {"index": 0,
+            "texCoord": 1, "extensions": {"KHR_texture_transform": {"scale": [2, 3]}}}}}}],
+            "textures": [{"source": 0}], "images": [{"uri": "data:image/png;base64,)"
+        R"(iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="}])");
+    const Result<GltfScene> scene = parse_square(json, square_binary());
+    REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+    const Material& material = scene->materials[0];
+    CHECK(material.thickness == 0.2f);
+    REQUIRE(material.thickness_texture.image.index == 0);
+    CHECK_FALSE(scene->images[0].srgb);
+    CHECK(material.thickness_texture.uv_set == 1);
+    CHECK(material.thickness_texture.scale == Vec2(2, 3));
+}
+
 TEST_CASE("gltf extensions: a material variant is what the file has with those materials") {
     const std::string variants = R"("extensions": {"KHR_materials_variants": {"mappings": [
         {"material": 1, "variants": [0, 2]}, {"material": 2, "variants": [1]}]}})";
@@ -233,6 +255,110 @@ TEST_CASE("gltf extensions: attributes of instances have as many elements each")
         scene.error().message
         == "square.glb: nodes[0].extensions.EXT_mesh_gpu_instancing.attributes.SCALE: found 1 "
            "elements, expected 2 as in the attribute before it");
+}
+
+// ---- quantized meshes ---------------------------------------------------------------------------
+
+namespace {
+
+/// Values / `scale` as the file has them: rounded integers, or floats.
+template <typename T>
+std::vector<T> quantized(const std::vector<float>& values, float scale) {
+    std::vector<T> result;
+    for (const float value : values) {
+        result.push_back(static_cast<T>(std::is_integral_v<T> ? std::round(value * scale) : value));
+    }
+    return result;
+}
+
+struct QuantizedSquare {
+    std::vector<float> positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    std::vector<float> normals = {0, 0, 1, 0, 0.6f, 0.8f, 0.8f, 0, -0.6f, -1, 0, 0};
+    std::vector<float> tangents = {1, 0, 0, 1, 1, 0, 0, -1, 0, 1, 0, 1, 0, 0, 1, 1};
+    std::vector<float> uvs = {0, 0, 1, 0, 0.5f, 0.25f, 0, 1};
+    std::vector<float> moves = {0, 0, 0.5f, 0, 0, -0.5f, 0, 0, 0, 0, 0, 0};
+};
+
+/// The square with all of its attributes as T, of `component_type`: normalized, or else in units
+/// that the node scales back. T is what `max` of it is 1 of.
+template <typename T>
+GltfScene load_quantized(int component_type, bool normalized) {
+    constexpr bool kFloats = !std::is_integral_v<T>;
+    const float max = kFloats ? 1.0f : static_cast<float>(std::numeric_limits<T>::max());
+    const float scale = normalized || kFloats ? max : 100.0f;
+    using Signed =
+        std::conditional_t<kFloats, float, std::make_signed_t<std::conditional_t<kFloats, int, T>>>;
+    const float signed_max =
+        kFloats ? 1.0f : static_cast<float>(std::numeric_limits<Signed>::max());
+    const int signed_type = kFloats ? component_type : component_type & ~1;  // 5121 -> 5120
+    const QuantizedSquare square;
+    Numbers numbers;
+    const auto add = [&](const char* type, std::size_t width, const std::vector<float>& values) {
+        numbers.add_typed(
+            type, width, component_type, normalized && !kFloats, quantized<T>(values, scale));
+    };
+    const auto add_signed = [&](const char* type, std::size_t width,
+                                const std::vector<float>& values, float one, bool is_normalized) {
+        numbers.add_typed(
+            type, width, signed_type, is_normalized && !kFloats, quantized<Signed>(values, one));
+    };
+    add("VEC3", 3, square.positions);
+    numbers.add_typed<std::uint16_t>("SCALAR", 1, 5123, false, {0, 1, 2, 0, 2, 3});
+    add_signed("VEC3", 3, square.normals, signed_max, true);
+    add_signed("VEC4", 4, square.tangents, signed_max, true);
+    numbers.add_typed("VEC2", 2, component_type, !kFloats, quantized<T>(square.uvs, max));
+    const float signed_scale = normalized ? signed_max : scale;
+    add_signed("VEC3", 3, square.moves, signed_scale, normalized);
+    const std::string json =
+        R"({"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_mesh_quantization"], )"
+        + numbers.json() + R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0,
+            "NORMAL": 2, "TANGENT": 3, "TEXCOORD_0": 4}, "indices": 1,
+            "targets": [{"POSITION": 5}]}]}], "nodes": [{"mesh": 0, "scale": [)"
+        + fmt::format("{0}, {0}, {0}", normalized || kFloats ? 1.0f : 1 / scale) + "]}]}";
+    Result<GltfScene> scene = parse_gltf(make_glb(json, numbers.bytes()), "square.glb", "");
+    REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+    CHECK(scene->warnings.empty());
+    return *std::move(scene);
+}
+
+template <typename T>
+float largest_distance(const std::vector<T>& a, const std::vector<T>& b, float scale = 1) {
+    REQUIRE(a.size() == b.size());
+    float largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        largest = std::max(largest, glm::distance(scale * a[i], b[i]));
+    }
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("gltf extensions: quantized attributes of every type are those of the plain mesh") {
+    const GltfScene plain = load_quantized<float>(5126, false);
+    const MeshData& expected = plain.meshes[0];
+    const auto check = [&](const GltfScene& scene, float step) {
+        CAPTURE(step);
+        const MeshData& mesh = scene.meshes[0];
+        const float scale = scene.nodes[0].transform.scale.x;
+        CHECK(largest_distance(drawn_corners(scene), drawn_corners(plain)) < 1e-5f);
+        CHECK(largest_distance(mesh.normals, expected.normals) < 2 * step);
+        CHECK(largest_distance(mesh.tangents, expected.tangents) < 2 * step);
+        CHECK(largest_distance(mesh.uvs, expected.uvs) < 2 * step);
+        REQUIRE(mesh.morphs.size() == 1);
+        CHECK(mesh.morphs[0].vertices == expected.morphs[0].vertices);
+        CHECK(
+            largest_distance(mesh.morphs[0].positions, expected.morphs[0].positions, scale)
+            < 2 * step);
+    };
+    constexpr float kByte = 1.0f / 127;
+    constexpr float kShort = 1.0f / 32767;
+    for (const bool normalized : {false, true}) {
+        CAPTURE(normalized);
+        check(load_quantized<std::int8_t>(5120, normalized), kByte);
+        check(load_quantized<std::uint8_t>(5121, normalized), kByte);
+        check(load_quantized<std::int16_t>(5122, normalized), kShort);
+        check(load_quantized<std::uint16_t>(5123, normalized), kShort);
+    }
 }
 
 }  // namespace limn::gltf_extensions_test

@@ -415,7 +415,7 @@ TEST_CASE("gltf: cameras and lights arrive in our units") {
     const GltfScene scene = load_square(
         {{R"("scene": 0)", R"("scene": 0, "cameras": [
             {"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.2, "zfar": 100}},
-            {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 1}}],
+            {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0, "zfar": 1}}],
             "extensions": {"KHR_lights_punctual": {"lights": [
                 {"type": "point", "color": [1, 0.5, 0.25], "intensity": 40, "range": 12},
                 {"type": "spot", "intensity": 7, "spot": {"innerConeAngle": 0.3, "outerConeAngle": 0.6}},
@@ -430,8 +430,10 @@ TEST_CASE("gltf: cameras and lights arrive in our units") {
     CHECK(scene.nodes[2].has_camera);
     CHECK(scene.nodes[2].camera.fov_y == 0.7f);
     CHECK(scene.nodes[2].camera.near == 0.2f);
-    CHECK_FALSE(scene.nodes[3].has_camera);
-    CHECK(scene.warnings.size() == 1);
+    CHECK(scene.nodes[2].camera.ortho_height == 0);
+    CHECK(scene.nodes[3].has_camera);
+    CHECK(scene.nodes[3].camera.ortho_height == 4);
+    CHECK(scene.warnings.empty());
     const auto* point = std::get_if<PointLight>(&scene.nodes[4].light);
     REQUIRE(point != nullptr);
     CHECK(point->color == Vec3(1, 0.5f, 0.25f));

@@ -36,12 +36,13 @@ constexpr const char* kLamp = R"({
   "materials": [{"name": "glass"}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}},
                              {"attributes": {"POSITION": 0}, "material": 0}]}],
-  "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"},
+  "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "bufferView": 1},
                 {"componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1],
                  "bufferView": 0},
                 {"componentType": 5126, "count": 2, "type": "VEC3"}],
-  "bufferViews": [{"buffer": 0, "byteLength": 8}],
-  "buffers": [{"byteLength": 8, "uri": "data:application/octet-stream;base64,AAAAAAAAgD8="}],
+  "bufferViews": [{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteOffset": 8, "byteLength": 36}],
+  "buffers": [{"byteLength": 44, "uri": "data:application/octet-stream;base64,)"
+                              R"(AAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPwAAAAA="}],
   "animations": [{"samplers": [{"input": 1, "output": 2}],
                   "channels": [{"sampler": 0, "target": {"node": 2, "path": "translation"}}]}]
 })";
@@ -147,6 +148,53 @@ TEST_CASE("level nodes: a joint that is named becomes an entity, which follows t
     REQUIRE(scene.world.alive(arm));
     CHECK(scene.world.has<PointLight>(arm));
     CHECK(scene.world.has<JointAttachment>(arm));
+}
+
+TEST_CASE("level nodes: each use of a file has the variant of its materials that it names") {
+    std::string lamp = kLamp;
+    const auto edit = [&lamp](const std::string& from, const std::string& to) {
+        REQUIRE(lamp.find(from) != std::string::npos);
+        lamp.replace(lamp.find(from), from.size(), to);
+    };
+    edit(
+        R"("material": 0})",
+        R"("material": 0, "extensions": {"KHR_materials_variants": {"mappings": [
+           {"material": 1, "variants": [0]}]}}})");
+    edit(R"([{"name": "glass"}])", R"([{"name": "glass"}, {"name": "ruby"}])");
+    edit(
+        R"("extensions": {"KHR_lights)",
+        R"("extensions": {"KHR_materials_variants": {"variants": [{"name": "red"}]}, "KHR_lights)");
+    Scene scene("{}");
+    std::ofstream(scene.folder.file("lamp.gltf")) << lamp;
+    const auto materials_of = [&](const std::string& entities) {
+        scene.write(entities);
+        World world;
+        const Result<LoadedScene> loaded = load_scene(world, scene.folder.file("t.level.json"));
+        REQUIRE_MESSAGE(loaded.ok(), (loaded ? "" : loaded.error().message));
+        std::vector<std::string> names;
+        const Assets& assets = world.resource<Assets>();
+        world.query<const MeshInstance>().each([&](const MeshInstance& instance) {
+            names.push_back(assets.materials[instance.material.index].name);
+        });
+        std::ranges::sort(names);
+        return names;
+    };
+    using Names = std::vector<std::string>;
+    CHECK(materials_of(R"({"gltf": "lamp.gltf"})") == Names{"default", "glass"});
+    CHECK(
+        materials_of(R"({"gltf": "lamp.gltf", "variant": "red"}, {"gltf": "lamp.gltf"},
+                        {"gltf": "lamp.gltf", "variant": "red"})")
+        == Names{"default", "default", "default", "glass", "ruby", "ruby"});
+    scene.write(R"({"gltf": "lamp.gltf", "variant": "blue"})");
+    World world;
+    CHECK(load_scene(world, scene.folder.file("t.level.json"))
+              .error()
+              .message.ends_with(
+                  "lamp.gltf: found no material variant \"blue\", expected one of red"));
+    scene.write(R"({"variant": "red"})");
+    CHECK(load_scene(world, scene.folder.file("t.level.json"))
+              .error()
+              .message.ends_with("found a variant without a glTF file, expected \"gltf\" as well"));
 }
 
 TEST_CASE("level nodes: a prefab's changes come first, and each copy has them") {

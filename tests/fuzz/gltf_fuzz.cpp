@@ -131,7 +131,8 @@ void check_scene(const limn::GltfScene& scene) {
     for (const limn::Material& material : scene.materials) {
         for (const limn::TextureSlot* slot :
              {&material.base_color_texture, &material.metal_rough_texture, &material.normal_texture,
-              &material.occlusion_texture, &material.emission_texture}) {
+              &material.occlusion_texture, &material.emission_texture,
+              &material.thickness_texture}) {
             require(slot->image.index == limn::kNoAsset || slot->image.index < scene.images.size());
         }
     }

@@ -188,6 +188,29 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    GlassScene, "transmission: a map of the thickness is a factor of it, texel by texel") {
+    add_edge(-3, 5);
+    Material amber = glass(4);
+    amber.attenuation_color = {0.5f, 0.8f, 1};
+    amber.attenuation_distance = 2;
+    amber.thickness_texture = {
+        .image = add(ImageData{
+            .name = "thickness",
+            .width = 2,
+            .height = 1,
+            .pixels = {0, 255, 0, 255, 255, 0, 255, 255}}),
+        .wrap_u = Wrap::Clamp,
+        .nearest = true};
+    add_pane(amber, 1);
+    const gpu::FloatImage image = radiance(front());
+    const Vec3 thick = rgb_at(image, 24, 32) / kLetIn;
+    const Vec3 thin = rgb_at(image, 40, 32) / kLetIn;
+    CHECK(thick.x == near(0.25).epsilon(0.01));
+    CHECK(thick.y == near(0.64).epsilon(0.01));
+    CHECK(thin.x == near(1).epsilon(0.01));
+}
+
+TEST_CASE_FIXTURE(
     GlassScene, "transmission: rough glass blurs more what is farther, and keeps its mean") {
     int before = 0;
     for (const float distance : {0.1f, 0.5f, 2.0f}) {

@@ -119,7 +119,10 @@ void print_cameras_and_lights(const World& world, std::span<const Entity> entiti
     for (const Entity entity : entities) {
         const std::string name = name_of_shape(world, entity);
         if (const auto* const camera = world.find<Camera>(entity)) {
-            cameras.push_back(fmt::format("{:>6.1f} deg  {}", degrees(camera->fov_y), name));
+            const float height = camera->ortho_height;
+            cameras.push_back(
+                height > 0 ? fmt::format("{:>6.3g} m    {}", height, name)
+                           : fmt::format("{:>6.1f} deg  {}", degrees(camera->fov_y), name));
         }
         if (const auto* const light = world.find<DirectionalLight>(entity)) {
             lights.push_back(fmt::format("directional  {:>8.4g} lx  {}", light->illuminance, name));

@@ -20,6 +20,7 @@ constexpr std::string_view kReadExtensions[] = {
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_materials_variants",

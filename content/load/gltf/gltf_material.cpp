@@ -1,6 +1,7 @@
 #include "content/load/files/file_uri.h"
 #include "content/load/files/image_load.h"
 #include "content/load/gltf/gltf_document.h"
+#include "content/load/gltf/gltf_glossiness.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/text.h"
 
@@ -27,7 +28,7 @@ constexpr float kMaxThickness = 1000;  // [m]
 
 constexpr TextureSlot Material::*kImageSlots[] = {
     &Material::base_color_texture, &Material::metal_rough_texture, &Material::normal_texture,
-    &Material::occlusion_texture, &Material::emission_texture};
+    &Material::occlusion_texture,  &Material::emission_texture,    &Material::thickness_texture};
 
 Wrap to_wrap(std::int32_t mode) {
     switch (mode) {
@@ -45,6 +46,21 @@ int image_of(const tinygltf::Texture& texture) {
     const tinygltf::Value& webp =
         member_of(extension_of(texture.extensions, "EXT_texture_webp"), "source");
     return webp.IsNumber() ? webp.GetNumberAsInt() : texture.source;
+}
+
+/// A textureInfo of an extension; tinygltf knows only those of the standard.
+tinygltf::TextureInfo texture_of(const tinygltf::Value& owner, const char* name) {
+    tinygltf::TextureInfo info;
+    const tinygltf::Value& source = member_of(owner, name);
+    if (source.IsObject()) {
+        info.index = member_of(source, "index").GetNumberAsInt();
+        info.texCoord = static_cast<int>(number_of(source, "texCoord", 0));
+        const tinygltf::Value& extensions = member_of(source, "extensions");
+        for (const std::string& key : extensions.Keys()) {
+            info.extensions[key] = extensions.Get(key);
+        }
+    }
+    return info;
 }
 
 class MaterialBuilder {
@@ -78,8 +94,14 @@ class MaterialBuilder {
             material.shading = ShadingModel::Unlit;
             material.metalness = 0;  // no reflections, whatever the fallback is
         }
-        material.base_color_texture = slot(pbr.baseColorTexture, true);
-        if (material.shading != ShadingModel::Unlit) {
+        const tinygltf::Value& glossiness =
+            extension_of(source.extensions, "KHR_materials_pbrSpecularGlossiness");
+        if (material.shading == ShadingModel::Unlit) {
+            material.base_color_texture = slot(pbr.baseColorTexture, true);
+        } else if (glossiness.IsObject()) {
+            read_glossiness(glossiness, static_cast<std::uint32_t>(index), material);
+        } else {
+            material.base_color_texture = slot(pbr.baseColorTexture, true);
             material.metal_rough_texture = slot(pbr.metallicRoughnessTexture, false);
         }
         material.normal_texture = slot(source.normalTexture, false);
@@ -90,6 +112,7 @@ class MaterialBuilder {
     }
 
     [[nodiscard]] const std::vector<UsedImage>& used() const { return used_; }
+    [[nodiscard]] const std::vector<GlossyMaterial>& glossy() const { return glossy_; }
 
   private:
     /// Written before there was KHR_materials_emissive_strength.
@@ -100,6 +123,15 @@ class MaterialBuilder {
                 "{}.emissiveFactor: found {:.6g}, expected at most 1; it is used as it is", place_,
                 *largest));
         }
+    }
+
+    void read_glossiness(const tinygltf::Value& source, std::uint32_t index, Material& material) {
+        material.base_color = vector_of(source, "diffuseFactor", Vec4(1));
+        material.base_color_texture = slot(texture_of(source, "diffuseTexture"), true);
+        material.metal_rough_texture = slot(texture_of(source, "specularGlossinessTexture"), true);
+        glossy_.push_back(
+            {index, vector_of(source, "specularFactor", Vec3(1)),
+             number_of(source, "glossinessFactor", 1)});
     }
 
     void transmit(const tinygltf::ExtensionMap& extensions, Material& material) {
@@ -121,6 +153,9 @@ class MaterialBuilder {
         material.transmission = factor;
         material.refractive_index = std::clamp(index, 1.0f, kMaxIndex);
         material.thickness = std::min(number_of(volume, "thicknessFactor", 0), kMaxThickness);
+        if (material.thickness > 0) {
+            material.thickness_texture = slot(texture_of(volume, "thicknessTexture"), false);
+        }
         const float distance = number_of(volume, "attenuationDistance", 0);
         if (distance > 0) {
             material.attenuation_distance = distance;
@@ -176,6 +211,7 @@ class MaterialBuilder {
     GltfDocument& document_;
     std::string place_;
     std::vector<UsedImage> used_;
+    std::vector<GlossyMaterial> glossy_;
     std::vector<std::uint32_t> number_;  ///< index into used_ of image i as data, as color
 };
 
@@ -272,7 +308,7 @@ Status build_materials(GltfDocument& document, GltfScene& scene) {
     fallback.roughness = 1.0f;
     scene.materials.push_back(fallback);
     load_images(document, builder.used(), scene);
-    return Done{};
+    return convert_glossy_materials(document, scene, builder.glossy());
 }
 
 }  // namespace limn

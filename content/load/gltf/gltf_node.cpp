@@ -28,6 +28,8 @@ constexpr double kMatrixRounding = 1e-5;  ///< by which the last row of a matrix
 
 constexpr float kSmallestFov = 0.01f;  // [rad]
 constexpr float kLargestFov = 3.1f;    // [rad]
+constexpr float kSmallestMag = 1e-4f;  // half the height of an orthographic image [m]
+constexpr float kLargestMag = 5e5f;    // [m]
 
 /// Position, rotation and scale of an affine matrix; `sheared` is set if it has shear.
 Transform decompose(const Mat4& matrix, bool& sheared) {
@@ -338,21 +340,27 @@ class NodeBuilder {
             return;
         }
         const tinygltf::Camera& camera = item_at(document_.model.cameras, source.camera);
-        if (camera.type != "perspective") {
-            document_.warnings.push_back(fmt::format(
-                "{}: cameras[{}] is ignored: it is orthographic", document_.file, source.camera));
-            return;
-        }
-        // Wider or narrower than a level may have it: nothing else would be seen.
-        const float fov_y = static_cast<float>(camera.perspective.yfov);
+        const auto within = [&](const char* member, double found, float smallest, float largest) {
+            const auto shown = std::clamp(static_cast<float>(found), smallest, largest);
+            if (shown != static_cast<float>(found)) {
+                document_.warnings.push_back(fmt::format(
+                    "{}: cameras[{}].{}: found {}, shown as {}", document_.file, source.camera,
+                    member, static_cast<float>(found), shown));
+            }
+            return shown;
+        };
         node.has_camera = true;
-        node.camera.fov_y = std::clamp(fov_y, kSmallestFov, kLargestFov);
-        if (node.camera.fov_y != fov_y) {
-            document_.warnings.push_back(fmt::format(
-                "{}: cameras[{}].perspective.yfov: found {}, shown as {}", document_.file,
-                source.camera, fov_y, node.camera.fov_y));
+        if (camera.type == "orthographic") {
+            node.camera.ortho_height =
+                2
+                * within("orthographic.ymag", camera.orthographic.ymag, kSmallestMag, kLargestMag);
+            node.camera.near = std::max(static_cast<float>(camera.orthographic.znear), 1e-4f);
+        } else {
+            // Wider or narrower than a level may have it: nothing else would be seen.
+            node.camera.fov_y =
+                within("perspective.yfov", camera.perspective.yfov, kSmallestFov, kLargestFov);
+            node.camera.near = static_cast<float>(camera.perspective.znear);
         }
-        node.camera.near = static_cast<float>(camera.perspective.znear);
         if (node.name.empty()) {
             node.name = camera.name;
         }

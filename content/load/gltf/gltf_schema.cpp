@@ -52,6 +52,9 @@ materials[]: name text; alphaMode text OPAQUE MASK BLEND; alphaCutoff factor 0 1
 materials[]: doubleSided bool; emissiveFactor factor3 0 1e9
 materials[].extensions.KHR_materials_transmission: transmissionFactor factor 0 1
 materials[].extensions.KHR_materials_ior: ior factor 0 1e9
+materials[].extensions.KHR_materials_pbrSpecularGlossiness: diffuseFactor factor4 0 1
+materials[].extensions.KHR_materials_pbrSpecularGlossiness: specularFactor factor3 0 1
+materials[].extensions.KHR_materials_pbrSpecularGlossiness: glossinessFactor factor 0 1
 materials[].extensions.KHR_materials_volume: thicknessFactor factor 0 1e9
 materials[].extensions.KHR_materials_volume: attenuationDistance factor 0 1e9
 materials[].extensions.KHR_materials_volume: attenuationColor factor3 0 1
@@ -61,6 +64,7 @@ materials[].pbrMetallicRoughness: roughnessFactor factor 0 1
 materials[].normalTexture: scale number
 materials[].occlusionTexture: strength factor 0 1
 cameras[]: name text; type! text perspective orthographic
+cameras[].orthographic: xmag! number; ymag! number; znear! number 0 1e9
 cameras[].perspective: yfov! number 1e-6 3.1415928; znear! number 1e-9 1e9
 extensions.KHR_lights_punctual.lights[]: name text; type! text; color vec3 0 1e9
 extensions.KHR_lights_punctual.lights[]: intensity number 0 1e9; range number 1e-6 1e9
@@ -96,6 +100,9 @@ constexpr std::string_view kTextureInfos[] = {
     "materials[].normalTexture",
     "materials[].occlusionTexture",
     "materials[].emissiveTexture",
+    "materials[].extensions.KHR_materials_volume.thicknessTexture",
+    "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
+    "materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture",
 };
 constexpr std::string_view kTextureSchema =
     R"(: index! index textures; texCoord size 0 255

@@ -34,5 +34,5 @@ vec4 fog_before(vec3 position_ws) {
     }
     vec3 way = position_ws - view.camera_ws.xyz;
     float path = max(length(way), 1e-6);
-    return fog_along(way / path, path);
+    return fog_along(way / path, max(path - view.orthographic.x, 0.0));
 }

@@ -1,6 +1,6 @@
 // The surface of a material at a point: factors times textures. Which textures exist is fixed at compile time,
 // since a software OpenGL executes both sides of every branch:
-//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP  each is the texture unit of the map
+//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP THICKNESS_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP         all maps share a uv set and transform; otherwise they use the first set untransformed

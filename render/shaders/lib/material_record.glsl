@@ -37,6 +37,6 @@ float map_layer(vec4 layers, uint slot) {
 }
 
 // Stages of a program agree on what flows between them.
-#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP)
+#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP)
 #define MAP_LAYERS
 #endif

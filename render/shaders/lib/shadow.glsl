@@ -229,7 +229,7 @@ const float kOpaque = 1e6;  // more than anything that light passes [m]
 float shadow_thickness(vec4 shadow, vec3 position_ws, vec3 to_light) {
     int index = first_view(shadow, to_light);
 #ifdef SHADOW_CASCADES
-    float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
+    float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz) - view.orthographic.x;
     vec4 ends = texelFetch(shadow_views, index * int(kShadowViewTexels) + 9);
     float passed = min(dot(step(ends, vec4(along)), vec4(1.0)), shadow.z - 1.0);
     index += shadow.y == kShadowCascades ? int(passed) : 0;
@@ -264,7 +264,7 @@ float light_visibility(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light
     int index = first_view(shadow, to_light);
 #ifdef SHADOW_CASCADES
     // Toward its end a cascade blends into the next one, or into light; only there both are sampled.
-    float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
+    float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz) - view.orthographic.x;
     vec4 ends = texelFetch(shadow_views, index * int(kShadowViewTexels) + 9);
     bool cascades = shadow.y == kShadowCascades;
     float passed = cascades ? dot(step(ends, vec4(along)), vec4(1.0)) : 0.0;

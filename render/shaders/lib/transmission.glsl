@@ -2,7 +2,7 @@
 // roughness, in the color that absorption leaves (M. McGuire and M. Mara, "Phenomenological Transparency", 2017; thickness
 // as in KHR_materials_volume). What lies within the medium, as an iris beneath its cornea, is seen where the bent ray
 // meets it. What is off screen is taken from the surroundings. Definition REFRACTION: it has a
-// thickness. Include after lib/lighting.glsl.
+// thickness. Include after lib/lighting.glsl and lib/material.glsl.
 
 #include "lib/optics.glsl"
 #include "material_clear_gpu.h"
@@ -23,7 +23,11 @@ struct ClearMedium {
 ClearMedium clear_medium(uint material) {
     vec4 medium = block_texel(material, kClearBlock, 0);
     vec3 absorption = block_texel(material, kClearBlock, 1).rgb;
-    return ClearMedium(medium.x, medium.y, medium.z * scale, absorption);
+    float thickness = medium.z * scale;
+#ifdef THICKNESS_MAP
+    thickness *= texture(material_maps[THICKNESS_MAP], map_place(kThicknessSlot)).g;
+#endif
+    return ClearMedium(medium.x, medium.y, thickness, absorption);
 }
 
 // The image behind at `uv`, averaged over `diameter` pixels: four bilinear samples, which hide the texels of a mip level.
