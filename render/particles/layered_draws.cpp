@@ -316,8 +316,10 @@ void list_draws(
                                          ? underwater.can_see()
                                          : layer_of_pool(scene, *pool, has_splats) == layer;
             const SpriteDraw draw = draw_of_pool(scene, *pool, layer);
-            if (is_in_layer && draw.count > 0
-                && is_group_in_view(scene.extents[pool->look], frustum)) {
+            // Programs of splats are compiled at the warm-up, even if no particle is born yet.
+            const bool is_visible =
+                draw.count > 0 && is_group_in_view(scene.extents[pool->look], frustum);
+            if (is_in_layer && (is_visible || (frame.warm_up && layer == SpriteLayer::Splats))) {
                 list.draws.push_back(draw);
             }
         }

@@ -318,7 +318,7 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
             bind_view(context, view);
             look_texels.bind(context.device(), kLooksUnit);
             for (const SpriteDraw& draw : draws) {
-                if (program != nullptr) {
+                if (program != nullptr && draw.count > 0) {
                     draw.pool->texels.bind(context.device(), kParticlesUnit);
                     draw_particle_splats(context, *program, splats, *draw.pool);
                 }

@@ -96,7 +96,7 @@ TEST_CASE("player help: it lists the keys of this state, and no others") {
         {"Right click: ", {.inspector = true}},
         {"Drag: a number", {.panel = true}},
         {"Drag: the skin", {.skin = true}},
-        {"Drag: circle", {.camera = CameraMode::Orbit}},
+        {"Drag: orbit", {.camera = CameraMode::Orbit}},
         {"Wheel: distance", {.camera = CameraMode::Orbit}},
         {"Wheel: fly", {.camera = CameraMode::Fly}},
         {"Click: select; throw", {.throws = true}}};

@@ -319,10 +319,10 @@ Command add_check(CLI::App& program, std::string& scene) {
     app->add_option("scene", scene, kSceneDoc)->type_name("SCENE")->required();
     app->footer(
         "Prints what is wrong or has no effect, such as all bad parts of a model; exits with status 1
-"
+        "
         "if there is an error.
 
-"
+        "
         "Example:\n"
         "  limn check my.level.json");
     return {app, [&scene] { return run_check(scene); }};
