@@ -317,14 +317,11 @@ Command add_hash(CLI::App& program, HashOptions& options) {
 Command add_check(CLI::App& program, std::string& scene) {
     CLI::App* app = program.add_subcommand("check", "Check a level: load, step, draw, warn");
     app->add_option("scene", scene, kSceneDoc)->type_name("SCENE")->required();
-    app->footer(
-        "Prints what is wrong or has no effect, such as all bad parts of a model; exits with status 1
-        "
-        "if there is an error.
-
-        "
-        "Example:\n"
-        "  limn check my.level.json");
+    app->footer("Prints what is wrong or has no effect, such as all bad parts of a model; exits "
+                "with status 1\n"
+                "if there is an error.\n\n"
+                "Example:\n"
+                "  limn check my.level.json");
     return {app, [&scene] { return run_check(scene); }};
 }
 
