@@ -64,7 +64,9 @@ TEST_CASE("techniques: each is in the index or says where it is from, and not bo
     for (const std::string& line : read_lines(*index)) {
         ids.insert(line.substr(0, line.find('\t')));
     }
-    for (const auto& [id, row] : test::read_technique_map(LIMN_SOURCE_DIR)) {
+    for (const auto& [key, value] : test::read_technique_map(LIMN_SOURCE_DIR)) {
+        const std::string& id = key;  // a binding cannot be captured
+        const test::TechniqueRow& row = value;
         INFO(id << " has the source \"" << row.source << "\"");
         CHECK(ids.contains(id) == row.source.empty());
     }
