@@ -2,6 +2,7 @@
 
 #include "ecs/base/jobs.h"
 #include "ecs/base/srgb.h"
+#include "ecs/base/text.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
