@@ -251,7 +251,7 @@ std::vector<RenderView> Renderer::find_warm_up_views(const World& world, const R
 int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpProgress& progress) {
     device.shaders().count_loaded();
     const int environment_size = std::exchange(settings_.environment_size, kWarmUpEnvironment);
-    frame_.warm_up = true;
+    frame_.warm_up = items_.sampled = true;
     begin(kCameraView, world, view);
     const std::vector<RenderView> views = find_warm_up_views(world, view);
     const int rounds = any_light_off(world) ? 2 : 1;
@@ -267,7 +267,7 @@ int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpPr
             draw(kCameraView, world, make_small(one), {});
         }
     }
-    frame_.warm_up = frame_.all_lights = false;
+    frame_.warm_up = items_.sampled = frame_.all_lights = false;
     settings_.environment_size = environment_size;
     forget_frames();
     return static_cast<int>(device.shaders().loaded_count());

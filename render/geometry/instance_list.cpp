@@ -27,6 +27,10 @@ constexpr std::uint16_t kHidden = 0xffff;
 /// surface, this along the light, which may graze it.
 constexpr float kSetBack = 1.5f;
 
+// Of a draw that only compiles (RenderItems::sampled).
+constexpr std::uint32_t kSampledIndices = 3 * 64;
+constexpr std::uint32_t kSampledInstances = 64;
+
 /// Whether `entity` is `whole` or one of its descendants; false if `whole` is null.
 bool is_part_of(const World& world, Entity entity, Entity whole) {
     if (whole.is_null()) {
@@ -375,12 +379,17 @@ void InstanceCollector::add_command(
     run.mirrored = state.mirrored;
     run.first_command = static_cast<std::uint32_t>(commands_.size());
     run.command_count = 1;
+    DrawCommand command = {mesh.index_count, count, mesh.first_index, base_vertex, first};
     if (state.level > 0) {
         const CoarseRange& level = mesh.coarse[state.level - 1];
-        commands_.push_back({level.index_count, count, level.first_index, base_vertex, first});
-    } else {
-        commands_.push_back({mesh.index_count, count, mesh.first_index, base_vertex, first});
+        command.count = level.index_count;
+        command.first_index = level.first_index;
     }
+    if (items.sampled) {
+        command.count = std::min(command.count, kSampledIndices);
+        command.instance_count = std::min(command.instance_count, kSampledInstances);
+    }
+    commands_.push_back(command);
     if (!runs.empty() && runs.back().features == run.features
         && runs.back().textures == run.textures && runs.back().mirrored == run.mirrored) {
         ++runs.back().command_count;

@@ -121,6 +121,9 @@ class RenderItems {
         const World& world, const MeshPool& meshes, const MaterialPool& materials,
         DeformedList& shapes, float alpha);
 
+    /// Draw only a few triangles and instances of each mesh, to compile what draws them.
+    bool sampled = false;
+
     [[nodiscard]] std::size_t block_count() const { return count_; }
     [[nodiscard]] const RenderItemBlock& block(std::size_t i) const { return *blocks_[i]; }
     /// Number of items, whether they can be drawn or not.

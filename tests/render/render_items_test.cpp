@@ -1,7 +1,10 @@
+#include "content/make/models/shapes.h"
 #include "ecs/components/shadow.h"
 #include "ecs/world.h"
+#include "render/geometry/instance_list.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/geometry/render_items.h"
+#include "render/gpu/ring_buffer.h"
 #include "render/material/material_pool.h"
 #include "render/skinning/deformed_list.h"
 #include "tests/near.h"
@@ -46,6 +49,16 @@ struct ItemsTest : RenderTest {
     void update(World& from, float alpha = 1) {
         items.update(from, meshes, materials, shapes, alpha);
         items.hash_casters();
+    }
+    /// Draws of all shadow casters.
+    std::vector<DrawCommand> collect() {
+        gpu::RingBuffer ring(device().caps(), "test", 1 << 20);
+        ring.begin_frame();
+        InstanceCollector collector;
+        InstanceList list;
+        collector.collect_casters(items, {.frustum = kEverywhere}, ring, list);
+        ring.end_frame();
+        return {list.command_values.begin(), list.command_values.end()};
     }
     /// Whether the items are what they would be if nothing had been kept.
     [[nodiscard]] bool is_fresh(World& from, float alpha = 1) {
@@ -172,6 +185,25 @@ TEST_CASE_FIXTURE(
     update(world, 0.75f);
     CHECK(items.refreshed() == 0);
     CHECK(is_fresh(world, 0.75f));
+}
+
+TEST_CASE_FIXTURE(
+    ItemsTest, "render items: a warm-up draws a few triangles and instances of each mesh") {
+    assets.meshes.push_back(make_sphere({.radius = 1}));
+    meshes.update(assets.meshes);
+    world.create(
+        MeshInstance{{3}, {0}}, WorldTransform{affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(1))});
+    update(world);
+    const std::vector<DrawCommand> whole = collect();
+    items.sampled = true;
+    const std::vector<DrawCommand> sample = collect();
+    REQUIRE(sample.size() == whole.size());
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        CHECK(sample[i].count == std::min(whole[i].count, 192u));
+        CHECK(sample[i].instance_count == std::min(whole[i].instance_count, 64u));
+        CHECK(sample[i].first_index == whole[i].first_index);
+        CHECK(sample[i].base_instance == whole[i].base_instance);
+    }
 }
 
 TEST_CASE_FIXTURE(ItemsTest, "render items: a new world at the address of an old one is read") {
