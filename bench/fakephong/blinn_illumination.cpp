@@ -91,7 +91,7 @@ Vec2r blinn_coordinates(
     ++counted_work.lightings;
     const Vec3r h = half_vector(to_light(light, point.position), to_eye(scene, point.position));
     if (h.x.value == 0 && h.y.value == 0 && h.z.value == 0) {
-        return {1, 0};
+        return {1, 0};  // no half vector: on the rim, where the map is black
     }
     return plane_coordinates(scene, point.normal, h);
 }

@@ -23,6 +23,7 @@ illuminate_six(const PhongScene& scene, const std::array<SurfacePoint, 6>& point
     return lit;
 }
 
+/// Stores what the pixels of the facet evaluate.
 template <std::size_t n>
 void keep(FacetSetup& setup, const std::array<Lit, n>& lit) {
     std::copy(lit.begin(), lit.end(), setup.lit.begin());

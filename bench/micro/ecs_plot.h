@@ -145,7 +145,7 @@ inline double draw_gates(
         const Row& row = *rows[i];
         const double y = top + kRow * static_cast<double>(i);
         const auto bar = [&](const Row& shown, double from, double height, double opacity) {
-            const double share = share_of_limit(shown, &Timing::median);
+            const double share = fraction_of_limit(shown, &Timing::median);
             const char* color = share <= 1 ? kReached : kMissed;
             svg.box(start, y + from, scale * std::min(share, kMaxShare), height, color, opacity);
             if (share > kMaxShare) {

@@ -36,7 +36,7 @@ struct CausticPool {
 struct CausticLight {
     int side = 0;               ///< number of floor cells along x and z
     std::vector<double> floor;  ///< irradiance of each cell, relative to flat, empty water
-    double entered = 0;         ///< flux, relative to flat water's per square meter [m^2]
+    double entered = 0;  ///< flux / irradiance under flat, empty water [m^2]; so the next three
     double on_floor = 0;
     double on_walls = 0;
     double on_boxes = 0;
@@ -55,10 +55,11 @@ struct CausticLight {
     long photons);
 
 /// The same for light that the surface reflects onto a ceiling at `height` above rest: `floor` is
-/// the part of the ceiling with half extents `half` about `middle`, `on_floor` is all of it.
+/// the part of the ceiling with half extents `half` around `center`; `on_floor` is the flux
+/// through all of it.
 /// Photons reflected downward do not count as entered.
 [[nodiscard]] CausticLight trace_mirrored_photons(
     const CausticPool& pool, const CausticSurfaceAt& surface, const glm::dvec3& to_sun,
-    double height, const glm::dvec2& middle, int side, long photons);
+    double height, const glm::dvec2& center, int side, long photons);
 
 }  // namespace limn::oracle

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <array>
 
+// Techniques: env.image-based-light
+// Source of env.image-based-light: Ramamoorthi and Hanrahan 2001; Karis 2013
+
 namespace limn {
 namespace {
 

@@ -11,6 +11,9 @@
 #include <cmath>
 #include <type_traits>
 
+// Techniques: post.motion-blur-reconstruct
+// Source of post.motion-blur-reconstruct: McGuire et al. 2012; Guertin et al. 2014
+
 namespace limn {
 namespace {
 

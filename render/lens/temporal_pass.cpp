@@ -7,6 +7,10 @@
 #include "render/shaders/temporal_gpu.h"
 #include "render/view_block.h"
 
+// Techniques: post.temporal
+// Source of post.temporal: Karis 2014; Salvi 2016
+// Shown by `limn play gallery --antialiasing none`: post.temporal
+
 namespace limn {
 namespace {
 

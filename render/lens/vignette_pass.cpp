@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: post.effect-pipeline
+
 namespace limn {
 namespace {
 

@@ -16,7 +16,7 @@
 #include <bit>
 #include <cstdint>
 
-// Techniques: fakephong.blinn-axis
+// Techniques: fakephong.blinn-axis, light.clustered
 
 namespace limn {
 namespace {

@@ -6,6 +6,10 @@
 
 #include <algorithm>
 
+// Techniques: light.clustered
+// Source of light.clustered: Olsson et al. 2012
+// Shown by `limn bench lights`: light.clustered
+
 namespace limn {
 namespace {
 

@@ -1,6 +1,7 @@
 // The lights of each cell: those in its block's mask whose box of cells contains it and whose sphere and cone touch
 // it, in the order of the lights. Run twice: without definitions it counts, and after cluster_scan.comp with
 //   FILL  it writes the lists
+// Techniques: light.clustered
 #version 450
 #include "cluster_gpu.h"
 #include "lib/cluster.glsl"

@@ -1,5 +1,6 @@
 // Irradiance of a cube map: projects it on nine spherical harmonics, by one work group that sums the texels of a small
 // mip level in a fixed order (Ramamoorthi and Hanrahan 2001).
+// Techniques: env.image-based-light
 #version 450
 #include "lib/cube_map.glsl"
 #include "lib/irradiance.glsl"

@@ -1,4 +1,5 @@
 // Motion blur of a single frame by its velocities. See motion_blur_pass.h.
+// Techniques: post.motion-blur-reconstruct
 #version 450
 #include "lib/motion.glsl"
 #include "lib/noise.glsl"

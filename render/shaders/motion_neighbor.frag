@@ -2,6 +2,7 @@
 // direction, for objects that cross.
 //   xy  longest [px]
 //   zw  the other; equal to xy for uniform motion in the neighborhood; 0 if there is none
+// Techniques: post.motion-blur-reconstruct
 #version 450
 #include "fullscreen_gpu.h"
 

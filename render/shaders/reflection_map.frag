@@ -2,6 +2,7 @@
 // vectors, weighted by n.l, for a view along the normal (Karis 2013). A cube map is read at the mip level that matches
 // the solid angle of each sample: few samples then catch even a small sun, without fireflies (Krivanek and Colbert,
 // "Real-time Shading with Filtered Importance Sampling", 2008).
+// Techniques: env.image-based-light
 #version 450
 #include "lib/sky.glsl"
 #include "lib/reflection_map.glsl"

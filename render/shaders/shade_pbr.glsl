@@ -1,6 +1,7 @@
 // Shading model Pbr: metallic-roughness as in glTF. GGX with height-correlated Smith visibility, compensated for
 // multiple scattering, over Lambert. The base of all models: those that follow override what differs.
-// Techniques: env.control-map
+// Techniques: env.control-map, light.microfacet
+// Source of light.microfacet: Walter et al. 2007; Heitz 2014; Turquin 2019
 
 #include "lib/brdf.glsl"
 #include "lib/material_record.glsl"

@@ -1,4 +1,5 @@
 // Blends the current frame into the history. See temporal_pass.h.
+// Techniques: post.temporal
 #version 450
 #include "lib/numbers.glsl"
 #include "lib/view.glsl"

@@ -12,9 +12,10 @@
 
 namespace limn {
 
-// Births where particles of another emitter are born, fly, hit or die (ParticleSource).
+// Sub-emitters: particles that are born where those of another emitter, the parent, are born, fly,
+// hit or die (ParticleSource).
 
-/// A birth by another particle.
+/// The birth of a particle at one of the parent's.
 struct ParticleSpawn {
     Vec3 position = {0, 0, 0};
     Vec3 velocity = {0, 0, 0};  ///< that is added to the emitter's own
@@ -22,9 +23,10 @@ struct ParticleSpawn {
     float age = 0;              ///< at the end of the step [s]
 };
 
-/// Appends to `spawns` the births in a step of the parent's particles, which have moved but not
-/// lost their dead, in their order; `hits` by index. At most `room`; returns how many more there
-/// would have been. Places are on the straight line along the last velocity.
+/// Appends to `spawns` the births of a step, in the order of the parent's particles. Those have
+/// moved already, but the dead among them are not removed yet; `hits` are sorted by their index.
+/// Appends at most `room` and returns how many more there would have been. Births within the step
+/// lie on the straight line along the parent particle's last velocity.
 std::uint64_t find_spawns(
     const ParticleSource& source, const ParticleEmitter& emitter, const ParticlePool& parent,
     std::span<const ParticleHit> hits, float dt, std::size_t room, Random& random,

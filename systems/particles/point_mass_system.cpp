@@ -69,6 +69,8 @@ CollisionOptions point_options(const ParticleCollision& collision) {
 PointMass step_point_mass(const PointMass& body, const PointMassForces& forces, float dt) {
     PointMass next = body;
     next.mass = body.mass - forces.burned;
+    // Half of the accelerations and of the thrust, all of the drag (dv/dt = -k |v| v solved
+    // exactly), the other half.
     Vec3 half = 0.5f * dt * forces.acceleration;
     if (!forces.keeps_momentum) {
         half += 0.5f * std::log(next.mass / body.mass) * forces.exhaust;
@@ -110,13 +112,13 @@ void update_point_masses(
         }
         PointMass next = step_point_mass(body, forces, dt);
         const Vec3 mean = 0.5f * (body.velocity + next.velocity);
-        Vec3 place = transform.position + mean * dt;
+        Vec3 position = transform.position + mean * dt;
         if (collision != nullptr && !solid.empty()) {
             const CollisionResult moved = move_with_collisions(
                 transform.position, mean, dt, solid,
                 {.bounce = collision->bounce, .friction = collision->friction},
                 point_options(*collision));
-            place = moved.position;
+            position = moved.position;
             if (moved.contacts > 0) {
                 next.velocity = moved.velocity;
                 if (collision->action == CollisionAction::Kill) {
@@ -128,12 +130,12 @@ void update_point_masses(
                 }
             }
         }
-        if (!is_finite(place) || !is_finite(next.velocity)) {
+        if (!is_finite(position) || !is_finite(next.velocity)) {
             body.velocity = Vec3(0);
             return;
         }
         body = next;
-        transform.position = place;
+        transform.position = position;
         if (body.aim) {
             transform.rotation = aimed(transform.rotation, body.velocity);
         }

@@ -18,9 +18,9 @@
 
 namespace limn {
 
-// What is the same for all emitters in a step, whether the CPU or the GPU simulates them.
+// What all emitters share in a step, whether the CPU or the GPU simulates them.
 
-/// What it follows from, as one parameter of a system.
+/// The queries and resources that find_step_context() reads, as one parameter of a system.
 struct ParticleEnvironment {
     Query<const ForceField, const WorldTransform> fields;
     Query<const Camera, const WorldTransform> cameras;
@@ -43,7 +43,7 @@ struct StepContext {
     std::uint64_t seed = 0;     ///< of all random numbers
     Vec3 wind = {0, 0, 0};      ///< [m/s]
     std::vector<Force> forces;  ///< of all force fields
-    EmitterEye eye{};
+    EmitterEye eye{};           ///< the active camera
 };
 [[nodiscard]] StepContext find_step_context(const ParticleEnvironment& environment);
 

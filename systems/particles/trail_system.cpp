@@ -29,8 +29,8 @@ void push_point(TrailState& state, TrailStrand& strand, const TrailPoint& point)
         strand.first = (strand.first + 1) % state.capacity;
         --strand.count;
     }
-    const std::uint32_t place = (strand.first + strand.count) % state.capacity;
-    state.points[std::size_t{strand.slot} * state.capacity + place] = point;
+    const std::uint32_t index = (strand.first + strand.count) % state.capacity;
+    state.points[std::size_t{strand.slot} * state.capacity + index] = point;
     ++strand.count;
     ++strand.number;
 }
@@ -39,19 +39,21 @@ TrailPoint mix_points(const TrailPoint& a, const TrailPoint& b, float t) {
     return {a.position + (b.position - a.position) * t, 0, a.span + (b.span - a.span) * t};
 }
 
-/// Leaves a point wherever the straight way from `a` to `b` is a spacing away from the last one.
+/// Adds points along the segment from `a` to `b`, each `spacing` away from the one before it: where
+/// the segment leaves the sphere of that radius around the last point.
 void walk(
     TrailState& state, TrailStrand& strand, float spacing, const TrailPoint& a, const TrailPoint& b,
     float age, float duration) {
-    const Vec3 way = b.position - a.position;
-    const float way2 = glm::dot(way, way);
-    for (float from = 0; way2 > 0;) {
+    const Vec3 segment = b.position - a.position;
+    const float length2 = glm::dot(segment, segment);
+    for (float from = 0; length2 > 0;) {
         const Vec3 last = trail_point(state, strand, strand.count - 1).position;
         const Vec3 offset = a.position - last;
-        const float along = glm::dot(offset, way);
-        const float room = spacing * spacing - glm::dot(offset, offset);
-        const float root = along * along + way2 * room;
-        const float t = root >= 0 ? (std::sqrt(root) - along) / way2 : 2.0f;
+        // |offset + t segment| = spacing, the larger root.
+        const float along = glm::dot(offset, segment);
+        const float inside = spacing * spacing - glm::dot(offset, offset);
+        const float discriminant = along * along + length2 * inside;
+        const float t = discriminant >= 0 ? (std::sqrt(discriminant) - along) / length2 : 2.0f;
         if (!(t >= from && t <= 1)) {
             return;
         }
@@ -180,8 +182,8 @@ void age_trail(TrailState& state, const Trail& trail, float dt) {
         strand.previous = strand.head;
         strand.head.age += strand.live ? 0 : dt;
         for (std::uint32_t i = 0; i < strand.count; ++i) {
-            const std::uint32_t place = (strand.first + i) % state.capacity;
-            state.points[std::size_t{strand.slot} * state.capacity + place].age += dt;
+            const std::uint32_t index = (strand.first + i) % state.capacity;
+            state.points[std::size_t{strand.slot} * state.capacity + index].age += dt;
         }
         const auto beyond = [&](std::uint32_t i) {
             const float behind = static_cast<float>(strand.count - 1 - i) * spacing;

@@ -10,6 +10,9 @@
 #include <cmath>
 #include <mutex>
 
+// Techniques: water.ripple-grid
+// Source of water.ripple-grid: the wave equation by differences (Courant et al. 1928)
+
 namespace limn {
 
 namespace {

@@ -198,6 +198,27 @@ TEST_CASE("cli: for images that cannot be read or compared, it exits with 1 and 
     check_fails(folder, {"compare", ".", "."}, 1);
 }
 
+TEST_CASE("cli: shows finds techniques by what graphics programmers call them") {
+    const TemporaryFolder folder;
+    const auto shows = [&](const Words& words) {
+        Words all = {"shows"};
+        all.insert(all.end(), words.begin(), words.end());
+        const ProgramRun run = run_limn(folder, all);
+        CHECK(run.exit_code == 0);
+        return run.out;
+    };
+    CHECK(shows({"Bloom"}).find("limn play --show post.glow\n") != std::string::npos);
+    const std::string lens = shows({"depth", "of", "field"});
+    CHECK(lens.find("post.circle-of-confusion") != std::string::npos);
+    CHECK(lens.find("post.dof-mip") != std::string::npos);
+    CHECK(lens.find("post.glow") == std::string::npos);
+    CHECK(shows({"clustered", "lighting"}).find("Shown by a command") != std::string::npos);
+    CHECK(shows({"motion blur"}).find("post.motion-blur-reconstruct") != std::string::npos);
+    CHECK(shows({"lemon"}).find("wrinkle.maps.animation") != std::string::npos);
+    CHECK(shows({"shadow.p"}).find("shadow.pcf") != std::string::npos);
+    check_fails(folder, {"shows", "no", "such", "thing"}, 1, "\"no such thing\"");
+}
+
 TEST_CASE("cli: shows lists techniques with their levels, and how to show one") {
     const TemporaryFolder folder;
     const ProgramRun all = run_limn(folder, {"shows"});
@@ -208,7 +229,10 @@ TEST_CASE("cli: shows lists techniques with their levels, and how to show one") 
     CHECK(one.exit_code == 0);
     CHECK(one.out.find("contact_hardening") != std::string::npos);
     CHECK(one.out.find("limn render --show shadow.penumbra --off") != std::string::npos);
-    check_fails(folder, {"shows", "shadow.penumbr"}, 1, "did you mean shadow.penumbra?");
+    check_fails(folder, {"shows", "shadow.penubra"}, 1, "did you mean shadow.penumbra?");
+    CHECK(
+        run_limn(folder, {"shows", "shadow.stencil-pass"}).out.find("On and off must look the same")
+        != std::string::npos);
     check_fails(folder, {"render", "--show", "shadow.penumbr", "-o", "a.png"}, 1, "did you mean");
     check_fails(folder, {"render", "ocean", "--show", "shadow.pcf", "-o", "a.png"}, 1, "ocean");
     check_fails(folder, {"render", "a.glb", "--show", "shadow.pcf", "-o", "a.png"}, 1, "model");

@@ -1,10 +1,13 @@
 #include "tests/house/technique_map.h"
 
+#include "content/load/level/technique_names.h"
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -121,6 +124,15 @@ std::string joined(const std::vector<std::string>& items) {
     return text;
 }
 
+/// Test cases after the file they are in.
+std::string joined_tests(const std::map<std::string, std::vector<std::string>>& tests) {
+    std::string text;
+    for (const auto& [path, names] : tests) {
+        text += (text.empty() ? "`" : "; `") + path + "`: " + joined(names);
+    }
+    return text;
+}
+
 }  // namespace
 
 void add_code(TechniqueMap& map, const std::string& path, std::string_view text) {
@@ -140,7 +152,7 @@ void add_code(TechniqueMap& map, const std::string& path, std::string_view text)
     add_comment(map, path, comment);
 }
 
-void add_tests(TechniqueMap& map, std::string_view text) {
+void add_tests(TechniqueMap& map, const std::string& path, std::string_view text) {
     CodeReader reader{text};
     while ((reader.at = text.find("TEST_CASE", reader.at)) != std::string_view::npos) {
         reader.at = text.find('(', reader.at);
@@ -150,7 +162,7 @@ void add_tests(TechniqueMap& map, std::string_view text) {
         while (reader.take("*")) {
             if (reader.take("technique(")) {
                 for (const std::string& id : split_ids(reader.take_literals())) {
-                    add_once(map[id].tests, name);
+                    add_once(map[id].tests[path], name);
                 }
             }
             reader.at = std::min(text.find(')', reader.at), text.size() - 1) + 1;
@@ -179,7 +191,7 @@ TechniqueMap read_technique_map(const std::string& root) {
         }
     }
     for (const std::string& path : files_below(root, "tests", {".cpp"})) {
-        add_tests(map, read_text_file(fs::path(root) / path));
+        add_tests(map, path, read_text_file(fs::path(root) / path));
     }
     const std::string ending = ".level.json";
     for (const std::string& path : files_below(root, "content/levels", {ending})) {
@@ -191,39 +203,52 @@ TechniqueMap read_technique_map(const std::string& root) {
     return map;
 }
 
+std::string_view technique_names(std::string_view id) {
+    const auto* const found = std::find_if(
+        std::begin(kTechniqueNames), std::end(kTechniqueNames),
+        [id](const TechniqueName& named) { return named.id == id; });
+    return found != std::end(kTechniqueNames) ? found->names : "";
+}
+
 std::vector<std::string> technique_page(const TechniqueMap& map) {
-    std::vector<std::string> indexed;
+    std::vector<std::string> specified;
     std::vector<std::string> further;
     for (const auto& [id, row] : map) {
-        const std::string cells =
-            joined(row.code) + " | " + joined(row.tests) + " | " + joined(row.shows) + " |";
+        const std::string first = "| " + id + " | " + std::string(technique_names(id)) + " | ";
+        const std::string rest =
+            joined(row.code) + " | " + joined_tests(row.tests) + " | " + joined(row.shows) + " |";
         if (row.source.empty()) {
-            indexed.push_back("| " + id + " | " + cells);
+            specified.push_back(first + rest);
         } else {
-            further.push_back("| " + id + " | " + row.source + " | " + cells);
+            further.push_back(first + row.source + " | " + rest);
         }
     }
     std::vector<std::string> page = {
         "# Techniques",
         "",
-        "Every implemented technique, with its code, its tests, and the level that shows it on and "
-        "off (`limn shows`) or the",
-        "command that does. Generated from comments, test cases and levels "
+        "Where each technique is: its code, its tests, and the level or the command that shows it. "
+        "To find one, search this page",
+        "for what you call it, or run `limn shows depth of field`; `limn play --show ID` shows it "
+        "with and without (F7). Test cases",
+        "follow the file they are in; `ctest --preset release -R glow_test` runs those of one "
+        "file.",
+        "",
+        "This page is generated from comments, test cases and levels "
         "(`tests/house/technique_map.h`) by",
         "`cmake --build --preset release --target techniques`; a test fails where it is not up to "
         "date.",
         "",
-        "| id | code | tests | shown by |",
-        "|---|---|---|---|"};
-    page.insert(page.end(), indexed.begin(), indexed.end());
+        "| id | name | code | tests | shown by |",
+        "|---|---|---|---|---|"};
+    page.insert(page.end(), specified.begin(), specified.end());
     const std::vector<std::string> second = {
         "",
         "## Further techniques",
         "",
-        "Not from the index, but from the papers named.",
+        "Beyond the specification of the project, from the papers named.",
         "",
-        "| id | source | code | tests | shown by |",
-        "|---|---|---|---|---|"};
+        "| id | name | source | code | tests | shown by |",
+        "|---|---|---|---|---|---|"};
     page.insert(page.end(), second.begin(), second.end());
     page.insert(page.end(), further.begin(), further.end());
     return page;

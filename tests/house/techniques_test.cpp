@@ -1,12 +1,15 @@
 // TECHNIQUES.md is generated: what it is made of, and that it is up to date.
 
+#include "content/load/level/technique_names.h"
 #include "tests/house/technique_map.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -55,7 +58,39 @@ TEST_CASE("techniques: each has code that the product uses, a test and a show") 
     }
 }
 
-TEST_CASE("techniques: each is in the index or says where it is from, and not both") {
+TEST_CASE("techniques: each has a name, listed once, by id") {
+    const test::TechniqueMap map = test::read_technique_map(LIMN_SOURCE_DIR);
+    for (const auto& [id, row] : map) {
+        CHECK_MESSAGE(!test::technique_names(id).empty(), id << ": add it to technique_names.h");
+    }
+    for (const TechniqueName& named : kTechniqueNames) {
+        CHECK_MESSAGE(map.contains(std::string(named.id)), named.id << " is no technique");
+    }
+    CHECK(std::is_sorted(
+        std::begin(kTechniqueNames), std::end(kTechniqueNames),
+        [](const TechniqueName& a, const TechniqueName& b) { return a.id < b.id; }));
+    CHECK(std::size(kTechniqueNames) == map.size());
+}
+
+TEST_CASE("techniques: the page finds a technique by name, with the files of its tests") {
+    test::TechniqueMap map;
+    test::add_code(map, "render/glow.cpp", "// Techniques: post.glow");
+    test::add_tests(
+        map, "tests/glow_test.cpp", "TEST_CASE(\"glow: it is\" * technique(\"post.glow\"))");
+    test::add_tests(
+        map, "tests/lens_test.cpp", "TEST_CASE(\"lens: all\" * technique(\"post.glow\"))");
+    test::add_shows(map, "museum", R"("technique": "post.glow")");
+    const Names page = test::technique_page(map);
+    const auto row = std::find_if(page.begin(), page.end(), [](const std::string& line) {
+        return line.starts_with("| post.glow ");
+    });
+    REQUIRE(row != page.end());
+    CHECK(row->find("bloom") != std::string::npos);
+    CHECK(row->ends_with("| `render/glow.cpp` | `tests/glow_test.cpp`: `glow: it is`; "
+                         "`tests/lens_test.cpp`: `lens: all` | `museum` |"));
+}
+
+TEST_CASE("techniques: each is in the specification or says where it is from, and not both") {
     const auto index = test::shared_file("spec/index.tsv");
     if (!index) {
         return;
@@ -95,23 +130,26 @@ TEST_CASE("techniques: comments name code, sources and commands, over several li
 TEST_CASE("techniques: test cases name theirs, with and without fixture, over several lines") {
     test::TechniqueMap map;
     test::add_tests(
-        map, "TEST_CASE(\"water: one\" * technique(\"water.foam\")) {}\n"
-             "TEST_CASE(\"water: none\") { const int n = 2 * 3; }\n"
-             "TEST_CASE_FIXTURE(\n"
-             "    Pond, \"water: two \"\n"
-             "          \"lines\"\n"
-             "    * doctest::skip() * technique(\"water.foam, \"\n"
-             "                                  \"water.fresnel\")) {}");
+        map, "tests/water_test.cpp",
+        "TEST_CASE(\"water: one\" * technique(\"water.foam\")) {}\n"
+        "TEST_CASE(\"water: none\") { const int n = 2 * 3; }\n"
+        "TEST_CASE_FIXTURE(\n"
+        "    Pond, \"water: two \"\n"
+        "          \"lines\"\n"
+        "    * doctest::skip() * technique(\"water.foam, \"\n"
+        "                                  \"water.fresnel\")) {}");
     CHECK(map.size() == 2);
-    CHECK(map["water.foam"].tests == Names{"water: one", "water: two"});
-    CHECK(map["water.fresnel"].tests == Names{"water: two"});
+    CHECK(map["water.foam"].tests.size() == 1);
+    CHECK(map["water.foam"].tests["tests/water_test.cpp"] == Names{"water: one", "water: two"});
+    CHECK(map["water.fresnel"].tests["tests/water_test.cpp"] == Names{"water: two"});
 }
 
 TEST_CASE("techniques: an id that lacks code, a test or a show is named with what it lacks") {
     test::TechniqueMap map;
     test::add_code(map, "bench/oracles/foam.cpp", "// Techniques: a.oracle, a.whole");
     test::add_code(map, "render/foam.cpp", "// Techniques: a.untested, a.whole");
-    test::add_tests(map, "TEST_CASE(\"a: b\" * technique(\"a.oracle, a.whole, a.whale\"))");
+    test::add_tests(
+        map, "tests/a_test.cpp", "TEST_CASE(\"a: b\" * technique(\"a.oracle, a.whole, a.whale\"))");
     test::add_shows(
         map, "pond", R"({"shows": [{"technique": "a.whole"}, {"technique":"a.oracle"}]})");
     const Names missing = test::missing_parts(map);

@@ -62,8 +62,8 @@ class ClusterTest : public RenderTest {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ClusterTest,
-    "clusters: no light that reaches a visible point is missing, in 1e5 random tests") {
+    ClusterTest, "clusters: no light that reaches a visible point is missing, in 1e5 random tests"
+                     * technique("light.clustered")) {
     RandomLights random(5);
     int tests = 0;
     int reached = 0;
@@ -98,7 +98,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: no list holds a light whose sphere is off the cell's box") {
+    ClusterTest, "clusters: no list holds a light whose sphere is off the cell's box"
+                     * technique("light.clustered")) {
     RandomLights random(11);
     for (int n = 0; n < 6; ++n) {
         const RenderView view = random.view();
@@ -125,7 +126,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: 4,096 lights, few a cell, each list in order, twice the same bits") {
+    ClusterTest, "clusters: 4,096 lights, few a cell, each list in order, twice the same bits"
+                     * technique("light.clustered")) {
     RandomLights random(9);
     const Affine pose = look_at({0, 0, 60}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 640, .height = 360});
@@ -203,7 +205,7 @@ TEST_CASE("clusters: what would overflow the lists is left out, counted, and los
 
 TEST_CASE_FIXTURE(
     Scene, "clusters: the image equals the sum of all lights at every pixel"
-               * technique("deferred.light-pass")) {
+               * technique("deferred.light-pass, light.clustered")) {
     const Material matte = {
         .shading = ShadingModel::Blinn, .base_color = {0.8f, 0.8f, 0.8f, 1}, .specular = {0, 0, 0}};
     place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {40, 40, 1}));

@@ -4,6 +4,7 @@
 #include "bench/oracles/pbr_oracle.h"
 #include "render/environment/environment_light.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <glm/geometric.hpp>
 
@@ -52,7 +53,9 @@ struct BallScene : Scene {
 
 }  // namespace
 
-TEST_CASE("environment: nine harmonics give a uniform sky back exactly, others to a fifth") {
+TEST_CASE(
+    "environment: nine harmonics give a uniform sky back exactly, others to a fifth"
+    * technique("env.image-based-light")) {
     std::mt19937 random(2);
     std::normal_distribution<float> normal;
     for (const Environment& environment : kSkies) {
@@ -70,7 +73,9 @@ TEST_CASE("environment: nine harmonics give a uniform sky back exactly, others t
     }
 }
 
-TEST_CASE("environment: the table of specular albedo is the oracle's") {
+TEST_CASE(
+    "environment: the table of specular albedo is the oracle's"
+    * technique("env.image-based-light, light.microfacet")) {
     constexpr int kSize = 32;
     const std::vector<Vec2> table = make_specular_albedo(kSize);
     for (int y = 3; y < kSize; y += 4) {
@@ -99,7 +104,8 @@ TEST_CASE("environment: the metal-rough model returns all light of a white furna
 }
 
 TEST_CASE_FIXTURE(
-    BallScene, "environment: a white ball vanishes in a white furnace, whatever its roughness") {
+    BallScene, "environment: a white ball vanishes in a white furnace, whatever its roughness"
+                   * technique("light.microfacet")) {
     for (const float metalness : {0.0f, 1.0f}) {
         for (const float roughness : {0.1f, 0.5f, 1.0f}) {
             const Material white = {
@@ -150,7 +156,9 @@ TEST_CASE_FIXTURE(Scene, "environment: the background is the sky function, along
     CHECK(largest_difference(hidden, gpu::FloatImage{8, 8, 4, std::vector<float>(8 * 8 * 4)}) == 0);
 }
 
-TEST_CASE_FIXTURE(BallScene, "environment: a mirror shows the sky where it is, without a seam") {
+TEST_CASE_FIXTURE(
+    BallScene, "environment: a mirror shows the sky where it is, without a seam"
+                   * technique("env.image-based-light")) {
     const Material mirror = {.base_color = {1, 1, 1, 1}, .metalness = 1, .roughness = 0};
     for (const Environment& environment : kSkies) {
         const layout::EnvironmentBlock block = block_of(environment);
@@ -204,7 +212,9 @@ TEST_CASE_FIXTURE(BallScene, "environment: from below, where the map is folded, 
     }
 }
 
-TEST_CASE_FIXTURE(BallScene, "environment: rougher mirrors blur it and keep its mean") {
+TEST_CASE_FIXTURE(
+    BallScene,
+    "environment: rougher mirrors blur it and keep its mean" * technique("env.image-based-light")) {
     const auto mean_and_spread = [&](float roughness) {
         const gpu::FloatImage image = ball(
             {.base_color = {1, 1, 1, 1}, .metalness = 1, .roughness = roughness},

@@ -401,7 +401,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("light: metal-rough highlights on the GPU equal the oracle") {
+TEST_CASE(
+    "light: metal-rough highlights on the GPU equal the oracle" * technique("light.microfacet")) {
     for (const float metalness : {0.0f, 1.0f}) {
         for (const float roughness : {0.2f, 0.5f, 1.0f}) {
             PlaneScene scene(

@@ -3,6 +3,7 @@
 #include "render/graph/frame_graph.h"
 #include "tests/near.h"
 #include "tests/render/shutter_fixture.h"
+#include "tests/technique.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +51,9 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: a shutter of 0 adds no pass and changes
     CHECK(has_pass("motion blur"));
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: where nothing moves, no bit changes") {
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: where nothing moves, no bit changes"
+                 * technique("post.motion-blur-reconstruct")) {
     bar(unlit({1, 0.5f, 0.2f}), 20, 40, 0);
     bar(unlit({0.1f, 0.7f, 0.2f}), 10, 30, 0, -0.5f);
     world.insert_resource(Environment{});
@@ -83,7 +86,9 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: an image of one color keeps it, whateve
     }
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: a plane that goes by is a box filter of it") {
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: a plane that goes by is a box filter of it"
+                 * technique("post.motion-blur-reconstruct")) {
     // Bars of many widths side by side that all move alike.
     float begin = -40;
     for (int i = 0; begin < 110; ++i) {
@@ -129,7 +134,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: behind a moving bar the background comes back") {
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: behind a moving bar the background comes back"
+                 * technique("post.motion-blur-reconstruct")) {
     const Vec3 front = {0.9f, 0.1f, 0.1f};
     const Vec3 back = {0.1f, 0.5f, 0.9f};
     bar(unlit(back), -10, 80, 0, -1);
@@ -166,7 +173,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: of two things that cross, each smears along its own way") {
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: of two things that cross, each smears along its own way"
+                 * technique("post.motion-blur-reconstruct")) {
     // Squares of 12 px side by side; the left one goes 16 px to the right, the other 12 px up.
     const auto move = [&](const Vec2& middle, const Vec2& way) {
         const auto pose = [](const Vec2& pixel) {

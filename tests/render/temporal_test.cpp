@@ -4,6 +4,7 @@
 #include "render/lens/temporal_pass.h"
 #include "tests/near.h"
 #include "tests/render/shutter_fixture.h"
+#include "tests/technique.h"
 
 #include <cmath>
 #include <limits>
@@ -68,7 +69,9 @@ TEST_CASE_FIXTURE(Temporal, "temporal: off, it adds no pass and changes no bit")
     CHECK(frame_graph(shared_renderer()).was_run("temporal"));
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: what stands becomes the mean of its jittered images") {
+TEST_CASE_FIXTURE(
+    Temporal,
+    "temporal: what stands becomes the mean of its jittered images" * technique("post.temporal")) {
     place_objects();
     const gpu::FloatImage want = mean();
     const gpu::FloatImage plain = picture();
@@ -90,7 +93,9 @@ TEST_CASE_FIXTURE(Temporal, "temporal: what stands does not shimmer") {
     }
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: what appears from behind something keeps nothing of it") {
+TEST_CASE_FIXTURE(
+    Temporal, "temporal: what appears from behind something keeps nothing of it"
+                  * technique("post.temporal")) {
     const Vec3 wall = {0.1f, 0.3f, 0.2f};
     bar(unlit(wall), -100, 200, 0, -1);
     const Entity mover = bar(unlit({1, 1, 1}), 8, 24, 0);
@@ -106,7 +111,9 @@ TEST_CASE_FIXTURE(Temporal, "temporal: what appears from behind something keeps 
     CHECK(gone.at(40, 32, 0) == test::near(1).epsilon(0.01));
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: what goes by and darkens leaves no light behind") {
+TEST_CASE_FIXTURE(
+    Temporal,
+    "temporal: what goes by and darkens leaves no light behind" * technique("post.temporal")) {
     // Faint stripes, so that a neighborhood has some variance.
     std::vector<Entity> stripes;
     std::vector<MaterialId> colors;

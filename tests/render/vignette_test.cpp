@@ -1,6 +1,7 @@
 #include "render/lens/vignette_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -36,7 +37,9 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("vignette: closed forms on the axis, in the corners and at the limits") {
+TEST_CASE(
+    "vignette: closed forms on the axis, in the corners and at the limits"
+    * technique("post.effect-pipeline")) {
     const Vec2 tangent = {2, 1};  // corners at tan = sqrt(5)
     CHECK(vignette({1, 1}, {0, 0}, tangent) == test::near(1));
     CHECK(vignette({1, 0}, {1, 1}, tangent) == test::near(1.0 / 36));

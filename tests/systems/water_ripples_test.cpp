@@ -6,6 +6,7 @@
 #include "systems/water/water_ripple_kernels.h"
 #include "tests/near.h"
 #include "tests/systems/water_ripple_pool.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
@@ -89,7 +90,9 @@ TEST_CASE("water ripples: what falls in makes no water and takes none, in corner
     CHECK(reach(state) < 0.2f);
 }
 
-TEST_CASE("water ripples: a step keeps the volume to a millionth of what is moved") {
+TEST_CASE(
+    "water ripples: a step keeps the volume to a millionth of what is moved"
+    * technique("water.ripple-grid")) {
     RippleState state = make_ripples(pool(4, 3), {}, kStep);
     push_ripples(state, {.center = {0.7f, -0.4f}, .radius = 0.5f, .height = 0.2f});
     double moved = 0;
@@ -104,7 +107,9 @@ TEST_CASE("water ripples: a step keeps the volume to a millionth of what is move
     CHECK(std::abs(ripple_volume(state)) < 1e-5 * moved);
 }
 
-TEST_CASE("water ripples: a standing wave swings with the period of its length and speed") {
+TEST_CASE(
+    "water ripples: a standing wave swings with the period of its length and speed"
+    * technique("water.ripple-grid")) {
     // Half a wave between the walls: period 2 L / c.
     const WaterRipples ripples = {.cell = 0.05f, .speed = 1.5f, .damping = 0};
     RippleState state = make_ripples(pool(3, 0.5f), ripples, kStep);
@@ -138,7 +143,8 @@ TEST_CASE("water ripples: they fade as their damping says, and swing a little sl
     }
 }
 
-TEST_CASE("water ripples: rings are round, and go at their speed") {
+TEST_CASE(
+    "water ripples: rings are round, and go at their speed" * technique("water.ripple-grid")) {
     const WaterRipples ripples = {.cell = 0.04f, .speed = 1, .damping = 0};
     RippleState state = make_ripples(pool(6, 6), ripples, kStep);
     // Of odd size: the middle of a cell.
@@ -164,7 +170,9 @@ TEST_CASE("water ripples: rings are round, and go at their speed") {
     CHECK(spread < 0.05f * crest);
 }
 
-TEST_CASE("water ripples: walls send waves back, open borders let them go") {
+TEST_CASE(
+    "water ripples: walls send waves back, open borders let them go"
+    * technique("water.ripple-grid")) {
     float left[2] = {};
     for (const RippleBorder border : {RippleBorder::Reflecting, RippleBorder::Absorbing}) {
         const WaterRipples ripples = {.speed = 1.5f, .damping = 0, .border = border};

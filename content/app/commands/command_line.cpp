@@ -12,6 +12,7 @@
 #include "content/app/commands/list_commands.h"
 #include "content/app/commands/log_sink.h"
 #include "content/app/commands/render_command.h"
+#include "content/app/commands/shows_command.h"
 #include "content/app/commands/sibling_program.h"
 #include "content/app/commands/speak_command.h"
 #include "content/app/commands/view_command.h"
@@ -507,15 +508,20 @@ Command add_levels(CLI::App& program) {
     return {app, [] { return run_levels(); }};
 }
 
-Command add_shows(CLI::App& program, std::string& id) {
-    CLI::App* app =
-        program.add_subcommand("shows", "List the techniques that levels show, on and off");
-    app->add_option("id", id, "of a technique: print how to show it; default: list all")
-        ->type_name("ID");
+Command add_shows(CLI::App& program, std::vector<std::string>& words) {
+    CLI::App* app = program.add_subcommand(
+        "shows", "Find a technique, and the level that shows it with and without");
+    app->add_option(
+           "words", words,
+           "of its name or id: list what has them all, or print how to show the only one; "
+           "default: list all")
+        ->type_name("WORD");
     app->footer("Examples:\n"
                 "  limn shows\n"
+                "  limn shows depth of field\n"
+                "  limn shows bloom\n"
                 "  limn shows water.fresnel");
-    return {app, [&id] { return run_shows(id); }};
+    return {app, [&words] { return run_shows(words); }};
 }
 
 struct ComponentsOptions {
@@ -554,7 +560,7 @@ struct AllOptions {
     std::string info_file;
     ImportOptions import_options;
     SpeakOptions speak;
-    std::string show;
+    std::vector<std::string> show;
     std::string checked;
     ComponentsOptions components;
 };

@@ -5,7 +5,6 @@
 #include "content/load/level/level_hints.h"
 #include "content/load/level/level_list.h"
 #include "content/load/level/level_schema.h"
-#include "content/load/level/level_show.h"
 #include "content/make/make_mesh.h"
 #include "content/make/patterns/patterns.h"
 #include "ecs/any_component.h"
@@ -166,22 +165,6 @@ void print_keys(const LevelKeys& listed) {
     fmt::print("\n");
 }
 
-/// What a show changes, and the commands that render it on and off.
-void print_show(const FoundShow& found) {
-    const LevelShow& show = found.show;
-    fmt::print("{}  {}, at {} s\n{}\n", show.technique, found.level.name, show.time, show.text);
-    if (show.set.kind == JsonKind::Object) {
-        fmt::print("\nset {}\n", write_json(show.set));
-    }
-    fmt::print(
-        "\noff {}\n", show.off.kind == JsonKind::Object ? write_json(show.off)
-                                                        : std::string("without these changes"));
-    fmt::print(
-        "\nlimn play --show {0}\nlimn render --show {0} -o on.png\n"
-        "limn render --show {0} --off -o off.png\n",
-        show.technique);
-}
-
 void print_types(const ListedTypes& listed) {
     fmt::print("==== {}\n\n", listed.heading);
     for (const ListedType& type : listed.types) {
@@ -268,26 +251,6 @@ Status run_levels() {
     }
     for (const LevelEntry& level : levels) {
         fmt::print("{:<{}}  {}\n", level.name, width, level.title);
-    }
-    return Done{};
-}
-
-Status run_shows(const std::string& id) {
-    if (!id.empty()) {
-        print_show(LIMN_TRY(find_show(id)));
-        return Done{};
-    }
-    const std::vector<FoundShow> shows = LIMN_TRY(list_shows());
-    std::size_t technique = 0;
-    std::size_t level = 0;
-    for (const FoundShow& found : shows) {
-        technique = std::max(technique, found.show.technique.size());
-        level = std::max(level, found.level.name.size());
-    }
-    for (const FoundShow& found : shows) {
-        fmt::print(
-            "{:<{}}  {:<{}}  {}\n", found.show.technique, technique, found.level.name, level,
-            found.show.text);
     }
     return Done{};
 }

@@ -1,6 +1,6 @@
 // Surface reflectance. Every function returns the reflected light for an irradiance of 1 on a plane that faces
 // the light; cosines are named n_l = dot(normal, to_light) and so on, with h halfway between l and v.
-// Techniques: fakephong.vectors, light.lit, shade.stdlib
+// Techniques: fakephong.vectors, light.lit, light.microfacet, shade.stdlib
 
 const float kPi = 3.14159265358979;
 
