@@ -128,7 +128,7 @@ std::string joined(const std::vector<std::string>& items) {
 std::string joined_tests(const std::map<std::string, std::vector<std::string>>& tests) {
     std::string text;
     for (const auto& [path, names] : tests) {
-        text += (text.empty() ? "`" : "; `") + path + "`: " + joined(names);
+        text += (text.empty() ? "" : "; ") + fs::path(path).stem().string() + ": " + joined(names);
     }
     return text;
 }
@@ -214,9 +214,9 @@ std::vector<std::string> technique_page(const TechniqueMap& map) {
     std::vector<std::string> specified;
     std::vector<std::string> further;
     for (const auto& [id, row] : map) {
-        const std::string first = "| " + id + " | " + std::string(technique_names(id)) + " | ";
-        const std::string rest =
-            joined(row.code) + " | " + joined_tests(row.tests) + " | " + joined(row.shows) + " |";
+        const std::string first = "| " + id + " | ";
+        const std::string rest = std::string(technique_names(id)) + ": " + joined(row.code) + " | "
+                                 + joined_tests(row.tests) + " | " + joined(row.shows) + " |";
         if (row.source.empty()) {
             specified.push_back(first + rest);
         } else {
@@ -238,8 +238,8 @@ std::vector<std::string> technique_page(const TechniqueMap& map) {
         "`cmake --build --preset release --target techniques`; a test fails where it is not up to "
         "date.",
         "",
-        "| id | name | code | tests | shown by |",
-        "|---|---|---|---|---|"};
+        "| id | name: code | tests | shown by |",
+        "|---|---|---|---|"};
     page.insert(page.end(), specified.begin(), specified.end());
     const std::vector<std::string> second = {
         "",
@@ -247,8 +247,8 @@ std::vector<std::string> technique_page(const TechniqueMap& map) {
         "",
         "Beyond the specification of the project, from the papers named.",
         "",
-        "| id | name | source | code | tests | shown by |",
-        "|---|---|---|---|---|---|"};
+        "| id | source | name: code | tests | shown by |",
+        "|---|---|---|---|---|"};
     page.insert(page.end(), second.begin(), second.end());
     page.insert(page.end(), further.begin(), further.end());
     return page;
