@@ -7,7 +7,7 @@ layout(location = 1) INTERPOLATED in vec3 position_ws;
 layout(location = 6) flat in uint object;
 layout(location = 9) flat in vec3 facet_normals[7];
 
-// By a normal that need not be unit.
+// `normal` need not be normalized.
 vec4 radiance_by(vec3 normal) {
     Reflected light = light_at(MeshPoint(position_ws, normal, vertex_color.rgb, material_and_flags, object));
     return facet_radiance(mat2x3(light.diffuse, light.specular));
