@@ -26,7 +26,7 @@ struct Timing {
 enum class Figure {
     OfRaw,        ///< time relative to the equivalent raw loop
     OfReference,  ///< time over R: position += velocity * step on 1M raw rows
-    Plain,        ///< the time itself, or another number in its place
+    Plain,        ///< the time itself, or another number
     Speedup,      ///< raw loop's time over the time
 };
 inline constexpr std::array<std::string_view, 4> kFigureNames = {"raw", "R", "plain", "speedup"};
@@ -70,7 +70,7 @@ struct Report {
 }
 
 /// The figure as a fraction of the gate's limit: 1 just meets it, less is better.
-[[nodiscard]] inline double share_of_limit(const Row& row, double Timing::*which) {
+[[nodiscard]] inline double fraction_of_limit(const Row& row, double Timing::*which) {
     const double figure = figure_of(row, which);
     return row.figure == Figure::Speedup ? over(row.limit, figure) : over(figure, row.limit);
 }
@@ -80,10 +80,10 @@ struct Report {
     if (row.limit == 0) {
         return "";
     }
-    if (share_of_limit(row, &Timing::median) <= 1) {
+    if (fraction_of_limit(row, &Timing::median) <= 1) {
         return "reached";
     }
-    return share_of_limit(row, &Timing::best) <= 1 ? "best run only" : "NOT reached";
+    return fraction_of_limit(row, &Timing::best) <= 1 ? "best run only" : "NOT reached";
 }
 
 /// Three significant digits, without an exponent.
