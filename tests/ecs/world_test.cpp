@@ -84,7 +84,7 @@ TEST_CASE("world: a slot whose generations are used up is retired, not started o
     image.generations = {kPlaceholderBit - 1};
     table.restore(image);
     const Entity last{0, kPlaceholderBit - 1};
-    table.place(last, 0, 0);
+    table.set_location(last, 0, 0);
     table.free(last);
     CHECK(table.free_count() == 0);
     CHECK_FALSE(table.find(last));
@@ -100,18 +100,18 @@ TEST_CASE(
     const Entity before = table.allocate();
     const Entity entity = table.allocate();
     const Entity after = table.allocate();
-    table.place(before, 3, 4);
+    table.set_location(before, 3, 4);
     CHECK_FALSE(table.find(entity));
     for (const std::uint32_t archetype : kArchetypes) {
         for (const std::uint32_t row : kRows) {
-            table.place(entity, archetype, row);
+            table.set_location(entity, archetype, row);
             REQUIRE(table.find(entity));
             CHECK(table.find(entity).archetype == archetype);
             CHECK(table.find(entity).row == row);
             CHECK_FALSE(table.find(after));
         }
     }
-    table.place(after, 5, 6);
+    table.set_location(after, 5, 6);
     CHECK(table.find(before).archetype == 3);
     CHECK(table.find(before).row == 4);
     CHECK(table.find(entity).archetype == kMaxArchetypes - 1);
