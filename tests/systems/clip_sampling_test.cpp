@@ -50,7 +50,7 @@ TEST_CASE(
     * technique("anim.key-lookup")) {
     const std::vector<float> times = {0, 1, 4};
     const auto is_at = [&](float t, std::size_t first, float u) {
-        const KeyPlace place = find_keys(times, t);
+        const KeyInterval place = find_keys(times, t);
         return place.first == first && place.u == u;
     };
     CHECK(is_at(2.5f, 1, 0.5f));
@@ -70,7 +70,7 @@ TEST_CASE(
     }
     for (int i = 0; i < 10'000; ++i) {
         const float t = random.uniform(-1.0f, now + 1);
-        const KeyPlace place = find_keys(many, t);
+        const KeyInterval place = find_keys(many, t);
         CHECK(place.u >= 0);
         CHECK(place.u <= 1);
         CHECK((t < many[0] || many[place.first] <= t));

@@ -19,7 +19,7 @@ Quat about_z(float angle) {
 }
 
 Quat rotation_at(const TimedRotations& turns, float time) {
-    const KeyPlace place = find_keys(turns.times, time);
+    const KeyInterval place = find_keys(turns.times, time);
     return slerp_along(turns.rotations[place.first], turns.rotations[place.first + 1], place.u);
 }
 
