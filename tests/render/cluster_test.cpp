@@ -75,7 +75,7 @@ TEST_CASE_FIXTURE(
         }
         const oracle::ClusterReadbackLists lists = build(view, list_of(ranges, 2));
         for (int k = 0; k < 400; ++k) {
-            // A point that some light reaches, so that the test is not wasted on the dark.
+            // A point that some light reaches, so that few tests fall on unlit points.
             const LightRange& chosen = ranges[k % ranges.size()];
             const Vec3 p = chosen.center + random.in_cube(chosen.radius);
             const Vec4 clip = view.clip_from_world * Vec4(p, 1);
@@ -98,7 +98,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: no list holds a light whose sphere is off the cell's box") {
+    ClusterTest, "clusters: no list holds a light whose sphere misses the cell's box") {
     RandomLights random(11);
     for (int n = 0; n < 6; ++n) {
         const RenderView view = random.view();
@@ -125,7 +125,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: 4,096 lights, few a cell, each list in order, twice the same bits") {
+    ClusterTest, "clusters: 4,096 lights, few per cell, every list in order, the same bits twice") {
     RandomLights random(9);
     const Affine pose = look_at({0, 0, 60}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 640, .height = 360});
@@ -150,7 +150,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ClusterTest,
-    "clusters: each list begins where the one before it ends, for any number of cells") {
+    "clusters: each list begins where the previous one ends, for any number of cells") {
     RandomLights random(3);
     for (const IVec2 size : {IVec2(1, 1), IVec2(33, 31), IVec2(700, 300), IVec2(1920, 1080)}) {
         const Affine pose = look_at({0, 0, 20}, {0, 0, 0});
@@ -172,19 +172,23 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: a light without an end is in every cell, no light is in none") {
+    ClusterTest,
+    "clusters: an unbounded light is in every cell, without lights all lists are empty") {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 100, .height = 70});
     const oracle::ClusterReadbackLists endless = build(view, list_of({{{1e3f, 0, 0}, INFINITY}}));
     CHECK(endless.total() == endless.cells.size());
     CHECK(endless.total() == endless.capacity);
     CHECK(build(view, list_of({})).total() == 0);
-    CHECK(build(view, list_of({{{0, 0, 50}, 3}})).capacity == 0);   // behind the camera
-    CHECK(build(view, list_of({{{80, 0, 0}, 3}})).capacity == 0);   // beside the image
-    CHECK(build(view, list_of({{{0, 0, 5.5f}, 1}})).capacity > 0);  // behind, but reaches past
+    CHECK(build(view, list_of({{{0, 0, 50}, 3}})).capacity == 0);  // behind the camera
+    CHECK(build(view, list_of({{{80, 0, 0}, 3}})).capacity == 0);  // beside the image
+    CHECK(
+        build(view, list_of({{{0, 0, 5.5f}, 1}})).capacity
+        > 0);  // behind, but its range extends past
 }
 
-TEST_CASE("clusters: what would overflow the lists is left out, counted, and lost to no other") {
+TEST_CASE(
+    "clusters: lights that would overflow the lists are dropped and counted, others are kept") {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 1920, .height = 1080});
     std::vector<LightRange> ranges(1000, {{0, 0, 0}, INFINITY});
@@ -249,7 +253,7 @@ TEST_CASE_FIXTURE(
     CHECK(worst < 4e-3);
 }
 
-TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each where it reaches") {
+TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each within its range") {
     const Material matte = {
         .shading = ShadingModel::Blinn, .base_color = {1, 1, 1, 1}, .specular = {0, 0, 0}};
     place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {60, 60, 1}));

@@ -88,8 +88,7 @@ TEST_CASE("surface hooks: each bit of wrinkles is a definition of its own") {
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest,
-    "surface hooks: relief fits in: it moves coordinates, bends normals, marks samples") {
+    RenderTest, "surface hooks: relief can shift coordinates, bend normals and mark samples") {
     static constexpr HookPoint kPoints[] = {
         HookPoint::Uv, HookPoint::Color, HookPoint::Normal, HookPoint::Sample};
     static constexpr SurfaceHook kRelief = {
