@@ -143,7 +143,7 @@ std::uint32_t ChangeApplier::create_rows(const ChangeBatch& batch) {
     target.reserve(first + batch.rows);
     for (const RowRange& range : ranges_of(batch)) {
         const auto entities = entities_of(batch, range);
-        core.entities.place(entities, target.index(), target.append(entities, core.now()));
+        core.entities.set_location(entities, target.index(), target.append(entities, core.now()));
     }
     world_.internals_->flush_stats.entities_created += batch.rows;
     return first;
@@ -167,7 +167,7 @@ std::uint32_t ChangeApplier::move_rows(const ChangeBatch& batch) {
         stats.rows_moved_singly += single;
         stats.rows_moved_in_ranges += batch.rows - single;
     }
-    core.entities.place(target.entities().subspan(first, batch.rows), target.index(), first);
+    core.entities.set_location(target.entities().subspan(first, batch.rows), target.index(), first);
     return first;
 }
 
@@ -184,7 +184,7 @@ void ChangeApplier::close_gaps(Archetype& archetype) {
     }
     archetype.close_gaps(gaps_, world_.core_.now(), moves_);
     for (const RowMove& move : moves_) {
-        world_.core_.entities.place(
+        world_.core_.entities.set_location(
             archetype.entities().subspan(move.to, move.count), archetype.index(), move.to);
     }
     gaps_.clear();

@@ -190,11 +190,12 @@ Archetype& ChangePlans::find_target(const ChangePlan& plan, std::span<std::byte*
         shared.assign(plan.source->shared().begin(), plan.source->shared().end());
     }
     for (const ComponentChange& change : plan.table) {
-        const auto place = std::lower_bound(components.begin(), components.end(), change.info->id);
+        const auto position =
+            std::lower_bound(components.begin(), components.end(), change.info->id);
         if (change.is_present && !change.was_present) {
-            components.insert(place, change.info->id);
+            components.insert(position, change.info->id);
         } else if (!change.is_present && change.was_present) {
-            components.erase(place);
+            components.erase(position);
         }
         if (change.sets_shared() || !change.is_present) {
             std::erase_if(shared, [&](const SharedValue& value) {

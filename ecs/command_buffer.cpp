@@ -72,9 +72,9 @@ std::size_t CommandArena::bytes() const {
 
 void CommandStream::open_run(CommandKind kind, TaskScope task) {
     close_run();
-    if (segments.empty() || task.sequence != place_.sequence || task.chunk != place_.chunk) {
+    if (segments.empty() || task.sequence != scope_.sequence || task.chunk != scope_.chunk) {
         segments.push_back({task, static_cast<std::uint32_t>(runs.size())});
-        place_ = task;
+        scope_ = task;
     }
     const std::span<std::byte> room = entities_.free_piece(sizeof(Entity), alignof(Entity));
     std::size_t limit = std::min<std::size_t>(room.size() / sizeof(Entity), kMaxRunLength);
@@ -102,7 +102,7 @@ void CommandStream::close_run() {
 void CommandStream::reset() {
     open_ = {};
     limit_ = 0;
-    place_ = {};
+    scope_ = {};
     created = 0;
     runs.clear();
     segments.clear();

@@ -62,7 +62,7 @@ class CommandArena {
 };
 
 struct CommandSegment {
-    TaskScope place;
+    TaskScope scope;
     std::uint32_t first_run;  ///< the segment ends where the next one begins
 };
 
@@ -74,7 +74,7 @@ class CommandStream {
     /// Appends a command; returns memory for its values.
     std::byte* record(CommandKind kind, Entity entity) {
         const TaskScope task = current_task;
-        if (kind != open_.kind || task.sequence != place_.sequence || task.chunk != place_.chunk
+        if (kind != open_.kind || task.sequence != scope_.sequence || task.chunk != scope_.chunk
             || open_.count == limit_) {
             open_run(kind, task);
         }
@@ -101,7 +101,7 @@ class CommandStream {
 
     CommandRun open_ = {};
     std::uint32_t limit_ = 0;  ///< capacity of open_
-    TaskScope place_;          ///< of the last segment
+    TaskScope scope_;          ///< of the last segment
     CommandArena entities_;
     CommandArena values_;
 };

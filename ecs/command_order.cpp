@@ -32,12 +32,12 @@ void CommandOrder::collect(CommandBuffer& buffer) {
             const std::uint32_t end = i + 1 < stream->segments.size()
                                           ? stream->segments[i + 1].first_run
                                           : static_cast<std::uint32_t>(stream->runs.size());
-            segments_.push_back({segment.place, stream.get(), segment.first_run, end});
+            segments_.push_back({segment.scope, stream.get(), segment.first_run, end});
         }
     }
     const auto before = [](const Segment& a, const Segment& b) {
-        return a.place.sequence != b.place.sequence ? a.place.sequence < b.place.sequence
-                                                    : a.place.chunk < b.place.chunk;
+        return a.scope.sequence != b.scope.sequence ? a.scope.sequence < b.scope.sequence
+                                                    : a.scope.chunk < b.scope.chunk;
     };
     // Segments with equal scope were recorded by one thread, in the order of its runs.
     std::sort(segments_.begin(), segments_.end(), [&](const Segment& a, const Segment& b) {
@@ -161,8 +161,8 @@ void CommandOrder::locate_entities(std::uint32_t run) {
         if (i + EntityTable::kPrefetch < count) {
             core_.entities.prefetch(entities[i + EntityTable::kPrefetch]);
         }
-        EntityPlace place = core_.entities.find(entities[i]);
-        if (!place) {
+        EntityLocation location = core_.entities.find(entities[i]);
+        if (!location) {
             const bool is_placeholder = (entities[i].generation & kPlaceholderBit) != 0;
             const std::uint32_t number =
                 is_placeholder ? number_of(*all.buffer, entities[i]) : kNone;
@@ -172,22 +172,22 @@ void CommandOrder::locate_entities(std::uint32_t run) {
                 close();
                 continue;
             }
-            place = {kNoArchetype, number};
+            location = {kNoArchetype, number};
         }
-        const bool continues = open.count > 0 && place.archetype == open.archetype
-                               && place.row == open.row + open.count;
+        const bool continues = open.count > 0 && location.archetype == open.archetype
+                               && location.row == open.row + open.count;
         if (!continues) {
             close();
-            open = {place.archetype, place.row, 1, run, i};
+            open = {location.archetype, location.row, 1, run, i};
             continue;
         }
         ++open.count;
-        if (place.archetype != kNoArchetype) {
+        if (location.archetype != kNoArchetype) {
             // Two consecutive rows: there may be more, and comparing is faster than looking up.
-            const Archetype& rows = *core_.archetypes[place.archetype];
+            const Archetype& rows = *core_.archetypes[location.archetype];
             const std::uint32_t more = common_length(
-                entities + i + 1, rows.entities().data() + place.row + 1,
-                std::min(count - i - 1, rows.size() - place.row - 1));
+                entities + i + 1, rows.entities().data() + location.row + 1,
+                std::min(count - i - 1, rows.size() - location.row - 1));
             open.count += more;
             i += more;
         }

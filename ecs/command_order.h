@@ -32,7 +32,7 @@ class CommandOrder {
 
   private:
     struct Segment {
-        TaskScope place;
+        TaskScope scope;
         CommandStream* stream;
         std::uint32_t first_run;
         std::uint32_t end_run;

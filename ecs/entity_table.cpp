@@ -33,13 +33,13 @@ void EntityTable::free(std::span<const Entity> entities) {
     }
 }
 
-void EntityTable::place(
+void EntityTable::set_location(
     std::span<const Entity> entities, std::uint32_t archetype, std::uint32_t first_row) {
     for (std::size_t i = 0; i < entities.size(); ++i) {
         if (i + kPrefetch < entities.size()) {
             prefetch(entities[i + kPrefetch]);
         }
-        place(entities[i], archetype, first_row + static_cast<std::uint32_t>(i));
+        set_location(entities[i], archetype, first_row + static_cast<std::uint32_t>(i));
     }
 }
 

@@ -23,8 +23,8 @@ inline constexpr std::uint32_t kPlaceholderBit = 0x80000000u;
 inline constexpr std::uint32_t kMaxArchetypes = 0xffffu << 6;
 inline constexpr std::uint32_t kMaxRowsOfSlot = 1u << 26;
 
-/// Where the row of an entity is.
-struct EntityPlace {
+/// Location of the row of an entity.
+struct EntityLocation {
     std::uint32_t archetype = kNoArchetype;
     std::uint32_t row = 0;
 
@@ -47,7 +47,7 @@ class EntityTable {
 
     EntityTable();
 
-    /// A new handle; find() fails until place() is called.
+    /// A new handle; find() fails until set_location() is called.
     [[nodiscard]] Entity allocate() {
         if (free_count_ <= kReuseDistance) {
             return allocate_new();
@@ -76,16 +76,17 @@ class EntityTable {
     void allocate(std::span<Entity> entities);
     /// Frees the entities in this order.
     void free(std::span<const Entity> entities);
-    void place(Entity entity, std::uint32_t archetype, std::uint32_t row) {
+    void set_location(Entity entity, std::uint32_t archetype, std::uint32_t row) {
         Slot slot = slot_at(entity.index);
         slot.set_low(archetype << kRowBits | row);
         slot.set_high(static_cast<std::uint16_t>(archetype >> (32 - kRowBits)));
     }
 
-    /// Places the entities in consecutive rows.
-    void place(std::span<const Entity> entities, std::uint32_t archetype, std::uint32_t first_row);
+    /// Locates the entities in consecutive rows.
+    void set_location(
+        std::span<const Entity> entities, std::uint32_t archetype, std::uint32_t first_row);
 
-    [[nodiscard]] EntityPlace find(Entity entity) const {
+    [[nodiscard]] EntityLocation find(Entity entity) const {
         if (entity.index >= slot_count_) {
             return {};
         }
@@ -111,7 +112,7 @@ class EntityTable {
     [[nodiscard]] std::size_t committed() const { return range_.committed(); }
 
     [[nodiscard]] EntityTableImage image() const;
-    /// Restores all slots from `image`, none of them placed.
+    /// Restores all slots from `image`, none of them with a row.
     void restore(const EntityTableImage& image);
 
   private:

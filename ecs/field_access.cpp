@@ -241,7 +241,7 @@ std::string field_suggestion(const std::vector<FieldInfo>& fields, std::string_v
 Result<FieldRef> field_at(const ComponentInfo& info, void* component, std::string_view path) {
     const std::vector<FieldInfo>* fields = &info.fields;
     void* around = component;
-    FieldRef place;
+    FieldRef ref;
     std::string_view rest = path;
     do {
         const std::string_view name = take_step(rest);
@@ -263,14 +263,14 @@ Result<FieldRef> field_at(const ComponentInfo& info, void* component, std::strin
             }
         }
         const bool is_there = index < element_count(*field, data);
-        place = {field, is_there ? element_ptr(*field, data, index) : nullptr};
+        ref = {field, is_there ? element_ptr(*field, data, index) : nullptr};
         fields = &field->fields;
-        around = place.element;
+        around = ref.element;
         if (!rest.empty() && field->type != FieldType::Struct) {
             return fail("{}: {} has no fields, found \"{}\"", info.name, field->name, rest);
         }
     } while (!rest.empty());
-    return place;
+    return ref;
 }
 
 int number_count(FieldType type) {

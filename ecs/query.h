@@ -171,20 +171,20 @@ class Query {
             for (std::size_t i = kBatch; i < std::min(2 * kBatch, ahead.size()); ++i) {
                 core_->entities.prefetch(ahead[i]);
             }
-            Place places[kBatch];
+            Location locations[kBatch];
             for (std::size_t i = 0; i < size; ++i) {
-                places[i] = place_of(ahead[i]);
-                prefetch_row(places[i], Data{});
+                locations[i] = location_of(ahead[i]);
+                prefetch_row(locations[i], Data{});
             }
             for (std::size_t i = 0; i < size; ++i) {
-                if (places[i].match == nullptr) {
+                if (locations[i].match == nullptr) {
                     continue;
                 }
                 ++found;
                 const auto call = [&]<typename... Args>(Args&&... arguments) {
                     function(first + i, std::forward<Args>(arguments)...);
                 };
-                run_row(*places[i].match, places[i].row, version, call);
+                run_row(*locations[i].match, locations[i].row, version, call);
             }
         }
         return found;
@@ -266,8 +266,8 @@ class Query {
     /// The components of the only matching entity; there must be exactly one.
     [[nodiscard]] auto single() const { return single(Data{}, Indices{}); }
     [[nodiscard]] Entity single_entity() const {
-        const Place place = find_single();
-        return place.match->archetype->entities()[place.row];
+        const Location location = find_single();
+        return location.match->archetype->entities()[location.row];
     }
 
     /// Whether the entity is alive and matches the query, ignoring Changed.
@@ -283,8 +283,8 @@ class Query {
         static_assert(
             !detail::is_split<T>,
             "find: a split component has no address; use value<T>(entity) and set(entity, value)");
-        const Place place = locate(entity);
-        return place.match == nullptr ? nullptr : find_in<T>(place, Data{}, Indices{});
+        const Location location = locate(entity);
+        return location.match == nullptr ? nullptr : find_in<T>(location, Data{}, Indices{});
     }
 
     /// A copy of the split component of an entity, which must match the query and have it.
@@ -293,8 +293,8 @@ class Query {
         static_assert(
             detail::is_split<T>,
             "value: only for split components; use find<const T>() for others");
-        const Place place = locate(entity);
-        return detail::Lanes<const T>(split_column<T>(place), 0).load(place.row);
+        const Location location = locate(entity);
+        return detail::Lanes<const T>(split_column<T>(location), 0).load(location.row);
     }
     /// Replaces the value; T is a non-const term.
     template <typename T>
@@ -302,12 +302,12 @@ class Query {
         static_assert(
             detail::is_split<T> && (std::is_same_v<typename ValueOf<Terms>::Type, T> || ...),
             "set: only for split components that are non-const terms; use find<T>() for others");
-        const Place place = locate(entity);
-        detail::Lanes<T>(split_column<T>(place), 0).store(place.row, value);
-        place.match->archetype->touch_row(
-            place.match->archetype->column_of(component_id<T>), place.row, write_version());
+        const Location location = locate(entity);
+        detail::Lanes<T>(split_column<T>(location), 0).store(location.row, value);
+        location.match->archetype->touch_row(
+            location.match->archetype->column_of(component_id<T>), location.row, write_version());
         if constexpr (detail::tracks_rows<T>) {
-            place.match->archetype->bits().track(component_id<T>)->mark_shared(place.row);
+            location.match->archetype->bits().track(component_id<T>)->mark_shared(location.row);
         }
     }
 
@@ -353,7 +353,7 @@ class Query {
         std::vector<ChunkTask> list;
         static inline thread_local std::vector<ChunkTask> kept;
     };
-    struct Place {
+    struct Location {
         const QueryMatch* match = nullptr;
         std::uint32_t row = 0;
     };
@@ -553,8 +553,8 @@ class Query {
             Marks::mark_masked(match, begin / kChunkRows, rows);
         }
         const auto loop = [&](auto... access) {
-            rows.for_each([&](std::uint32_t place) {
-                const std::uint32_t row = begin + place;
+            rows.for_each([&](std::uint32_t offset) {
+                const std::uint32_t row = begin + offset;
                 if constexpr (kFiltersRows) {
                     if (!passes(match, row)) {
                         return;
@@ -665,23 +665,23 @@ class Query {
     void visit_following(std::uint32_t begin, std::uint32_t end, const Visit& visit) const {
         const SparseSet* set = state_->leading_set(*core_);
         for (std::uint32_t i = begin; i < end; ++i) {
-            const EntityPlace place = core_->entities.find(set->entities()[i]);
-            const QueryMatch* match = state_->match_of(place.archetype);
-            if (match == nullptr || !has_keys(*match) || !passes(*match, place.row)) {
+            const EntityLocation location = core_->entities.find(set->entities()[i]);
+            const QueryMatch* match = state_->match_of(location.archetype);
+            if (match == nullptr || !has_keys(*match) || !passes(*match, location.row)) {
                 continue;
             }
             if constexpr (kToggles) {
-                if (!state_->row_enabled(*match->archetype, place.row)) {
+                if (!state_->row_enabled(*match->archetype, location.row)) {
                     continue;
                 }
             }
             if constexpr (kChanged) {
                 if (!state_->chunk_changed(
-                        *match->archetype, place.row / kChunkRows, since_version())) {
+                        *match->archetype, location.row / kChunkRows, since_version())) {
                     continue;
                 }
             }
-            visit(*match, place.row);
+            visit(*match, location.row);
         }
     }
 
@@ -705,72 +705,73 @@ class Query {
 
     // ---- one entity
 
-    [[nodiscard]] Place locate(Entity entity) const {
+    [[nodiscard]] Location locate(Entity entity) const {
         state_->update(*core_);
-        return place_of(entity);
+        return location_of(entity);
     }
 
     template <typename... Ts>
-    static void prefetch_row(const Place& place, detail::TypeList<Ts...>) {
-        for (std::size_t term = 0; place.match != nullptr && term < sizeof...(Ts); ++term) {
-            if (const int column = place.match->columns[term]; column >= 0) {
-                __builtin_prefetch(place.match->archetype->column(column).at(place.row));
+    static void prefetch_row(const Location& location, detail::TypeList<Ts...>) {
+        for (std::size_t term = 0; location.match != nullptr && term < sizeof...(Ts); ++term) {
+            if (const int column = location.match->columns[term]; column >= 0) {
+                __builtin_prefetch(location.match->archetype->column(column).at(location.row));
             }
         }
     }
 
     /// state_ must be up to date.
-    [[nodiscard]] Place place_of(Entity entity) const {
-        const EntityPlace place = core_->entities.find(entity);
-        if (!place) {
+    [[nodiscard]] Location location_of(Entity entity) const {
+        const EntityLocation location = core_->entities.find(entity);
+        if (!location) {
             return {};
         }
-        const QueryMatch* match = state_->match_of(place.archetype);
+        const QueryMatch* match = state_->match_of(location.archetype);
         if (match == nullptr || !has_keys(*match)
             || (kFiltersRows && !state_->row_matches(*core_, *match->archetype, entity))) {
             return {};
         }
         if constexpr (kToggles) {
-            if (!state_->row_enabled(*match->archetype, place.row)) {
+            if (!state_->row_enabled(*match->archetype, location.row)) {
                 return {};
             }
         }
-        return {match, place.row};
+        return {match, location.row};
     }
 
     template <typename T>
-    [[nodiscard]] Column* split_column(const Place& place) const {
+    [[nodiscard]] Column* split_column(const Location& location) const {
         static_assert(
             (std::is_same_v<std::remove_const_t<typename ValueOf<Terms>::Type>, T> || ...),
             "value, set: T must be a term of the query");
-        const int column =
-            place.match != nullptr ? place.match->archetype->column_of(component_id<T>) : kNoColumn;
+        const int column = location.match != nullptr
+                               ? location.match->archetype->column_of(component_id<T>)
+                               : kNoColumn;
         LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
-        return &place.match->archetype->column(column);
+        return &location.match->archetype->column(column);
     }
 
     template <typename T, typename... Ts, std::size_t... Positions>
-    T*
-    find_in(const Place& place, detail::TypeList<Ts...>, std::index_sequence<Positions...>) const {
+    T* find_in(const Location& location, detail::TypeList<Ts...>, std::index_sequence<Positions...>)
+        const {
         T* found = nullptr;
         [[maybe_unused]] const auto one = [&]<typename Term>(std::size_t position) {
             if constexpr (std::is_same_v<typename detail::TermTraits<Term>::Value, T>) {
                 if constexpr (!std::is_const_v<T>) {
-                    place.match->archetype->touch_row(
-                        place.match->columns[position], place.row, write_version());
+                    location.match->archetype->touch_row(
+                        location.match->columns[position], location.row, write_version());
                 }
                 auto access =
-                    detail::access_term<Term>(*core_, *place.match, position, write_version());
+                    detail::access_term<Term>(*core_, *location.match, position, write_version());
                 if constexpr (detail::TermTraits<Term>::is_optional) {
-                    found = access[place.row];
+                    found = access[location.row];
                 } else {
-                    found = &access[place.row];
+                    found = &access[location.row];
                 }
                 if constexpr (detail::TermTraits<Term>::is_tracked) {
                     if (found != nullptr) {
-                        place.match->archetype->bits()
+                        location.match->archetype->bits()
                             .track(component_id<std::remove_const_t<T>>)
-                            ->mark_shared(place.row);
+                            ->mark_shared(location.row);
                     }
                 }
             }
@@ -779,12 +780,12 @@ class Query {
         return found;
     }
 
-    [[nodiscard]] Place find_single() const {
-        Place place;
+    [[nodiscard]] Location find_single() const {
+        Location location;
         std::size_t total = 0;
         state_->update(*core_);
         const auto visit = [&](const QueryMatch& match, std::uint32_t row) {
-            place = {&match, row};
+            location = {&match, row};
             ++total;
         };
         if constexpr (kFollowsSparse) {
@@ -801,7 +802,7 @@ class Query {
             });
         }
         LIMN_CHECK_NOTE(total == 1, "single: the query must have exactly one entity");
-        return place;
+        return location;
     }
 
     template <typename... Ts, std::size_t... Positions>
@@ -810,11 +811,12 @@ class Query {
         static_assert(
             !(detail::is_split<typename detail::TermTraits<Ts>::Value> || ...),
             "single: a split component has no address; use value<T>(single_entity())");
-        const Place place = find_single();
+        const Location location = find_single();
         const std::uint32_t version = write_version();
-        Marks::touch(*place.match, place.row, place.row + 1, version);
-        Marks::mark_range(*place.match, place.row, place.row + 1);
-        return {detail::access_term<Ts>(*core_, *place.match, Positions, version)[place.row]...};
+        Marks::touch(*location.match, location.row, location.row + 1, version);
+        Marks::mark_range(*location.match, location.row, location.row + 1);
+        return {
+            detail::access_term<Ts>(*core_, *location.match, Positions, version)[location.row]...};
     }
 
     WorldCore* core_;

@@ -27,15 +27,15 @@ namespace detail {
 template <bool has_values, typename... Ts>
 struct RecordLayoutOf {
     static constexpr std::size_t kSize = sizeof...(Ts);
-    struct Places {
+    struct Packing {
         std::uint32_t offsets[kSize + 1] = {};
         std::uint32_t stride = 0;
         std::uint32_t align = 1;
     };
-    static constexpr Places make_places() {
-        Places places;
+    static constexpr Packing make_packing() {
+        Packing packing;
         if (!has_values) {
-            return places;
+            return packing;
         }
         std::size_t position = 0;
         std::uint32_t end = 0;
@@ -43,20 +43,20 @@ struct RecordLayoutOf {
                                               std::uint32_t align) {
             if (!empty) {
                 end = (end + align - 1) / align * align;
-                places.offsets[position] = end;
+                packing.offsets[position] = end;
                 end += bytes;
-                places.align = std::max(places.align, align);
+                packing.align = std::max(packing.align, align);
             }
             ++position;
         };
         (add(std::is_empty_v<Ts>, sizeof(Ts), alignof(Ts)), ...);
-        places.stride = (end + places.align - 1) / places.align * places.align;
-        return places;
+        packing.stride = (end + packing.align - 1) / packing.align * packing.align;
+        return packing;
     }
-    static constexpr Places kPlaces = make_places();
+    static constexpr Packing kPacking = make_packing();
     static constexpr const ComponentId* kIds[kSize + 1] = {&component_id<Ts>..., nullptr};
     static constexpr RecordLayout kLayout = {
-        kSize, kPlaces.stride, kPlaces.align, kIds, kPlaces.offsets};
+        kSize, kPacking.stride, kPacking.align, kIds, kPacking.offsets};
 };
 
 }  // namespace detail

@@ -111,9 +111,9 @@ void name_component(ComponentId id, bool is_resource) {
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);
     ComponentInfo* const info = all.infos[id];
-    const auto [place, is_new] =
+    const auto [found, is_new] =
         (is_resource ? all.resources : all.components).try_emplace(info->name, info);
-    LIMN_CHECK_NOTE(place->second == info, info->name.c_str());
+    LIMN_CHECK_NOTE(found->second == info, info->name.c_str());
     if (is_new) {
         info->is_registered = true;
         info->is_resource = is_resource;

@@ -16,10 +16,10 @@ std::uint64_t hash_of(const ComponentInfo& info, const void* value) {
 }  // namespace
 
 void insert_shared(std::vector<SharedValue>& list, const SharedValue& value) {
-    const auto place = std::find_if(list.begin(), list.end(), [&](const SharedValue& other) {
+    const auto position = std::find_if(list.begin(), list.end(), [&](const SharedValue& other) {
         return other.component > value.component;
     });
-    list.insert(place, value);
+    list.insert(position, value);
 }
 
 std::uint32_t SharedValues::add(const ComponentInfo& info, const void* value) {

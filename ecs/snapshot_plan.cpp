@@ -89,7 +89,7 @@ void SnapshotPlan::add_resources() {
 }
 
 void SnapshotPlan::add_groups() {
-    std::map<std::vector<ComponentId>, std::size_t> places;
+    std::map<std::vector<ComponentId>, std::size_t> group_of;
     for (const auto& archetype : world_->archetypes()) {
         std::vector<ComponentId> components;
         for (const ComponentId id : archetype->components()) {
@@ -105,11 +105,11 @@ void SnapshotPlan::add_groups() {
                 identity.push_back(value.key);
             }
         }
-        const auto [place, is_new] = places.try_emplace(std::move(identity), groups_.size());
+        const auto [found, is_new] = group_of.try_emplace(std::move(identity), groups_.size());
         if (is_new) {
             groups_.push_back({std::move(components), std::move(shared), {}});
         }
-        SnapshotGroup& group = groups_[place->second];
+        SnapshotGroup& group = groups_[found->second];
         group.parts.push_back({archetype.get(), group.rows});
         group.rows += archetype->size();
     }
@@ -308,11 +308,11 @@ void SnapshotPlan::write_disabled(
     const SnapshotSection& section, std::uint32_t first, std::uint32_t end, ByteWriter& out) const {
     RowMask disabled{};
     const auto collect = [&](const Archetype& rows, std::uint32_t row, std::uint32_t count,
-                             std::uint32_t place) {
+                             std::uint32_t offset) {
         const ToggleBits& toggle = *rows.bits().toggle(section.info->id);
         for (std::uint32_t i = 0; i < count; ++i) {
             if (!toggle.is_enabled(row + i)) {
-                disabled.set(place + i);
+                disabled.set(offset + i);
             }
         }
     };
@@ -420,9 +420,9 @@ bool SnapshotPlan::is_same_rows(
     const std::uint32_t end = begin + rows_of_piece(section.rows, piece);
     bool is_same = true;
     const auto look = [&](const Archetype& rows, std::uint32_t row, std::uint32_t count,
-                          std::uint32_t place) {
+                          std::uint32_t offset) {
         is_same = is_same && rows.index() < base.first_rows.size()
-                  && base.first_rows[rows.index()] + row == begin + place;
+                  && base.first_rows[rows.index()] + row == begin + offset;
         for (std::uint32_t chunk = row / kChunkRows; chunk < chunks_of(row + count); ++chunk) {
             const std::uint32_t version = section.kind == SectionKind::Entities
                                               ? rows.structure_version(chunk)

@@ -49,7 +49,7 @@ class SnapshotReader {
         for (const auto step :
              {&SnapshotReader::read_names, &SnapshotReader::read_resources,
               &SnapshotReader::read_slots, &SnapshotReader::read_groups, &SnapshotReader::read_sets,
-              &SnapshotReader::place_sections, &SnapshotReader::check_slots,
+              &SnapshotReader::locate_sections, &SnapshotReader::check_slots,
               &SnapshotReader::check_groups, &SnapshotReader::check_sets,
               &SnapshotReader::check_values}) {
             if (Status status = (this->*step)(); !status) {
@@ -175,7 +175,7 @@ class SnapshotReader {
 
     Status read_groups() {
         const std::uint32_t count = in_.count(2 * sizeof(std::uint32_t));
-        std::map<std::vector<ComponentId>, bool> seen;
+        std::map<std::vector<ComponentId>, bool> known;
         for (std::uint32_t i = 0; i < count; ++i) {
             ReadGroup group;
             const std::uint32_t components = in_.count(sizeof(std::uint32_t));
@@ -197,7 +197,7 @@ class SnapshotReader {
             std::sort(group.components.begin(), group.components.end());
             if (std::adjacent_find(group.components.begin(), group.components.end())
                     != group.components.end()
-                || !seen.try_emplace(identity_of(group), true).second) {
+                || !known.try_emplace(identity_of(group), true).second) {
                 return fail("group {}: the group or one of its components appears twice", i);
             }
             group.first_section = sections_.size();
@@ -243,7 +243,7 @@ class SnapshotReader {
     }
 
     /// Assigns pieces to sections; checks the size of sections with fixed-size elements.
-    Status place_sections() {
+    Status locate_sections() {
         std::size_t piece = 0;
         std::uint64_t offset = 0;
         for (ReadSection& section : sections_) {
@@ -304,7 +304,7 @@ class SnapshotReader {
         return elements_of<Entity>(sections_[section]);
     }
 
-    enum class SlotUse : std::uint8_t { Unknown, Free, Placed, InSet };
+    enum class SlotUse : std::uint8_t { Unknown, Free, InGroup, InSet };
 
     Status check_slots() {
         const std::size_t section = resources_.size();
@@ -354,7 +354,7 @@ class SnapshotReader {
                         "group {}: entity {} v{} is not alive or appears twice", i, entity.index,
                         entity.generation);
                 }
-                uses_[entity.index] = SlotUse::Placed;
+                uses_[entity.index] = SlotUse::InGroup;
             }
         }
         return Done{};
@@ -364,7 +364,7 @@ class SnapshotReader {
         for (const ReadSet& set : sets_) {
             const std::vector<Entity> entities = entities_of(set.first_section);
             for (const Entity entity : entities) {
-                if (!is_handle(entity) || uses_[entity.index] != SlotUse::Placed) {
+                if (!is_handle(entity) || uses_[entity.index] != SlotUse::InGroup) {
                     return fail(
                         "component {}: entity {} v{} is not alive or appears twice", set.info->name,
                         entity.index, entity.generation);
@@ -372,7 +372,7 @@ class SnapshotReader {
                 uses_[entity.index] = SlotUse::InSet;
             }
             for (const Entity entity : entities) {
-                uses_[entity.index] = SlotUse::Placed;
+                uses_[entity.index] = SlotUse::InGroup;
             }
         }
         return Done{};

@@ -57,28 +57,28 @@ std::size_t World::entity_count() const {
 
 void World::destroy(Entity entity) {
     core_.check_unlocked();
-    EntityPlace place = require(entity);
-    bool observed = archetype(place.archetype).observes_remove;
+    EntityLocation location = require(entity);
+    bool observed = archetype(location.archetype).observes_remove;
     for (const SparseSet* set : core_.sparse_list) {
         observed = observed || (set->observes_remove && set->has(entity));
     }
     if (observed) {
         notify(ObserverEvent::Remove, components_of(entity), {&entity, 1});
-        place = require(entity);
+        location = require(entity);
     }
-    destroy_now(entity, place);
+    destroy_now(entity, location);
 }
 
-void World::destroy_now(Entity entity, EntityPlace place) {
-    Archetype& rows = archetype(place.archetype);
+void World::destroy_now(Entity entity, EntityLocation location) {
+    Archetype& rows = archetype(location.archetype);
     for (SparseSet* set : core_.sparse_list) {
         if (const std::uint32_t position = set->find(entity); position != SparseSet::kAbsent) {
             set->remove(position, core_.now());
         }
     }
-    rows.destroy_components(place.row, 1);
-    rows.fill_hole(place.row, core_.now());
-    place_filler(rows, place.row);
+    rows.destroy_components(location.row, 1);
+    rows.fill_hole(location.row, core_.now());
+    update_filler(rows, location.row);
     core_.entities.free(entity);
 }
 
@@ -243,11 +243,11 @@ void World::choose_archetype(Bundle& bundle, std::span<const void* const> values
     }
 }
 
-std::uint32_t World::move_row(Entity entity, EntityPlace place, const RowPlan& plan) {
-    Archetype& from = archetype(place.archetype);
-    const std::uint32_t row = from.move_row(place.row, plan, core_.now());
-    place_filler(from, place.row);
-    core_.entities.place(entity, plan.to->index(), row);
+std::uint32_t World::move_row(Entity entity, EntityLocation location, const RowPlan& plan) {
+    Archetype& from = archetype(location.archetype);
+    const std::uint32_t row = from.move_row(location.row, plan, core_.now());
+    update_filler(from, location.row);
+    core_.entities.set_location(entity, plan.to->index(), row);
     return row;
 }
 
@@ -270,8 +270,8 @@ SparseSet& World::use_sparse_set(ComponentId id) {
 // ----------------------------------------------------------------------
 
 std::vector<ComponentId> World::components_of(Entity entity) const {
-    const EntityPlace place = require(entity);
-    const auto table = archetype(place.archetype).components();
+    const EntityLocation location = require(entity);
+    const auto table = archetype(location.archetype).components();
     std::vector<ComponentId> components(table.begin(), table.end());
     for (const SparseSet* set : core_.sparse_list) {
         if (set->has(entity)) {
@@ -286,25 +286,25 @@ std::vector<ComponentId> World::components_of(Entity entity) const {
 }
 
 bool World::has(Entity entity, ComponentId id) const {
-    const EntityPlace place = core_.entities.find(entity);
-    return place && has_at(entity, place, id);
+    const EntityLocation location = core_.entities.find(entity);
+    return location && has_at(entity, location, id);
 }
 
-bool World::has_at(Entity entity, EntityPlace place, ComponentId id) const {
+bool World::has_at(Entity entity, EntityLocation location, ComponentId id) const {
     const SparseSet* set = core_.sparse_set(id);
-    return archetype(place.archetype).has(id) || (set != nullptr && set->has(entity));
+    return archetype(location.archetype).has(id) || (set != nullptr && set->has(entity));
 }
 
 const void* World::find(Entity entity, ComponentId id) const {
-    const EntityPlace place = core_.entities.find(entity);
-    if (!place) {
+    const EntityLocation location = core_.entities.find(entity);
+    if (!location) {
         return nullptr;
     }
     if (const SparseSet* set = core_.sparse_set(id); set != nullptr) {
         const std::uint32_t position = set->find(entity);
         return position == SparseSet::kAbsent ? nullptr : set->value(position);
     }
-    const Archetype& rows = archetype(place.archetype);
+    const Archetype& rows = archetype(location.archetype);
     const int column = rows.column_of(id);
     if (column == kTagColumn) {
         return &rows;  // any non-null address: tags have no value
@@ -315,7 +315,7 @@ const void* World::find(Entity entity, ComponentId id) const {
     LIMN_CHECK_NOTE(
         column == kNoColumn || has_address(component_info(id)),
         "a split component has no address; use read and write");
-    return column == kNoColumn ? nullptr : rows.column(column).at(place.row);
+    return column == kNoColumn ? nullptr : rows.column(column).at(location.row);
 }
 
 void* World::find(Entity entity, ComponentId id) {
@@ -329,24 +329,24 @@ void* World::find(Entity entity, ComponentId id) {
     if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
         set->touch(set->find(entity), core_.now());
     } else {
-        const EntityPlace place = core_.entities.find(entity);
-        Archetype& rows = archetype(place.archetype);
-        rows.write_row(rows.column_of(id), place.row, core_.now());
+        const EntityLocation location = core_.entities.find(entity);
+        Archetype& rows = archetype(location.archetype);
+        rows.write_row(rows.column_of(id), location.row, core_.now());
     }
     return const_cast<void*>(value);
 }
 
-void* World::make_room(Entity entity, EntityPlace place, ComponentId id) {
+void* World::make_room(Entity entity, EntityLocation location, ComponentId id) {
     if (component_info(id).storage == Storage::Sparse) {
         SparseSet& set = use_sparse_set(id);
         return set.value(set.append(entity, core_.now()));
     }
-    return make_room_in_row(entity, place, id);
+    return make_room_in_row(entity, location, id);
 }
 
-void* World::make_room_in_row(Entity entity, EntityPlace place, ComponentId id) {
-    const RowPlan& plan = plan_with(archetype(place.archetype), id);
-    const std::uint32_t row = move_row(entity, place, plan);
+void* World::make_room_in_row(Entity entity, EntityLocation location, ComponentId id) {
+    const RowPlan& plan = plan_with(archetype(location.archetype), id);
+    const std::uint32_t row = move_row(entity, location, plan);
     const int column = plan.to->column_of(id);
     return column < 0 ? nullptr : plan.to->column(column).at(row);
 }
@@ -357,9 +357,9 @@ bool World::read(Entity entity, ComponentId id, void* raw) const {
         return false;
     }
     if (info.storage == Storage::Split) {
-        const EntityPlace place = core_.entities.find(entity);
-        const Archetype& rows = archetype(place.archetype);
-        gather_values(&rows.column(rows.column_of(id)), place.row, 1, raw);
+        const EntityLocation location = core_.entities.find(entity);
+        const Archetype& rows = archetype(location.archetype);
+        gather_values(&rows.column(rows.column_of(id)), location.row, 1, raw);
     } else if (!info.is_tag) {
         LIMN_CHECK_NOTE(info.ops.construct_copy != nullptr, info.name.c_str());
         info.ops.construct_copy(raw, find(entity, id), 1);
@@ -389,21 +389,21 @@ void World::put_bytes(Entity entity, ComponentId id, const void* value) {
     const bool is_new = !has(entity, id);
     if (info.storage == Storage::Shared) {
         core_.check_unlocked();
-        const EntityPlace place = require(entity);
-        Archetype& from = archetype(place.archetype);
+        const EntityLocation location = require(entity);
+        Archetype& from = archetype(location.archetype);
         Archetype& to = archetype_with_value(from, info, value);
         if (&to != &from) {
-            move_row(entity, place, from.plan_to(to));
+            move_row(entity, location, from.plan_to(to));
         }
     } else {
         if (is_new) {
             make_room(entity, require(entity), id);
         }
-        const EntityPlace place = core_.entities.find(entity);
-        Archetype& rows = archetype(place.archetype);
+        const EntityLocation location = core_.entities.find(entity);
+        Archetype& rows = archetype(location.archetype);
         const int column = rows.column_of(id);
-        scatter_values(&rows.column(column), place.row, 1, value);
-        rows.write_row(column, place.row, core_.now());
+        scatter_values(&rows.column(column), location.row, 1, value);
+        rows.write_row(column, location.row, core_.now());
     }
     if (is_new) {
         notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
@@ -470,24 +470,24 @@ void* World::put_value(Entity entity, AnyComponent value) {
 
 bool World::remove(Entity entity, ComponentId id) {
     core_.check_unlocked();
-    const EntityPlace place = require(entity);
-    if (!has_at(entity, place, id)) {
+    const EntityLocation location = require(entity);
+    if (!has_at(entity, location, id)) {
         return false;
     }
     if (observes(id, ObserverEvent::Remove)) {
         notify(ObserverEvent::Remove, {&id, 1}, {&entity, 1});
         remove_now(entity, require(entity), id);
     } else {
-        remove_now(entity, place, id);
+        remove_now(entity, location, id);
     }
     return true;
 }
 
-void World::remove_now(Entity entity, EntityPlace place, ComponentId id) {
+void World::remove_now(Entity entity, EntityLocation location, ComponentId id) {
     if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
         set->remove(set->find(entity), core_.now());
     } else {
-        move_row(entity, place, plan_without(archetype(place.archetype), id));
+        move_row(entity, location, plan_without(archetype(location.archetype), id));
     }
 }
 
@@ -496,25 +496,26 @@ void World::remove_now(Entity entity, EntityPlace place, ComponentId id) {
 
 bool World::set_enabled(Entity entity, ComponentId id, bool enabled) {
     check_not_iterating();
-    const EntityPlace place = require(entity);
-    Archetype& rows = archetype(place.archetype);
+    const EntityLocation location = require(entity);
+    Archetype& rows = archetype(location.archetype);
     ToggleBits* toggle = rows.bits().toggle(id);
     LIMN_CHECK_NOTE(toggle != nullptr, component_info(id).name.c_str());
-    return rows.set_enabled(*toggle, place.row, enabled, core_.now());
+    return rows.set_enabled(*toggle, location.row, enabled, core_.now());
 }
 
 bool World::is_enabled(Entity entity, ComponentId id) const {
-    const EntityPlace place = core_.entities.find(entity);
-    if (!place) {
+    const EntityLocation location = core_.entities.find(entity);
+    if (!location) {
         return false;
     }
     const SparseSet* set = core_.sparse_set(id);
-    return set != nullptr ? set->has(entity) : archetype(place.archetype).is_enabled(id, place.row);
+    return set != nullptr ? set->has(entity)
+                          : archetype(location.archetype).is_enabled(id, location.row);
 }
 
 void World::enable_present(Entity entity, ComponentId id) {
-    const EntityPlace place = core_.entities.find(entity);
-    archetype(place.archetype).set_enabled(id, place.row, true, core_.now());
+    const EntityLocation location = core_.entities.find(entity);
+    archetype(location.archetype).set_enabled(id, location.row, true, core_.now());
 }
 
 // ---- queries and versions
@@ -666,7 +667,8 @@ Archetype& World::restore_rows(
         }
     }
     for (std::size_t i = 0; i < entities.size(); ++i) {
-        core_.entities.place(entities[i], rows.index(), first + static_cast<std::uint32_t>(i));
+        core_.entities.set_location(
+            entities[i], rows.index(), first + static_cast<std::uint32_t>(i));
     }
     return rows;
 }

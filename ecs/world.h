@@ -266,7 +266,7 @@ class World {
     Archetype& restore_rows(
         std::span<const ComponentId> components, std::span<const Entity> entities,
         std::span<const void* const> shared = {});
-    /// The entities must have been placed by restore_rows.
+    /// The entities must have been restored by restore_rows.
     SparseSet& restore_sparse(ComponentId id, std::span<const Entity> entities);
     void end_restore();
 
@@ -298,10 +298,10 @@ class World {
         bool has_sparse = false;
     };
 
-    [[nodiscard]] EntityPlace require(Entity entity) const {
-        const EntityPlace place = core_.entities.find(entity);
-        LIMN_CHECK_NOTE(place, "stale handle: the entity no longer exists");
-        return place;
+    [[nodiscard]] EntityLocation require(Entity entity) const {
+        const EntityLocation location = core_.entities.find(entity);
+        LIMN_CHECK_NOTE(location, "stale handle: the entity no longer exists");
+        return location;
     }
     [[nodiscard]] Archetype& archetype(std::uint32_t index) const {
         return *core_.archetypes[index];
@@ -322,11 +322,11 @@ class World {
     [[nodiscard]] const RowPlan& plan_with(Archetype& from, ComponentId id);
     [[nodiscard]] const RowPlan& plan_without(Archetype& from, ComponentId id);
     /// Moves the entity's row like Archetype::move_row; returns the new row.
-    std::uint32_t move_row(Entity entity, EntityPlace place, const RowPlan& plan);
+    std::uint32_t move_row(Entity entity, EntityLocation location, const RowPlan& plan);
     /// Raw memory for a component the entity does not have yet; nullptr for tags.
-    void* make_room(Entity entity, EntityPlace place, ComponentId id);
+    void* make_room(Entity entity, EntityLocation location, ComponentId id);
     /// The same for a component that is not sparse. The result is unusable if it is split.
-    void* make_room_in_row(Entity entity, EntityPlace place, ComponentId id);
+    void* make_room_in_row(Entity entity, EntityLocation location, ComponentId id);
     /// Enables a component that is added again.
     void enable_present(Entity entity, ComponentId id);
     void check_not_iterating() const {
@@ -337,17 +337,17 @@ class World {
     }
     /// Takes the memory of an equal archetype from before the restore, if there is one.
     void reuse_memory(Archetype& rows);
-    void destroy_now(Entity entity, EntityPlace place);
-    /// Updates the place of the entity whose row filled the hole, if any.
-    void place_filler(const Archetype& rows, std::uint32_t hole) {
+    void destroy_now(Entity entity, EntityLocation location);
+    /// Updates the location of the entity whose row filled the hole, if any.
+    void update_filler(const Archetype& rows, std::uint32_t hole) {
         if (hole < rows.size()) {
-            core_.entities.place(rows.entities()[hole], rows.index(), hole);
+            core_.entities.set_location(rows.entities()[hole], rows.index(), hole);
         }
     }
-    void remove_now(Entity entity, EntityPlace place, ComponentId id);
-    [[nodiscard]] bool has_at(Entity entity, EntityPlace place, ComponentId id) const;
+    void remove_now(Entity entity, EntityLocation location, ComponentId id);
+    [[nodiscard]] bool has_at(Entity entity, EntityLocation location, ComponentId id) const;
     template <typename T>
-    [[nodiscard]] T* find_at(Entity entity, EntityPlace place);
+    [[nodiscard]] T* find_at(Entity entity, EntityLocation location);
     /// Adds or replaces a split or shared component.
     void* put_value(Entity entity, AnyComponent value);
     void put_bytes(Entity entity, ComponentId id, const void* value);

@@ -52,15 +52,15 @@ Entity World::create(Ts... components) {
     const std::uint32_t now = core_.now();
     const Entity entity = core_.entities.allocate();
     const std::uint32_t row = bundle.archetype->append(entity, now);
-    core_.entities.place(entity, bundle.archetype->index(), row);
+    core_.entities.set_location(entity, bundle.archetype->index(), row);
 
     [[maybe_unused]] std::size_t position = 0;
     [[maybe_unused]] const auto put = [&]<typename Value>(Value& component) {
         if constexpr (detail::is_sparse<Value>) {
             SparseSet& set = use_sparse_set(component_id<Value>);
-            [[maybe_unused]] const std::uint32_t place = set.append(entity, now);
+            [[maybe_unused]] const std::uint32_t index = set.append(entity, now);
             if constexpr (!std::is_empty_v<Value>) {
-                ::new (static_cast<void*>(set.value(place))) Value(std::move(component));
+                ::new (static_cast<void*>(set.value(index))) Value(std::move(component));
             }
         } else if constexpr (detail::is_shared<Value>) {
             // Stored in the archetype.
@@ -92,7 +92,7 @@ void World::create_many(std::span<Entity> entities, Ts... components) {
     }
     const std::uint32_t first = bundle.archetype->append(entities, now);
     for (std::size_t i = 0; i < entities.size(); ++i) {
-        core_.entities.place(
+        core_.entities.set_location(
             entities[i], bundle.archetype->index(), first + static_cast<std::uint32_t>(i));
     }
 
@@ -101,9 +101,9 @@ void World::create_many(std::span<Entity> entities, Ts... components) {
         if constexpr (detail::is_sparse<T>) {
             SparseSet& set = use_sparse_set(component_id<T>);
             for (const Entity entity : entities) {
-                [[maybe_unused]] const std::uint32_t place = set.append(entity, now);
+                [[maybe_unused]] const std::uint32_t index = set.append(entity, now);
                 if constexpr (!std::is_empty_v<T>) {
-                    ::new (static_cast<void*>(set.value(place))) T(component);
+                    ::new (static_cast<void*>(set.value(index))) T(component);
                 }
             }
         } else if constexpr (detail::is_shared<T>) {
@@ -154,8 +154,8 @@ detail::Added<T> World::add(Entity entity, T component) {
     if constexpr (detail::is_split<T> || detail::is_shared<T>) {
         put_bytes(entity, component_id<T>, &component);
     } else {
-        const EntityPlace place = require(entity);
-        if (T* present = find_at<T>(entity, place); present != nullptr) {
+        const EntityLocation location = require(entity);
+        if (T* present = find_at<T>(entity, location); present != nullptr) {
             if constexpr (detail::is_toggle<T>) {
                 enable_present(entity, component_id<T>);
             }
@@ -169,9 +169,9 @@ detail::Added<T> World::add(Entity entity, T component) {
         }
         void* room = nullptr;
         if constexpr (detail::is_sparse<T>) {
-            room = make_room(entity, place, component_id<T>);
+            room = make_room(entity, location, component_id<T>);
         } else {
-            room = make_room_in_row(entity, place, component_id<T>);
+            room = make_room_in_row(entity, location, component_id<T>);
         }
         T* value = static_cast<T*>(room);
         if constexpr (!std::is_empty_v<T>) {
@@ -200,18 +200,18 @@ inline T* World::find(Entity entity) {
     static_assert(
         !detail::is_shared<T> || std::is_const_v<T>,
         "get, find: a shared component is read as const T; set(entity, value) replaces it");
-    const EntityPlace place = core_.entities.find(entity);
-    return place ? find_at<T>(entity, place) : nullptr;
+    const EntityLocation location = core_.entities.find(entity);
+    return location ? find_at<T>(entity, location) : nullptr;
 }
 
 template <typename T>
-inline T* World::find_at([[maybe_unused]] Entity entity, EntityPlace place) {
+inline T* World::find_at([[maybe_unused]] Entity entity, EntityLocation location) {
     using Value = std::remove_const_t<T>;
     if constexpr (detail::is_sparse<Value>) {
         return detail::SparseOptionalAccess<T>{
             core_.sparse_set(component_id<Value>), &entity, core_.now()}[0];
     } else {
-        Archetype& rows = archetype(place.archetype);
+        Archetype& rows = archetype(location.archetype);
         const int column = rows.column_of(component_id<Value>);
         if (column == kNoColumn) {
             return nullptr;
@@ -222,12 +222,12 @@ inline T* World::find_at([[maybe_unused]] Entity entity, EntityPlace place) {
             return &detail::tag_value<Value>;
         } else {
             if constexpr (!std::is_const_v<T>) {
-                rows.touch_row(column, place.row, core_.now());
+                rows.touch_row(column, location.row, core_.now());
                 if constexpr (detail::tracks_rows<T>) {
-                    rows.bits().track(component_id<T>)->mark(place.row);
+                    rows.bits().track(component_id<T>)->mark(location.row);
                 }
             }
-            return reinterpret_cast<T*>(rows.column(column).data) + place.row;
+            return reinterpret_cast<T*>(rows.column(column).data) + location.row;
         }
     }
 }
@@ -254,11 +254,11 @@ inline const T& World::get(Entity entity) const {
 template <typename T>
 T World::value(Entity entity) const {
     if constexpr (detail::is_split<T>) {
-        const EntityPlace place = require(entity);
-        const Archetype& rows = archetype(place.archetype);
+        const EntityLocation location = require(entity);
+        const Archetype& rows = archetype(location.archetype);
         const int column = rows.column_of(component_id<T>);
         LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
-        return detail::Lanes<const T>(&rows.column(column), 0).load(place.row);
+        return detail::Lanes<const T>(&rows.column(column), 0).load(location.row);
     } else {
         return get<T>(entity);
     }
@@ -267,12 +267,12 @@ T World::value(Entity entity) const {
 template <typename T>
 void World::set(Entity entity, T component) {
     if constexpr (detail::is_split<T>) {
-        const EntityPlace place = require(entity);
-        Archetype& rows = archetype(place.archetype);
+        const EntityLocation location = require(entity);
+        Archetype& rows = archetype(location.archetype);
         const int column = rows.column_of(component_id<T>);
         LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
-        detail::Lanes<T>(&rows.column(column), 0).store(place.row, component);
-        rows.write_row(column, place.row, core_.now());
+        detail::Lanes<T>(&rows.column(column), 0).store(location.row, component);
+        rows.write_row(column, location.row, core_.now());
     } else if constexpr (detail::is_shared<T>) {
         static_cast<void>(get<const T>(entity));
         put_bytes(entity, component_id<T>, &component);
@@ -291,17 +291,17 @@ template <typename T>
 [[gnu::always_inline]] inline bool World::set_enabled(Entity entity, bool enabled) {
     static_assert(detail::is_toggle<T>, "T cannot be disabled: its storage is not Storage::Toggle");
     check_not_iterating();
-    const EntityPlace place = require(entity);
-    Archetype& rows = archetype(place.archetype);
+    const EntityLocation location = require(entity);
+    Archetype& rows = archetype(location.archetype);
     ToggleBits* toggle = rows.bits().toggle(component_id<T>);
     LIMN_CHECK_NOTE(toggle != nullptr, component_info<T>().name.c_str());
-    if (!toggle->set_enabled(place.row, enabled)) {
+    if (!toggle->set_enabled(location.row, enabled)) {
         return false;
     }
     if constexpr (std::is_empty_v<T> || detail::tracks_rows<T>) {
-        rows.touch_toggle(*toggle, place.row, core_.now());
+        rows.touch_toggle(*toggle, location.row, core_.now());
     } else {
-        rows.touch_row(toggle->column, place.row, core_.now());
+        rows.touch_row(toggle->column, location.row, core_.now());
     }
     return true;
 }

@@ -14,33 +14,32 @@ struct FrameOutput;
 struct RenderSettings;
 struct RenderView;
 
-// What the list of effects (image.h) needs to know of each. An effect is a struct with some of
-// these functions; only create() is needed:
+// The interface of an effect in the list (image.h). An effect is a struct with some of these
+// functions; only create() is required:
 //
 //     struct FrostEffect {
 //         static Result<FrostEffect> create(gpu::Device&, const RenderSettings&);
-//         static bool is_used(const FrameData&);        // none: always; else made when first used
+//         static bool is_used(const FrameData&);        // absent: always, else on first use
 //         void collect(FrameData&);                     // once a frame: read the world, upload
 //         void request_views(FrameData&);               // once a frame, after every collect()
-//         bool prepare(const FrameData&, ViewData&);    // once a view; false: no part in it
+//         bool prepare(const FrameData&, ViewData&);    // once a view; false: not drawn in it
 //         void draw_shared(FrameGraph&, const FrameData&);   // passes before those of any view
 //         void draw(FrameGraph&, const FrameData&, ViewData&);
-//         void report(const FrameData&, const ViewData&, FrameOutput&);  // after the frame, of the
-//         main view
+//         void report(const FrameData&, const ViewData&, FrameOutput&);  // for the main view
 //         static void add_warm_up_views(const FrameData&, std::vector<RenderView>&);  // see below
 //     };
 //
 // Each step is done for all effects, in the order of the list, before the next begins. The struct
-// is the effect's state and lives until the renderer does or begins anew (warm_up,
+// is the effect's state and lives until the renderer is destroyed or reset (warm_up,
 // render_frame.h); passes may capture its address.
 //
 // No program should be compiled while a level is played. A level is warmed up when it is loaded:
-// drawn from the cameras that it has and from far enough to see all of it; once more with every
-// light on, if some are off. An effect takes part without doing anything if the definitions of its
-// shaders follow from what the level holds (all lights of FrameData's LightList, all materials)
-// rather than from what a view shows of it. Definitions that must follow
-// the camera are met by add_warm_up_views(): it adds places from which each of them is drawn. What
-// has no place, such as a shadow map that a caster may enter later, looks at FrameData::warm_up.
+// drawn from its cameras and from far enough to see all of it; once more with every light on, if
+// some are off. An effect needs to do nothing for this if the definitions of its shaders follow
+// from what the level holds (all lights of FrameData's LightList, all materials) rather than from
+// what is visible in a view. For definitions that depend on the camera, add_warm_up_views() adds
+// camera positions from which each of them is drawn. Whatever cannot be triggered by a camera
+// position, such as a shadow map that a caster may enter later, checks FrameData::warm_up.
 
 struct EffectEntry {
     std::uint32_t views;  ///< of ViewKind: in which prepare() and draw() are called

@@ -39,33 +39,33 @@ class World;
 //                 graph textures that the view is drawn into
 //
 // Both have a store that effects publish plain structs in and read others' from, by type: an effect
-// includes another's header for such a struct alone, and none writes what another published.
+// may include another's header only for such a struct, and never writes what another published.
 
 /// What a view is for; effects choose the kinds that they take part in (EffectEntry::views).
 enum ViewKind : std::uint32_t {
     kCameraView = 1u << 0,  ///< the image that is asked for
-    kSampleView = 1u << 1,  ///< an image that is added to an accumulated one
-    kMeanView = 1u << 2,    ///< accumulated radiance on its way to the display: nothing is drawn
-    kProbeView = 1u << 3,   ///< a face of an environment probe: what lights, without probes
-    kMirrorView = 1u << 4,  ///< what a planar water surface mirrors, without water
+    kSampleView = 1u << 1,  ///< one sample of an accumulated image
+    kMeanView = 1u << 2,    ///< accumulated radiance that is prepared for display: nothing is drawn
+    kProbeView = 1u << 3,   ///< a face of an environment probe, drawn without probes
+    kMirrorView = 1u << 4,  ///< the reflection in a planar water surface, drawn without water
 
-    kMainViews = kCameraView | kSampleView,               ///< seen by the camera that was asked for
+    kMainViews = kCameraView | kSampleView,               ///< through the requested camera
     kSceneViews = kMainViews | kProbeView | kMirrorView,  ///< all that draw the scene
     kFilmViews = kCameraView | kMeanView,                 ///< those that become a displayed image
 };
 
-/// What a view's image becomes part of.
+/// How the image of a view is used.
 enum class SampleKind : std::uint8_t {
-    Played,   ///< a whole frame: moving things blurred, distant things out of focus
-    Instant,  ///< one instant through one point of the lens: the mean itself blurs
+    Played,   ///< a complete frame, with motion blur and depth of field
+    Instant,  ///< one instant through one point of the lens: averaging samples blurs
 };
 
-/// A further view that this frame needs drawn before the main one.
+/// An additional view that this frame needs before the main one.
 struct ExtraView {
     ViewKind kind = kProbeView;
     RenderView camera;
     std::string_view name = {};  ///< scope of its passes in timings
-    int index = 0;               ///< what the effect that asked tells its views apart by
+    int index = 0;               ///< by which the effect that requested it identifies its views
 };
 
 struct FrameData {
@@ -88,18 +88,19 @@ struct FrameData {
     std::uint64_t number = 0;         ///< counts the frames of the renderer
     double time = 0;                  ///< simulated time shown [s]
     std::optional<float> since_last;  ///< simulated time since the previous frame [s]; none: a cut
-    std::span<const std::string> aovs;  ///< asked for
+    std::span<const std::string> aovs;  ///< requested
     bool velocity = false;              ///< the main view needs motion vectors; set in collect()
     bool attributes = false;            ///< the main view needs its G-buffer; set in collect()
-    bool warm_up = false;               ///< drawn to compile programs, not to be seen (warm_up())
-    bool all_lights = false;            ///< of a warm-up: as if every light were on
+    bool warm_up = false;               ///< drawn to compile programs, not for display (warm_up())
+    bool all_lights = false;            ///< of a warm-up: every light counts as on
     std::vector<ExtraView> views;       ///< filled in request_views()
 
     TypedStore data;
 };
 
-/// What shaders that light surfaces need beside the surface itself. Effects that light, shade or
-/// occlude contribute: definitions and bindings in prepare(), what the graph must know in draw().
+/// Inputs of lighting shaders besides the surface itself. Effects that light, shadow or occlude
+/// contribute definitions and bindings in prepare(), and the resources that passes must declare in
+/// draw().
 struct LightingInputs {
     struct Binding {
         void (*bind)(PassContext&, const void*);
@@ -132,23 +133,23 @@ struct ViewData {
     int index = 0;          ///< ExtraView::index
     bool velocity = false;  ///< motion vectors are drawn
     bool attributes = false;
-    bool spreads = false;  ///< light within surfaces is drawn apart, to be spread; set in prepare()
+    bool spreads = false;  ///< subsurface light is drawn to `scattered`; set in prepare()
     gpu::RingSlice block;  ///< layout::ViewBlock
-    /// Those of effects, by binding less kEffectBlocks.
+    /// Blocks of effects, indexed by binding - kEffectBlocks.
     std::array<gpu::RingSlice, layout::kMaxEffectBlocks> effect_blocks;
     LightingInputs lighting;
 
     Gbuffer gbuffer;
     TextureId radiance;   ///< the image so far; effects replace it
-    TextureId scattered;  ///< light within surfaces that scatter, before their albedo, alpha 1
-                          ///< there, with mip levels; valid() after lighting where `spreads`
+    TextureId scattered;  ///< subsurface light without albedo, alpha 1 on such surfaces,
+                          ///< with mip levels; valid() after lighting if `spreads`
     TextureId display;    ///< RGBA8, at the end of kFilmViews
 
     TypedStore data;
 
     [[nodiscard]] bool is(std::uint32_t kinds) const { return (kind & kinds) != 0; }
-    /// Uploads a uniform block for all programs of this view; in prepare(). `binding` is that of
-    /// its shaders, kEffectBlocks at least.
+    /// Uploads a uniform block for all programs of this view; in prepare(). `binding` is the one in
+    /// its shaders, at least kEffectBlocks.
     template <typename Block>
     void publish_block(unsigned binding, const Block& values) {
         static_assert(sizeof(Block) <= layout::kEffectBlockBytes);

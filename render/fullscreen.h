@@ -40,9 +40,9 @@ create_like(FrameGraph& graph, std::string_view name, TextureId other) {
         {.vertex = "fullscreen.vert", .fragment = fragment, .defines = std::move(defines)});
 }
 
-/// Adds a pass that runs `program` once per pixel of its targets. Reads made by sampled() are
-/// bound to their units; `set(context, program)` sets uniforms and binds what is no texture of the
-/// graph. A null program draws nothing.
+/// Adds a pass that runs `program` once per pixel of its targets. Reads made by sampled() are bound
+/// to their units; `set(context, program)` sets uniforms and binds resources outside the graph. A
+/// null program draws nothing.
 template <typename Set>
 void add_fullscreen_pass(
     FrameGraph& graph, std::string_view name, std::initializer_list<Use> reads,

@@ -45,36 +45,36 @@ namespace limn {
 namespace {
 
 constexpr EffectEntry kImage[] = {
-    // What is in the world, and what of it each view shows.
+    // What is in the world, and what is visible in each view.
     effect<TextureCombineEffect>(0),
-    effect<WrinkleMapsEffect>(0),          // normals, which textures are shaded with
+    effect<WrinkleMapsEffect>(0),          // normals, with which textures are shaded
     effect<TextureShadeEffect>(0),         // after textures are combined
     effect<DeformEffect>(kSceneViews),     // before all that draws meshes
     effect<WrinkleEffect>(kSceneViews),    // where deformed skin is compressed
     effect<LightListEffect>(kSceneViews),  // records and clusters
     effect<EnvironmentEffect>(kSceneViews), effect<GbufferEffect>(kSceneViews),
-    effect<HighlightMapEffect>(kMainViews),  // what stands in for highlights
-    effect<WaterBodiesEffect>(kSceneViews),  // where water is, and what lies in it
+    effect<HighlightMapEffect>(kMainViews),  // precomputed highlights
+    effect<WaterBodiesEffect>(kSceneViews),  // water surfaces, and what is in the water
     effect<ShadowEffect>(kSceneViews),       // maps and volumes; after water, which asks for maps
-    effect<ParticleShadowEffect>(kSceneViews),  // maps of what particles leave of a light
-    effect<CausticsEffect>(kSceneViews),  // after shadows: what stands in the way of its light
+    effect<ParticleShadowEffect>(kSceneViews),  // maps of the light that particles transmit
+    effect<CausticsEffect>(kSceneViews),        // after shadows, which occlude their light
 
     // Light.
     effect<LightEffect>(kSceneViews),
     effect<ShadingComparisonEffect>(kMainViews),         // two methods as one image
-    effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // light that spreads within surfaces
+    effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // subsurface scattering
     effect<SkyEffect>(kSceneViews), effect<MirrorCausticEffect>(kSceneViews),
-    effect<ParticlesUnderWaterEffect>(kSceneViews),  // seen through it
-    effect<WaterEffect>(kSceneViews),                // over all that is opaque
-    effect<WaterVeilEffect>(kSceneViews),  // what lies between a camera in the water and all else
-    effect<FogEffect>(kSceneViews),        // over all that has a depth; what follows has its own
-    effect<ParticleEffect>(kSceneViews),   // what is behind blended surfaces
-    effect<BlendEffect>(kSceneViews),      // after sky and water, which are seen through it
+    effect<ParticlesUnderWaterEffect>(kSceneViews),  // visible through the water
+    effect<WaterEffect>(kSceneViews),                // over everything opaque
+    effect<WaterVeilEffect>(kSceneViews),            // the water in front of an underwater camera
+    effect<FogEffect>(kSceneViews),       // over all that has depth; later effects fog themselves
+    effect<ParticleEffect>(kSceneViews),  // those behind blended surfaces
+    effect<BlendEffect>(kSceneViews),     // after sky and water, which are visible through it
     effect<ParticleFrontEffect>(kSceneViews),  // over all surfaces
     effect<SpeedLineEffect>(kMainViews),
 
-    // Where views end that are not the camera's.
-    effect<ProbeEffect>(kSceneViews),  // asks for its faces as views; lights all others
+    // The end of views other than the camera's.
+    effect<ProbeEffect>(kSceneViews),  // requests its faces as views; lights all others
     effect<WaterMirrorEffect>(kMirrorView), effect<AovEffect>(kMainViews),
 
     // The lens and the shutter.
@@ -82,7 +82,7 @@ constexpr EffectEntry kImage[] = {
     effect<MotionBlurEffect>(kMainViews), effect<DepthOfFieldEffect>(kMainViews),
     effect<LensFlareEffect>(kMainViews), effect<DazzleEffect>(kMainViews),
     effect<GlareEffect>(kFilmViews), effect<GlowEffect>(kMainViews | kMeanView),
-    effect<ShadingMarksEffect>(kMainViews),  // over the image: no lens blurs them
+    effect<ShadingMarksEffect>(kMainViews),  // over the image: not blurred by the lens
     effect<VignetteEffect>(kFilmViews),
 
     // The film.

@@ -41,13 +41,13 @@ double shown_time(const World& world, const RenderView& view) {
     return time != nullptr ? time->time - (1.0 - view.alpha) * time->step : 0.0;
 }
 
-/// The same view in fewer pixels, with circles of confusion as large, and in motion.
+/// The same view with fewer pixels, with circles of confusion of the same size, and in motion.
 RenderView make_small(const RenderView& view) {
     RenderView small = view;
     if (view.height > kWarmUpHeight) {
         const float scale = static_cast<float>(view.height) / static_cast<float>(kWarmUpHeight);
         const int width = static_cast<int>(static_cast<float>(view.width) / scale);
-        // Halving an odd side is another case for some effects.
+        // Some effects have a special case for halving an odd size.
         small.height = kWarmUpHeight + view.height % 2;
         small.width = std::max(width - width % 2, 2) + view.width % 2;
         small.lens.aperture_radius *= scale;
@@ -57,7 +57,7 @@ RenderView make_small(const RenderView& view) {
     return with_jitter(small, {0, 0});
 }
 
-/// Of all that is drawn or lights, as far as it is finite.
+/// Bounds of everything that is drawn or emits light, ignoring what is not finite.
 Bounds bounds_of(const World& world, const Assets& assets) {
     Bounds all;
     const auto add = [&all](const Bounds& box) {
@@ -67,17 +67,17 @@ Bounds bounds_of(const World& world, const Assets& assets) {
         }
     };
     world.query<const WorldTransform, Optional<const MeshInstance>>().each(
-        [&](const WorldTransform& place, const MeshInstance* surface) {
-            const Vec3 origin = transform_point(place.world, Vec3(0));
+        [&](const WorldTransform& transform, const MeshInstance* surface) {
+            const Vec3 origin = transform_point(transform.world, Vec3(0));
             add({origin, origin});
             if (surface != nullptr && surface->mesh.index < assets.meshes.size()) {
-                add(transform_bounds(place.world, assets.meshes[surface->mesh.index].bounds));
+                add(transform_bounds(transform.world, assets.meshes[surface->mesh.index].bounds));
             }
         });
     return all;
 }
 
-/// From above and aside, from so far that everything is in view.
+/// A view from diagonally above, from far enough that everything is in view.
 RenderView make_overview(const Bounds& all, const RenderView& view) {
     constexpr Camera kCamera{};
     const float radius = std::max(glm::length(half_extent(all)), 1.0f);
@@ -97,7 +97,7 @@ RenderView make_overview(const Bounds& all, const RenderView& view) {
 struct EffectSlot {
     const EffectEntry* entry = nullptr;
     void* state = nullptr;  ///< null: not created yet
-    bool failed = false;    ///< to be created: logged, left out
+    bool failed = false;    ///< creation failed: logged, left out
     bool active = false;    ///< in this frame
 };
 
@@ -108,7 +108,7 @@ struct ViewSlot {
     std::vector<std::uint8_t> takes_part;  ///< by effect
 };
 
-/// Radiance summed over images, and the AOVs that go with it.
+/// Radiance summed over samples, and the AOVs of the image.
 struct Accumulation {
     gpu::Texture sum;
     bool empty = true;
@@ -144,7 +144,7 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Creates what every frame uses.
+    /// Creates the effects that every frame uses.
     Status create_effects() {
         for (EffectSlot& effect : effects_) {
             if (effect.entry->is_used == nullptr) {
@@ -169,7 +169,7 @@ class Renderer {
 
   private:
     void destroy_effects();
-    /// Drops all that earlier frames left, except for uploaded assets.
+    /// Drops all state of earlier frames, except for uploaded assets.
     void forget_frames();
     [[nodiscard]] std::vector<RenderView>
     find_warm_up_views(const World& world, const RenderView& view);
@@ -212,7 +212,7 @@ void Renderer::destroy_effects() {
 }
 
 void Renderer::forget_frames() {
-    graph.begin_frame();  // its passes point at effects
+    graph.begin_frame();  // its passes refer to effects
     destroy_effects();
     views_.clear();
     shapes_.forget();
@@ -230,9 +230,9 @@ std::vector<RenderView> Renderer::find_warm_up_views(const World& world, const R
                 .height = view.height,
                 .alpha = view.alpha,
                 .previous_alpha = view.previous_alpha};
-            const RenderView seen = make_render_view(world, entity, request);
-            if (seen.unjittered_from_world != view.unjittered_from_world) {
-                views.push_back(seen);
+            const RenderView from_camera = make_render_view(world, entity, request);
+            if (from_camera.unjittered_from_world != view.unjittered_from_world) {
+                views.push_back(from_camera);
             }
         });
     if (const Bounds all = bounds_of(world, *frame_.assets); !is_empty(all)) {
@@ -258,7 +258,7 @@ int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpPr
     const int total = rounds * static_cast<int>(views.size());
     int done = 0;
     for (int round = 0; round < rounds; ++round) {
-        forget_frames();  // so that effects ask for all their programs, and draw their caches
+        forget_frames();  // so that effects request all their programs, and draw their caches
         frame_.all_lights = round == 1;
         for (const RenderView& one : views) {
             if (progress) {
@@ -342,7 +342,7 @@ ViewSlot& Renderer::view_slot(std::size_t index) {
     return *views_[index];
 }
 
-/// Requested views come first: the main one shows what they drew.
+/// Requested views come first: the main view uses their images.
 void Renderer::prepare_views() {
     view_count_ = frame_.views.size() + 1;
     const gpu::RingSlice zeros =

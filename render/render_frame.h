@@ -31,10 +31,10 @@ class World;
 //
 // Of the world it reads the resources Assets, Environment, Exposure, Rendering and FrameTime, what
 // the effects read, and the entities with WorldTransform and MeshInstance or a light. Without an
-// Environment the surroundings are black. Assets are uploaded the first time they are seen; another
-// World, or other Assets, is noticed.
+// Environment the surroundings are black. Assets are uploaded on first use; a change to another
+// World, or other Assets, is detected.
 
-/// Chosen once.
+/// Chosen once, at creation.
 struct RenderSettings {
     float anisotropy = 8.0f;  ///< of texture filters, clamped to what the device supports
     bool full_float =
@@ -44,15 +44,16 @@ struct RenderSettings {
         {};  ///< empty: standard_image(); must outlive the renderer
 };
 
-/// Names of the arbitrary output variables that can be requested beside the image, in this order:
-///   depth     distance along the view axis [m]; kNoDepth where no surface is (1 channel)
-///   normal    of the shaded surface, world space, unit; 0 where no surface is (3)
+/// Names of the arbitrary output variables that can be requested in addition to the image, in this
+/// order:
+///   depth     distance along the view axis [m]; kNoDepth where there is no surface (1 channel)
+///   normal    of the shaded surface, world space, unit; 0 where there is no surface (3)
 ///   albedo    base color, linear (3)
-///   velocity  motion since the previous frame [px], right and down, as image rows run; of the sky,
-///             too (2)
+///   velocity  motion since the previous frame [px], right and down as image rows run; the
+///             sky has it, too (2)
 ///   emission  radiance of the surface's own light (3)
-///   shadow_texels  texels of the finest shadow map that holds the point per pixel: where less than
-///                  1, they are visible (1)
+///   shadow_texels  texels per pixel of the finest shadow map that contains the point: below
+///                  1, texels are visible (1)
 ///   volume_layers  polygons of shadow volumes over each pixel, hidden or not (1)
 [[nodiscard]] const std::vector<std::string_view>& aov_names();
 [[nodiscard]] int aov_channels(std::string_view name);  ///< 0: no such AOV
@@ -62,14 +63,14 @@ struct FrameRequest {
     std::vector<std::string> aovs;  ///< of aov_names(); unknown ones are left out
 };
 
-/// Of the main view.
+/// Statistics of the main view.
 struct FrameStatistics {
     int instances = 0;           ///< with mesh, material and transform
     int visible_instances = 0;   ///< after culling
     int draws = 0;               ///< submitted for geometry; a multi-draw counts as one
     std::int64_t triangles = 0;  ///< submitted
     int deformed = 0;            ///< instances whose shape changed and was drawn
-    int lights = 0;              ///< that shine
+    int lights = 0;              ///< lights that are on
     int shadow_views = 0;        ///< in the shadow atlas
     int shadow_views_drawn = 0;  ///< of them, in this frame
     int probe_faces = 0;         ///< of environment probes, drawn for this frame
@@ -110,27 +111,27 @@ FrameOutput render_frame(
     Renderer& renderer, const World& world, const RenderView& view,
     const FrameRequest& request = {});
 
-/// The next frame follows a cut: no earlier one is blended into it, as after an edit of the world.
+/// Marks a cut, for example after an edit of the world: no history is blended into the next frame.
 void cut(Renderer& renderer);
 
-/// Told of a warm-up: views drawn, and views in all.
+/// Called during a warm-up with the number of views drawn and in total.
 using WarmUpProgress = std::function<void(int done, int total)>;
 
-/// Compiles and first uses the programs that frames of this world need, so that none of them has to
-/// wait for that: draws it, small, from `view` and from its cameras, from afar, and from where
-/// effects ask (effect.h), also with all lights on that are off. Then begins anew: no view, history
-/// or cache of an earlier frame is left, and the next frame has the bits of a renderer's first;
-/// only the world's assets stay uploaded. Returns how many programs that took, compiled now or
-/// before.
+/// Compiles the programs that frames of this world need and uses them once, so that no frame has to
+/// wait for that: draws small images from `view` and the cameras of the world, from afar, and from
+/// positions that effects add (effect.h); also with all lights switched on. Then resets the
+/// renderer: no view, history or cache of an earlier frame is left, and the next frame is
+/// bit-identical to a renderer's first; only the world's assets stay uploaded. Returns the number
+/// of programs used, whether compiled now or before.
 ///
-/// What appears later (a light that is switched on, a material that the world did not have, another
-/// setting) is compiled when it is first drawn: FrameStatistics::compiled.
+/// Programs for what appears later (a light that is switched on, a new material, another setting)
+/// are compiled when they are first drawn: FrameStatistics::compiled.
 int warm_up(
     Renderer& renderer, const World& world, const RenderView& view,
     const WarmUpProgress& progress = {});
 
 /// The mean radiance of `samples` >= 1 images whose pixels are shifted by sample_jitter: anti-
-/// aliased edges. Radiance is RGBA32F; AOVs are those of the pixel centers. One sample equals the
+/// aliased edges. Radiance is RGBA32F; AOVs are sampled at pixel centers. One sample equals the
 /// image of render_frame.
 FrameOutput render_accumulated(
     Renderer& renderer, const World& world, const RenderView& view, int samples,

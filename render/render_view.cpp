@@ -37,7 +37,7 @@ Affine without_scale(const Affine& a) {
     return rigid;
 }
 
-/// In doubles where the eye is far away, or all points would be shifted by its rounding.
+/// In double precision if the eye is far away; otherwise rounding would shift all points.
 Mat4 view_from_world(const Affine& rigid, float pullback) {
     if (pullback == 0) {
         return glm::inverse(to_mat4(rigid));

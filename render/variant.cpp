@@ -11,7 +11,7 @@
 namespace limn {
 namespace {
 
-/// FNV-1a, then mixed, so that sums of hashes do not collide.
+/// FNV-1a, then mixed so that sums of hashes do not collide.
 std::uint64_t hash_of_definition(std::string_view name, int value) {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     for (const char c : name) {

@@ -16,7 +16,7 @@ class Device;
 }
 
 /// The set of preprocessor definitions that a shader is compiled with, e.g. {SHADOWS, OCEAN}. Two
-/// variants are equal if their sets are, in whatever order they were made. Copying allocates
+/// variants are equal if their sets are, regardless of the order of additions. Copying allocates
 /// nothing.
 class Variant {
   public:
@@ -25,8 +25,8 @@ class Variant {
     Variant() = default;
     explicit Variant(const char* name) { add(name); }
 
-    /// `name` must be a literal: it is kept by pointer. Adding it again changes nothing; with
-    /// another value it is a programmer's mistake and stops.
+    /// `name` must be a literal: it is kept by pointer. Adding it again changes nothing; adding it
+    /// with another value is a programming error and aborts.
     void add(const char* name, int value = 1);
     void add_if(bool condition, const char* name) {
         if (condition) {
@@ -53,8 +53,8 @@ class Variant {
     std::uint64_t key_ = 0;
 };
 
-/// The programs made of one set of shader files, by variant. Each is compiled when it is first
-/// asked for: by a warm-up, when a level is loaded (warm_up, render_frame.h), or in mid-frame. A
+/// The programs of one set of shader files, by variant. Each is compiled when it is first
+/// requested: by a warm-up, when a level is loaded (warm_up, render_frame.h), or in mid-frame. A
 /// variant that does not compile is logged once and is null.
 class ProgramVariants {
   public:
@@ -68,7 +68,7 @@ class ProgramVariants {
     /// The definitions of `features` are added.
     [[nodiscard]] const gpu::Program*
     get(const Variant& variant, const SurfaceFeatures& features = {});
-    /// Compiles one now, to know that it can be done.
+    /// Compiles one now, to check that it can be compiled.
     [[nodiscard]] Status load(const Variant& variant = {}, const SurfaceFeatures& features = {});
 
   private:

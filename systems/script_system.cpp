@@ -17,7 +17,7 @@ namespace limn {
 
 namespace {
 
-/// Moves an enumeration or bool on, from its last value to its first.
+/// Advances an enumeration or bool; the first value follows the last one.
 void step_field(const FieldInfo& field, void* to, int steps) {
     if (field.type == FieldType::Bool) {
         *static_cast<bool*>(to) = *static_cast<bool*>(to) != (steps % 2 != 0);
@@ -65,7 +65,7 @@ void apply_edits(const ScriptAction& action, void* target) {
     }
 }
 
-/// Fields of a component that determine where its entity is, or its pose.
+/// Fields of a component that determine the position or pose of its entity.
 struct PlacingFields {
     ComponentId component;
     std::vector<std::string_view> names;  ///< empty: all
@@ -87,7 +87,7 @@ const std::vector<PlacingFields>& placing_fields() {
     return kFields;
 }
 
-/// After an edit: what was moved by it, rather than by time, has no velocity.
+/// After an edit: an entity that was moved by it has no velocity.
 void mark_jump(World& world, const ScriptAction& action) {
     for (const PlacingFields& fields : placing_fields()) {
         const auto moves = [&fields](const FieldEdit& edit) {

@@ -23,10 +23,10 @@ enum class Work : std::uint8_t {
 /// Flags of an entity slot in this step.
 enum : std::uint8_t { kMoved = 1 };
 
-/// The jumps of one step: what was requested, then also what hangs on it.
+/// The jumps of one step: those requested, then also those of descendants.
 class JumpTimes {
   public:
-    /// The earliest counts.
+    /// Keeps the earliest jump.
     void add(Entity entity, float at) {
         const auto [found, added] = times_.try_emplace(entity, at);
         found->second = std::min(found->second, at);
@@ -307,7 +307,7 @@ void update_transforms(
         });
     }
 
-    // What jumped has no velocity.
+    // Entities that jumped have no velocity.
     jump_times.each([&](Entity entity, float at) {
         const auto* const world = worlds.find<const WorldTransform>(entity);
         auto* const previous = bodies.find<PreviousWorldTransform>(entity);

@@ -11,8 +11,8 @@
 namespace limn {
 
 // World matrices of entities: WorldTransform = the parent's WorldTransform * Transform, and those
-// of the previous step. What is attached to a joint has the joint's matrix instead of its
-// Transform, which lacks the shear that rotations below uneven scales make.
+// of the previous step. Entities attached to a joint use the joint's matrix instead of their
+// Transform, which cannot represent shear.
 //
 // Roots are processed by chunk on all threads, children level by level. Change detection uses
 // column versions: a chunk of roots is recomputed if its Transforms or its rows are newer than its

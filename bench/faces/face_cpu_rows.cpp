@@ -42,7 +42,7 @@ void add_measure_row(
     bench.add(FaceRow{std::move(name), ours, scalar, "scalar", limit});
 }
 
-/// Of meshes that are equal but lie elsewhere in memory.
+/// Meshes that are equal but at different addresses.
 void add_identities_row(FaceBench& bench) {
     const std::vector<CrowdFace> faces = crowd_faces(face_crowd(), kCrowd);
     const std::vector<std::vector<WrinkleRest>> meshes(kIdentities, face_crowd().chord);
@@ -77,7 +77,7 @@ void add_strain_rows(FaceBench& bench) {
     bench.add(FaceRow{"weld of one mesh, once", weld});
 }
 
-/// Markers in place of shapes and joints: patches through them, and the faces on these.
+/// Markers instead of shapes and joints: patches through them, and the faces bound to these.
 void add_patch_row(FaceBench& bench, FaceCrowd& crowd) {
     const auto move_by = [&](const auto& move) {
         parallel_for(kCrowd, 1, [&](std::size_t i, std::size_t) {

@@ -20,13 +20,14 @@ Vec3r plane_axis(const PhongScene& scene, const Vec3r& normal, const Vec3r& proj
     } else if (scene.axis == BlinnAxis::Custom) {
         global = normalize_or(Vec3r(scene.axis_vector), kZero);
     }
-    // Where the global vector is parallel to the plane's normal, the camera's right is not.
+    // If the global vector is parallel to the plane's normal, the camera's right vector is not.
     const Vec3r right = Vec3r(camera.right);
     const Vec3r other = normalize_or(right - dot(right, normal) * normal, kZero);
     return normalize_or(global - dot(global, normal) * normal, other);
 }
 
-/// Of unit `v` in the plane orthogonal to unit `normal`; on the rim where it points away from it.
+/// Coordinates of unit `v` in the plane orthogonal to unit `normal`; on the rim if it points away
+/// from `normal`.
 Vec2r plane_coordinates(const PhongScene& scene, const Vec3r& v, const Vec3r& normal) {
     const Real cosine = dot(v, normal);
     Vec3r projected = v - cosine * normal;

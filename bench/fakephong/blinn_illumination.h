@@ -5,8 +5,8 @@
 
 namespace limn::fakephong {
 
-// The vectors of shading and what follows from them at one point of a surface: Blinn's
-// illumination, and the texture coordinates by which one fetch stands for it. Each call for one
+// The vectors of shading at one point of a surface and what follows from them: Blinn's
+// illumination, and the texture coordinates with which one fetch replaces it. Each call for one
 // light counts as one lighting. After spec fakephong.vectors, .illum-blinn, .envmap, .phong-map,
 // .blinn-map, .blinn-axis.
 
@@ -16,8 +16,8 @@ struct SurfacePoint {
     Vec3r normal;
 };
 
-/// Light that leaves a point: the part that the color of the object tints, and the highlight, which
-/// has the light's color.
+/// Light that leaves a point: the part that is tinted by the object's color, and the highlight,
+/// which has the light's color.
 struct Lit {
     Vec3r tinted;
     Vec3r highlight;
@@ -32,11 +32,11 @@ struct Lit {
     return {k * a.tinted, k * a.highlight};
 }
 
-/// Unit, towards the light; zero if the light lies in the point.
+/// Unit, towards the light; zero if the light is at the point.
 [[nodiscard]] Vec3r to_light(const PhongLight& light, const Vec3r& position);
-/// Unit, towards the eye; zero if the eye lies in the point.
+/// Unit, towards the eye; zero if the eye is at the point.
 [[nodiscard]] Vec3r to_eye(const PhongScene& scene, const Vec3r& position);
-/// R = 2 (N.L) N - L: `direction` mirrored at the plane orthogonal to `normal`.
+/// R = 2 (N.L) N - L: `direction` reflected about `normal`.
 [[nodiscard]] Vec3r reflect(const Vec3r& direction, const Vec3r& normal);
 /// H = (L + V) / |L + V|; zero where L = -V, which has no highlight.
 [[nodiscard]] Vec3r half_vector(const Vec3r& to_light, const Vec3r& to_eye);
@@ -45,19 +45,19 @@ struct Lit {
 /// excluded.
 [[nodiscard]] Real blinn_highlight(Real n_h, Real exponent);
 
-/// Equation 3.4 for one light; without the ambient part. Leaves out what scene.channels does not
-/// ask.
+/// Equation 3.4 for one light; without the ambient part. Only the parts that scene.channels
+/// selects.
 [[nodiscard]] Lit
 illuminate(const PhongScene& scene, const PhongLight& light, const SurfacePoint& point);
 /// The ambient part and all lights.
 [[nodiscard]] Lit illuminate(const PhongScene& scene, const SurfacePoint& point);
 
-/// Plane coordinates of the normal seen along H, (u, v) = (U.P, V.P) with P = N - (N.H) H, so that
-/// u^2 + v^2 = 1 - (N.H)^2. Where N.H < 0 or without H they lie on the rim, which is 0.
+/// Plane coordinates of the normal projected along H, (u, v) = (U.P, V.P) with P = N - (N.H) H, so
+/// that u^2 + v^2 = 1 - (N.H)^2. If N.H < 0 or H is zero, they lie on the rim, which is 0.
 [[nodiscard]] Vec2r
 blinn_coordinates(const PhongScene& scene, const PhongLight& light, const SurfacePoint& point);
 
-/// The same along L in place of H: the diffuse value is sqrt(1 - u^2 - v^2).
+/// The same along L instead of H: the diffuse value is sqrt(1 - u^2 - v^2).
 [[nodiscard]] Vec2r
 diffuse_coordinates(const PhongScene& scene, const PhongLight& light, const SurfacePoint& point);
 
@@ -70,8 +70,8 @@ diffuse_coordinates(const PhongScene& scene, const PhongLight& light, const Surf
 [[nodiscard]] Vec2r
 phong_map_coordinates(const PhongScene& scene, const PhongLight& light, const SurfacePoint& point);
 
-/// The sphere map's (Wx, Wy) / m of the view direction mirrored at the normal, in the unit disc;
-/// the lights play no part. Zero where W points straight away from the eye's side (m = 0).
+/// The sphere map's (Wx, Wy) / m of the view direction reflected about the normal, in the unit
+/// disc; independent of the lights. Zero if W points straight away from the eye (m = 0).
 [[nodiscard]] Vec2r sphere_map_coordinates(const PhongScene& scene, const SurfacePoint& point);
 
 /// Right, up and back of the camera, unit.

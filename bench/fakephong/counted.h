@@ -7,13 +7,13 @@
 
 namespace limn::fakephong {
 
-// Arithmetic that counts itself. A shading method is written once, as plain formulas over Real, and
-// what it costs is what it does: there is no second list of operations to keep in step with it.
+// Arithmetic that counts itself. A shading method is written once, as plain formulas over Real,
+// which count its operations: there is no second list of costs to keep in sync.
 //
 // Additions include subtractions. Comparisons, negations and copies are free.
 // Techniques: fakephong.metric-efficiency
 
-/// What a thread has done since it was last reset.
+/// The work of a thread since the last reset.
 struct Work {
     std::int64_t lightings = 0;  ///< evaluations of an illumination or of a light's coordinates
     std::int64_t additions = 0;

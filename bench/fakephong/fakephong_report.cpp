@@ -20,9 +20,9 @@ bool is_sample(const ShadingMethod& method, std::size_t i) {
     return method.lightings == 6 || i % 2 == 0;
 }
 
-/// Calls visit(facet) for at most kMaxCheckedFacets of those that face the eye.
+/// Calls visit(facet) for at most kMaxCheckedFacets facets that face the eye.
 template <typename Visit>
-void for_each_seen_facet(const PhongScene& scene, Visit visit) {
+void for_each_visible_facet(const PhongScene& scene, Visit visit) {
     Facet facet;
     const std::size_t stride = 1 + scene.mesh.triangles.size() / kMaxCheckedFacets;
     for (std::size_t i = 0; i < scene.mesh.triangles.size(); i += stride) {
@@ -43,7 +43,7 @@ void check_points(PhongScene scene, const ShadingMethod& method, MethodResult& r
     const auto channel = [&method](const Lit& lit) {
         return clamp01(method.diffuse_only ? lit.tinted.x : lit.highlight.x).value;
     };
-    for_each_seen_facet(scene, [&](const Facet& facet) {
+    for_each_visible_facet(scene, [&](const Facet& facet) {
         method.prepare(context, facet, setup);
         const auto error_at = [&](Real s, Real t, const SurfacePoint& point) {
             return std::abs(
@@ -220,8 +220,8 @@ EdgePaths edge_paths(const PhongScene& scene) {
             const dvec3 h =
                 plain(half_vector(to_light(light, point.position), to_eye(scene, point.position)));
             away = std::max(away, angle(plain(point.normal), h));
-            const Vec2r place = blinn_coordinates(scene, light, point);
-            at[i] = {place.x.value, place.y.value};
+            const Vec2r coordinates = blinn_coordinates(scene, light, point);
+            at[i] = {coordinates.x.value, coordinates.y.value};
         }
         if (!(away < 1.57)) {
             return;
@@ -243,7 +243,7 @@ EdgePaths edge_paths(const PhongScene& scene) {
         paths.linear_mean += linear;
         paths.quadratic_mean += quadratic;
     };
-    for_each_seen_facet(scene, [&](const Facet& facet) {
+    for_each_visible_facet(scene, [&](const Facet& facet) {
         for (std::size_t i = 0; i < 3; ++i) {
             edge(facet.corners[i], facet.corners[(i + 1) % 3]);
         }

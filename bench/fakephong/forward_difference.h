@@ -5,24 +5,25 @@
 
 namespace limn::fakephong {
 
-// Polynomials at neighboring pixels by additions alone: each pixel adds to the value the difference
-// to the next one, to that difference its own, and so on; those of the highest order are constant.
-// After spec fakephong.forward-difference; T is anything that can be added and subtracted.
+// Polynomials at neighboring pixels by additions only: each pixel adds to the value the first
+// difference, to the first difference the second, and so on; differences of the highest order are
+// constant. After spec fakephong.forward-difference; T is anything that can be added and
+// subtracted.
 //
-// What additions round adds up: a row should start from the table of the edge, not from the end of
-// the row above.
+// Rounding errors of additions accumulate: a row should start from the table of the edge, not from
+// the end of the row above.
 // Techniques: fakephong.forward-difference
 
 inline constexpr std::size_t kMaxDegree = 3;
 
-/// Along a row: the value here and its differences of order 1 .. degree.
+/// Along a row: the current value and its differences of order 1 .. degree.
 template <typename T>
 struct RowDifferences {
     std::size_t degree = 0;
     std::array<T, kMaxDegree + 1> of_order = {};
 };
 
-/// To the next pixel, by `degree` additions.
+/// Steps to the next pixel, by `degree` additions.
 template <typename T>
 void step(RowDifferences<T>& row) {
     for (std::size_t k = 0; k < row.degree; ++k) {
@@ -38,8 +39,8 @@ struct PixelDifferences {
     std::array<RowDifferences<T>, kMaxDegree + 1> rows = {};
 };
 
-/// Of a polynomial of `degree` <= kMaxDegree, from its values f(x, y) at 3, 6 or 10 pixels, x to
-/// the right and y below.
+/// The table of a polynomial of `degree` <= kMaxDegree, from its values f(x, y) at 3, 6 or 10
+/// pixels, x to the right and y below.
 template <typename T, typename Function>
 [[nodiscard]] PixelDifferences<T> difference_table(std::size_t degree, Function f) {
     PixelDifferences<T> table = {.degree = degree};
@@ -66,7 +67,7 @@ template <typename T, typename Function>
     return table;
 }
 
-/// To a neighboring pixel, by 1, 3 or 6 additions.
+/// Steps to a neighboring pixel, by 1, 3 or 6 additions.
 template <typename T>
 void step_right(PixelDifferences<T>& table) {
     for (RowDifferences<T>& row : table.rows) {

@@ -8,7 +8,7 @@
 
 namespace limn::fakephong {
 
-// Textures over the unit disc that one fetch per pixel replaces an illumination with:
+// Textures over the unit disc, with which one fetch per pixel replaces an illumination:
 // fakephong.blinn-texture and fakephong.envmap-bake.
 
 using DiscFunction = std::function<dvec3(double x, double y)>;
@@ -21,7 +21,8 @@ struct LookupTexture {
     DiscFunction exact;
 };
 
-/// Samples `function` at the texel centers; texels at the edge are 0, as what is addressed beyond.
+/// Samples `function` at the texel centers; texels at the edge are 0, so that lookups beyond return
+/// 0.
 [[nodiscard]] LookupTexture bake_texture(int size, DiscFunction function);
 
 /// At `at`, in [-1, 1]^2: texture address (at + 1) / 2. Counts as one fetch.
@@ -31,12 +32,12 @@ struct LookupTexture {
 /// projection along H; with exponent 1 the diffuse value.
 [[nodiscard]] double blinn_texture_value(double exponent, double x, double y);
 
-/// The direction that a point of the sphere map stands for, in eye space; inverse of
-/// sphere_map_coordinates inside the disc.
+/// The direction of a point of the sphere map, in eye space; inverse of sphere_map_coordinates
+/// inside the disc.
 [[nodiscard]] dvec3 sphere_map_direction(double x, double y);
 
 /// Sum over lights of color max(0, W.L)^n_env. Lights are taken as directional: a point light by
-/// its direction from `center`. This is why the method has no point lights.
+/// its direction from `center`. This is why the method does not support point lights.
 [[nodiscard]] DiscFunction highlight_environment(const PhongScene& scene, const dvec3& center);
 
 }  // namespace limn::fakephong

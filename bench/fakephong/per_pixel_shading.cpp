@@ -1,4 +1,4 @@
-// Phong shading, the reference of all comparisons, and its other interpolants of normals
+// Phong shading, the reference for all comparisons, and other interpolations of normals
 // (fakephong.phong, fakephong.normal-interp-variants): illumination at every pixel.
 
 #include "bench/fakephong/shading_method.h"
@@ -8,7 +8,7 @@
 namespace limn::fakephong {
 namespace {
 
-/// From unit `a` to unit `b` along the great circle; `otherwise` where they are opposite.
+/// From unit `a` to unit `b` along the great circle; `otherwise` if they are opposite.
 Vec3r slerp(const Vec3r& a, const Vec3r& b, Real t, const Vec3r& otherwise) {
     const Real cosine = dot(a, b);
     if (cosine > 1.0 - 1e-9) {

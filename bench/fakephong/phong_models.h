@@ -15,20 +15,20 @@ namespace limn::fakephong {
 // teapots that of the body below those of handle and spout.
 // Techniques: fakephong.results
 
-/// A mesh of content/make or of a file, its triangles as they are.
+/// A mesh of content/make or of a file, with its triangles unchanged.
 [[nodiscard]] PhongMesh phong_mesh(const MeshData& mesh);
 /// A latitude and longitude sphere of 2 slices (stacks - 1) triangles, with radial normals: the
-/// mesh "sphere" of levels, turned so that a column of vertices faces the eye.
+/// mesh "sphere" of levels, rotated so that a column of vertices faces the eye.
 [[nodiscard]] PhongMesh make_coarse_sphere(int slices, int stacks);
 /// The regular dodecahedron as 12 fans of three triangles, with radial normals.
 [[nodiscard]] PhongMesh make_dodecahedron();
 
 /// One triangle, point light near it: the canonical scene of the spec entry.
 [[nodiscard]] PhongScene triangle_scene();
-/// A triangle, light and exponents from which all six printed figures come out within 0.0053, found
-/// by differential evolution over the shape, the light, both exponents and the eye.
+/// A triangle, light and exponents that reproduce all six printed figures within 0.0053, found by
+/// differential evolution over the shape, the light, both exponents and the eye.
 [[nodiscard]] PhongScene printed_triangle_scene();
-/// The teapot seen with lookup textures of 11 x 11: the printed row has both Blinn maps below even
+/// The teapot with lookup textures of 11 x 11: the printed row has both Blinn maps below even
 /// subdivided Gouraud and 0.0002 apart, which only coarse textures of 11 to 16 texels give here.
 [[nodiscard]] PhongScene printed_teapot_scene();
 [[nodiscard]] PhongScene teapot_scene();        ///< about 3,750 facets, directional light

@@ -12,7 +12,7 @@
 namespace limn::fakephong {
 namespace {
 
-/// A corner of a clipped triangle: camera space, z forwards, and where it lies on the whole
+/// A corner of a clipped triangle: camera space, z forwards, and its position on the whole
 /// triangle.
 struct ClipCorner {
     dvec3 at;
@@ -27,7 +27,7 @@ struct ScreenCorner {
 
 constexpr double kNear = 1e-3;
 
-/// The part of a triangle before the near plane: 0, 3 or 4 corners.
+/// The part of a triangle beyond the near plane: 0, 3 or 4 corners.
 std::vector<ClipCorner> clip_near(const std::array<ClipCorner, 3>& corners) {
     std::vector<ClipCorner> kept;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -44,7 +44,7 @@ std::vector<ClipCorner> clip_near(const std::array<ClipCorner, 3>& corners) {
     return kept;
 }
 
-/// The function that is `values` at three points of the screen: value + x dx + y dy.
+/// The linear function with `values` at three points of the screen: value + x dx + y dy.
 struct ScreenPlane {
     dvec3 value, dx, dy;
 };
@@ -62,8 +62,8 @@ double cross_2d(const dvec2& a, const dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-/// Whether a point exactly on the edge from a to b belongs to the triangle: it does to one of two
-/// triangles that share the edge.
+/// Whether a point exactly on the edge from a to b belongs to the triangle: exactly one of two
+/// triangles that share the edge owns it.
 bool owns_edge(const dvec2& a, const dvec2& b) {
     return a.y == b.y ? b.x < a.x : b.y > a.y;
 }
@@ -187,7 +187,7 @@ bool make_facet(const PhongMesh& mesh, std::size_t index, Facet& facet) {
     return true;
 }
 
-dvec3 seen_color(const PhongScene& scene, const Lit& lit, const dvec2& uv) {
+dvec3 visible_color(const PhongScene& scene, const Lit& lit, const dvec2& uv) {
     dvec3 color = scene.material.color;
     const double checks = scene.material.checks;
     if (checks > 0 && std::isfinite(uv.x + uv.y)) {
@@ -275,8 +275,8 @@ PhongImage draw(const PhongScene& scene, const ShadingMethod& method, Evaluation
                         const dvec2 st = on_screen ? dvec2(over_w) : dvec2(over_w) / over_w.z;
                         const dvec2 texture =
                             (1 - st.x - st.y) * uv[0] + st.x * uv[1] + st.y * uv[2];
-                        image.color.pixels[pixel] = Vec3(
-                            seen_color(scene, stepped ? row.of_order[0] : light_at(st), texture));
+                        image.color.pixels[pixel] = Vec3(visible_color(
+                            scene, stepped ? row.of_order[0] : light_at(st), texture));
                     }
                 }
                 image.shading += counted_work - unshaded;

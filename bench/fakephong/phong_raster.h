@@ -10,28 +10,28 @@
 
 namespace limn::fakephong {
 
-// A rasterizer for reading: one triangle at a time, rows from the top, a depth buffer. It clips at
-// the eye's near plane and steps s/w, t/w and 1/w along a row by additions (fakephong.texmap); each
-// pixel divides, and asks the method for light at (s, t). Triangles that face away, have no area or
-// hold NaN are left out.
+// A rasterizer that is easy to read: one triangle at a time, rows from the top, a depth buffer. It
+// clips at the eye's near plane and steps s/w, t/w and 1/w along a row by additions
+// (fakephong.texmap); each pixel divides, and evaluates the method at (s, t). Triangles that face
+// away, have no area or contain NaN are skipped.
 //
 // With Interpolation::Screen nothing is divided: s and t themselves are linear on the screen, so
-// that colors which are polynomials in s and t are such in x and y, too. These can then be stepped
-// by additions alone, down the left edge of a triangle and along each row
+// that colors which are polynomials in s and t are also polynomials in x and y. These can then be
+// stepped by additions only, down the left edge of a triangle and along each row
 // (fakephong.forward-difference).
 
 struct PhongImage {
     ColorImage color;                ///< 0 .. 1, not rounded
     std::vector<std::uint8_t> mask;  ///< 1 where a triangle was drawn
-    std::int64_t pixels = 0;         ///< shaded, including those that others hide later
+    std::int64_t pixels = 0;         ///< shaded, including those that are overdrawn later
     std::int64_t triangles = 0;      ///< drawn at least in part
     Work setup;                      ///< of all triangles, once each
-    Work shading;                    ///< of all pixels; of Differences, with the walk along edges
+    Work shading;  ///< of all pixels; with Differences, including the steps along edges
 };
 
-/// How colors get to pixels.
+/// How pixel colors are computed.
 enum class Evaluation : std::uint8_t {
-    Direct,       ///< the method is asked at each
+    Direct,       ///< the method is evaluated at each pixel
     Differences,  ///< forward differences; needs method.degree > 0 and Interpolation::Screen
 };
 
@@ -40,11 +40,11 @@ enum class Evaluation : std::uint8_t {
     const PhongScene& scene, const ShadingMethod& method,
     Evaluation evaluation = Evaluation::Direct);
 
-/// The facet of triangle `index`, with normals made valid; false if it has no area or no finite
-/// place.
+/// The facet of triangle `index`, with normals made valid; false if it has no area or is not
+/// finite.
 [[nodiscard]] bool make_facet(const PhongMesh& mesh, std::size_t index, Facet& facet);
 
-/// What is seen of it: light and texture together, each channel clamped to 0 .. 1.
-[[nodiscard]] dvec3 seen_color(const PhongScene& scene, const Lit& lit, const dvec2& uv);
+/// Its visible color: light and texture together, each channel clamped to 0 .. 1.
+[[nodiscard]] dvec3 visible_color(const PhongScene& scene, const Lit& lit, const dvec2& uv);
 
 }  // namespace limn::fakephong

@@ -18,7 +18,7 @@ namespace limn::fakephong {
 using glm::dvec2;
 using glm::dvec3;
 
-/// Vertices of a mesh; a vertex normal that is zero or not finite counts as that of its facet.
+/// Vertices of a mesh; a vertex normal that is zero or not finite is replaced by the facet's.
 struct PhongMesh {
     std::vector<dvec3> positions = {};
     std::vector<dvec3> normals = {};                           ///< unit, as many as positions
@@ -39,10 +39,11 @@ struct PhongMaterial {
     double diffuse = 0.9;  ///< kd, 0 .. 1
     double specular = 1;   ///< ks, 0 .. 1
     double exponent = 32;  ///< n, 0 .. 10,000
-    double checks = 0;     ///< checks along u and v that halve the color; 0 = untextured
+    double checks = 0;     ///< checkers along u and v that halve the color; 0 = untextured
 };
 
-/// A perspective camera; `half_size` is the tangent of half the field of view, equal both ways.
+/// A perspective camera; `half_size` is the tangent of half the field of view, the same in both
+/// directions.
 struct PhongCamera {
     dvec3 eye = dvec3(0, 0, 5);
     dvec3 target = dvec3(0);
@@ -51,7 +52,7 @@ struct PhongCamera {
     int size = 256;  ///< pixels along both sides, 1 .. 4096
 };
 
-/// Which parts of the illumination are drawn. The thesis measures highlights alone.
+/// Which parts of the illumination are drawn. The thesis measures only highlights.
 enum class Channels : std::uint8_t { Full, Diffuse, Specular };
 
 /// The global vector G that fixes the plane basis of Blinn maps (fakephong.blinn-axis).
@@ -64,7 +65,7 @@ enum class BlinnAxis : std::uint8_t {
 
 /// What is linear on the screen (fakephong.texmap).
 enum class Interpolation : std::uint8_t {
-    Perspective,  ///< coordinates on a triangle over w, and 1/w: right, at a division per pixel
+    Perspective,  ///< coordinates on a triangle over w, and 1/w: correct; one division per pixel
     Screen,       ///< the coordinates themselves: distorted where w varies
 };
 
@@ -77,7 +78,7 @@ struct PhongScene {
     Channels channels = Channels::Specular;
     BlinnAxis axis = BlinnAxis::CameraUp;
     dvec3 axis_vector = {0, 1, 0};  ///< of BlinnAxis::Custom, of any length
-    bool diffuse_texture = false;   ///< Blinn maps: diffuse light is read in a texture, too
+    bool diffuse_texture = false;   ///< Blinn maps: diffuse light is also read from a texture
     Interpolation interpolation = Interpolation::Perspective;
     double environment_exponent = 8;  ///< of the lobes baked in an environment map, about n / 4
     int texture_size = 256;           ///< 0: texture functions are evaluated exactly

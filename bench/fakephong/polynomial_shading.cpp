@@ -108,9 +108,9 @@ Lit shade_cubic(const ShadingContext& /*context*/, const FacetSetup& setup, Real
            + (27.0 * a * b * c) * r[9];
 }
 
-// ---- appendix A: quadratic in vertex and pixel programs, with their limits. Midpoint normals were
-// normalized before the world matrix, which is the identity here; the rule of `lit` gates
-// highlights behind the surface; s and t travel in a color register of 8 bits; one light.
+// ---- appendix A: quadratic in vertex and pixel programs, with their limits. Midpoint normals are
+// normalized before the world matrix, which is the identity here; like `lit`, there are no
+// highlights behind the surface; s and t are passed in a color register of 8 bits; one light.
 
 void prepare_hardware_quadratic(
     const ShadingContext& context, const Facet& facet, FacetSetup& setup) {

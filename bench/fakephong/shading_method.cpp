@@ -80,12 +80,12 @@ SurfacePoint point_at(const Facet& facet, Real s, Real t) {
 }
 
 std::array<SurfacePoint, 6> six_points(const Facet& facet) {
-    const auto middle = [&facet](const SurfacePoint& a, const SurfacePoint& b) {
+    const auto midpoint = [&facet](const SurfacePoint& a, const SurfacePoint& b) {
         return SurfacePoint{
             0.5 * (a.position + b.position), normalize_or(a.normal + b.normal, facet.face_normal)};
     };
     const auto& [a, b, c] = facet.corners;
-    return {a, middle(a, b), b, middle(b, c), c, middle(c, a)};
+    return {a, midpoint(a, b), b, midpoint(b, c), c, midpoint(c, a)};
 }
 
 }  // namespace limn::fakephong

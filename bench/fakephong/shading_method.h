@@ -10,17 +10,17 @@
 
 namespace limn::fakephong {
 
-// A method of shading is two functions: what it computes once per triangle, and what it makes of
-// that at a pixel. The rasterizer (phong_raster.h) is the same for all, so that their images differ
-// in nothing else and their counted work may be compared.
+// A method of shading is two functions: one that runs once per triangle, and one per pixel. The
+// rasterizer (phong_raster.h) is the same for all, so that their images differ only by the method
+// and their counted work can be compared.
 
 /// One triangle. Its points are p(s, t) = p0 + s (p1 - p0) + t (p2 - p0): s, t >= 0, s + t <= 1.
 struct Facet {
     std::array<SurfacePoint, 3> corners;
-    Vec3r face_normal;  ///< unit; stands in for normals that cancel
+    Vec3r face_normal;  ///< unit; replaces normals that cancel
 };
 
-/// What all triangles of a scene share.
+/// Data shared by all triangles of a scene.
 struct ShadingContext {
     const PhongScene* scene = nullptr;
     LookupTexture blinn;        ///< highlights of Blinn maps
@@ -30,7 +30,7 @@ struct ShadingContext {
 /// `scene` must outlive it.
 [[nodiscard]] ShadingContext make_shading_context(const PhongScene& scene);
 
-/// What a method keeps of a triangle; each uses what it needs.
+/// What a method stores per triangle; each uses the parts it needs.
 struct FacetSetup {
     Facet facet;
     std::array<Lit, 10> lit;      ///< samples, or coefficients of a polynomial in s and t
@@ -45,17 +45,17 @@ struct ShadingMethod {
     std::string_view id;    ///< of the spec entry, without "fakephong."
     std::string_view name;  ///< as in the thesis
     int lightings;          ///< per triangle and light, in prepare
-    int exact_points;       ///< of 3 corners and 3 edge midpoints, those where it is exact
+    int exact_points;       ///< of the 3 corners and 3 edge midpoints, how many are exact
     void (*prepare)(const ShadingContext& context, const Facet& facet, FacetSetup& setup);
     Lit (*shade)(const ShadingContext& context, const FacetSetup& setup, Real s, Real t);
-    int degree = 0;             ///< of its light, if that is a polynomial in s and t; 0: it is none
-    bool diffuse_only = false;  ///< it has no highlights, and is compared by diffuse light
+    int degree = 0;             ///< of its light as a polynomial in s and t; 0: not a polynomial
+    bool diffuse_only = false;  ///< it has no highlights; its diffuse light is compared
 };
 
 /// All of them; the first is Phong shading, the reference, then the six columns of Table 6.1 in
 /// order.
 [[nodiscard]] std::span<const ShadingMethod> shading_methods();
-/// The method of that id, or null.
+/// The method with that id, or null.
 [[nodiscard]] const ShadingMethod* find_method(std::string_view id);
 inline constexpr std::size_t kTableColumns = 6;  ///< of Table 6.1: shading_methods()[1 .. 6]
 

@@ -6,7 +6,7 @@
 namespace limn::fakephong {
 namespace {
 
-/// Of the series, `x` and `y` off the centroid.
+/// Value of the series at (`x`, `y`) from the centroid.
 Real evaluate_series(const std::array<Real, 6>& f, Real x, Real y) {
     return f[0] + f[1] * x + f[2] * y + 0.5 * (f[3] * (x * x) + f[5] * (y * y)) + f[4] * (x * y);
 }
@@ -39,9 +39,9 @@ std::array<Real, 6> taylor_series(const Vec3r& l, const Vec3r& a, const Vec3r& b
         0.75 * dot_c * q_y * q_y * q5 - dot_y * q_y * q3 - 0.5 * dot_c * q_yy * q3};
 }
 
-// The series runs in s and t instead of screen x and y: without perspective these are affine in
-// each other, so that it is the same polynomial, and with perspective it stays a function on the
-// triangle. Lights and eye count as infinitely far: L and H are those of the centroid.
+// The series is in s and t instead of screen x and y: without perspective they are affine functions
+// of each other, so that it is the same polynomial; with perspective it remains a function on the
+// triangle. Lights and eye count as infinitely far: L and H are evaluated at the centroid.
 
 void prepare_taylor(const ShadingContext& context, const Facet& facet, FacetSetup& setup) {
     const auto& [p0, p1, p2] = facet.corners;

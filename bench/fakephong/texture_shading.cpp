@@ -1,6 +1,6 @@
-// Highlights by texture: coordinates at samples, interpolated, one fetch per pixel and light. What
-// is not a highlight is Gouraud's (fakephong.envmap, .phong-map, .blinn-map, .quadratic-blinn,
-// .hw-blinn).
+// Highlights by texture: coordinates at samples, interpolated, one fetch per pixel and light.
+// Everything but highlights is Gouraud-shaded (fakephong.envmap, .phong-map, .blinn-map,
+// .quadratic-blinn, .hw-blinn).
 
 #include "bench/fakephong/shading_method.h"
 
@@ -16,8 +16,7 @@ namespace {
 
 using Coordinates = Vec2r (*)(const PhongScene&, const PhongLight&, const SurfacePoint&);
 
-/// Ambient and diffuse light as coefficients over the triangle; none where only highlights are
-/// drawn.
+/// Ambient and diffuse light as coefficients over the triangle; zero if only highlights are drawn.
 void prepare_tinted(const ShadingContext& context, const Facet& facet, FacetSetup& setup) {
     if (context.scene->channels == Channels::Specular) {
         return;
@@ -59,7 +58,7 @@ void prepare_coordinates(
     }
 }
 
-/// The sum over lights of what `fetched` of a light's coordinates gives, tinted by its color.
+/// The sum over lights of `fetched` at the light's coordinates, tinted by its color.
 template <typename Fetched>
 Vec3r sum_lights(const ShadingContext& context, Real factor, Fetched fetched) {
     Vec3r sum;
@@ -118,7 +117,7 @@ Lit shade_blinn(
 
 }  // namespace
 
-// ---- environment map: all lights in one fetch, no light in the coordinates
+// ---- environment map: all lights in one fetch, coordinates independent of the lights
 
 void prepare_environment(const ShadingContext& context, const Facet& facet, FacetSetup& setup) {
     prepare_tinted(context, facet, setup);

@@ -67,7 +67,7 @@ struct Scene {
         const auto sun = glm::angleAxis(radians(-50), Vec3(1, 0, 0));
         world.create(DirectionalLight{}, WorldTransform{affine_from({0, 0, 0}, sun, Vec3(1))});
     }
-    void fill(const Vec2& size, const Vec3& place, const Caustics& caustics) {
+    void fill(const Vec2& size, const Vec3& position, const Caustics& caustics) {
         const Water water = {.size = size, .depth = 1.6f};
         const WaterWaves waves = {
             .groups = {
@@ -76,7 +76,7 @@ struct Scene {
         WaveTable table;
         fill_wave_table(water, waves, 1.0, table);
         world.create(
-            water, WorldTransform{affine_from(place, {1, 0, 0, 0}, Vec3(1))}, caustics, table);
+            water, WorldTransform{affine_from(position, {1, 0, 0, 0}, Vec3(1))}, caustics, table);
     }
     /// Renders a frame and returns the time of the caustics passes [s].
     double draw() {
@@ -128,8 +128,8 @@ void pools(benchmark::State& state) {
     Scene scene;
     scene.eye = {14, 45, 14};  // all pools in view
     for (int i = 0; i < state.range(0); ++i) {
-        const Vec3 place(static_cast<float>(3 * (i % 10)), 0, static_cast<float>(3 * (i / 10)));
-        scene.fill({2, 2}, place, {.resolution = 64});
+        const Vec3 position(static_cast<float>(3 * (i % 10)), 0, static_cast<float>(3 * (i / 10)));
+        scene.fill({2, 2}, position, {.resolution = 64});
     }
     measure(state, scene);
     state.counters["ms_per_pool"] = benchmark::Counter(

@@ -47,14 +47,14 @@ struct Face {
             }
         }
         for (std::size_t v = 0; v < kVertices; ++v) {
-            const Vec2 share = (Vec2(v % 100, v / 100) + 0.5f) / 100.0f;
-            positions.push_back(on_face(share, 0.004f));
+            const Vec2 fraction = (Vec2(v % 100, v / 100) + 0.5f) / 100.0f;
+            positions.push_back(on_face(fraction, 0.004f));
             normals.emplace_back(0, 0, 1);
             tangents.emplace_back(1, 0, 0, 1);
         }
     }
-    static Vec3 on_face(const Vec2& share, float above) {
-        const Vec2 at = 0.16f * (share - 0.5f);
+    static Vec3 on_face(const Vec2& fraction, float above) {
+        const Vec2 at = 0.16f * (fraction - 0.5f);
         return {at, 0.1f - 4 * glm::dot(at, at) + above};
     }
 };
@@ -116,7 +116,7 @@ void patches_follow(benchmark::State& state) {
     per_vertex(state);
 }
 
-/// Positions alone.
+/// Positions only.
 template <auto move>
 void patches_move(benchmark::State& state) {
     const Face& at_rest = face();

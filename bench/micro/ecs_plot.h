@@ -126,10 +126,10 @@ void draw_curves(
 
 inline double draw_gates(
     Svg& svg, double left, double top, double width, const Report& report, const Report* other) {
-    constexpr double kRow = 25, kLabel = 400, kMaxShare = 2;
+    constexpr double kRow = 25, kLabel = 400, kMaxFraction = 2;
     const std::vector<const Row*> rows = gate_rows(report);
     const double start = left + kLabel;
-    const double scale = (width - kLabel - 190) / kMaxShare;
+    const double scale = (width - kLabel - 190) / kMaxFraction;
     const double bottom = top + kRow * static_cast<double>(rows.size());
     svg.text(
         left, top - 34, "Gates: fraction of the limit", kInk, "start", 15, "font-weight=\"600\"");
@@ -145,11 +145,12 @@ inline double draw_gates(
         const Row& row = *rows[i];
         const double y = top + kRow * static_cast<double>(i);
         const auto bar = [&](const Row& shown, double from, double height, double opacity) {
-            const double share = fraction_of_limit(shown, &Timing::median);
-            const char* color = share <= 1 ? kReached : kMissed;
-            svg.box(start, y + from, scale * std::min(share, kMaxShare), height, color, opacity);
-            if (share > kMaxShare) {
-                const double x = start + scale * kMaxShare;
+            const double fraction = fraction_of_limit(shown, &Timing::median);
+            const char* color = fraction <= 1 ? kReached : kMissed;
+            svg.box(
+                start, y + from, scale * std::min(fraction, kMaxFraction), height, color, opacity);
+            if (fraction > kMaxFraction) {
+                const double x = start + scale * kMaxFraction;
                 svg.curve(
                     {{x + 3, y + from}, {x + 8, y + from + height / 2}, {x + 3, y + from + height}},
                     color, 1.5);
@@ -163,11 +164,11 @@ inline double draw_gates(
         svg.text(left + 22, y + 16, std::to_string(row.gate), kFaint, "end");
         svg.text(left + 32, y + 16, row.name + short_count(row.count));
         svg.text(
-            start + scale * kMaxShare + 16, y + 16,
+            start + scale * kMaxFraction + 16, y + 16,
             short_number(figure_of(row, &Timing::median)) + figure_unit(row), kInk, "start", 12,
             "font-weight=\"600\"");
         svg.text(
-            start + scale * kMaxShare + 188, y + 16,
+            start + scale * kMaxFraction + 188, y + 16,
             fmt::format("{} {:g}", row.figure == Figure::Speedup ? "≥" : "≤", row.limit), kFaint,
             "end", 11);
     }
@@ -180,20 +181,20 @@ inline void draw_legend(Svg& svg, double x, double y, const Report& report, cons
         svg.text(x + 34, y, words, kFaint);
         x += width;
     };
-    entry(190, "the equivalent raw loop", [&](double at, double middle) {
-        svg.curve({{at, middle}, {at + 26, middle}}, kRawColor, 6);
+    entry(190, "the equivalent raw loop", [&](double at, double center) {
+        svg.curve({{at, center}, {at + 26, center}}, kRawColor, 6);
     });
-    entry(270, "the ECS (dashed: bulk or 2 threads)", [&](double at, double middle) {
-        svg.curve({{at, middle}, {at + 26, middle}}, "#2a6fbb", 2);
+    entry(270, "the ECS (dashed: bulk or 2 threads)", [&](double at, double center) {
+        svg.curve({{at, center}, {at + 26, center}}, "#2a6fbb", 2);
     });
-    entry(220, fmt::format("gate, {}", report.flags), [&](double at, double middle) {
-        svg.box(at, middle - 5, 13, 10, kReached, 0.9);
-        svg.box(at + 13, middle - 5, 13, 10, kMissed, 0.9);
+    entry(220, fmt::format("gate, {}", report.flags), [&](double at, double center) {
+        svg.box(at, center - 5, 13, 10, kReached, 0.9);
+        svg.box(at + 13, center - 5, 13, 10, kMissed, 0.9);
     });
     if (other != nullptr) {
-        entry(160, fmt::format("gate, {}", other->flags), [&](double at, double middle) {
-            svg.box(at, middle - 2, 13, 5, kReached, 0.45);
-            svg.box(at + 13, middle - 2, 13, 5, kMissed, 0.45);
+        entry(160, fmt::format("gate, {}", other->flags), [&](double at, double center) {
+            svg.box(at, center - 2, 13, 5, kReached, 0.45);
+            svg.box(at + 13, center - 2, 13, 5, kMissed, 0.45);
         });
     }
 }

@@ -26,7 +26,7 @@ struct Timing {
 enum class Figure {
     OfRaw,        ///< time relative to the equivalent raw loop
     OfReference,  ///< time over R: position += velocity * step on 1M raw rows
-    Plain,        ///< the time itself, or another number in its place
+    Plain,        ///< the time itself, or another number
     Speedup,      ///< raw loop's time over the time
 };
 inline constexpr std::array<std::string_view, 4> kFigureNames = {"raw", "R", "plain", "speedup"};

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-// Snapshots compared with copying as many bytes, the lower bound of any way to save a world.
+// Snapshots compared with copying as many bytes, the lower bound of any method to save a world.
 
 namespace limn::bench {
 

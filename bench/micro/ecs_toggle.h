@@ -74,9 +74,9 @@ inline void toggle_by_handle(Bench& bench) {
     row(0, "toggle, one by one, random order", times[4], times[3], 0);
 }
 
-/// Two columns where `share` of the rows, chosen at random, are enabled, compared with arrays and a
+/// Two columns where a random fraction `enabled` of the rows is enabled, compared with arrays and a
 /// flag byte per row.
-inline void iterate_enabled(Bench& bench, const char* name, double share) {
+inline void iterate_enabled(Bench& bench, const char* name, double enabled) {
     World world;
     const std::vector<Entity> entities = world.create_many(kMany, Position{}, Velocity{}, Awake{});
     const RawArrays<Position, Velocity> arrays(kMany);
@@ -87,7 +87,7 @@ inline void iterate_enabled(Bench& bench, const char* name, double share) {
     for (std::size_t i = 0; i < kMany; ++i) {
         world.get<Position>(entities[i]) = positions[i];
         world.get<Velocity>(entities[i]) = velocities[i];
-        flags[i] = static_cast<std::uint8_t>(noise(i, 20) < static_cast<float>(share) - 0.5f);
+        flags[i] = static_cast<std::uint8_t>(noise(i, 20) < static_cast<float>(enabled) - 0.5f);
         world.set_enabled<Awake>(entities[i], flags[i] != 0);
     }
     const auto query = world.query<const Velocity, Position, With<Awake>>();

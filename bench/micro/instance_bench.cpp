@@ -35,8 +35,8 @@ struct Crowd {
         meshes->update(assets.meshes);
         materials->update(assets, true);
         for (int i = 0; i < kBoxes; ++i) {
-            const Vec3 place = {i % 317 - 158, i / 317 - 158, 0};
-            const Affine now = affine_from(place, {1, 0, 0, 0}, Vec3(0.3f));
+            const Vec3 position = {i % 317 - 158, i / 317 - 158, 0};
+            const Affine now = affine_from(position, {1, 0, 0, 0}, Vec3(0.3f));
             world.create(
                 MeshInstance{{0}, {static_cast<std::uint32_t>(i) % 8}}, WorldTransform{now},
                 PreviousWorldTransform{now});
@@ -54,7 +54,7 @@ struct Crowd {
 void collect_100k(benchmark::State& state) {
     static Crowd crowd;
     set_thread_count(static_cast<int>(state.range(0)));
-    // From far away all are in view, from the middle a tenth.
+    // From far away all are in view, from the center a tenth.
     const float distance = state.range(1) == 100 ? 400.0f : 55.0f;
     const Affine eye = look_at({0, 0, distance}, {0, 0, 0});
     const RenderView view = make_render_view({}, eye, eye);

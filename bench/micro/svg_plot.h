@@ -81,12 +81,12 @@ struct Panel {
         return left + width * (std::log10(items) - first_decade) / (last_decade - first_decade);
     }
     [[nodiscard]] double y_of(double time) const {
-        const double share = (std::log10(time) - low_decade) / (high_decade - low_decade);
-        return top + height * (1 - std::clamp(share, 0.0, 1.0));
+        const double fraction = (std::log10(time) - low_decade) / (high_decade - low_decade);
+        return top + height * (1 - std::clamp(fraction, 0.0, 1.0));
     }
 };
 
-/// `item`: of what there are so many: "entity", and in the plural.
+/// `item`: what is counted, such as "entity", and its plural.
 inline void draw_axes(
     Svg& svg, const Panel& panel, std::string_view title, std::string_view item,
     std::string_view items) {

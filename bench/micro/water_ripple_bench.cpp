@@ -76,14 +76,14 @@ void step(benchmark::State& state) {
     per_cell(state);
 }
 
-/// Eight by eight columns, each a fortieth of the pool thick; the first is moved aside.
+/// Eight by eight columns, each a fortieth of the pool thick; the first is displaced.
 std::vector<PlacedWall> columns_of(const RippleState& pool, float aside) {
     std::vector<PlacedWall> columns;
     const float side = pool.size().x;
     for (int i = 0; i < 64; ++i) {
-        const Vec2 place = side * ((Vec2(i % 8, i / 8) + 0.5f) / 8.0f - 0.5f);
-        const Affine world =
-            affine_from({place.x + (i == 0 ? aside : 0.0f), 0, place.y}, Quat(1, 0, 0, 0), Vec3(1));
+        const Vec2 center = side * ((Vec2(i % 8, i / 8) + 0.5f) / 8.0f - 0.5f);
+        const Affine world = affine_from(
+            {center.x + (i == 0 ? aside : 0.0f), 0, center.y}, Quat(1, 0, 0, 0), Vec3(1));
         const float radius = side / 80;
         columns.push_back(*place_wall(
             {.shape = WallShape::Cylinder, .half = {radius, 1, radius}}, world, {}, 1,
@@ -105,10 +105,10 @@ void step_columns(benchmark::State& state) {
 
 void move_column(benchmark::State& state) {
     RippleState pool = make_pool(state);
-    const std::vector<PlacedWall> places[2] = {columns_of(pool, 0), columns_of(pool, 0.2f)};
+    const std::vector<PlacedWall> walls[2] = {columns_of(pool, 0), columns_of(pool, 0.2f)};
     int turn = 0;
     for (auto _ : state) {
-        set_ripple_walls(pool, places[turn++ % 2], RippleBorder::Reflecting);
+        set_ripple_walls(pool, walls[turn++ % 2], RippleBorder::Reflecting);
     }
     per_cell(state);
 }
@@ -124,10 +124,10 @@ void many_pools(benchmark::State& state) {
     for (std::int64_t i = 0; i < state.range(0); ++i) {
         const int side = 32 + static_cast<int>(i * 37 % 97);
         const float size = 0.05f * static_cast<float>(side);
-        const Vec3 place = {10.0f * static_cast<float>(i), 0, 0};
+        const Vec3 position = {10.0f * static_cast<float>(i), 0, 0};
         world.create(
-            Transform{.position = place},
-            WorldTransform{affine_from(place, Quat(1, 0, 0, 0), Vec3(1))},
+            Transform{.position = position},
+            WorldTransform{affine_from(position, Quat(1, 0, 0, 0), Vec3(1))},
             Water{.size = Vec2(size)}, WaterRipples{.rain = 10});
         cells += side * side;
     }

@@ -167,9 +167,9 @@ CausticLight trace_mirrored_photons(
         }
         light.on_floor += amount;
         const dvec3 hit = at.position + up * ray;
-        const dvec2 place = (dvec2(hit.x, hit.z) - center + pool.half) / cell;
-        const auto x = static_cast<long>(std::floor(place.x));
-        const auto z = static_cast<long>(std::floor(place.y));
+        const dvec2 floor_cell = (dvec2(hit.x, hit.z) - center + pool.half) / cell;
+        const auto x = static_cast<long>(std::floor(floor_cell.x));
+        const auto z = static_cast<long>(std::floor(floor_cell.y));
         if (x >= 0 && z >= 0 && x < side && z < side) {
             light.floor[static_cast<std::size_t>(z * side + x)] += amount / (cell.x * cell.y);
         }

@@ -8,8 +8,8 @@
 
 namespace limn::oracle {
 
-// Light under waves by photon tracing in double precision, the reference of the caustic maps: each
-// photon enters at a point of the surface at rest, is refracted at the displaced surface there by
+// Light under waves by photon tracing in double precision, the reference for the caustic maps: each
+// photon enters at a point of the rest surface, is refracted at the displaced surface there by
 // Snell's law, weighted by the Fresnel equations, and travels to the first hit; or it is reflected
 // upward.
 
@@ -55,8 +55,7 @@ struct CausticLight {
     long photons);
 
 /// The same for light that the surface reflects onto a ceiling at `height` above rest: `floor` is
-/// the part of the ceiling with half extents `half` around `center`; `on_floor` is the flux
-/// through all of it.
+/// the part of the ceiling with half extents `half` about `center`, `on_floor` is all of it.
 /// Photons reflected downward do not count as entered.
 [[nodiscard]] CausticLight trace_mirrored_photons(
     const CausticPool& pool, const CausticSurfaceAt& surface, const glm::dvec3& to_sun,

@@ -41,16 +41,16 @@ ClusterReadbackLists ClusterReadback::run(const RenderView& view, const LightLis
     Machine& m = *machine_;
     m.graph.begin_frame();
     m.ring.begin_frame();
-    ClusterLights& placed = m.clusters;
-    place_lights(view, lights, placed);
+    ClusterLights& culled = m.clusters;
+    cull_lights(view, lights, culled);
     ClusterReadbackLists lists = {
-        placed.shape, std::vector<layout::uvec2>(placed.shape.cells()), {}, placed.capacity};
-    m.view.block = m.ring.push_value(make_view_block(view, placed.shape, lights, false));
-    placed.light_records.upload(m.ring, placed.lights);
-    placed.box_records.upload(m.ring, placed.boxes);
-    const ClusterLists made = build_clusters(m.graph, m.pass, placed, m.view);
+        culled.shape, std::vector<layout::uvec2>(culled.shape.cells()), {}, culled.capacity};
+    m.view.block = m.ring.push_value(make_view_block(view, culled.shape, lights, false));
+    culled.light_records.upload(m.ring, culled.lights);
+    culled.box_records.upload(m.ring, culled.boxes);
+    const ClusterLists made = build_clusters(m.graph, m.pass, culled, m.view);
     if (made.cells.valid()) {
-        lists.indices.resize(placed.capacity);
+        lists.indices.resize(culled.capacity);
         m.graph.add_pass(
             "read", {made.cells, made.indices}, {}, [&lists, made](PassContext& context) {
                 context.buffer(made.cells).read(0, std::as_writable_bytes(std::span(lists.cells)));

@@ -11,24 +11,25 @@
 
 namespace limn::oracle {
 
-// Where the skin of a face folds in each of its expressions, compared with anatomy: an expression
-// shortens skin across the folds of its own regions, but not of others. Regions and directions are
+// Where the skin of a face folds in each expression, compared with anatomy: an expression shortens
+// skin across the folds of its own regions, but not of other regions. Regions and directions are
 // those of the mesh (content/bake/face_regions.h).
 
-/// Morph targets that belong together: both halves of an action unit, or one target.
+/// Morph targets of one expression: both halves of an action unit, or a single target.
 struct FaceExpression {
     std::string name;  ///< "mouthSmile" of mouthSmile_L and mouthSmile_R
     std::string unit;  ///< of FACS without a side, "AU12"; or empty
     std::vector<std::uint32_t> morphs;
 };
 
-/// In the order of their first targets. Units are those of the targets or derived from their names.
+/// In the order of their first targets. Units are taken from the targets or derived from their
+/// names.
 [[nodiscard]] std::vector<FaceExpression> find_face_expressions(const MeshData& mesh);
 
 /// Shortening of a region in an expression.
 struct RegionFolding {
     double shortening =
-        0;            ///< across its folds: mean over vertices by area and weight, at least 0 each
+        0;            ///< across its folds: mean over vertices, clamped at 0, by area and weight
     double left = 0;  ///< of x > 0
     double right = 0;
     double turn = 0;  ///< mean angle between `across` and the direction of maximum shortening [rad]
@@ -52,10 +53,10 @@ class FaceFolding {
     std::vector<Region> regions_;
 };
 
-/// What anatomy predicts for an expression (shared facts of faces, sections D).
+/// What anatomy predicts for an expression.
 struct FoldingRule {
     std::string_view name;                 ///< "smile"
-    std::vector<std::string_view> units;   ///< whose targets together are the expression
+    std::vector<std::string_view> units;   ///< action units that make up the expression
     std::vector<std::string_view> folds;   ///< regions of which at least one folds
     std::vector<std::string_view> smooth;  ///< regions that do not fold
 };
@@ -63,9 +64,9 @@ struct FoldingRule {
 
 /// A rule applied to a face.
 struct FoldingResult {
-    double folding = 0;     ///< shortening of the region that folds most
-    double smooth = 0;      ///< maximum over those that do not fold
-    double difference = 0;  ///< relative difference between the sides of the one that folds
+    double folding = 0;     ///< shortening of the region with the deepest folds
+    double smooth = 0;      ///< maximum over regions that do not fold
+    double difference = 0;  ///< relative difference between both sides of the folding region
 };
 /// False if the face lacks one of the units or all regions that fold.
 [[nodiscard]] bool apply_rule(

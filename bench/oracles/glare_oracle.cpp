@@ -28,10 +28,10 @@ std::complex<double> transform_of(const std::vector<dvec2>& corners, const dvec2
     std::complex<double> sum = 0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const dvec2 side = corners[(i + 1) % corners.size()] - corners[i];
-        const dvec2 middle = corners[i] + 0.5 * side;
+        const dvec2 center = corners[i] + 0.5 * side;
         const double half = 0.5 * glm::dot(k, side);
         const double sinc = std::abs(half) < 1e-9 ? 1.0 : std::sin(half) / half;
-        sum += cross(k, side) * sinc * std::polar(1.0, -glm::dot(k, middle));
+        sum += cross(k, side) * sinc * std::polar(1.0, -glm::dot(k, center));
     }
     return sum * std::complex<double>(0, 1) / glm::dot(k, k);
 }
@@ -40,18 +40,19 @@ double luminance(const dvec3& light) {
     return glm::dot(light, dvec3(0.27, 0.67, 0.06));
 }
 
-/// Adds `light` at `place` [px from the top left], distributed bilinearly; outside the image it is
-/// lost.
-void splat(LightImage& picture, const dvec2& place, const dvec3& light) {
-    const dvec2 corner = glm::floor(place - 0.5);
-    const dvec2 share = place - 0.5 - corner;
+/// Adds `light` at `position` [px from the top left], distributed bilinearly; outside the image it
+/// is lost.
+void splat(LightImage& image, const dvec2& position, const dvec3& light) {
+    const dvec2 corner = glm::floor(position - 0.5);
+    const dvec2 fraction = position - 0.5 - corner;
     for (int j = 0; j < 2; ++j) {
         for (int i = 0; i < 2; ++i) {
             const int x = static_cast<int>(corner.x) + i;
             const int y = static_cast<int>(corner.y) + j;
-            if (x >= 0 && y >= 0 && x < picture.width && y < picture.height) {
-                picture.pixels[y * picture.width + x] +=
-                    (i == 0 ? 1 - share.x : share.x) * (j == 0 ? 1 - share.y : share.y) * light;
+            if (x >= 0 && y >= 0 && x < image.width && y < image.height) {
+                image.pixels[y * image.width + x] += (i == 0 ? 1 - fraction.x : fraction.x)
+                                                     * (j == 0 ? 1 - fraction.y : fraction.y)
+                                                     * light;
             }
         }
     }
@@ -90,14 +91,14 @@ double line_density(double distance, double length) {
     const int tents = std::max(static_cast<int>(std::ceil(std::log2(0.5 * length))), 1);
     double density = 0;
     for (int j = 0; j < tents; ++j) {
-        const double reach = std::ldexp(length, -j);
-        const double share = std::ldexp(1.0, j) / (std::ldexp(1.0, tents) - 1);
-        density += share * std::max(1 - std::abs(distance) / reach, 0.0) / reach;
+        const double half_length = std::ldexp(length, -j);
+        const double weight = std::ldexp(1.0, j) / (std::ldexp(1.0, tents) - 1);
+        density += weight * std::max(1 - std::abs(distance) / half_length, 0.0) / half_length;
     }
     return density;
 }
 
-LightImage add_stars(const LightImage& picture, const Star& star, double width) {
+LightImage add_stars(const LightImage& image, const Star& star, double width) {
     constexpr double kStep = 0.25;  // along a line [px]
     std::vector<double> densities;
     double whole = 0;
@@ -105,30 +106,30 @@ LightImage add_stars(const LightImage& picture, const Star& star, double width) 
         densities.push_back(line_density(s, star.length));
         whole += 2 * densities.back();
     }
-    LightImage stars = make_black_image(picture.width, picture.height);
-    for (int y = 0; y < picture.height; ++y) {
-        for (int x = 0; x < picture.width; ++x) {
-            const double light = luminance(picture.at(x, y));
+    LightImage stars = make_black_image(image.width, image.height);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const double light = luminance(image.at(x, y));
             if (light <= star.threshold) {
                 continue;
             }
-            const dvec3 source = picture.at(x, y) * (1 - star.threshold / light) * star.strength
+            const dvec3 source = image.at(x, y) * (1 - star.threshold / light) * star.strength
                                  / static_cast<double>(star.lines);
             for (int line = 0; line < star.lines; ++line) {
                 const double angle = star.rotation + kGlarePi * line / star.lines;
                 const dvec2 along(std::cos(angle), -std::sin(angle));  // rows go down
                 for (std::size_t i = 0; i < densities.size(); ++i) {
-                    const dvec2 way = (static_cast<double>(i) + 0.5) * kStep * along;
+                    const dvec2 offset = (static_cast<double>(i) + 0.5) * kStep * along;
                     const dvec3 part = densities[i] / whole * source;
-                    splat(stars, dvec2(x, y) + 0.5 + way, part);
-                    splat(stars, dvec2(x, y) + 0.5 - way, part);
+                    splat(stars, dvec2(x, y) + 0.5 + offset, part);
+                    splat(stars, dvec2(x, y) + 0.5 - offset, part);
                 }
             }
         }
     }
     const std::vector<Scattering> wide = {{1.0, width}};
     stars = scatter(stars, 1, wide);
-    LightImage sum = picture;
+    LightImage sum = image;
     for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
         sum.pixels[i] += dvec3(610.0, 550.0, 465.0) / 550.0 * stars.pixels[i];
     }

@@ -11,9 +11,8 @@ namespace limn::oracle {
 // its pixels.
 
 /// Angles [rad], 0 .. 2 pi, of the strongest diffraction by a regular polygon of `blades` sides,
-/// one of them about perpendicular to a side at `rotation`: the maxima of its squared Fourier
-/// transform, averaged over an octave of spatial frequencies, as for white light of an extended
-/// source.
+/// one side at the angle `rotation`: the maxima of its squared Fourier transform, averaged over an
+/// octave of spatial frequencies, as for white light of an extended source.
 [[nodiscard]] std::vector<double> diffraction_angles(int blades, double rotation);
 
 struct Star {
@@ -29,9 +28,9 @@ struct Star {
 /// shortest and the longest tent it falls with the square of the distance. Both sides sum to 1.
 [[nodiscard]] double line_density(double distance, double length);
 
-/// `image` with a star about each pixel; red reaches farther than blue, in the ratio of the
+/// `image` with a star about each pixel; red streaks are longer than blue ones, in the ratio of the
 /// wavelengths 610, 550 and 465 nm. A line's cross-section is a Gaussian of standard deviation
 /// `width` [px].
-[[nodiscard]] LightImage add_stars(const LightImage& picture, const Star& star, double width);
+[[nodiscard]] LightImage add_stars(const LightImage& image, const Star& star, double width);
 
 }  // namespace limn::oracle

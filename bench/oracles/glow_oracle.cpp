@@ -10,7 +10,7 @@ namespace limn::oracle {
 namespace {
 
 constexpr double kGlowPi = 3.14159265358979323846;
-constexpr double kReach = 6;  // cut-off of a Gaussian, in standard deviations: 2e-9 of it is beyond
+constexpr double kCutoff = 6;  // of a Gaussian [standard deviations]: 2e-9 of it is beyond
 
 int mirrored(int at, int size) {
     const int period = 2 * size;
@@ -20,10 +20,10 @@ int mirrored(int at, int size) {
 
 /// Integral of a Gaussian over each pixel about its center pixel; sums to 1.
 std::vector<double> gaussian(double sigma) {
-    const int reach = static_cast<int>(std::ceil(kReach * sigma));
+    const int radius = static_cast<int>(std::ceil(kCutoff * sigma));
     std::vector<double> weights;
     double sum = 0;
-    for (int i = -reach; i <= reach; ++i) {
+    for (int i = -radius; i <= radius; ++i) {
         weights.push_back(
             std::erf((i + 0.5) / (sigma * std::sqrt(2.0)))
             - std::erf((i - 0.5) / (sigma * std::sqrt(2.0))));
@@ -38,24 +38,24 @@ std::vector<double> gaussian(double sigma) {
 /// Kernels wider than the image are folded back first, so that a pixel costs one row.
 std::vector<double> folded(const std::vector<double>& weights, int size, int at) {
     std::vector<double> row(static_cast<std::size_t>(size), 0.0);
-    const int reach = static_cast<int>(weights.size() / 2);
-    for (int i = -reach; i <= reach; ++i) {
-        row[mirrored(at + i, size)] += weights[i + reach];
+    const int radius = static_cast<int>(weights.size() / 2);
+    for (int i = -radius; i <= radius; ++i) {
+        row[mirrored(at + i, size)] += weights[i + radius];
     }
     return row;
 }
 
-LightImage blur(const LightImage& picture, double sigma) {
+LightImage blur(const LightImage& image, double sigma) {
     const std::vector<double> weights = gaussian(sigma);
-    const int width = picture.width;
-    const int height = picture.height;
+    const int width = image.width;
+    const int height = image.height;
     LightImage across = make_black_image(width, height);
     for (int x = 0; x < width; ++x) {
         const std::vector<double> row = folded(weights, width, x);
         for (int y = 0; y < height; ++y) {
             glm::dvec3 sum(0);
             for (int i = 0; i < width; ++i) {
-                sum += row[i] * picture.at(i, y);
+                sum += row[i] * image.at(i, y);
             }
             across.pixels[y * width + x] = sum;
         }
@@ -82,19 +82,18 @@ double cubic(const std::array<double, 4>& v, double t) {
                              + t * (3 * (v[1] - v[2]) + v[3] - v[0])));
 }
 
-double green_at(const LightImage& picture, const glm::dvec2& place) {
-    const double x = place.x - 0.5;
-    const double y = place.y - 0.5;
+double green_at(const LightImage& image, const glm::dvec2& position) {
+    const double x = position.x - 0.5;
+    const double y = position.y - 0.5;
     const int left = static_cast<int>(std::floor(x));
     const int top = static_cast<int>(std::floor(y));
     std::array<double, 4> rows{};
     for (int j = 0; j < 4; ++j) {
         std::array<double, 4> row{};
         for (int i = 0; i < 4; ++i) {
-            row[i] = picture
-                         .at(mirrored(left - 1 + i, picture.width),
-                             mirrored(top - 1 + j, picture.height))
-                         .y;
+            row[i] =
+                image.at(mirrored(left - 1 + i, image.width), mirrored(top - 1 + j, image.height))
+                    .y;
         }
         rows[j] = cubic(row, x - left);
     }
@@ -109,13 +108,13 @@ LightImage make_black_image(int width, int height) {
         std::vector<glm::dvec3>(static_cast<std::size_t>(width) * height, glm::dvec3(0))};
 }
 
-LightImage scatter(const LightImage& picture, double strength, std::span<const Scattering> parts) {
-    LightImage sum = picture;
+LightImage scatter(const LightImage& image, double strength, std::span<const Scattering> parts) {
+    LightImage sum = image;
     for (glm::dvec3& pixel : sum.pixels) {
         pixel *= 1 - strength;
     }
     for (const Scattering& part : parts) {
-        const LightImage blurred = blur(picture, part.sigma);
+        const LightImage blurred = blur(image, part.sigma);
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
             sum.pixels[i] += strength * part.weight * blurred.pixels[i];
         }
@@ -132,17 +131,17 @@ std::vector<Scattering> scattering_of_levels(std::span<const float> weights) {
     return parts;
 }
 
-LightImage blur_7x7(const LightImage& picture, const std::array<double, 7>& weights) {
-    LightImage blurred = make_black_image(picture.width, picture.height);
-    for (int y = 0; y < picture.height; ++y) {
-        for (int x = 0; x < picture.width; ++x) {
+LightImage blur_7x7(const LightImage& image, const std::array<double, 7>& weights) {
+    LightImage blurred = make_black_image(image.width, image.height);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
             for (int j = -3; j <= 3; ++j) {
                 for (int i = -3; i <= 3; ++i) {
-                    blurred.pixels[y * picture.width + x] +=
+                    blurred.pixels[y * image.width + x] +=
                         weights[i + 3] * weights[j + 3]
-                        * picture.at(
-                            std::clamp(x + i, 0, picture.width - 1),
-                            std::clamp(y + j, 0, picture.height - 1));
+                        * image.at(
+                            std::clamp(x + i, 0, image.width - 1),
+                            std::clamp(y + j, 0, image.height - 1));
                 }
             }
         }
@@ -150,22 +149,22 @@ LightImage blur_7x7(const LightImage& picture, const std::array<double, 7>& weig
     return blurred;
 }
 
-glm::dvec3 sum_of(const LightImage& picture) {
+glm::dvec3 sum_of(const LightImage& image) {
     glm::dvec3 sum(0);
-    for (const glm::dvec3& pixel : picture.pixels) {
+    for (const glm::dvec3& pixel : image.pixels) {
         sum += pixel;
     }
     return sum;
 }
 
-double rotational_spread(const LightImage& picture, const glm::dvec2& center, double radius) {
+double rotational_spread(const LightImage& image, const glm::dvec2& center, double radius) {
     constexpr int kAngles = 256;
     double sum = 0;
     double squares = 0;
     for (int i = 0; i < kAngles; ++i) {
         const double angle = 2 * kGlowPi * i / kAngles;
         const double value =
-            green_at(picture, center + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+            green_at(image, center + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
         sum += value;
         squares += value * value;
     }

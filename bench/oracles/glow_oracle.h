@@ -9,7 +9,7 @@
 
 namespace limn::oracle {
 
-// Glow (light scattered by a lens) as a convolution in double precision, the reference of the
+// Glow (light scattered by a lens) as a convolution in double precision, the reference for the
 // renderer's pyramid. Images are mirrored at their borders.
 
 /// Linear light, rows from the top.
@@ -32,20 +32,20 @@ struct Scattering {
 
 /// (1 - strength) I + strength (sum of weight * Gaussian * I).
 [[nodiscard]] LightImage
-scatter(const LightImage& picture, double strength, std::span<const Scattering> parts);
+scatter(const LightImage& image, double strength, std::span<const Scattering> parts);
 
 /// The Gaussians that approximate level k of a pyramid of tent and [1 2 1] filters, for weights
-/// from level 2 on: of the same variance, 3/2 4^k - 9/2 square pixels.
+/// from level 2 on: they have the same variance, 3/2 4^k - 9/2 square pixels.
 [[nodiscard]] std::vector<Scattering> scattering_of_levels(std::span<const float> weights);
 
 /// post.separable-blur: the full 49 weights of the outer product, edges clamped.
-[[nodiscard]] LightImage blur_7x7(const LightImage& picture, const std::array<double, 7>& weights);
+[[nodiscard]] LightImage blur_7x7(const LightImage& image, const std::array<double, 7>& weights);
 
-[[nodiscard]] glm::dvec3 sum_of(const LightImage& picture);
+[[nodiscard]] glm::dvec3 sum_of(const LightImage& image);
 
 /// Rotational asymmetry: standard deviation over mean of green along a circle about `center` [px
 /// from the top left]; 0 if radially symmetric.
 [[nodiscard]] double
-rotational_spread(const LightImage& picture, const glm::dvec2& center, double radius);
+rotational_spread(const LightImage& image, const glm::dvec2& center, double radius);
 
 }  // namespace limn::oracle

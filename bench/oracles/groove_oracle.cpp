@@ -11,18 +11,18 @@ namespace {
 constexpr std::size_t kStrips = 200;
 constexpr int kBounces = 400;
 
-using Strips = std::array<double, kStrips>;  ///< of a wall, from the bottom to the rim
+using Strips = std::array<double, kStrips>;  ///< values of a wall, from the bottom to the rim
 
 double along(std::size_t strip, double within) {
     return (static_cast<double>(strip) + within) / static_cast<double>(kStrips);
 }
 
-/// Between points of opposite walls, `a` and `b` away from the bottom.
+/// Distance between points of opposite walls, `a` and `b` away from the bottom.
 double string_length(double slope, double a, double b) {
     return std::hypot((a + b) * std::cos(slope), (a - b) * std::sin(slope));
 }
 
-/// Share of the light of strip `i` of one wall that falls on strip `j` of the other.
+/// Fraction of the light of strip `i` of one wall that falls on strip `j` of the other.
 double form_factor(double slope, std::size_t i, std::size_t j) {
     const double a0 = along(i, 0);
     const double a1 = along(i, 1);
@@ -41,12 +41,12 @@ double mean(const Strips& strips) {
     return sum / static_cast<double>(kStrips);
 }
 
-/// What a wall at the side `side` (-1: left) gets from (x, y).
+/// Direct light from (x, y) on the wall at the side `side` (-1: left).
 Strips light_directly(double slope, double side, double x, double y) {
     const double cosine = y * std::cos(slope) - side * x * std::sin(slope);
     Strips light;
     for (std::size_t i = 0; i < kStrips; ++i) {
-        // Where the way to the light passes the height of the rims.
+        // Where the ray to the light passes the height of the rims.
         const double t = along(i, 0.5);
         const double passes = side * t * std::cos(slope) + (1 - t) * std::sin(slope) * x / y;
         light[i] = cosine > 0 && std::abs(passes) <= std::cos(slope) ? cosine : 0.0;
@@ -62,9 +62,9 @@ GrooveWalls bounce(double slope, double albedo, const Strips& left, const Strips
         Strips next_right = right;
         for (std::size_t i = 0; i < kStrips; ++i) {
             for (std::size_t j = 0; j < kStrips; ++j) {
-                const double share = form_factor(slope, i, j);
-                next_left[i] += share * from_right[j];
-                next_right[i] += share * from_left[j];
+                const double factor = form_factor(slope, i, j);
+                next_left[i] += factor * from_right[j];
+                next_right[i] += factor * from_left[j];
             }
         }
         double change = 0;
@@ -94,7 +94,7 @@ GrooveWalls groove_radiosity(double slope, double albedo, double x, double y) {
 }
 
 double groove_radiosity_around(double slope, double albedo) {
-    Strips open;  // what is not hidden by the other wall
+    Strips open;  // the fraction that is not occluded by the other wall
     for (std::size_t i = 0; i < kStrips; ++i) {
         open[i] = 1;
         for (std::size_t j = 0; j < kStrips; ++j) {

@@ -2,9 +2,9 @@
 
 namespace limn::oracle {
 
-// Light in a long groove between two walls of the same slope, by radiosity in double precision:
-// the walls are cut into strips, whose form factors are those of Hottel's crossed strings, and
-// light bounces until no more is left. An independent check of fold_light.glsl.
+// Light in a long groove between two walls of the same slope, by radiosity in double precision: the
+// walls are cut into strips, whose form factors are those of Hottel's crossed strings, and light
+// bounces until none is left. An independent check of fold_light.glsl.
 
 /// Means over both walls.
 struct GrooveWalls {
@@ -12,16 +12,16 @@ struct GrooveWalls {
     double right = 0;
 };
 
-/// Cosines at the walls of light from (x, y) in the section of the groove, y > 0 out of it: 0 where
-/// a strip stands in the shadow of the other wall. The left wall faces +x. `slope` of the walls
-/// [rad], 0 to pi/2; (x, y) may be shorter than 1, of light that also runs along the groove.
+/// Cosines at the walls of light from (x, y) in the cross-section of the groove, y > 0 out of it: 0
+/// where a strip is shadowed by the other wall. The left wall faces +x. `slope` of the walls [rad],
+/// 0 to pi/2; (x, y) is shorter than 1 if the light also has a component along the groove.
 [[nodiscard]] GrooveWalls groove_cosines(double slope, double x, double y);
 
-/// Radiosity by that of white skin without a groove that faces the light, for walls of `albedo` 0
-/// to 1 that are lit from there.
+/// Radiosity relative to white skin without a groove that faces the light, for walls of `albedo` 0
+/// to 1.
 [[nodiscard]] GrooveWalls groove_radiosity(double slope, double albedo, double x, double y);
 
-/// The same of light from all around, by that of white skin without a groove.
+/// The same for light from all directions.
 [[nodiscard]] double groove_radiosity_around(double slope, double albedo);
 
 }  // namespace limn::oracle

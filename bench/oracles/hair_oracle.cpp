@@ -37,7 +37,7 @@ double longitudinal(double variance, double to_light, double to_viewer) {
            / (variance * (1 - std::exp(-2 / variance)));
 }
 
-/// Of the logistic distribution, wrapped around once.
+/// Density of the logistic distribution, wrapped around once.
 double wrapped_logistic(double angle, double scale) {
     const auto cumulative = [&](double x) { return 1 / (1 + std::exp(-x / scale)); };
     const double x = std::remainder(angle, 2 * kHairPi);

@@ -13,13 +13,13 @@ namespace limn::oracle {
 using DVec3 = glm::dvec3;
 
 struct HairFiber {
-    DVec3 color = DVec3(1);         ///< of a mass of such strands
+    DVec3 color = DVec3(1);         ///< of many such strands together
     double roughness = 0.3;         ///< along the strand, 0 .. 1
     double roughness_across = 0.3;  ///< around it, 0 .. 1
     double tilt = 0;                ///< of the scales [rad]
 };
 
-/// Radiance by R, TT, TRT and all longer paths, for an irradiance of 1 on a plane that faces the
+/// Radiance of R, TT, TRT and all longer paths, for an irradiance of 1 on a plane that faces the
 /// light. Inclinations are from the plane across the strand to its tip, `azimuth` is the angle
 /// between light and viewer around it [rad].
 [[nodiscard]] std::array<DVec3, 4> fiber_light(

@@ -11,9 +11,9 @@ struct Ray {
     double slope;
 };
 
-/// A ray after `way` along the axis.
-Ray travel(const Ray& ray, double way) {
-    return {ray.height + ray.slope * way, ray.slope};
+/// A ray after `distance` along the axis.
+Ray travel(const Ray& ray, double distance) {
+    return {ray.height + ray.slope * distance, ray.slope};
 }
 
 /// Refraction: a thin lens changes a ray's slope in proportion to its height.
@@ -35,7 +35,7 @@ double image_diameter(const ThinLens& lens, double distance) {
 
 ThinLens lens_of_camera(double fov_y, double film_height, double f_number, double focus) {
     const double film = film_height / 2 / std::tan(fov_y / 2);
-    // Rays from the focus that pass the lens 1 m off the axis must meet on the film.
+    // Rays from the point in focus that pass the lens 1 m off the axis must meet on the film.
     const double turn = 1 / focus + 1 / film;
     const double focal_length = 1 / turn;
     return {focal_length, focal_length / f_number, focus};

@@ -9,8 +9,8 @@
 namespace limn::oracle {
 
 // Lights and the classic reflection models in double precision, one formula per function, not
-// optimized: the reference of the shaders and of the light extraction. Sources are the spec entries
-// named.
+// optimized: the reference for the shaders and the light extraction. Sources are the named spec
+// entries.
 //
 // In Limn a light's color Ii is the radiance of a white Lambertian surface facing it: irradiance /
 // pi. With an irradiance of pi the formulas match the entries as printed.

@@ -5,8 +5,8 @@
 
 namespace limn::oracle {
 
-/// Binds `head` to patches over `markers`, parts of one head (HeadPartKind). If it cannot be bound,
-/// the result has no `anchors`.
+/// Binds `head` to patches over `markers`, parts of one head (HeadPartKind). If that fails, the
+/// result has no `anchors`.
 [[nodiscard]] SurfaceBindingState bind_to_markers(const MeshData& head, const MeshData& markers);
 
 }  // namespace limn::oracle

@@ -17,7 +17,7 @@ namespace limn::oracle {
 /// The mean of images of equal size.
 class MeanImage {
   public:
-    void add(const gpu::FloatImage& picture);
+    void add(const gpu::FloatImage& image);
     [[nodiscard]] gpu::FloatImage mean() const;
 
   private:
@@ -26,17 +26,18 @@ class MeanImage {
     int count_ = 0;
 };
 
-/// A row of pixels, constant within each and clamped at its ends, that moves uniformly by `way`
-/// pixels in total: convolution with a box of that length, sampled at the pixel centers.
-[[nodiscard]] std::vector<double> box_filter(std::span<const double> row, double way);
+/// A row of pixels, constant within each and clamped at its ends, that moves uniformly by
+/// `distance` pixels in total: convolution with a box of that length, sampled at the pixel centers.
+[[nodiscard]] std::vector<double> box_filter(std::span<const double> row, double distance);
 
 /// Fraction of the exposure for which a bar from `begin` to `end` covers `x` while it moves
-/// uniformly by `way` in total; its position is given for the middle of the exposure.
-[[nodiscard]] double bar_coverage(double x, double begin, double end, double way);
+/// uniformly by `distance` in total; its position is given at the center of the exposure.
+[[nodiscard]] double bar_coverage(double x, double begin, double end, double distance);
 
 /// post.motion-blur-stretch of a bar of pixels previously from `begin` to `end` that moved by
-/// `way`: the mean at `x` of `samples` of each image, linearly filtered; 0 beyond what the bar
-/// passes.
-[[nodiscard]] double stretch_coverage(double x, double begin, double end, double way, int samples);
+/// `distance`: the mean at `x` of `samples` of each image, linearly filtered; 0 beyond the path of
+/// the bar.
+[[nodiscard]] double
+stretch_coverage(double x, double begin, double end, double distance, int samples);
 
 }  // namespace limn::oracle

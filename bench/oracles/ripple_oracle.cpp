@@ -81,30 +81,32 @@ glm::dvec2 haze_shift(
     const double closest = along_ray(camera, ray, camera.near);
     const glm::dvec3 from = local_at(0);
     const glm::dvec3 step = local_at(1) - from;
-    const double reach = 2 * std::sqrt(3.0) / glm::length(step);  // half of the longest chord
+    const double half_range = 2 * std::sqrt(3.0) / glm::length(step);  // half of the longest chord
     const double nearest = -glm::dot(from, step) / glm::dot(step, step);
     double enter = -1;
     double leave = -1;
     constexpr int kSteps = 4000;
     for (int i = 0; i <= kSteps; ++i) {
-        const double t = nearest + reach * (2.0 * i / kSteps - 1);
+        const double t = nearest + half_range * (2.0 * i / kSteps - 1);
         if (t >= closest && inside(t)) {
             enter = enter < 0 ? t : enter;
             leave = t;
         }
     }
-    const double seen = along_ray(camera, ray, distance);
-    if (enter < 0 || leave <= enter || seen <= enter) {
+    const double surface = along_ray(camera, ray, distance);
+    if (enter < 0 || leave <= enter || surface <= enter) {
         return {0, 0};
     }
-    const double end = std::min(leave, seen);
-    const double middle = 0.5 * (enter + end);
-    const glm::dvec3 local = local_at(middle);
+    const double end = std::min(leave, surface);
+    const double center_t = 0.5 * (enter + end);
+    const glm::dvec3 local = local_at(center_t);
     const glm::dvec3 open = 1.0 - local * local;
     const double fade = air.ball ? 1 - glm::dot(local, local) : open.x * open.y * open.z;
-    const glm::dvec3 place = (camera.eye + middle * ray) / air.scale - glm::dvec3(0, air.raised, 0);
+    const glm::dvec3 noise_position =
+        (camera.eye + center_t * ray) / air.scale - glm::dvec3(0, air.raised, 0);
     const glm::dvec2 eddy = {
-        gradient_noise(Vec3(place), air.seed), gradient_noise(Vec3(place), air.seed + 0x9e37u)};
+        gradient_noise(Vec3(noise_position), air.seed),
+        gradient_noise(Vec3(noise_position), air.seed + 0x9e37u)};
     return std::sqrt(0.5) * air.shift * (end - enter) / (leave - enter) * std::max(fade, 0.0)
            * eddy;
 }

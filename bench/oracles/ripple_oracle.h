@@ -10,7 +10,7 @@
 
 namespace limn::oracle {
 
-// The shift of each pixel's lookup by ripples, analytically in double precision: the reference of
+// The shift of each pixel's lookup by ripples, analytically in double precision: the reference for
 // the renderer's shift field.
 
 /// A camera by its axes, which are unit and perpendicular.

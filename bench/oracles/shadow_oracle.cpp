@@ -67,7 +67,7 @@ ShadowScene::ShadowScene(const World& world) {
         masks_.push_back(std::move(mask));
     }
     world.query<const MeshInstance, const WorldTransform, Without<NoShadow>>().each(
-        [&](const MeshInstance& instance, const WorldTransform& place) {
+        [&](const MeshInstance& instance, const WorldTransform& transform) {
             const std::uint32_t material = instance.material.index;
             const bool known = material < assets.materials.size();
             if (known && assets.materials[material].alpha_mode == AlphaMode::Blend) {
@@ -77,9 +77,9 @@ ShadowScene::ShadowScene(const World& world) {
             for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
                 const std::uint32_t* corner = &mesh.indices[i];
                 Triangle t;
-                t.corner = to_world(place.world, mesh.positions[corner[0]]);
-                t.edge_u = to_world(place.world, mesh.positions[corner[1]]) - t.corner;
-                t.edge_v = to_world(place.world, mesh.positions[corner[2]]) - t.corner;
+                t.corner = to_world(transform.world, mesh.positions[corner[0]]);
+                t.edge_u = to_world(transform.world, mesh.positions[corner[1]]) - t.corner;
+                t.edge_v = to_world(transform.world, mesh.positions[corner[2]]) - t.corner;
                 t.mask = known ? mask_of[material] : -1;
                 for (int k = 0; k < 3 && !mesh.uvs.empty(); ++k) {
                     t.uv[k] = glm::dvec2(mesh.uvs[corner[k]]);
@@ -109,17 +109,17 @@ void ShadowScene::build(std::uint32_t begin, std::uint32_t end) {
     }
     const DVec3 size = node.max - node.min;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::uint32_t middle = (begin + end) / 2;
+    const std::uint32_t median = (begin + end) / 2;
     const auto along = [axis](const Triangle& t) {
         return t.corner[axis] + (t.edge_u[axis] + t.edge_v[axis]) / 3;
     };
     std::nth_element(
-        triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
+        triangles_.begin() + begin, triangles_.begin() + median, triangles_.begin() + end,
         [&](const Triangle& a, const Triangle& b) { return along(a) < along(b); });
-    build(begin, middle);
+    build(begin, median);
     nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
     nodes_[index].count = 0;
-    build(middle, end);
+    build(median, end);
 }
 
 bool ShadowScene::has_hole(const Triangle& triangle, double u, double v) const {
@@ -195,22 +195,22 @@ bool ShadowScene::blocked_toward(const DVec3& from, const DVec3& to_light) const
 }
 
 double ShadowScene::visible_fraction(
-    const DVec3& from, const DVec3& middle, double diameter, int side) const {
-    const DVec3 axis = glm::normalize(from - middle);
+    const DVec3& from, const DVec3& center, double diameter, int side) const {
+    const DVec3 axis = glm::normalize(from - center);
     const DVec3 other = std::abs(axis.y) < 0.9 ? DVec3(0, 1, 0) : DVec3(1, 0, 0);
     const DVec3 right = glm::normalize(glm::cross(other, axis));
     const DVec3 up = glm::cross(axis, right);
-    int seen = 0;
+    int visible = 0;
     for (int i = 0; i < side; ++i) {
         for (int j = 0; j < side; ++j) {
             // Rings of equal area.
             const double radius = 0.5 * diameter * std::sqrt((i + 0.5) / side);
             const double angle = 2 * std::numbers::pi * (j + 0.5 * (i % 2)) / side;
-            const DVec3 to = middle + radius * (std::cos(angle) * right + std::sin(angle) * up);
-            seen += blocked(from, to) ? 0 : 1;
+            const DVec3 to = center + radius * (std::cos(angle) * right + std::sin(angle) * up);
+            visible += blocked(from, to) ? 0 : 1;
         }
     }
-    return static_cast<double>(seen) / (side * side);
+    return static_cast<double>(visible) / (side * side);
 }
 
 double penumbra_width(double width, double blocker, double receiver) {

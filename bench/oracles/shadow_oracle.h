@@ -12,13 +12,13 @@ class World;
 
 namespace limn::oracle {
 
-// Shadows by ray casting in double precision, the reference of shadow maps and volumes. A bounding
+// Shadows by ray casting in double precision, the reference for shadow maps and volumes. A bounding
 // volume hierarchy holds every triangle of the world's casters; a ray is blocked by either side of
 // a triangle, except in the holes of an alpha-tested surface.
 
 using DVec3 = glm::dvec3;
 
-/// The occluders of a world, a snapshot of the time of construction.
+/// The occluders of a world at the time of construction.
 class ShadowScene {
   public:
     /// Opaque and alpha-tested mesh instances of `world` without NoShadow, at their WorldTransform.
@@ -30,10 +30,10 @@ class ShadowScene {
     /// The same for a directional light, in the direction `to_light` (unit).
     [[nodiscard]] bool blocked_toward(const DVec3& from, const DVec3& to_light) const;
 
-    /// Visible fraction of a disc of `diameter` about `middle`, facing `from` (shadow.penumbra):
+    /// Visible fraction of a disc of `diameter` about `center`, facing `from` (shadow.penumbra):
     /// the mean of side^2 rays.
     [[nodiscard]] double
-    visible_fraction(const DVec3& from, const DVec3& middle, double diameter, int side = 16) const;
+    visible_fraction(const DVec3& from, const DVec3& center, double diameter, int side = 16) const;
 
     [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
 

@@ -10,11 +10,11 @@ namespace limn::oracle {
 
 // Shadow volumes as Crow (1977) defines them, polygon by polygon in double precision: a point is in
 // shadow if a ray from the eye to it enters more volumes than it leaves (shadow.volume-count). The
-// reference of the stencil passes. Polygons seen edge-on and rays through an edge count
+// reference for the stencil passes. Polygons viewed edge-on and rays through an edge count
 // arbitrarily: choose points in general position.
 
 using DVec3 = glm::dvec3;
-using DTriangle = std::array<DVec3, 3>;  ///< counter-clockwise seen from outside
+using DTriangle = std::array<DVec3, 3>;  ///< counter-clockwise from outside
 
 /// shadow.vol-extrude: `p` moved away from `light` by `distance`.
 [[nodiscard]] DVec3 extrude(const DVec3& p, const DVec3& light, double distance);

@@ -21,7 +21,7 @@ struct Lobe {
     double along = 1;
     double exponent = 1;
 };
-/// In the frame whose z is the normal; `u` toward the light, `v` toward the viewer, unit.
+/// In a frame whose z axis is the normal; `u` toward the light, `v` toward the viewer, unit.
 [[nodiscard]] double
 lafortune(double diffuse, std::span<const Lobe> lobes, const DVec3& u, const DVec3& v);
 /// Fraction of the light from `u` that such a surface reflects, where D is the albedo of its
@@ -29,7 +29,7 @@ lafortune(double diffuse, std::span<const Lobe> lobes, const DVec3& u, const DVe
 [[nodiscard]] double
 lafortune_albedo(double diffuse, std::span<const Lobe> lobes, const DVec3& u, int steps = 256);
 
-/// The profile of Christensen and Burley (2015): light that leaves per area at `r` [1/m^2].
+/// The profile of Christensen and Burley (2015): light that exits per area at `r` [1/m^2].
 [[nodiscard]] double diffusion_profile(double r, double d);
 /// Its integral within r, 0 .. 1.
 [[nodiscard]] double diffused_fraction(double r, double d);
@@ -40,17 +40,17 @@ lafortune_albedo(double diffuse, std::span<const Lobe> lobes, const DVec3& u, in
 
 /// Irradiance of a plane whose half x > 0 is lit by 1, once diffused, at `x`.
 [[nodiscard]] double diffused_edge(double x, double d);
-/// The same of a lit strip, |x| < width / 2.
+/// The same for a lit strip, |x| < width / 2.
 [[nodiscard]] double diffused_strip(double x, double width, double d);
-/// A square or parallelogram of a plane with an even light: a pixel.
+/// A parallelogram of a plane with uniform light, such as a pixel.
 struct LitPatch {
     DVec3 center;
     DVec3 right;  ///< edges
     DVec3 up;
     double light = 0;
 };
-/// Diffused light at the center of patch `at`, the mean over all patches by their integral of the
-/// profile.
+/// Diffused light at the center of patch `at`: the mean over all patches, weighted by the integral
+/// of the profile over each.
 [[nodiscard]] double diffused_patches(std::span<const LitPatch> patches, std::size_t at, double d);
 
 /// Light transmitted by a slab whose back is lit by 1: the integral of the profile beyond

@@ -115,7 +115,7 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
         const DeformedVertices& vertices = m.shapes.vertices();
         skin.positions = read<Vec3>(vertices.positions(), first, count);
         if (before) {
-            skin.before = read<Vec3>(vertices.before(), first, count);
+            skin.before = read<Vec3>(vertices.previous_positions(), first, count);
         }
         if (m.shapes[index].wrinkled) {
             for (const std::uint64_t packed :

@@ -20,11 +20,11 @@ namespace limn::oracle {
 /// An instance's vertices as deformed by the GPU; empty if it is drawn at rest.
 struct SkinReadbackVertices {
     std::vector<Vec3> positions;
-    std::vector<Vec3> before;  ///< empty unless asked for
+    std::vector<Vec3> before;  ///< empty unless requested
     std::vector<Vec3> normals;
     std::vector<Vec4> tangents;
-    std::vector<Vec4> wrinkles;  ///< their strengths, see lib/material.glsl; empty: it has none
-    std::vector<float> folds;    ///< by which they move along their normals [m]; empty: by none
+    std::vector<Vec4> wrinkles;  ///< wrinkle strengths, see lib/material.glsl; empty: no wrinkles
+    std::vector<float> folds;    ///< fold displacement along the normals [m]; empty: none
 };
 
 /// Runs only the passes that deform and measure skin, frame by frame, and reads back their results.

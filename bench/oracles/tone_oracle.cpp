@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kLargestHalf = 65504;
 
-/// The sorted luminances > 0 without the fraction `share` at either end.
-std::vector<double> lit(std::span<const double> luminances, double share) {
+/// The sorted luminances > 0 without the fraction `clipped` at either end.
+std::vector<double> lit(std::span<const double> luminances, double clipped) {
     std::vector<double> sorted;
     for (const double l : luminances) {
         if (l > 0 && std::isfinite(l)) {
@@ -22,7 +22,7 @@ std::vector<double> lit(std::span<const double> luminances, double share) {
     }
     std::sort(sorted.begin(), sorted.end());
     const auto outside =
-        static_cast<std::ptrdiff_t>(std::floor(share * static_cast<double>(sorted.size())));
+        static_cast<std::ptrdiff_t>(std::floor(clipped * static_cast<double>(sorted.size())));
     return sorted.empty() ? sorted
                           : std::vector<double>(sorted.begin() + outside, sorted.end() - outside);
 }
@@ -41,12 +41,12 @@ double log_average(std::span<const double> luminances, double delta) {
     return luminances.empty() ? delta : std::exp(sum / static_cast<double>(luminances.size()));
 }
 
-double dynamic_range(std::span<const double> luminances, double share) {
-    const std::vector<double> sorted = lit(luminances, share);
+double dynamic_range(std::span<const double> luminances, double clipped) {
+    const std::vector<double> sorted = lit(luminances, clipped);
     return sorted.empty() ? 1 : sorted.back() / sorted.front();
 }
 
-ImageStatistics measure_image(std::span<const glm::dvec3> pixels, double clipped_share) {
+ImageStatistics measure_image(std::span<const glm::dvec3> pixels, double clipped) {
     ImageStatistics result;
     std::vector<double> luminances;
     for (const glm::dvec3& pixel : pixels) {
@@ -64,7 +64,7 @@ ImageStatistics measure_image(std::span<const glm::dvec3> pixels, double clipped
     result.mean /= std::max(1.0, static_cast<double>(result.finite));
     result.log_average = log_average(luminances);
     const std::vector<double> all = lit(luminances, 0);
-    const std::vector<double> inner = lit(luminances, clipped_share);
+    const std::vector<double> inner = lit(luminances, clipped);
     if (!all.empty()) {
         result.least = all.front();
         result.largest = all.back();
@@ -127,12 +127,12 @@ double knee_map(double c, double defog, const KneeSettings& settings) {
 
 std::vector<double>
 gaussian_response(std::span<const double> luminances, int width, int height, int scale) {
-    const double reach = std::pow(1.6, scale) / (2 * std::sqrt(2.0));
-    const int radius = static_cast<int>(std::ceil(4 * reach));
+    const double spread = std::pow(1.6, scale) / (2 * std::sqrt(2.0));
+    const int radius = static_cast<int>(std::ceil(4 * spread));
     std::vector<double> kernel;  // the product of two of these is the kernel over the plane
     double sum = 0;
     for (int i = -radius; i <= radius; ++i) {
-        kernel.push_back(std::exp(-i * i / (reach * reach)));
+        kernel.push_back(std::exp(-i * i / (spread * spread)));
         sum += kernel.back();
     }
     const auto blur = [&](std::span<const double> source, int dx, int dy) {

@@ -9,7 +9,7 @@
 namespace limn::oracle {
 
 // From radiance to display in double precision, one formula per function, not optimized: the
-// reference of the statistics, tone mapper and viewer. Sources are the spec entries named.
+// reference for the statistics, tone mapper and viewer. Sources are the named spec entries.
 
 /// hdr.luminance: 0.27 R + 0.67 G + 0.06 B.
 [[nodiscard]] double luminance(const glm::dvec3& color);
@@ -17,9 +17,9 @@ namespace limn::oracle {
 /// hdr.log-average: exp of the mean of ln(delta + L). 0 pixels give delta.
 [[nodiscard]] double log_average(std::span<const double> luminances, double delta = 1e-4);
 
-/// hdr.dynamic-range: largest over smallest luminance > 0, without the fraction `share` at either
+/// hdr.dynamic-range: largest over smallest luminance > 0, without the fraction `clipped` at either
 /// end; 1 for a black image.
-[[nodiscard]] double dynamic_range(std::span<const double> luminances, double share = 0);
+[[nodiscard]] double dynamic_range(std::span<const double> luminances, double clipped = 0);
 
 /// Statistics of an image. Pixels with NaN or infinity are only counted; others are clamped to 0 ..
 /// 65504.
@@ -34,13 +34,13 @@ struct ImageStatistics {
     double clipped_max_luminance = 0;
 };
 [[nodiscard]] ImageStatistics
-measure_image(std::span<const glm::dvec3> pixels, double clipped_share = 0.001);
+measure_image(std::span<const glm::dvec3> pixels, double clipped = 0.001);
 
 /// hdr.compress: L / (1 + L); with a white point, L (1 + L / white^2) / (1 + L).
 [[nodiscard]] double compress(double scaled);
 [[nodiscard]] double compress(double scaled, double white);
 
-/// hdr.gamma: what is stored for a display of this gamma, and what it then shows.
+/// hdr.gamma: the value stored for a display of this gamma, and the light that it shows.
 [[nodiscard]] double gamma_encode(double linear, double gamma = 2.2);
 [[nodiscard]] double gamma_display(double stored, double gamma = 2.2);
 

@@ -64,7 +64,7 @@ VelocityOracle::Eye VelocityOracle::eye_at(double alpha) const {
         return mixed;
     };
     Eye eye;
-    eye.place = column(3);
+    eye.position = column(3);
     eye.back = glm::normalize(column(2));
     eye.right = glm::normalize(glm::cross(column(1), eye.back));
     eye.up = glm::cross(eye.back, eye.right);
@@ -79,10 +79,10 @@ glm::dvec3 VelocityOracle::ray(const Eye& eye, double x, double y) const {
     return right * eye.right - down * eye.up - eye.back;
 }
 
-glm::dvec2 VelocityOracle::project(const Eye& eye, const glm::dvec3& way) const {
+glm::dvec2 VelocityOracle::project(const Eye& eye, const glm::dvec3& direction) const {
     const double half = std::tan(0.5 * double(motion_.camera.fov_y));
-    const double scale = motion_.height / (2 * half * glm::dot(way, -eye.back));
-    return {scale * glm::dot(way, eye.right), -scale * glm::dot(way, eye.up)};
+    const double scale = motion_.height / (2 * half * glm::dot(direction, -eye.back));
+    return {scale * glm::dot(direction, eye.right), -scale * glm::dot(direction, eye.up)};
 }
 
 void VelocityOracle::add(const World& world) {
@@ -98,22 +98,22 @@ void VelocityOracle::add(const World& world) {
 }
 
 std::optional<PixelMotion> VelocityOracle::at(double x, double y) const {
-    const glm::dvec3 way = ray(eye_, x, y);
+    const glm::dvec3 direction = ray(eye_, x, y);
     double nearest = std::numeric_limits<double>::infinity();
     std::optional<PixelMotion> found;
     for (std::size_t i = 0; i < corners_.size(); i += 3) {
-        const glm::dvec3 a = corners_[i] - eye_.place;
+        const glm::dvec3 a = corners_[i] - eye_.position;
         const glm::dvec3 e1 = corners_[i + 1] - corners_[i];
         const glm::dvec3 e2 = corners_[i + 2] - corners_[i];
-        // a + u e1 + v e2 = t way, by Cramer's rule.
-        const glm::dvec3 across = glm::cross(way, e2);
+        // a + u e1 + v e2 = t direction, by Cramer's rule.
+        const glm::dvec3 across = glm::cross(direction, e2);
         const double det = glm::dot(e1, across);
         if (det == 0) {
             continue;
         }
         const double u = glm::dot(-a, across) / det;
         const glm::dvec3 q = glm::cross(-a, e1);
-        const double v = glm::dot(way, q) / det;
+        const double v = glm::dot(direction, q) / det;
         const double t = glm::dot(e2, q) / det;
         if (u < 0 || v < 0 || u + v > 1 || t < double(motion_.camera.near) || t >= nearest) {
             continue;
@@ -123,14 +123,14 @@ std::optional<PixelMotion> VelocityOracle::at(double x, double y) const {
                                + u * (previous_corners_[i + 1] - previous_corners_[i])
                                + v * (previous_corners_[i + 2] - previous_corners_[i]);
         found = PixelMotion{
-            t, project(eye_, t * way) - project(previous_eye_, was - previous_eye_.place)};
+            t, project(eye_, t * direction) - project(previous_eye_, was - previous_eye_.position)};
     }
     return found;
 }
 
 glm::dvec2 VelocityOracle::sky(double x, double y) const {
-    const glm::dvec3 way = ray(eye_, x, y);
-    return project(eye_, way) - project(previous_eye_, way);
+    const glm::dvec3 direction = ray(eye_, x, y);
+    return project(eye_, direction) - project(previous_eye_, direction);
 }
 
 }  // namespace limn::oracle

@@ -54,12 +54,12 @@ class VelocityOracle {
 
   private:
     struct Eye {
-        glm::dvec3 place, right, up, back;
+        glm::dvec3 position, right, up, back;
     };
     [[nodiscard]] Eye eye_at(double alpha) const;
     [[nodiscard]] glm::dvec3 ray(const Eye& eye, double x, double y) const;
     /// Projection of a vector from the eye [px].
-    [[nodiscard]] glm::dvec2 project(const Eye& eye, const glm::dvec3& way) const;
+    [[nodiscard]] glm::dvec2 project(const Eye& eye, const glm::dvec3& direction) const;
 
     CameraMotion motion_;
     Eye eye_;

@@ -48,7 +48,7 @@ inverse_dft_2d(std::span<const Complex> spectrum, std::size_t size) {
     return field;
 }
 
-/// The water at one point, as the fields of OceanCascade.
+/// The fields of OceanCascade at one point.
 struct OceanPoint {
     double height = 0;
     double shift_x = 0;

@@ -20,7 +20,7 @@
 namespace limn::caustics_quality {
 namespace {
 
-constexpr float kHalf = 2;      ///< of the pool [m]
+constexpr float kHalf = 2;      ///< half extent of the pool [m]
 constexpr float kDepth = 1.5f;  ///< [m]
 constexpr double kRim = 1.06;   ///< size of a map relative to its water
 constexpr int kCells = 64;      ///< cells of the floor that are compared, along a side
@@ -47,9 +47,9 @@ class Pool {
             Caustics{}, WorldTransform{placed_at({0, 0, 0})});
     }
 
-    void add_plate(const Vec3& middle, float half) {
+    void add_plate(const Vec3& center, float half) {
         const Affine flat =
-            affine_from(middle, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(half));
+            affine_from(center, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(half));
         scene_.place(square_, white_, flat);
     }
     /// The caustic map as an image whose first row has the smallest z.
@@ -68,8 +68,8 @@ class Pool {
     }
     /// Light on the floor straight below `eye`.
     [[nodiscard]] double floor_below(const Vec3& eye) {
-        const gpu::FloatImage seen = scene_.radiance(headless_, from_below(eye));
-        return static_cast<double>(seen.at(seen.width / 2, seen.height / 2, 0));
+        const gpu::FloatImage below = scene_.radiance(headless_, from_below(eye));
+        return static_cast<double>(below.at(below.width / 2, below.height / 2, 0));
     }
     [[nodiscard]] Vec2 slant() const {
         const Vec3 ray = refract_ray({0, 1, 0}, to_sun_, 1 / water().refractive_index);
@@ -129,10 +129,12 @@ oracle::CausticSurfaceAt surface_of(const WaveTable& table) {
 }
 
 /// Bilinear.
-double sample(const gpu::FloatImage& map, const glm::dvec2& place) {
+double sample(const gpu::FloatImage& map, const glm::dvec2& position) {
     const double size = 2 * static_cast<double>(kHalf) * kRim;
-    const double x = std::clamp((place.x / size + 0.5) * map.width - 0.5, 0.0, map.width - 1.001);
-    const double z = std::clamp((place.y / size + 0.5) * map.height - 0.5, 0.0, map.height - 1.001);
+    const double x =
+        std::clamp((position.x / size + 0.5) * map.width - 0.5, 0.0, map.width - 1.001);
+    const double z =
+        std::clamp((position.y / size + 0.5) * map.height - 0.5, 0.0, map.height - 1.001);
     const int i = static_cast<int>(x);
     const int j = static_cast<int>(z);
     const auto at = [&](int u, int v) { return static_cast<double>(map.at(u, v, 0)); };
@@ -140,7 +142,7 @@ double sample(const gpu::FloatImage& map, const glm::dvec2& place) {
            + (z - j) * ((1 - (x - i)) * at(i, j + 1) + (x - i) * at(i + 1, j + 1));
 }
 
-/// The light on the floor's cells according to the map.
+/// The light on the floor cells according to the map.
 std::vector<double> floor_light(const gpu::FloatImage& map, const Vec2& slant) {
     constexpr int kPoints = 8;
     std::vector<double> cells;
@@ -173,8 +175,8 @@ double relative_error(const std::vector<double>& found, const oracle::CausticLig
     return 100 * error / all;
 }
 
-/// The cells that are compared, without those near the walls, which light from beyond the pool
-/// would reach.
+/// The cells that are compared, without those near the walls, which would also receive light from
+/// beyond the pool.
 ColorImage image_of(const std::vector<double>& cells) {
     constexpr int kScale = 8;
     constexpr int kSide = kScale * (kCells - 2 * kNearWalls);
@@ -245,7 +247,7 @@ void measure_photons(HeadlessRenderer& headless, QualityReport& report) {
         previous_error = error;
         if (spacing == 2) {
             report.images.push_back(
-                {"two meters of floor in the middle of a pool with waves", image_of(found),
+                {"two meters of floor in the center of a pool with waves", image_of(found),
                  image_of(exact.floor)});
         }
     }
@@ -254,12 +256,12 @@ void measure_photons(HeadlessRenderer& headless, QualityReport& report) {
 void measure_ripple_caustic(HeadlessRenderer& headless, QualityReport& report) {
     Pool pool(headless, {0.0f, 1.0f, 0.0f});
     double worst = 0;
-    for (const float place : {-1.0f, -0.2f, 0.9f}) {
+    for (const float offset : {-1.0f, -0.2f, 0.9f}) {
         RippleState state = make_ripples(pool.water(), {.cell = 0.02f}, 1.0f / 60);
-        const Vec2 middle = 0.5f * (Vec2(state.cells) - 1.0f);
+        const Vec2 center = 0.5f * (Vec2(state.cells) - 1.0f);
         for (int z = 0; z < state.cells.y; ++z) {
             for (int x = 0; x < state.cells.x; ++x) {
-                const Vec2 from = (Vec2(x, z) - middle) * state.cell - Vec2(place, -0.5f * place);
+                const Vec2 from = (Vec2(x, z) - center) * state.cell - Vec2(offset, -0.5f * offset);
                 state.height[state.at(x, z)] = 0.03f * std::exp(-glm::dot(from, from) / 0.08f);
             }
         }
@@ -277,12 +279,12 @@ void measure_ripple_caustic(HeadlessRenderer& headless, QualityReport& report) {
         const double z = (at / map.width + 0.5 - 0.5 * map.height) * texel;  // NOLINT
         worst = std::max(
             worst,
-            std::hypot(x - static_cast<double>(place), z + 0.5 * static_cast<double>(place)));
+            std::hypot(x - static_cast<double>(offset), z + 0.5 * static_cast<double>(offset)));
     }
-    report.at_most("a ripple at three places: offset of its caustic", worst, 0.02, "m");
+    report.at_most("a ripple at three positions: offset of its caustic", worst, 0.02, "m");
 }
 
-/// Light reflected upward by waves, in its map: the first square of the atlas.
+/// Light reflected upward by waves: the first square of the atlas.
 void measure_mirrored(HeadlessRenderer& headless, QualityReport& report) {
     constexpr int kSide = 512;
     Pool pool(headless, sun_at(55));

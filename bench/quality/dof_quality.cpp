@@ -44,8 +44,8 @@ gpu::FloatImage sampled(HeadlessRenderer& headless, QualityScene& scene, const R
     oracle::MeanImage mean;
     for (int i = 0; i < kSamples; ++i) {
         const oracle::LensPoint point = oracle::lens_point(i, kSamples);
-        const Vec2 place = {static_cast<float>(point.x), static_cast<float>(point.y)};
-        mean.add(scene.render(headless, with_lens_sample(view, place)));
+        const Vec2 on_lens = {static_cast<float>(point.x), static_cast<float>(point.y)};
+        mean.add(scene.render(headless, with_lens_sample(view, on_lens)));
     }
     return mean.mean();
 }
@@ -109,7 +109,7 @@ void add_lamp(QualityScene& scene, float distance, bool wall) {
 struct DiscErrors {
     double diameter = 0;  ///< [px]
     double light = 0;
-    double samples = 0;  ///< of the ground truth's diameter [px]
+    double samples = 0;  ///< error of the ground truth's diameter [px]
 };
 
 DiscErrors measure_discs(HeadlessRenderer& headless, bool wall, QualityReport& report) {
@@ -222,16 +222,17 @@ void populate_night(QualityScene& scene) {
         scene.add(make_box({.size = {0.05f, 2, 0.05f}})), green, placed_at({-0.28f, 0, -1.3f}));
     scene.place(scene.add(make_box({.size = {20, 0.1f, 20}})), gray, placed_at({0, -0.5f, -8}));
     for (int i = 0; i < 24; ++i) {
-        const auto share = [i](float step) {
+        const auto fraction = [i](float step) {
             const float x = step * static_cast<float>(i + 1);
             return x - std::floor(x);
         };
-        const float z = -5 - 7 * share(0.7549f);
-        const Vec3 place = {-z * 0.9f * (share(0.5698f) - 0.5f), -z * 0.3f * share(0.3819f), z};
+        const float z = -5 - 7 * fraction(0.7549f);
+        const Vec3 position = {
+            -z * 0.9f * (fraction(0.5698f) - 0.5f), -z * 0.3f * fraction(0.3819f), z};
         const Vec3 light = i % 3 == 0   ? Vec3(90, 45, 12)
                            : i % 3 == 1 ? Vec3(15, 40, 90)
                                         : Vec3(80, 20, 50);
-        scene.place(ball, shining(scene, light), placed_at(place, 0.03f));
+        scene.place(ball, shining(scene, light), placed_at(position, 0.03f));
     }
 }
 

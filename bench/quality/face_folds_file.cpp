@@ -14,8 +14,8 @@
 namespace limn {
 namespace {
 
-constexpr double kContrast = 5;  ///< of skin that folds to skin that does not
-constexpr double kMirror = 2;    ///< difference between both sides [%]
+constexpr double kContrast = 5;  ///< minimum ratio of folding skin to skin that does not fold
+constexpr double kMirror = 2;    ///< maximum difference between both sides [%]
 
 std::string cell_of(double shortening) {
     const double red = std::min(shortening / 0.2, 1.0);

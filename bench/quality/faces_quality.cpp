@@ -39,8 +39,8 @@
 #include <vector>
 
 // Faces: what moves them and what measures their skin. Compares speech with sums in double
-// precision and an exhaustive search, deformers on CPU and GPU with their definitions, a head that
-// follows its markers with its own shapes, strain with the polar decomposition.
+// precision and an exhaustive search, deformers on CPU and GPU with their definitions, a head bound
+// to its markers with its own shapes, strain with the polar decomposition.
 
 namespace limn::faces_quality {
 namespace {
@@ -123,7 +123,7 @@ void measure_coarticulation(QualityReport& report) {
     report.html += mouth_plot(track, mouth);
 }
 
-/// Whether a unit has the sounds of the target from segment `at` on.
+/// Whether a unit contains the sounds of the target from segment `at` on.
 bool fits(
     const SpeechTrack& target, std::size_t at, const SpeechUnit& unit,
     std::span<const SpeechRecording> recordings) {
@@ -173,16 +173,16 @@ void measure_selection(QualityReport& report) {
          {"no time is no time", "mine is no", "time mine", "is is is", "no mine"}) {
         const SpeechTrack target = spell_utterance(text).track;
         const std::size_t fewest = fewest_units(target, units, recordings, 0);
-        const auto placed = select_units(target, units, recordings, 0);
-        if (placed.ok() != (fewest < kImpossible)) {
+        const auto selected = select_units(target, units, recordings, 0);
+        if (selected.ok() != (fewest < kImpossible)) {
             ++more;
-        } else if (placed.ok()) {
+        } else if (selected.ok()) {
             ++covered;
-            more += placed->size() - fewest;
+            more += selected->size() - fewest;
         }
     }
     report.at_most(
-        "unit selection: units more than trying all finds", static_cast<double>(more), 0);
+        "unit selection: units in excess of an exhaustive search", static_cast<double>(more), 0);
     report.at_least("unit selection: sentences that can be said", static_cast<double>(covered), 3);
 }
 
@@ -337,8 +337,7 @@ Status measure_deformers(gpu::Device& device, QualityReport& report) {
         "deformers: farthest that a vertex of the head moves", 1000 * farthest, 5, "mm");
     report.at_most("deformers: CPU against double precision", 1e6 * error, 0.5, "um");
     report.at_most("deformers: GPU against CPU", 1e6 * gpu_error, 1, "um");
-    report.at_most(
-        "deformers: vertices that SIMD places otherwise", static_cast<double>(differ), 0);
+    report.at_most("deformers: vertices that differ with SIMD", static_cast<double>(differ), 0);
     return Done{};
 }
 
@@ -427,7 +426,7 @@ Status measure_markers(QualityReport& report) {
 
 using Triangle = std::array<dvec3, 3>;
 
-/// sqrt(F^T F) - I as (uu, vv, uv) by its eigenvectors; axes as those of SkinTriangles.
+/// sqrt(F^T F) - I as (uu, vv, uv) by its eigenvectors; axes as in SkinTriangles.
 dvec3 exact_strain(const Triangle& rest, const Triangle& now) {
     const dvec3 e1 = rest[1] - rest[0];
     const dvec3 e2 = rest[2] - rest[0];
@@ -472,9 +471,9 @@ void measure_strain(QualityReport& report) {
              glm::distance(rest[1], rest[2])});
         const float twice_area = glm::length(glm::cross(rest[1] - rest[0], rest[2] - rest[0]));
         if (skin.area.empty() || twice_area < 0.25f * longest * longest) {
-            continue;  // slim ones lose digits with their area
+            continue;  // thin triangles lose precision
         }
-        // Stretched along two perpendicular directions in its plane, then turned as a whole.
+        // Stretched along two perpendicular directions in its plane, then rotated as a whole.
         const dvec3 u = skin.u[0];
         const dvec3 v = skin.v[0];
         const double angle = random.uniform(0, 3);
@@ -507,7 +506,7 @@ void measure_strain(QualityReport& report) {
         greatest = std::max(greatest, glm::length(exact));
     }
     report.inform(
-        "strain: the greatest of some hundred triangles, no slimmer than 1 in 4", greatest);
+        "strain: the largest of some hundred triangles, no thinner than 1 in 4", greatest);
     report.at_most("strain: against its eigenvectors in double precision", error, 1e-5);
     report.at_most("strain: of a triangle that only turns", rigid, 2e-5);
 }

@@ -33,7 +33,7 @@ void append(PhongMesh& to, const MeshData& mesh, const Affine& world_from_mesh) 
     const Mat3 turn(
         transform_vector(world_from_mesh, {1, 0, 0}), transform_vector(world_from_mesh, {0, 1, 0}),
         transform_vector(world_from_mesh, {0, 0, 1}));
-    // The cofactor matrix: as the inverse transpose, but without a division by 0 where it is flat.
+    // The cofactor matrix: like the inverse transpose, but without a division by 0 for flat scales.
     const Mat3 normals(
         glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]), glm::cross(turn[0], turn[1]));
     const bool mirrored = glm::dot(turn[0], normals[0]) < 0;
@@ -49,7 +49,7 @@ void append(PhongMesh& to, const MeshData& mesh, const Affine& world_from_mesh) 
     }
 }
 
-/// Facets that can be drawn, and how many of their corners have no normal of their own.
+/// The drawable facets, and the number of their corners without a vertex normal.
 struct MeshCounts {
     std::size_t drawn = 0;
     std::size_t without_normal = 0;
@@ -125,7 +125,7 @@ Status measure_fakephong_file(const std::string& path, QualityReport& report) {
     report.inform("triangles", static_cast<double>(triangles));
     report.inform("  without an area, left out", static_cast<double>(triangles - counts.drawn));
     report.inform(
-        "  corners without a normal, that of the facet instead",
+        "  corners without a normal, which use the facet normal",
         static_cast<double>(counts.without_normal));
     Progress progress("method", static_cast<int>(shading_methods().size()));
     std::vector<SceneResult> results = {
@@ -136,8 +136,8 @@ Status measure_fakephong_file(const std::string& path, QualityReport& report) {
         report.inform(
             fmt::format("{}: height of the scanline's peak over Phong's", one.method->name),
             one.scanline.peak_ratio);
-        // The others have their reasons: appendix A has no highlight where N.L <= 0, no great
-        // circle joins opposite normals.
+        // The other methods differ for known reasons: appendix A has no highlight where N.L <= 0,
+        // and no great circle joins opposite normals.
         const std::string at_samples =
             fmt::format("{}: error at its own samples", one.method->name);
         const bool in_table = &one < &results[0].methods[kTableColumns];

@@ -13,21 +13,22 @@
 namespace limn::fakephong {
 namespace {
 
-constexpr int kPlot = 256;   ///< side of a plot, of which the curves leave a margin
+constexpr int kPlot = 256;   ///< side of a plot, including the margin
 constexpr int kMargin = 26;  ///< for the labels of the axes
 
 /// Two curves over a row, from 0 to 1, with axes; Phong's is drawn first.
 std::string scanline_svg(std::span<const float> phong, std::span<const float> method, int row) {
     const double height = kPlot - 2.0 * kMargin;
     const double width = kPlot - 1.5 * kMargin;
-    const auto place_x = [&](double share) { return kMargin + width * share; };
-    const auto place_y = [&](double value) { return kMargin + height * (1 - value); };
+    const auto plot_x = [&](double fraction) { return kMargin + width * fraction; };
+    const auto plot_y = [&](double value) { return kMargin + height * (1 - value); };
     const auto path = [&](std::span<const float> curve, const char* color) {
         std::string points;
         for (std::size_t x = 0; x < curve.size(); ++x) {
             const double value = static_cast<double>(std::clamp(curve[x], 0.0f, 1.0f));
-            const double share = (static_cast<double>(x) + 0.5) / static_cast<double>(curve.size());
-            points += fmt::format("{:.1f},{:.1f} ", place_x(share), place_y(value));
+            const double fraction =
+                (static_cast<double>(x) + 0.5) / static_cast<double>(curve.size());
+            points += fmt::format("{:.1f},{:.1f} ", plot_x(fraction), plot_y(value));
         }
         return fmt::format(
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>", points,
@@ -38,12 +39,12 @@ std::string scanline_svg(std::span<const float> phong, std::span<const float> me
         axes += fmt::format(
             "<path d=\"M{} {:.1f}H{:.1f}\" stroke=\"#2c323b\"/><text x=\"{}\" y=\"{:.1f}\" "
             "text-anchor=\"end\">{:g}</text>",
-            kMargin, place_y(value), place_x(1), kMargin - 5, place_y(value) + 4, value);
+            kMargin, plot_y(value), plot_x(1), kMargin - 5, plot_y(value) + 4, value);
     }
     axes += fmt::format(
         "<text x=\"{}\" y=\"{}\">0</text><text x=\"{:.1f}\" y=\"{}\" "
         "text-anchor=\"end\">{} px</text><text x=\"{}\" y=\"15\">(R + G + B) / 3</text>",
-        kMargin, kPlot - 9, place_x(1), kPlot - 9, phong.size(), kMargin);
+        kMargin, kPlot - 9, plot_x(1), kPlot - 9, phong.size(), kMargin);
     return fmt::format(
         "<div><svg viewBox=\"0 0 {} {}\" width=\"100%\" style=\"background:#0c0d0f\" "
         "fill=\"#98a2b0\" font-size=\"11\">{}{}{}</svg>"
@@ -56,12 +57,12 @@ std::string peak_text(const ScanlineComparison& line) {
     if (line.peak_ratio < 0.1) {
         return fmt::format("the peak has but {:.2f} of the height of Phong's", line.peak_ratio);
     }
-    const std::string place = line.peak_shift == 0
-                                  ? std::string("the peak is in its place")
+    const std::string shift = line.peak_shift == 0
+                                  ? std::string("the peak is not shifted")
                                   : fmt::format(
                                       "the peak is {} px {} of Phong's", std::abs(line.peak_shift),
                                       line.peak_shift < 0 ? "left" : "right");
-    return fmt::format("{}, at {:.2f} of its height", place, line.peak_ratio);
+    return fmt::format("{}, at {:.2f} of its height", shift, line.peak_ratio);
 }
 
 Status add_images(std::string& html, const SceneResult& scene, const MethodResult& one) {
@@ -81,7 +82,7 @@ Status add_images(std::string& html, const SceneResult& scene, const MethodResul
     return Done{};
 }
 
-/// Of its samples on all scenes, and of other points on one.
+/// Errors at its samples on all scenes, and at other points on one.
 std::string error_text(const ShadingMethod& method, double at_samples, double inside) {
     const bool has_samples = method.lightings > 0 || method.exact_points > 0;
     const char* const where = has_samples ? "its own sample points" : "corners";
@@ -128,13 +129,13 @@ std::string describe_method(const ShadingMethod& method, std::span<const SceneRe
 }
 
 Result<std::string> fakephong_html(std::span<const SceneResult> results) {
-    const bool of_thesis = results.size() > 1;  // a model of the user's is alone
+    const bool of_thesis = results.size() > 1;  // a user's model is the only scene
     std::string html = correctness_section(results);
     html += of_thesis ? texture_section() : std::string();
     html += ranking_section(results);
     html += of_thesis ? contradiction_section(results) : std::string();
     html += worth_section(results);
-    // A mesh of many facets, and where there is one, a facet of many pixels.
+    // A mesh of many facets, and, if there is one, a facet of many pixels.
     const auto single = std::find_if(results.begin(), results.end(), [](const SceneResult& one) {
         return one.scene.mesh.triangles.size() == 1;
     });

@@ -16,7 +16,7 @@ namespace {
 
 using namespace fakephong;
 
-/// Each figure of the table, and whether the columns keep their printed order.
+/// Each number of the table, and whether the columns keep their printed order.
 void compare_with_printed(
     const SceneResult& result, const PrintedRow& row, double limit, QualityReport& report) {
     for (std::size_t i = 0; i < kTableColumns; ++i) {
@@ -100,7 +100,7 @@ Status measure_fakephong(HeadlessRenderer& /*headless*/, QualityReport& report) 
     measure_steps(results[3], report);
     report.at_least("fine sphere: lowest of the six", lowest, 0.98);
     report.at_most(
-        "all scenes: error at sample points, but of the environment map", at_samples, 1e-5);
+        "all scenes: error at sample points, except for the environment map", at_samples, 1e-5);
     report.html = LIMN_TRY(fakephong_html(results));
     return Done{};
 }

@@ -92,7 +92,7 @@ const PrintedRow* fitted_row(const SceneResult& result) {
     return nullptr;
 }
 
-/// How far a fit is from the print, and in which order its columns are.
+/// The distance of a fit from the print, and the order of its columns.
 std::string fit_text(const SceneResult& result, const PrintedRow& row) {
     std::size_t farthest = 0;
     const auto distance = [&](std::size_t i) {
@@ -143,9 +143,10 @@ std::string correctness_section(std::span<const SceneResult> results) {
         }
     }
     if (!text.empty()) {
-        text = "<p>The thesis gives neither the places of light and eye nor exponents, so that two "
-               "scenes are fitted to its rows. "
-               + text + "</p>\n";
+        text =
+            "<p>The thesis gives neither the positions of light and eye nor exponents, so that two "
+            "scenes are fitted to its rows. "
+            + text + "</p>\n";
     }
     return "<h3>Table 6.1: color correctness of highlights</h3>\n" + table.html() + text;
 }
@@ -282,7 +283,7 @@ std::string contradiction_section(std::span<const SceneResult> results) {
 
 namespace {
 
-/// A method on the meshes of a kind: the most work, as a share of Phong shading's, and the lowest
+/// A method on meshes of one kind: its largest work, relative to Phong shading, and lowest
 /// correctness.
 struct Worth {
     bool measured = false;
@@ -291,7 +292,7 @@ struct Worth {
 
     void include(const SceneResult& scene, const MethodResult& one) {
         measured = true;
-        work = std::max(work, work_share(scene, one));
+        work = std::max(work, relative_work(scene, one));
         correctness = std::min(correctness, one.correctness);
     }
     [[nodiscard]] bool holds(double lowest) const { return measured && correctness >= lowest; }
@@ -306,7 +307,7 @@ struct Worths {
     Worth fine, coarse;
 };
 
-/// Single triangles are left out beside other scenes: they are no mesh.
+/// Single triangles are ignored if there are other scenes: they are not meshes.
 Worths worths_of(const ShadingMethod& method, std::span<const SceneResult> results) {
     Worths worths;
     for (const SceneResult& result : results) {
@@ -342,8 +343,8 @@ std::string worth_section(std::span<const SceneResult> results) {
         table.add(cells);
     }
     return "<h3>Where is each still worth it?</h3>\n<p>Where a processor draws, work counts: here "
-           "that of a frame, set-up included, in weighted operations as a share of Phong "
-           "shading's, at most; beside it the lowest color correctness, on meshes of more and of "
+           "that of a frame, set-up included, in weighted operations relative to Phong "
+           "shading, at most; beside it the lowest color correctness, on meshes of more and of "
            "less than a thousand facets. Worth it is what saves a tenth of the work and keeps 0.98 "
            "on fine or 0.95 on coarse meshes. What it costs on an OpenGL, <code>limn bench "
            "fakephong</code> measures.</p>\n"
@@ -420,7 +421,8 @@ std::string path_section(std::span<const SceneResult> results) {
     }
     return "<h3>Along an edge: paths against polynomials</h3>\n<p>How far the sine and the cosine "
            "of an arc are from the line through its ends, and from the quadratic through its ends "
-           "and middle:</p>\n"
+           "and center:</p>
+           "
            + arcs.html()
            + "<p>How far the Blinn coordinates of the normals along an edge are, in the unit disc. "
              "Edges on which a normal points away from H are left out:</p>\n"
@@ -435,7 +437,7 @@ const MethodResult& result_of(const SceneResult& scene, std::string_view id) {
     });
 }
 
-double work_share(const SceneResult& scene, const MethodResult& one) {
+double relative_work(const SceneResult& scene, const MethodResult& one) {
     return weighted_operations(one.image)
            / std::max(weighted_operations(reference_of(scene, one)), 1.0);
 }

@@ -8,7 +8,7 @@
 namespace limn::fakephong {
 
 // The tables of the page of fake Phong shading, each an HTML section; `results` are never empty.
-// What they say in words is said of their numbers, and changes with them.
+// Their text is generated from the numbers.
 
 /// Table 6.1, as printed and as measured, with how far the fitted scenes are from the print.
 [[nodiscard]] std::string correctness_section(std::span<const SceneResult> results);
@@ -16,21 +16,21 @@ namespace limn::fakephong {
 [[nodiscard]] std::string texture_section();
 /// By color correctness and by work.
 [[nodiscard]] std::string ranking_section(std::span<const SceneResult> results);
-/// Where the thesis contradicts itself, or these numbers it. Needs all its scenes.
+/// Contradictions within the thesis, or between it and these numbers. Needs all its scenes.
 [[nodiscard]] std::string contradiction_section(std::span<const SceneResult> results);
-/// What each method saves and keeps today.
+/// The work that each method saves and the correctness it keeps.
 [[nodiscard]] std::string worth_section(std::span<const SceneResult> results);
-/// Counted operations, per facet and per pixel; those of forward differences beside them.
+/// Counted operations, per facet and per pixel; with those of forward differences.
 [[nodiscard]] std::string work_section(const SceneResult& result);
-/// Arcs, and the edges of the scenes, against polynomials.
+/// Arcs, and the edges of the scenes, compared with polynomials.
 [[nodiscard]] std::string path_section(std::span<const SceneResult> results);
 
-/// Of shading_methods()[1 ..].
+/// One of shading_methods()[1 ..].
 [[nodiscard]] const MethodResult& result_of(const SceneResult& scene, std::string_view id);
-/// What the numbers say of a method today: "on fine meshes", say.
+/// Verdict on a method from its numbers, such as "on fine meshes".
 [[nodiscard]] std::string
 verdict_of(const ShadingMethod& method, std::span<const SceneResult> results);
-/// Of a frame, set-up included, as a share of Phong shading's.
+/// Work of a frame, set-up included, relative to Phong shading.
 [[nodiscard]] double work_share(const SceneResult& scene, const MethodResult& one);
 [[nodiscard]] bool is_fine(const SceneResult& scene);  ///< more than a thousand facets
 

@@ -53,14 +53,14 @@ struct Bench : ImageBench {
     GlarePass glare_pass;
 };
 
-/// A black image with one dot of a pixel's size at `place` [px from the top left], shared
-/// bilinearly by the pixels that it covers; they sum to `light`.
-LightImage make_dot(const IVec2& size, const dvec2& place, double light) {
+/// A black image with one dot of a pixel's size at `position` [px from the top left], distributed
+/// bilinearly over the pixels that it covers; they sum to `light`.
+LightImage make_dot(const IVec2& size, const dvec2& position, double light) {
     LightImage image = oracle::make_black_image(size.x, size.y);
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
-            const dvec2 share = glm::max(1.0 - glm::abs(dvec2(x, y) + 0.5 - place), 0.0);
-            image.pixels[y * size.x + x] = dvec3(share.x * share.y * light);
+            const dvec2 weight = glm::max(1.0 - glm::abs(dvec2(x, y) + 0.5 - position), 0.0);
+            image.pixels[y * size.x + x] = dvec3(weight.x * weight.y * light);
         }
     }
     return image;
@@ -74,9 +74,9 @@ void measure_points(Bench& bench, QualityReport& report) {
     double spread = 0;
     for (const IVec2& size : {kSize, kOddSize}) {
         const dvec2 center = glm::floor(0.5 * dvec2(size)) + 0.5;
-        for (const dvec2& place :
+        for (const dvec2& position :
              {center, dvec2(0.5), dvec2(size.x - 0.5, 60.5), dvec2(size) - 0.5}) {
-            const LightImage made = bench.with_glow(make_dot(size, place, 10), glow);
+            const LightImage made = bench.with_glow(make_dot(size, position, 10), glow);
             lost = std::max(lost, percent_error(oracle::sum_of(made).y, 10));
         }
         for (const dvec2& offset : {dvec2(0), dvec2(3, 5), dvec2(10, -7)}) {
@@ -98,14 +98,14 @@ void measure_flicker(Bench& bench, QualityReport& report) {
     std::vector<double> halos;
     constexpr int kSteps = 32;
     for (int i = 0; i <= kSteps; ++i) {
-        const dvec2 place = dvec2(160.5, 90.5) + dvec2(i, 0.5 * i) / 8.0;
+        const dvec2 position = dvec2(160.5, 90.5) + dvec2(i, 0.5 * i) / 8.0;
         const LightImage made =
-            bench.with_glow(make_dot(kSize, place, 10), {.strength = 1, .firefly = 100});
+            bench.with_glow(make_dot(kSize, position, 10), {.strength = 1, .firefly = 100});
         sums.push_back(oracle::sum_of(made).y);
         double halo = 0;
         for (int y = 0; y < kSize.y; ++y) {
             for (int x = 0; x < kSize.x; ++x) {
-                const bool outside = glm::distance(dvec2(x, y) + 0.5, place) > 8;
+                const bool outside = glm::distance(dvec2(x, y) + 0.5, position) > 8;
                 halo += outside ? made.at(x, y).y : 0;
             }
         }
@@ -188,7 +188,7 @@ oracle::Star star_of(const Glare& glare) {
 /// The light added to an image, and its centroid.
 struct Added {
     LightImage light;
-    dvec2 middle = dvec2(0);
+    dvec2 centroid = dvec2(0);
     double sum = 0;  ///< of green
 };
 
@@ -199,26 +199,26 @@ Added added_to(const LightImage& before, LightImage after) {
             dvec3& pixel = after.pixels[y * after.width + x];
             pixel -= before.at(x, y);
             added.sum += pixel.y;
-            added.middle += pixel.y * (dvec2(x, y) + 0.5);
+            added.centroid += pixel.y * (dvec2(x, y) + 0.5);
         }
     }
-    added.middle /= added.sum;
+    added.centroid /= added.sum;
     added.light = std::move(after);
     return added;
 }
 
 /// Green channel, bilinear.
-double light_at(const LightImage& image, const dvec2& place) {
-    const dvec2 corner = glm::floor(place - 0.5);
-    const dvec2 share = place - 0.5 - corner;
+double light_at(const LightImage& image, const dvec2& position) {
+    const dvec2 corner = glm::floor(position - 0.5);
+    const dvec2 fraction = position - 0.5 - corner;
     const auto at = [&](int i, int j) {
         return image.at(static_cast<int>(corner.x) + i, static_cast<int>(corner.y) + j).y;
     };
-    return (1 - share.y) * ((1 - share.x) * at(0, 0) + share.x * at(1, 0))
-           + share.y * ((1 - share.x) * at(0, 1) + share.x * at(1, 1));
+    return (1 - fraction.y) * ((1 - fraction.x) * at(0, 0) + fraction.x * at(1, 0))
+           + fraction.y * ((1 - fraction.x) * at(0, 1) + fraction.x * at(1, 1));
 }
 
-/// In the image, whose rows run downward.
+/// Direction in the image, whose rows run downward.
 dvec2 direction(double angle) {
     return {std::cos(angle), -std::sin(angle)};
 }
@@ -229,8 +229,8 @@ std::vector<double> streak_angles(const Added& added, double low, double high) {
     std::vector<double> light(kAngles);
     for (int i = 0; i < kAngles; ++i) {
         for (double radius = low; radius < high; radius += 0.5) {
-            const dvec2 way = radius * direction(kTurn * i / kAngles);
-            light[i] += radius * light_at(added.light, added.middle + way);
+            const dvec2 offset = radius * direction(kTurn * i / kAngles);
+            light[i] += radius * light_at(added.light, added.centroid + offset);
         }
     }
     const double level = 0.4 * *std::max_element(light.begin(), light.end());
@@ -284,16 +284,16 @@ void measure_streaks(Bench& bench, QualityReport& report) {
 
 /// Light across a streak at `distance` [px] from the lamp, the mean of both sides.
 double crossing_light(const Added& added, double angle, double distance) {
-    constexpr double kReach = 7;  // across the line [px]
+    constexpr double kHalfWidth = 7;  // across the line [px]
     constexpr double kStep = 0.25;
     const dvec2 along = direction(angle);
     const dvec2 across = direction(angle + 0.25 * kTurn);
     double sum = 0;
-    for (double beside = -kReach; beside <= kReach; beside += kStep) {
+    for (double beside = -kHalfWidth; beside <= kHalfWidth; beside += kStep) {
         for (const double side : {-1.0, 1.0}) {
             sum +=
                 0.5 * kStep
-                * light_at(added.light, added.middle + side * distance * along + beside * across);
+                * light_at(added.light, added.centroid + side * distance * along + beside * across);
         }
     }
     return sum;

@@ -28,7 +28,7 @@ constexpr double kAlbedo = 0.8;
 constexpr float kHalfFloor = 40;  ///< half the floor's side [m]
 constexpr int kLightsAtOnce = 60;
 constexpr int kRandomTests = 100000;
-constexpr int kReachingTests = 10000;  ///< at least so many with a light that reaches the point
+constexpr int kMinReachingTests = 10000;  ///< of them, with a light at the point
 
 /// Seeded random numbers: the scene is the same in every run.
 class Numbers {
@@ -52,7 +52,7 @@ struct Lamp {
     bool is_spot = false;
 };
 
-Vec3 place_of(const Affine& pose) {
+Vec3 position_of_lamp(const Affine& pose) {
     return {pose.row[0].w, pose.row[1].w, pose.row[2].w};
 }
 
@@ -82,7 +82,7 @@ DVec3 reflected(const std::vector<Lamp>& lamps, const DVec3& point) {
     for (const Lamp& lamp : lamps) {
         const auto& row = lamp.pose.row;
         const DVec3 axis = {-row[0].z, -row[1].z, -row[2].z};
-        const DVec3 position(place_of(lamp.pose));
+        const DVec3 position(position_of_lamp(lamp.pose));
         const oracle::Arriving light =
             lamp.is_spot ? oracle::arrive(lamp.spot, position, axis, point, normal)
                          : oracle::arrive(lamp.point, position, point, normal);
@@ -146,8 +146,8 @@ void measure_images(HeadlessRenderer& headless, QualityReport& report) {
     // At a slant, so that the floor crosses many depth slices.
     const RenderView view = quality_view({0, -13, 4}, {0, -2, 0}, kWidth, kHeight, radians(60.0f));
     const ColorImage expected = displayed(oracle_image(lamps, view, {0, 0}));
-    // Hardware may snap vertices to 1/256 of a pixel, which moves what is in between by half of it:
-    // 4 of 255 at the rims of cones in the dark.
+    // Hardware may snap vertices to 1/256 of a pixel, which moves points in between by half of
+    // that: 4 of 255 at the rims of cones in the dark.
     std::vector<ColorImage> allowed = {expected};
     if (!headless.device->caps().software) {
         for (const glm::dvec2& corner : {glm::dvec2(-1), {1, -1}, {-1, 1}, {1, 1}}) {
@@ -166,9 +166,9 @@ void measure_images(HeadlessRenderer& headless, QualityReport& report) {
     }
 }
 
-/// A light of random reach; every third is a spot light.
-LightReach random_reach(Numbers& numbers, int i) {
-    LightReach light = {numbers.in_cube(25), std::exp2(3 * numbers.signed_unit())};
+/// A light of random range; every third is a spot light.
+LightRange random_range(Numbers& numbers, int i) {
+    LightRange light = {numbers.in_cube(25), std::exp2(3 * numbers.signed_unit())};
     if (i % 3 == 0) {
         light.axis = normalize_or(numbers.in_cube(1), {0, 1, 0});
         light.cosine = std::cos(radians(45 + 44 * numbers.signed_unit()));
@@ -189,32 +189,32 @@ Status measure_lists(HeadlessRenderer& headless, QualityReport& report) {
     oracle::ClusterReadback readback = LIMN_TRY(oracle::ClusterReadback::create(*headless.device));
     Numbers numbers(5);
     int tests = 0;
-    int reaching = 0;
+    int lit_tests = 0;
     int listed_tests = 0;
     int missing = 0;
-    while (tests < kRandomTests || reaching < kReachingTests) {
+    while (tests < kRandomTests || lit_tests < kMinReachingTests) {
         const RenderView view = quality_view(
             numbers.in_cube(15), numbers.in_cube(15), 333, 190,
             radians(70 + 40 * numbers.signed_unit()));
         LightList lights;
         for (int i = 0; i < kLightsAtOnce; ++i) {
-            lights.reach.push_back(random_reach(numbers, i));
+            lights.ranges.push_back(random_range(numbers, i));
         }
         const oracle::ClusterReadbackLists lists = readback.run(view, lights);
         for (int k = 0; k < 400; ++k) {
             // Near a light, so that few tests fall on unlit points.
-            const LightReach& chosen = lights.reach[static_cast<std::size_t>(k % kLightsAtOnce)];
+            const LightRange& chosen = lights.ranges[static_cast<std::size_t>(k % kLightsAtOnce)];
             const Vec3 point = chosen.center + numbers.in_cube(chosen.radius);
             Vec3 pixel;
             if (!find_pixel(view, point, pixel)) {
                 continue;
             }
             const auto list = lists.of(cell_of(lists.shape, pixel.x, pixel.y, pixel.z));
-            for (std::uint32_t i = 0; i < lights.reach.size(); ++i) {
-                const bool reaches = oracle::reaches(lights.reach[i], point);
+            for (std::uint32_t i = 0; i < lights.ranges.size(); ++i) {
+                const bool reaches = oracle::reaches(lights.ranges[i], point);
                 const bool listed = std::find(list.begin(), list.end(), i) != list.end();
                 ++tests;
-                reaching += reaches ? 1 : 0;
+                lit_tests += reaches ? 1 : 0;
                 listed_tests += listed ? 1 : 0;
                 missing += reaches && !listed ? 1 : 0;
             }
@@ -225,7 +225,7 @@ Status measure_lists(HeadlessRenderer& headless, QualityReport& report) {
         static_cast<double>(missing), 0);
     report.inform(
         "lights in a point's list per light that reaches it",
-        static_cast<double>(listed_tests) / reaching);
+        static_cast<double>(listed_tests) / lit_tests);
     return Done{};
 }
 

@@ -29,7 +29,7 @@ struct QualityOptions {
     std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
 
-/// All effects, or the one of that name.
+/// All effects, or the one with that name.
 Result<std::vector<const QualityEffect*>> choose_effects(const std::string& name) {
     std::vector<const QualityEffect*> chosen;
     std::vector<std::string> names;
@@ -48,7 +48,7 @@ Result<std::vector<const QualityEffect*>> choose_effects(const std::string& name
     return chosen;
 }
 
-/// Fails for an unknown effect, and for a file where the effect has its own scenes.
+/// Fails for an unknown effect, and for a file if the effect has its own scenes.
 Status check_options(const QualityOptions& options) {
     const auto effects = LIMN_TRY(choose_effects(options.effect));
     if (!options.file.empty() && effects[0]->measure_file == nullptr) {

@@ -316,17 +316,17 @@ void measure_smear(HeadlessRenderer& headless, QualityReport& report) {
     double sharp_light = 0;
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-            const float share = blurred.at(x, y, 0);
-            const bool partly = share > 0.01f && share < 0.99f;
+            const float value = blurred.at(x, y, 0);
+            const bool partly = value > 0.01f && value < 0.99f;
             smeared += partly ? 1 : 0;
             outside += partly && sharp.at(x, y, 0) == 0.0f ? 1 : 0;
-            light += static_cast<double>(share);
+            light += static_cast<double>(value);
             sharp_light += static_cast<double>(sharp.at(x, y, 0));
         }
     }
-    const double share = 100 * outside / std::max(smeared, 1.0);
+    const double percentage = 100 * outside / std::max(smeared, 1.0);
     report.at_most(
-        "smear outside the silhouette, difference from half", std::abs(share - 50), 3, "%");
+        "smear outside the silhouette, difference from half", std::abs(percentage - 50), 3, "%");
     report.at_most("energy error of a smear", 100 * std::abs(light / sharp_light - 1), 1, "%");
 }
 

@@ -31,7 +31,7 @@ constexpr int kWidth = 320;
 constexpr int kHeight = 180;
 constexpr float kStep = 1.0f / 60;
 
-/// One emitter in a world of its own, step by step.
+/// One emitter in its own world, advanced step by step.
 struct Fountain : QualityScene {
     Entity emitter;
 
@@ -61,7 +61,7 @@ struct Fountain : QualityScene {
     }
 };
 
-dvec3 place_of(const ParticlePool& pool, std::size_t i) {
+dvec3 particle_position(const ParticlePool& pool, std::size_t i) {
     return {pool.x[i], pool.y[i], pool.z[i]};
 }
 dvec3 velocity_of(const ParticlePool& pool, std::size_t i) {
@@ -85,8 +85,8 @@ ParticleEmitter burst_of(float count) {
 
 // ---- motion
 
-/// Where the GPU has them.
-Result<std::vector<Vec3>> places_on_gpu(HeadlessRenderer& headless, const Fountain& fountain) {
+/// Positions of the particles on the GPU.
+Result<std::vector<Vec3>> positions_on_gpu(HeadlessRenderer& headless, const Fountain& fountain) {
     gpu::Device& device = *headless.device;
     GpuParticlePools pools = LIMN_TRY(GpuParticlePools::create(device));
     gpu::RingBuffer ring(device.caps(), "steps", 1 << 20);
@@ -105,14 +105,14 @@ Result<std::vector<Vec3>> places_on_gpu(HeadlessRenderer& headless, const Founta
     const GpuParticlePool& pool = *pools.pools().begin()->second;
     std::vector<Vec4> slots(std::size_t{2} * pool.capacity);
     pool.state.read(0, std::as_writable_bytes(std::span(slots)));
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (std::uint32_t i = 0; i < pool.count; ++i) {
-        places.emplace_back(slots[2 * ((pool.first + i) % pool.capacity)]);
+        positions.emplace_back(slots[2 * ((pool.first + i) % pool.capacity)]);
     }
-    return places;
+    return positions;
 }
 
-/// Ten seconds of 5,000 particles under gravity, in air that drags them along.
+/// Ten seconds of 5,000 particles under gravity, in moving air with drag.
 Status measure_motion(HeadlessRenderer& headless, QualityReport& report) {
     constexpr int kSteps = 600;
     const ParticleMotion motion = {.gravity = 1, .drag = 0.4f, .wind = {2, 0, 1}};
@@ -124,14 +124,14 @@ Status measure_motion(HeadlessRenderer& headless, QualityReport& report) {
     std::vector<dvec3> x;
     std::vector<dvec3> v;
     for (std::size_t i = 0; i < cpu.pool().size(); ++i) {
-        x.push_back(place_of(cpu.pool(), i));
+        x.push_back(particle_position(cpu.pool(), i));
         v.push_back(velocity_of(cpu.pool(), i));
     }
     const std::vector<dvec3> x0 = x;
     const std::vector<dvec3> v0 = v;
-    std::vector<double> way(x.size());
+    std::vector<double> length(x.size());
 
-    // The plain loop: forces, velocities and places by the midpoints of half a millisecond.
+    // The plain loop: midpoint rule with steps of half a millisecond.
     constexpr int kParts = 32;
     const double dt = static_cast<double>(kStep);
     const double h = dt / kParts;
@@ -140,31 +140,32 @@ Status measure_motion(HeadlessRenderer& headless, QualityReport& report) {
     const dvec3 g = {0, -9.81, 0};
     for (std::size_t i = 0; i < x.size(); ++i) {
         for (int part = 0; part < (kSteps - 1) * kParts; ++part) {
-            const dvec3 middle = v[i] + 0.5 * h * (g - k * (v[i] - air));
-            v[i] += h * (g - k * (middle - air));
-            x[i] += h * middle;
-            way[i] += h * glm::length(middle);
+            const dvec3 midpoint = v[i] + 0.5 * h * (g - k * (v[i] - air));
+            v[i] += h * (g - k * (midpoint - air));
+            x[i] += h * midpoint;
+            length[i] += h * glm::length(midpoint);
         }
     }
     cpu.step(kSteps - 1);
     gpu.step(kSteps);
-    const std::vector<Vec3> gpu_places = LIMN_TRY(places_on_gpu(headless, gpu));
+    const std::vector<Vec3> gpu_positions = LIMN_TRY(positions_on_gpu(headless, gpu));
 
     const double t = (kSteps - 1) * dt;
     double cpu_error = 0;
     double gpu_error = 0;
     double exact_error = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const dvec3 found = place_of(cpu.pool(), i);
-        cpu_error = std::max(cpu_error, glm::distance(found, x[i]) / way[i]);
-        gpu_error = std::max(gpu_error, glm::distance(dvec3(gpu_places[i]), x[i]) / way[i]);
-        const dvec3 last = air + g / k;  // the velocity that drag leads to
+        const dvec3 found = particle_position(cpu.pool(), i);
+        cpu_error = std::max(cpu_error, glm::distance(found, x[i]) / length[i]);
+        gpu_error = std::max(gpu_error, glm::distance(dvec3(gpu_positions[i]), x[i]) / length[i]);
+        const dvec3 last = air + g / k;  // terminal velocity
         const dvec3 exact = x0[i] + last * t + (v0[i] - last) * ((1 - std::exp(-k * t)) / k);
-        exact_error = std::max(exact_error, glm::distance(found, exact) / way[i]);
+        exact_error = std::max(exact_error, glm::distance(found, exact) / length[i]);
     }
-    report.at_most("CPU: distance to the plain loop, of the way", cpu_error, 1e-4);
-    report.at_most("GPU: distance to the plain loop, of the way", gpu_error, 1e-4);
-    report.at_most("CPU: distance to the exact motion, of the way", exact_error, 1e-4);
+    report.at_most("CPU: distance to the plain loop, relative to the path length", cpu_error, 1e-4);
+    report.at_most("GPU: distance to the plain loop, relative to the path length", gpu_error, 1e-4);
+    report.at_most(
+        "CPU: distance to the exact motion, relative to the path length", exact_error, 1e-4);
     return Done{};
 }
 
@@ -197,10 +198,9 @@ void measure_population(QualityReport& report) {
     const double counted = static_cast<double>(clock.born + clock.dropped);
     report.at_most("a full pool, 10 s: births that are neither alive nor dead of age", lost, 0);
     report.at_most(
-        "a full pool, 10 s: of 7,000 births, neither done nor counted as dropped",
+        "a full pool, 10 s: of 7,000 spawns, neither done nor counted as dropped",
         std::abs(7000 - counted), 1);
-    report.at_most(
-        "a full pool, 10 s: alive, with room for 500", static_cast<double>(largest), 500);
+    report.at_most("a full pool, 10 s: alive, capacity 500", static_cast<double>(largest), 500);
 }
 
 // ---- order
@@ -232,9 +232,10 @@ void measure_order(QualityReport& report) {
         short_keys.push_back(depth_key16(depth, 0, 51));
     }
     report.at_most(
-        "sort of 1M by 32 bits: not where std::stable_sort has them", misplaced(keys), 0);
+        "sort of 1M by 32 bits: positions that differ from std::stable_sort", misplaced(keys), 0);
     report.at_most(
-        "sort of 1M by 16 bits: not where std::stable_sort has them", misplaced(short_keys), 0);
+        "sort of 1M by 16 bits: positions that differ from std::stable_sort", misplaced(short_keys),
+        0);
 }
 
 // ---- collisions
@@ -264,16 +265,16 @@ void measure_tunnelling(QualityReport& report) {
 constexpr ColorKey kColors[] = {
     {0, {1, 0.3f, 0.1f}, 0.9f}, {0.5f, {0.9f, 0.8f, 0.2f}, 0.7f}, {1, {0.1f, 0.3f, 0.9f}, 0.8f}};
 
-/// Color and opacity at a share of the life, straight between the keys.
-glm::dvec4 color_at(double share) {
-    const int i = share < 0.5 ? 0 : 1;
+/// Color and opacity at a relative age, linear between keys.
+glm::dvec4 color_at(double age) {
+    const int i = age < 0.5 ? 0 : 1;
     const auto key = [](const ColorKey& color_key) {
         return glm::dvec4(color_key.color, static_cast<double>(color_key.opacity));
     };
-    return glm::mix(key(kColors[i]), key(kColors[i + 1]), 2 * share - i);
+    return glm::mix(key(kColors[i]), key(kColors[i + 1]), 2 * age - i);
 }
 
-/// All discs of a pixel in the order in which its ray meets them.
+/// Blends all discs of a pixel in the order in which its ray hits them.
 dvec3 blend_exactly(const ParticlePool& pool, double radius, const dvec3& eye, const dvec3& ray) {
     struct Hit {
         double distance;
@@ -281,10 +282,10 @@ dvec3 blend_exactly(const ParticlePool& pool, double radius, const dvec3& eye, c
     };
     std::vector<Hit> hits;
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        const dvec3 middle = place_of(pool, i);
-        const dvec3 normal = glm::normalize(eye - middle);
-        const double distance = glm::dot(middle - eye, normal) / glm::dot(ray, normal);
-        const dvec3 off = (eye + distance * ray - middle) / radius;
+        const dvec3 center = particle_position(pool, i);
+        const dvec3 normal = glm::normalize(eye - center);
+        const double distance = glm::dot(center - eye, normal) / glm::dot(ray, normal);
+        const dvec3 off = (eye + distance * ray - center) / radius;
         const double inside = 1 - glm::dot(off, off);
         if (distance > 0 && inside > 0) {
             glm::dvec4 color =
@@ -316,7 +317,7 @@ ColorImage draw_exactly(const ParticlePool& pool, const RenderView& view) {
     return displayed(image);
 }
 
-/// Colored puffs among each other.
+/// Colored puffs that intersect each other.
 void measure_transparency(HeadlessRenderer& headless, QualityReport& report) {
     ParticleEmitter emitter;
     emitter.rate = 150;
@@ -367,7 +368,8 @@ void measure_transparency(HeadlessRenderer& headless, QualityReport& report) {
 
 // ---- shadows
 
-/// A wall among the puffs, and behind them, each pixel against the sum of all optical depths.
+/// A wall among the puffs, then behind them: each pixel compared with the sum of all optical
+/// depths.
 void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
     ParticleEmitter emitter;
     emitter.executor = ParticleExecutor::Cpu;
@@ -381,13 +383,14 @@ void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
     ParticleLook look;
     look.size = 0.7f;
     look.colors = {{.at = 0, .opacity = 0.35f}};
-    look.near_fade = 1000;  // not seen by the camera
+    look.near_fade = 1000;  // invisible to the camera
     Fountain fountain(emitter, {.gravity = 0});
     fountain.step(180);
     fountain.add_light(DirectionalLight{.illuminance = 3}, placed_at({0, 0, 5}));
     std::vector<oracle::ShadowDisc> discs;
     for (std::size_t i = 0; i < fountain.pool().size(); ++i) {
-        discs.push_back({.middle = place_of(fountain.pool(), i), .diameter = 0.7, .opacity = 0.35});
+        discs.push_back(
+            {.center = particle_position(fountain.pool(), i), .diameter = 0.7, .opacity = 0.35});
     }
     const MeshId square = fountain.add(quality_square());
     const MaterialId white = fountain.add(Material{.base_color = {1, 1, 1, 1}, .roughness = 1});
@@ -404,8 +407,8 @@ void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
         double sum = 0;
         for (int y = 0; y < kHeight; ++y) {
             for (int x = 0; x < kHeight; ++x) {
-                const dvec3 place = eye_of(view) + 2.0 * pixel_ray(view, x, y);
-                const double exact = oracle::disc_transmittance(discs, place, {0, 0, -1});
+                const dvec3 point = eye_of(view) + 2.0 * pixel_ray(view, x, y);
+                const double exact = oracle::disc_transmittance(discs, point, {0, 0, -1});
                 const auto transmitted = static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
                 sum += (transmitted - exact) * (transmitted - exact);
             }

@@ -37,8 +37,8 @@ struct QualityRow {
 /// False if the bound is violated; NaN violates every bound.
 [[nodiscard]] bool holds(const QualityRow& row);
 
-/// The effect's image and the oracle's, of equal size, display-encoded. An oracle without pixels:
-/// the effect's image alone, for inspection.
+/// The effect's image and the oracle's, of equal size, display-encoded. If the oracle's has no
+/// pixels, the effect's image is shown alone, for inspection.
 struct QualityImage {
     std::string title;
     ColorImage effect;
@@ -48,9 +48,9 @@ struct QualityImage {
 struct QualityReport {
     std::vector<QualityRow> rows;
     std::vector<QualityImage> images;
-    std::string html = {};  ///< sections of the page that only this effect has
+    std::string html = {};  ///< additional sections of the page for this effect
 
-    // Each adds a row.
+    // Each adds one row.
     void at_most(std::string name, double found, double limit, std::string unit = {});
     void at_least(std::string name, double found, double limit, std::string unit = {});
     void inform(std::string name, double found, std::string unit = {});  ///< without a bound
@@ -59,17 +59,17 @@ struct QualityReport {
 /// Fails only if nothing could be measured.
 using MeasureQuality = Status (*)(HeadlessRenderer& headless, QualityReport& report);
 
-/// The same of a model that the user gives.
+/// Measures a model that the user provides.
 using MeasureFile = Status (*)(const std::string& path, QualityReport& report);
 
 struct QualityEffect {
     std::string_view name;    ///< as on the command line
     std::string_view oracle;  ///< what it is compared with, in words
     MeasureQuality measure;
-    MeasureFile measure_file = nullptr;  ///< null: it has no models of the user's
+    MeasureFile measure_file = nullptr;  ///< null: accepts no models
 };
 
-/// An object at namespace scope adds an effect.
+/// Registers an effect; define one at namespace scope.
 struct RegisterQuality {
     RegisterQuality(
         std::string_view name, std::string_view oracle, MeasureQuality measure,
@@ -95,7 +95,7 @@ quality_json(std::span<const MeasuredQuality> measured, std::string_view gl_rend
 [[nodiscard]] Result<std::string>
 quality_html(std::span<const MeasuredQuality> measured, std::string_view gl_renderer);
 
-/// As the content of an element or an attribute.
+/// Escapes text for the content of an element or an attribute.
 [[nodiscard]] std::string escape_html(std::string_view text);
 
 /// An element with a display-encoded image in it, as PNG, above its caption.

@@ -88,9 +88,9 @@ std::string number_table(const QualityReport& report) {
     return html + "</table>\n";
 }
 
-Result<std::string> figure(const QualityImage& picture) {
+Result<std::string> figure(const QualityImage& image) {
     std::string html = fmt::format(
-        "<figure><figcaption>{}</figcaption><div class=\"row\">\n", escape_html(picture.title));
+        "<figure><figcaption>{}</figcaption><div class=\"row\">\n", escape_html(image.title));
     const auto add = [&html](const ColorImage& image, std::string_view caption) -> Status {
         const Result<std::string> tag = image_tag(image, caption);
         if (!tag) {
@@ -99,12 +99,12 @@ Result<std::string> figure(const QualityImage& picture) {
         html += *tag;
         return Done{};
     };
-    Status status = add(picture.effect, "effect");
-    if (status && !picture.oracle.pixels.empty()) {
-        status = add(picture.oracle, "oracle");
+    Status status = add(image.effect, "effect");
+    if (status && !image.oracle.pixels.empty()) {
+        status = add(image.oracle, "oracle");
         if (status) {
             status =
-                add(enhanced_difference(picture.oracle, picture.effect, 0.25f),
+                add(enhanced_difference(image.oracle, image.effect, 0.25f),
                     "difference, to the power 1/4");
         }
     }

@@ -19,10 +19,10 @@
 
 namespace limn {
 
-// What several quality measurements share: scenes, views, and conversions between the renderer's
-// textures, the oracles' images in double precision and the images of a report.
+// Shared by quality measurements: scenes, views, and conversions between the renderer's textures,
+// the oracles' images in double precision and the images of a report.
 
-/// A small world of a few surfaces and lights without surroundings, to measure effects in.
+/// A small world of a few surfaces and lights without an environment, to measure effects in.
 class QualityScene {
   public:
     QualityScene();

@@ -109,16 +109,16 @@ class RippleScene {
         const gpu::FloatImage& image = still_.radiance;
         return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
     }
-    [[nodiscard]] dvec3 light_at(const dvec2& place, const IVec2& fallback, double front) const {
-        const dvec2 corner = glm::floor(place);
-        const dvec2 share = place - corner;
+    [[nodiscard]] dvec3 light_at(const dvec2& position, const IVec2& fallback, double front) const {
+        const dvec2 corner = glm::floor(position);
+        const dvec2 fraction = position - corner;
         dvec3 sum(0);
         double total = 0;
         for (int i = 0; i < 4; ++i) {
             const int x = std::clamp(static_cast<int>(corner.x) + i % 2, 0, kWidth - 1);
             const int y = std::clamp(static_cast<int>(corner.y) + i / 2, 0, kHeight - 1);
-            const double weight =
-                (i % 2 == 1 ? share.x : 1 - share.x) * (i / 2 == 1 ? share.y : 1 - share.y);
+            const double weight = (i % 2 == 1 ? fraction.x : 1 - fraction.x)
+                                  * (i / 2 == 1 ? fraction.y : 1 - fraction.y);
             if (still_.depth.at(x, y, 0) > front) {
                 sum += weight * light_of(x, y);
                 total += weight;

@@ -146,30 +146,30 @@ constexpr double kMinGain = 1e-4;  ///< radiance below which a pixel counts as u
 
 /// Visibility of the light at each pixel, 0 .. 1; 1 where the light adds nothing.
 std::vector<double> visibility_of(const Unshadowed& images, const gpu::FloatImage& shaded) {
-    std::vector<double> shares(kPixels, 1);
+    std::vector<double> visibility(kPixels, 1);
     for (std::size_t i = 0; i < kPixels; ++i) {
         if (gain(images, i) > kMinGain) {
-            shares[i] =
+            visibility[i] =
                 (shaded.pixels[4 * i + 1] - images.dark.pixels[4 * i + 1]) / gain(images, i);
         }
     }
-    return shares;
+    return visibility;
 }
 
 /// The light source: its center, or the direction toward a sun; its diameter [m], or angle of a sun
 /// [rad].
 struct Source {
     Kind kind;
-    DVec3 place;
+    DVec3 center;
     double size = 0;
 };
 
-/// The same by ray casting.
+/// The same visibility by ray casting.
 std::vector<double> cast_rays(
     const oracle::ShadowScene& rays, const Source& source, const SurfacePoints& surface,
     const Unshadowed& images) {
     constexpr double kFar = 1000;  // distance of a sun's disc, for finite rays [m]
-    std::vector<double> shares(kPixels, 1);
+    std::vector<double> visibility(kPixels, 1);
     parallel_for(kPixels, kWidth, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (gain(images, i) <= kMinGain) {
@@ -177,26 +177,26 @@ std::vector<double> cast_rays(
             }
             const DVec3 point = surface.point[i] + 1e-4 * surface.normal[i];
             const bool sun = source.kind == Kind::Sun;
-            const DVec3 middle = sun ? point + kFar * source.place : source.place;
+            const DVec3 center = sun ? point + kFar * source.center : source.center;
             const double diameter = source.size * (sun ? kFar : 1);
             if (diameter == 0) {
-                shares[i] = rays.blocked(point, middle) ? 0 : 1;
+                visibility[i] = rays.blocked(point, center) ? 0 : 1;
                 continue;
             }
-            shares[i] = rays.visible_fraction(point, middle, diameter, 5);
-            if (shares[i] > 0 && shares[i] < 1) {
-                shares[i] = rays.visible_fraction(point, middle, diameter, 12);
+            visibility[i] = rays.visible_fraction(point, center, diameter, 5);
+            if (visibility[i] > 0 && visibility[i] < 1) {
+                visibility[i] = rays.visible_fraction(point, center, diameter, 12);
             }
         }
     });
-    return shares;
+    return visibility;
 }
 
-ColorImage image_of(const Unshadowed& images, const std::vector<double>& shares) {
+ColorImage image_of(const Unshadowed& images, const std::vector<double>& visibility) {
     gpu::FloatImage image = images.dark;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        const auto share = static_cast<float>(shares[i / 4]);
-        image.pixels[i] += share * (images.open.pixels[i] - images.dark.pixels[i]);
+        const auto fraction = static_cast<float>(visibility[i / 4]);
+        image.pixels[i] += fraction * (images.open.pixels[i] - images.dark.pixels[i]);
     }
     return displayed(image);
 }
@@ -295,9 +295,9 @@ double rise_width(std::vector<std::pair<double, double>> profile) {
     std::sort(profile.begin(), profile.end());
     std::vector<double> sums(100, 0.0);
     std::vector<int> counts(100, 0);
-    for (const auto& [x, share] : profile) {
+    for (const auto& [x, visibility] : profile) {
         const auto bin = static_cast<std::size_t>(std::clamp((x + 0.5) / kStep, 0.0, 99.0));
-        sums[bin] += share;
+        sums[bin] += visibility;
         ++counts[bin];
     }
     double total = 0;
@@ -346,12 +346,12 @@ void measure_penumbras(HeadlessRenderer& headless, QualityReport& report) {
                        .cascades = 1,
                        .distance = 6});
         const gpu::FloatImage shaded = scene.radiance(headless, view);
-        const std::vector<double> shares = visibility_of(images, shaded);
+        const std::vector<double> visibility = visibility_of(images, shaded);
         std::vector<std::pair<double, double>> profile;
         for (std::size_t i = 0; i < kPixels; ++i) {
             if (gain(images, i) > kMinGain && surface.point[i].y < 0.01
                 && std::abs(surface.point[i].x) < 0.45) {
-                profile.emplace_back(surface.point[i].x, shares[i]);
+                profile.emplace_back(surface.point[i].x, visibility[i]);
             }
         }
         const double law = sun ? 2 * std::tan(0.5 * size) * kBoard

@@ -24,9 +24,9 @@ using glm::dvec3;
 constexpr int kSide = 256;     ///< of the images [px]
 constexpr float kLarger = 40;  ///< scale relative to real skin, so that shadows end at pixels
 constexpr Vec3 kFreePath = kLarger * Vec3(3.67e-3f, 1.37e-3f, 0.68e-3f);
-constexpr float kFewRings = 0.2f;       ///< factor of free paths whose last ring covers 22 px
+constexpr float kFewRings = 0.2f;  ///< factor of free paths at which the last ring covers 22 px
 constexpr float kFewestRings = 0.107f;  ///< the same, 12 px
-constexpr double kHalf = 0.5;  ///< half the size of the part of the plane that is compared [m]
+constexpr double kHalf = 0.5;           ///< half extent of the compared part of the plane [m]
 const char* const kChannels[3] = {"red", "green", "blue"};
 
 Material skin(const Vec3& free_path = kFreePath) {
@@ -66,11 +66,11 @@ void populate_plane(QualityScene& scene, const Material& material, float from, f
 }
 
 struct Compared {
-    dvec3 errors = dvec3(0);  ///< largest of each channel, of the color of the lit plane
+    dvec3 errors = dvec3(0);  ///< largest per channel, relative to the color of the lit plane
     QualityImage image;
 };
 
-/// Viewed head on: compares the image with the albedo times `expected(x, d)`.
+/// Viewed along the normal: compares the image with the albedo times `expected(x, d)`.
 Compared compare(
     HeadlessRenderer& headless, QualityScene& scene, const Material& material,
     const std::function<double(double, double)>& expected) {

@@ -18,7 +18,8 @@ using oracle::DVec3;
 
 constexpr int kSide = 128;  ///< of the images [px]
 
-// The plate lies in z = 0; the camera at (0, 0, 1) with a field of view of 90 degrees sees just it.
+// The plate lies in z = 0; the camera at (0, 0, 1) with a field of view of 90 degrees sees exactly
+// the plate.
 const DVec3 kEye = {0, 0, 1};
 const DVec3 kNormal = {0, 0, 1};
 constexpr Vec3 kLampPosition = {0.5f, 0.4f, 0.6f};
@@ -119,7 +120,7 @@ gpu::FloatImage oracle_image(const Material& material) {
 }
 
 /// Largest difference of any channel, relative to the oracle's brightest.
-double largest_share(const gpu::FloatImage& found, const gpu::FloatImage& expected) {
+double largest_relative_error(const gpu::FloatImage& found, const gpu::FloatImage& expected) {
     double largest = 0;
     double brightest = 1e-9;
     for (int y = 0; y < expected.height; ++y) {
@@ -147,7 +148,7 @@ Status measure_surfaces(HeadlessRenderer& headless, QualityReport& report) {
         const gpu::FloatImage expected = oracle_image(plate.material);
         report.at_most(
             fmt::format("{}: largest difference, of the brightest", plate.name),
-            largest_share(
+            largest_relative_error(
                 found, expected),  // The metal's directional albedo comes from a 64 x 64 table.
             (plate.material.shading == ShadingModel::Pbr ? 2e-3 : 1e-3) + rounding);
         report.images.push_back({plate.name, displayed(found), displayed(expected)});

@@ -249,8 +249,8 @@ Status measure_tone(HeadlessRenderer& headless, QualityReport& report) {
         const std::vector<dvec3> expected = tone_map_exactly(pixels, exact, tone.exposure);
         const CodeError error = compare(found, expected);
         if (tone.exposure.curve == ToneCurve::Local) {
-            // Each pixel selects one of nine blur scales. Where two fit equally well, the GPU may
-            // pick the other; and its larger blurs are computed at half and quarter resolution.
+            // Each pixel selects one of nine blur scales. If two fit equally well, the GPU may pick
+            // the other one; and its larger blurs are computed at half and quarter resolution.
             report.at_most(fmt::format("{}, mean difference", tone.name), error.mean, 0.7, "codes");
             report.at_most(
                 fmt::format("{}, more than 2.5 codes off", tone.name), error.far_off, 2, "%");

@@ -24,7 +24,7 @@ double max_error(const HeadlessRenderer& headless) {
 
 struct MotionStage : QualityScene {
     Entity move(MeshId mesh, const Affine& before, const Affine& now) {
-        const Entity entity = place(mesh, gray, now);
+        const Entity entity = position(mesh, gray, now);
         world.get<PreviousWorldTransform>(entity).world = before;
         return entity;
     }
@@ -51,8 +51,8 @@ RenderView view_of(const oracle::CameraMotion& motion) {
          .previous_alpha = static_cast<float>(motion.previous_alpha)});
 }
 
-Affine turned(const Vec3& place, const Vec3& axis, float angle, const Vec3& scale = Vec3(1)) {
-    return affine_from(place, rotation_about(axis, angle), scale);
+Affine turned(const Vec3& position, const Vec3& axis, float angle, const Vec3& scale = Vec3(1)) {
+    return affine_from(position, rotation_about(axis, angle), scale);
 }
 
 // ---- moving objects
@@ -72,12 +72,12 @@ void populate_crowd(MotionStage& stage) {
     Random random(1, 0, 0, 0);
     const MeshId ball = stage.add(make_sphere({.radius = 0.2f, .segments = 12, .rings = 6}));
     for (int i = 0; i < 20; ++i) {
-        const Vec3 place = {
+        const Vec3 position = {
             random.uniform(-1.4f, 1.4f), random.uniform(-0.3f, 1.2f), random.uniform(-0.8f, 0.1f)};
-        const Vec3 way = 0.2f * random.direction();
+        const Vec3 motion = 0.2f * random.direction();
         stage.move(
-            ball, turned(place + way, random.direction(), 0.5f),
-            turned(place, random.direction(), 0.3f));
+            ball, turned(position + motion, random.direction(), 0.5f),
+            turned(position, random.direction(), 0.3f));
     }
 }
 
@@ -125,12 +125,12 @@ Vec3 color_of(const glm::dvec2& velocity) {
     constexpr double kBright = 24;  // [px]
     const double speed = glm::length(velocity);
     const double angle = std::atan2(velocity.y, velocity.x);
-    const auto share = static_cast<float>(std::min(speed / kBright, 1.0));
+    const auto saturation = static_cast<float>(std::min(speed / kBright, 1.0));
     Vec3 color;
     for (int c = 0; c < 3; ++c) {
         color[c] = 0.5f + 0.5f * static_cast<float>(std::cos(angle - c * 2.0943951));
     }
-    return glm::mix(Vec3(0.2f), color, share);
+    return glm::mix(Vec3(0.2f), color, saturation);
 }
 
 struct Agreement {

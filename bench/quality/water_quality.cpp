@@ -122,7 +122,7 @@ ColorImage render_from_above(const std::vector<Layer>& layers) {
             }
             const Vec3 normal = glm::normalize(
                 Vec3(-static_cast<float>(slope_x), 1.0f, -static_cast<float>(slope_z)));
-            // By eye: toward the sun the sky is brighter, and some facets mirror the sun itself.
+            // By eye: toward the sun the sky is brighter, and some facets reflect the sun itself.
             const float toward = 0.5f - 1.6f * normal.x + 0.9f * normal.z;
             const float glint = std::pow(std::max(glm::dot(normal, halfway), 0.0f), 180.0f);
             const Vec3 color = glm::mix(
@@ -325,28 +325,29 @@ Vec3 mirrored(const Vec3& p) {
 MirroredTruth trace_truth(HeadlessRenderer& headless, QualityScene& shore, const RenderView& view) {
     // The mirrored camera's image is upside down.
     const RenderView below = quality_view(mirrored(kEye), mirrored(kTarget), kWidth, kHeight, 1);
-    const gpu::FloatImage seen = shore.radiance(headless, below);
+    const gpu::FloatImage from_below = shore.radiance(headless, below);
     const gpu::FloatImage mirrored_depth = depth_of(headless, shore, below);
     const gpu::FloatImage shown_depth = depth_of(headless, shore, view);
-    MirroredTruth truth = {seen, {}, {}};
+    MirroredTruth truth = {from_below, {}, {}};
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
             const int row = kHeight - 1 - y;
-            const auto channels = static_cast<std::size_t>(seen.channels);
+            const auto channels = static_cast<std::size_t>(from_below.channels);
             const std::size_t to = (static_cast<std::size_t>(y) * kWidth + x) * channels;
             const std::size_t from = (static_cast<std::size_t>(row) * kWidth + x) * channels;
-            std::copy_n(seen.pixels.begin() + from, channels, truth.radiance.pixels.begin() + to);
+            std::copy_n(
+                from_below.pixels.begin() + from, channels, truth.radiance.pixels.begin() + to);
             const Vec3 ray = ray_through(view, x, y);
             const float surface = ray.y < -1e-3f ? kEye.y / -ray.y : kNoDepth;
             truth.is_water.push_back(surface < shown_depth.at(x, y, 0) && surface < 60);
-            // Where the camera itself would see the reflected point.
+            // The pixel of the reflected point in the camera's own image.
             const float away = mirrored_depth.at(x, row, 0);
             const Vec3 point = mirrored(kEye) + ray_through(below, x, row) * away;
             const Vec4 clip = view.clip_from_world * Vec4(point, 1);
-            const Vec2 place =
+            const Vec2 pixel =
                 (0.5f + 0.5f * Vec2(clip.x, clip.y) / clip.w) * Vec2(kWidth, kHeight);
-            const auto column = static_cast<int>(std::floor(place.x));
-            const int line = kHeight - 1 - static_cast<int>(std::floor(place.y));
+            const auto column = static_cast<int>(std::floor(pixel.x));
+            const int line = kHeight - 1 - static_cast<int>(std::floor(pixel.y));
             const bool inside = away < kNoDepth && point.y > 0.03f && column >= 0 && column < kWidth
                                 && line >= 0 && line < kHeight;
             truth.is_on_screen.push_back(
@@ -369,10 +370,10 @@ double psnr_of(
             if (!truth.is_water[i] || !counts[i]) {
                 continue;
             }
-            const float share = fresnel(-glm::normalize(ray_through(view, x, y)).y, kIndex);
+            const float reflectance = fresnel(-glm::normalize(ray_through(view, x, y)).y, kIndex);
             for (int c = 0; c < 3; ++c) {
-                squares += square(
-                    static_cast<double>(image.at(x, y, c) / share - truth.radiance.at(x, y, c)));
+                squares += square(static_cast<double>(
+                    image.at(x, y, c) / reflectance - truth.radiance.at(x, y, c)));
                 samples += 1;
             }
         }
@@ -393,20 +394,20 @@ void measure_reflections(HeadlessRenderer& headless, QualityReport& report) {
     const auto measure = [&](const char* name, const WaterLook& look,
                              const std::vector<bool>& counts, double min_psnr) {
         shore.world.add(water, look);
-        const gpu::FloatImage seen = shore.radiance(headless, view);
+        const gpu::FloatImage image = shore.radiance(headless, view);
         shore.world.remove<WaterLook>(water);
-        report.at_least(name, psnr_of(seen, truth, counts, view), min_psnr, "dB");
-        return seen;
+        report.at_least(name, psnr_of(image, truth, counts, view), min_psnr, "dB");
+        return image;
     };
     const WaterLook planar = {.reflection = WaterReflection::Planar, .map_scale = 1};
-    const gpu::FloatImage seen =
+    const gpu::FloatImage planar =
         measure("still water, planar reflection against a mirrored camera", planar, all, 45);
     measure("the same at half resolution", {.reflection = WaterReflection::Planar}, all, 30);
     measure(
         "screen-space reflection, where the reflected point is on screen", {}, truth.is_on_screen,
         20);
     report.images.push_back(
-        {"still water: planar reflection, mirrored camera", displayed(seen),
+        {"still water: planar reflection, mirrored camera", displayed(planar),
          displayed(truth.radiance)});
 }
 

@@ -25,7 +25,7 @@ void measure_length(QualityReport& report) {
     FaceFoldsPattern pattern;
     pattern.image.size = 512;
     const std::vector<Vec2> all = wrinkle_slopes(make_face_folds(pattern).normal);
-    std::vector<double> squares;  // of slopes that fold
+    std::vector<double> squares;  // squared slopes that fold
     for (const Vec2& slope : all) {
         const double square = glm::dot(glm::dvec2(slope), glm::dvec2(slope));
         if (square > 1e-6) {
@@ -47,7 +47,8 @@ void measure_length(QualityReport& report) {
     report.at_least(
         "isometric: texels of the face's map that fold", static_cast<double>(squares.size()), 1000);
     report.at_most(
-        "isometric: length of skin compressed by 0 to 30 %, off that at rest", 100 * error, 2, "%");
+        "isometric: length of skin compressed by 0 to 30 %, difference from rest", 100 * error, 2,
+        "%");
 }
 
 struct FitRow {
@@ -61,7 +62,7 @@ constexpr FitRow kFit[] = {
     {40, {2.600, 4.013, 3.361}},    {50, {5.550, 8.269, 6.724}},    {53.13, {6.898, 10.112, 8.130}},
     {60, {10.909, 15.234, 11.906}}, {70, {20.897, 25.923, 19.302}}, {80, {40.552, 41.076, 29.157}}};
 
-/// By how much the shader's normals are too flat.
+/// How much too flat the shader's normals are.
 Status measure_fit(gpu::Device& device, QualityReport& report) {
     std::vector<Vec4> inputs;
     for (const FitRow& row : kFit) {

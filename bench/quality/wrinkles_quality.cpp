@@ -25,7 +25,7 @@ using glm::dvec3;
 
 constexpr int kSize = 256;
 
-/// A field that turns and grows over a square that tiles.
+/// A field that rotates and grows over a tiling square.
 FurrowRecipe make_recipe() {
     FurrowRecipe recipe = {.size = kSize, .tiles = true};
     recipe.arrows = {
@@ -112,12 +112,13 @@ void measure_furrows(QualityReport& report) {
     report.at_least(
         "furrows: pixels in a band", 100.0 * static_cast<double>(bands) / pixels, 100, "%");
     report.at_most(
-        "furrows: largest turn of a segment / that of the style",
+        "furrows: largest turn of a segment relative to the style's",
         largest / static_cast<double>(shape.angle), 1.001);
     report.inform("furrows: mean turn", turn / static_cast<double>(whole), "rad");
     report.inform("furrows: mean distance between furrows", pixels / length, "px");
     report.inform(
-        "furrows: half a band, the least distance", 0.5 * static_cast<double>(shape.density), "px");
+        "furrows: half a band, the minimum distance", 0.5 * static_cast<double>(shape.density),
+        "px");
     report.inform(
         "furrows: segments that end at another furrow",
         100.0 * static_cast<double>(met) / static_cast<double>(segments.size()), "%");

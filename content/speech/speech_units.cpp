@@ -27,7 +27,7 @@ bool is_silence(const SpeechSegment& segment) {
 
 /// A unit covers a range of half sounds of the utterance: sound i is the halves 2 i and 2 i + 1.
 struct Candidate {
-    PlacedUnit placed;
+    SelectedUnit selected;
     std::size_t begin = 0;
     std::size_t end = 0;
     double cost = kUnreachable;    ///< of the best cover that ends with it
@@ -59,7 +59,7 @@ std::vector<Candidate> find_candidates(
                 const bool is_diphone = unit.kind == UnitKind::Diphone;
                 const std::size_t begin = 2 * std::size_t{at} + (is_diphone ? 1 : 0);
                 candidates.push_back(
-                    {.placed = {unit, at},
+                    {.selected = {unit, at},
                      .begin = begin,
                      .end = is_diphone ? begin + 2 : begin + 2 * std::size_t{unit.count}});
             }
@@ -129,17 +129,18 @@ struct StretchedUnit {
 };
 
 StretchedUnit
-stretch(const SpeechTrack& target, const PlacedUnit& placed, const SpeechRecording& recording) {
+stretch(const SpeechTrack& target, const SelectedUnit& selected, const SpeechRecording& recording) {
     StretchedUnit unit{CurveSpline(recording.motion), {}, {}, 0.0f, 0.0f};
-    for (std::size_t i = 0; i < placed.unit.count; ++i) {
-        unit.source.push_back(recording.track.segments[placed.unit.first + i].start);
-        unit.target.push_back(target.segments[placed.at + i].start);
+    for (std::size_t i = 0; i < selected.unit.count; ++i) {
+        unit.source.push_back(recording.track.segments[selected.unit.first + i].start);
+        unit.target.push_back(target.segments[selected.at + i].start);
     }
-    unit.source.push_back(recording.track.segments[placed.unit.first + placed.unit.count - 1].end);
-    const SpeechSegment& last = target.segments[placed.at + placed.unit.count - 1];
+    unit.source.push_back(
+        recording.track.segments[selected.unit.first + selected.unit.count - 1].end);
+    const SpeechSegment& last = target.segments[selected.at + selected.unit.count - 1];
     unit.target.push_back(last.end);
-    const bool is_diphone = placed.unit.kind == UnitKind::Diphone;
-    unit.begin = is_diphone ? center_time(target.segments[placed.at]) : unit.target.front();
+    const bool is_diphone = selected.unit.kind == UnitKind::Diphone;
+    unit.begin = is_diphone ? center_time(target.segments[selected.at]) : unit.target.front();
     unit.end = is_diphone ? center_time(last) : unit.target.back();
     return unit;
 }
@@ -222,7 +223,7 @@ float unit_end(const SpeechUnit& unit, const SpeechRecording& recording) {
     return unit.kind == UnitKind::Diphone ? center_time(last) : last.end;
 }
 
-Result<std::vector<PlacedUnit>> select_units(
+Result<std::vector<SelectedUnit>> select_units(
     const SpeechTrack& target, std::span<const SpeechUnit> units,
     std::span<const SpeechRecording> recordings, float join_cost) {
     const std::size_t halves = 2 * target.segments.size();
@@ -245,9 +246,9 @@ Result<std::vector<PlacedUnit>> select_units(
                 if (arrival.candidate >= 0) {
                     const Candidate& last = candidates[static_cast<std::size_t>(arrival.candidate)];
                     if (last.end == at) {
-                        cost +=
-                            join_cost
-                            * pose_distance(last.placed.unit, candidate.placed.unit, recordings);
+                        cost += join_cost
+                                * pose_distance(
+                                    last.selected.unit, candidate.selected.unit, recordings);
                     }
                 }
                 if (cost < candidate.cost) {
@@ -271,22 +272,22 @@ Result<std::vector<PlacedUnit>> select_units(
     if (arrivals[halves].empty()) {
         return explain_gap(target, recordings, reached);
     }
-    std::vector<PlacedUnit> cover;
+    std::vector<SelectedUnit> cover;
     for (std::ptrdiff_t i =
              std::ranges::min_element(arrivals[halves], {}, &Arrival::cost)->candidate;
          i >= 0; i = candidates[static_cast<std::size_t>(i)].previous) {
-        cover.push_back(candidates[static_cast<std::size_t>(i)].placed);
+        cover.push_back(candidates[static_cast<std::size_t>(i)].selected);
     }
     std::ranges::reverse(cover);
     return cover;
 }
 
 SampledCurves join_units(
-    const SpeechTrack& target, std::span<const PlacedUnit> placed,
+    const SpeechTrack& target, std::span<const SelectedUnit> selected,
     std::span<const SpeechRecording> recordings, float rate) {
     LIMN_CHECK(rate > 0.0f);
     std::vector<StretchedUnit> units;
-    for (const PlacedUnit& one : placed) {
+    for (const SelectedUnit& one : selected) {
         units.push_back(stretch(target, one, recordings[one.unit.recording]));
     }
     SampledCurves result;

@@ -47,7 +47,7 @@ struct SpeechUnit {
 [[nodiscard]] float unit_end(const SpeechUnit& unit, const SpeechRecording& recording);
 
 /// A unit that is used for sounds of an utterance, starting at segment `at` of its track.
-struct PlacedUnit {
+struct SelectedUnit {
     SpeechUnit unit;
     std::uint32_t at = 0;
 };
@@ -56,7 +56,7 @@ struct PlacedUnit {
 /// distance between the poses at each join, by dynamic programming (A. Hunt and A. Black, "Unit
 /// selection in a concatenative speech synthesis system", 1996). Silence needs no unit. Ties go to
 /// the cover whose units come first in `units`. Fails with the missing sound or pair of sounds.
-[[nodiscard]] Result<std::vector<PlacedUnit>> select_units(
+[[nodiscard]] Result<std::vector<SelectedUnit>> select_units(
     const SpeechTrack& target, std::span<const SpeechUnit> units,
     std::span<const SpeechRecording> recordings, float join_cost);
 
@@ -65,7 +65,7 @@ struct PlacedUnit {
 /// sound on both sides of a join; where that is shorter than two samples, the second begins at the
 /// end of the first and the difference fades out. At rest, 0, in silence without a unit.
 [[nodiscard]] SampledCurves join_units(
-    const SpeechTrack& target, std::span<const PlacedUnit> placed,
+    const SpeechTrack& target, std::span<const SelectedUnit> selected,
     std::span<const SpeechRecording> recordings, float rate);
 
 }  // namespace limn

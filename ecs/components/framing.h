@@ -7,7 +7,7 @@
 
 namespace limn {
 
-/// What the program knows of a Camera that it placed around a subject.
+/// Framing of a Camera that the program has placed around a subject.
 struct FramingState {
     float aspect = 0.0f;
 };

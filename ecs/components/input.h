@@ -55,11 +55,11 @@ LIMN_FIELDS(Input) {
 /// Value of `more` minus that of `less`.
 [[nodiscard]] float action_axis(const Input& input, std::string_view more, std::string_view less);
 void set_action(Input& input, std::string_view action, float value = 1.0f);
-/// Replaces the input by that of a new frame. What was in use in the previous step stays known, and
-/// a click waits until a step has seen it, as a frame may run none.
+/// Replaces the input by that of a new frame. The actions of the previous step are kept, and a
+/// click is kept until a step has handled it, since a frame may run no step.
 void take_input(Input& input, const Input& frame);
 
-/// What moves a camera or a person: values of `move` are right, up and forward.
+/// Input that moves a camera or a person: values of `move` are right, up and forward.
 struct MoveInput {
     Vec3 move = {0, 0, 0};
     Vec2 look = {0, 0};
@@ -67,7 +67,7 @@ struct MoveInput {
     bool fast = false;
 };
 
-/// Those of the actions move_left, move_right, move_down, move_up, move_back, move_forward and
+/// The values of the actions move_left, move_right, move_down, move_up, move_back, move_forward and
 /// move_fast.
 [[nodiscard]] MoveInput camera_input(const Input& input);
 
@@ -85,8 +85,8 @@ struct ActionGroup {
     std::vector<ActionInfo> actions;
     /// Whether something in the world responds to them while `camera` is active.
     bool (*is_used)(const World& world, Entity camera) = nullptr;
-    bool drives = false;  ///< move something, so that the player's own camera stays
-    bool turns = false;   ///< likewise by Input::look
+    bool drives = false;  ///< they move something, so that the player's own camera does not move
+    bool turns = false;   ///< they turn it by Input::look
 };
 
 /// Makes the group known; a second one with the same title is ignored.
@@ -97,7 +97,7 @@ void register_engine_actions();
 /// The names of all actions.
 [[nodiscard]] std::vector<std::string_view> action_names();
 
-/// Resource: the keys of a level, in place of the default ones.
+/// Resource: the keys of a level, instead of the default ones.
 struct Bindings {
     struct Binding {
         std::string action;

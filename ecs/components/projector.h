@@ -9,7 +9,7 @@ namespace limn {
 // Techniques: shadow.projector
 
 /// Cookie (projected texture) of the spot or directional light on the same entity: the light's
-/// color is multiplied by the image, and there is no light beyond the image's edges. Seen from the
+/// color is multiplied by the image, and there is no light beyond the image's edges. From the
 /// light, the image is upright along the entity's +y. An animation is a grid of frames in one image
 /// (flipbook), row by row from the top left.
 struct Projector {

@@ -15,11 +15,11 @@ namespace limn {
 // a cut of a camera path, a position that an event sets. Frames between two steps are interpolated
 // from the previous state to the current one, which would show such a jump as fast motion.
 //
-// The previous state of what jumped in a step therefore equals its current one: it has no velocity,
-// for whoever derives one, and frames show its new state. Where the time of the jump within the
-// step is known, the state before it is listed here, and frames up to that time show that.
+// After a jump, the previous state therefore equals the current one: there is no velocity, and
+// frames show the new state. If the time of the jump within the step is known, the state before the
+// jump is listed here, and frames up to that time show it.
 
-/// Time of what does not jump.
+/// Jump time of entities that do not jump.
 inline constexpr float kNoJump = std::numeric_limits<float>::infinity();
 
 /// A system has moved an entity discontinuously.

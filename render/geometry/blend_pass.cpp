@@ -33,7 +33,7 @@ TextureId copy_behind_surfaces(FrameGraph& graph, const MipLevels& levels, Textu
     return behind;
 }
 
-/// Draws a run; of one with two sides, all far ones first.
+/// Draws a run; if it is double-sided, back faces first.
 void draw_blended(
     PassContext& context, const ViewData& view, const DrawRun& run, ProgramVariants& programs,
     SurfaceDraw draw) {

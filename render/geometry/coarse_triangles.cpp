@@ -17,19 +17,20 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-constexpr std::size_t kMinTriangles = 48;  // a mesh of fewer costs less than its draw call
+constexpr std::size_t kMinTriangles = 48;  // a smaller mesh costs less than its draw call
 constexpr std::size_t kCoarsestTriangles = 8;
 constexpr float kMaxError = 0.5f;  // quadric error, relative to the size of the mesh
-constexpr float kRatio = 0.4f;     // triangles wanted of a level, of those of the one before
-// The finest levels are drawn of what is seen large: steps between them are smaller.
+constexpr float kRatio = 0.4f;     // target triangle count relative to the previous level
+// The finest levels draw what is large on screen: steps between them are smaller.
 constexpr float kFineRatios[] = {0.65f, 0.62f};
 constexpr float kWorthwhile = 0.75f;
-// Of more triangles than this in pieces of fewer, such as points and lines, nothing is simplified:
-// there is little to collapse, and measuring distances takes seconds per million triangles.
+// Meshes with more triangles than this in smaller components, such as points and lines, are not
+// simplified: there is little to collapse, and measuring distances takes seconds per million
+// triangles.
 constexpr std::size_t kMaxLooseTriangles = 200'000;
 constexpr std::size_t kMinPiece = 12;
 
-/// The triangles of the mesh that are no lines, with one of the vertices at the same place.
+/// The triangles of the mesh after welding vertices at equal positions, without degenerate ones.
 Indices welded_indices(const MeshData& mesh) {
     Indices indices(mesh.indices.size() / 3 * 3);
     meshopt_generateShadowIndexBuffer(
@@ -45,14 +46,14 @@ Indices welded_indices(const MeshData& mesh) {
     return kept;
 }
 
-/// The vertices that `indices` name, each once.
+/// The vertices that `indices` refer to, each once.
 Indices vertices_of(Indices indices) {
     std::sort(indices.begin(), indices.end());
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
     return indices;
 }
 
-/// The largest distance of one of `vertices` from the triangles `coarser` [m].
+/// Largest distance from any of `vertices` to the triangles `coarser` [m].
 float distance_from(const MeshData& mesh, const Indices& vertices, const Indices& coarser) {
     if (coarser.empty()) {
         return INFINITY;
@@ -90,7 +91,7 @@ Indices cluster(const MeshData& mesh, const Indices& finer, std::size_t wanted) 
     return coarser;
 }
 
-/// Sets of triangles that share no vertex with others.
+/// Connected components: sets of triangles that share no vertex with others.
 std::size_t count_pieces(const Indices& indices, std::size_t vertices) {
     Indices parent(vertices);
     std::iota(parent.begin(), parent.end(), 0u);
@@ -121,7 +122,7 @@ bool is_rigid(const MeshData& mesh) {
     return mesh.skin.empty() && mesh.morphs.empty();
 }
 
-/// Of all that simplify_triangles reads.
+/// Covers everything that simplify_triangles reads.
 std::uint64_t hash_of(const MeshData& mesh) {
     const auto bytes = [](const auto& values, std::uint64_t seed) {
         return hash_bytes(values.data(), values.size() * sizeof(values[0]), seed);
@@ -148,20 +149,20 @@ std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
     finer.resize(finer.size() / 3 * 3);
     float error = 0;
     while (levels.size() < kMaxCoarseLevels && finer.size() > 3 * kCoarsestTriangles) {
-        const auto share = [&](float of) {
-            return static_cast<std::size_t>(of * static_cast<float>(finer.size() / 3)) * 3;
+        const auto index_count = [&](float fraction) {
+            return static_cast<std::size_t>(fraction * static_cast<float>(finer.size() / 3)) * 3;
         };
         const float ratio =
             levels.size() < std::size(kFineRatios) ? kFineRatios[levels.size()] : kRatio;
-        Indices coarser = collapse(mesh, finer, share(ratio));
+        Indices coarser = collapse(mesh, finer, index_count(ratio));
         float distance = distance_from(mesh, vertices, coarser);
-        Indices merged = mesh.morphs.empty() ? cluster(mesh, all, share(ratio)) : Indices();
+        Indices merged = mesh.morphs.empty() ? cluster(mesh, all, index_count(ratio)) : Indices();
         const float merged_distance = distance_from(mesh, vertices, merged);
-        if (coarser.size() > share(kWorthwhile) || merged_distance < distance) {
+        if (coarser.size() > index_count(kWorthwhile) || merged_distance < distance) {
             coarser = std::move(merged);
             distance = merged_distance;
         }
-        if (coarser.empty() || coarser.size() > share(kWorthwhile)) {
+        if (coarser.empty() || coarser.size() > index_count(kWorthwhile)) {
             break;
         }
         error = std::max(error, distance);

@@ -30,10 +30,10 @@ void cull_boxes_simd(
         const auto hz = hn::Load(d, boxes.half_z + i);
         auto nearest = hn::Set(d, INFINITY);
         for (const Vec4& p : frustum.planes) {
-            // Distance of the box's farthest corner along the plane's normal; the products are
-            // summed in the order of the scalar version, without fused steps, so that both agree to
-            // the last bit.
-            const auto reach = hn::Add(
+            // Signed distance of the box's farthest corner along the plane's normal; the products
+            // are summed in the order of the scalar version, without fused steps, so that both
+            // agree to the last bit.
+            const auto extent = hn::Add(
                 hn::Add(
                     hn::Mul(hx, hn::Set(d, std::abs(p.x))), hn::Mul(hy, hn::Set(d, std::abs(p.y)))),
                 hn::Mul(hz, hn::Set(d, std::abs(p.z))));
@@ -42,7 +42,7 @@ void cull_boxes_simd(
                     hn::Add(hn::Mul(cx, hn::Set(d, p.x)), hn::Mul(cy, hn::Set(d, p.y))),
                     hn::Mul(cz, hn::Set(d, p.z))),
                 hn::Set(d, p.w));
-            nearest = hn::Min(nearest, hn::Add(along, reach));
+            nearest = hn::Min(nearest, hn::Add(along, extent));
         }
         const auto one = hn::Set(di, 1);
         const auto mask = hn::RebindMask(di, hn::Ge(nearest, hn::Zero(d)));
@@ -82,13 +82,13 @@ void cull_boxes(
 }
 
 void cull_boxes_by_distance(
-    const Vec3& middle, float radius, const BoxBlock& boxes, int count,
+    const Vec3& center, float radius, const BoxBlock& boxes, int count,
     std::span<std::uint8_t> visible) {
     for (int i = 0; i < count; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        const Vec3 c = boxes.middle(k);
+        const Vec3 c = boxes.center(k);
         const Vec3 h = boxes.half(k);
-        visible[k] &= sphere_touches(middle, radius, {c - h, c + h});
+        visible[k] &= sphere_touches(center, radius, {c - h, c + h});
     }
 }
 
@@ -107,11 +107,11 @@ void cull_boxes_scalar(
     for (int i = 0; i < count; ++i) {
         float nearest = INFINITY;
         for (const Vec4& p : frustum.planes) {
-            const float reach = boxes.half_x[i] * std::abs(p.x) + boxes.half_y[i] * std::abs(p.y)
-                                + boxes.half_z[i] * std::abs(p.z);
+            const float extent = boxes.half_x[i] * std::abs(p.x) + boxes.half_y[i] * std::abs(p.y)
+                                 + boxes.half_z[i] * std::abs(p.z);
             const float along =
                 boxes.center_x[i] * p.x + boxes.center_y[i] * p.y + boxes.center_z[i] * p.z + p.w;
-            nearest = std::min(nearest, along + reach);
+            nearest = std::min(nearest, along + extent);
         }
         visible[static_cast<std::size_t>(i)] = nearest >= 0.0f ? 1 : 0;
     }

@@ -12,7 +12,8 @@ namespace limn {
 
 // Frustum culling: the world-space box of every mesh instance against the five planes of the view
 // frustum (there is no far plane). Conservative: a box is culled only if it lies wholly outside one
-// plane, so no visible box is ever lost; boxes near the frustum's edges may survive unseen.
+// plane, so no visible box is ever lost; boxes near the frustum's edges may survive though not
+// visible.
 //
 // The kernel works on structure-of-arrays blocks with Highway; tests compare it with the scalar
 // version.
@@ -42,14 +43,14 @@ struct BoxBlock {
     alignas(64) float half_y[kCullBlock];
     alignas(64) float half_z[kCullBlock];
 
-    [[nodiscard]] Vec3 middle(std::size_t i) const {
+    [[nodiscard]] Vec3 center(std::size_t i) const {
         return {center_x[i], center_y[i], center_z[i]};
     }
     [[nodiscard]] Vec3 half(std::size_t i) const { return {half_x[i], half_y[i], half_z[i]}; }
-    void set(std::size_t i, const Vec3& middle, const Vec3& half) {
-        center_x[i] = middle.x;
-        center_y[i] = middle.y;
-        center_z[i] = middle.z;
+    void set(std::size_t i, const Vec3& center, const Vec3& half) {
+        center_x[i] = center.x;
+        center_y[i] = center.y;
+        center_z[i] = center.z;
         half_x[i] = half.x;
         half_y[i] = half.y;
         half_z[i] = half.z;
@@ -78,17 +79,19 @@ void cull_boxes(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 
 /// Whether the sphere touches the box (shadow.caster-cull); one of infinite radius touches all.
-[[nodiscard]] inline bool sphere_touches(const Vec3& middle, float radius, const Bounds& box) {
-    const Vec3 outside = glm::max(glm::abs(middle - center(box)) - half_extent(box), Vec3(0));
+[[nodiscard]] inline bool
+sphere_touches(const Vec3& sphere_center, float radius, const Bounds& box) {
+    const Vec3 outside =
+        glm::max(glm::abs(sphere_center - center(box)) - half_extent(box), Vec3(0));
     return glm::dot(outside, outside) <= radius * radius;
 }
 
 /// Clears visible[i] where the sphere does not touch box i.
 void cull_boxes_by_distance(
-    const Vec3& middle, float radius, const BoxBlock& boxes, int count,
+    const Vec3& center, float radius, const BoxBlock& boxes, int count,
     std::span<std::uint8_t> visible);
 
-/// Clears visible[i] where box i lies outside this further frustum.
+/// Clears visible[i] where box i lies outside this additional frustum.
 void cull_visible_boxes(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 

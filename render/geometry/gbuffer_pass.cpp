@@ -20,7 +20,7 @@
 namespace limn {
 namespace {
 
-/// Where no surface is; nothing while the camera stands still.
+/// Fills background pixels; draws nothing while the camera is at rest.
 void draw_sky_velocity(FrameGraph& graph, const gpu::Program* program, const ViewData& view) {
     if (view.camera.previous_clip_from_world == view.camera.unjittered_from_world) {
         return;
@@ -33,7 +33,7 @@ void draw_sky_velocity(FrameGraph& graph, const gpu::Program* program, const Vie
         [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
 }
 
-/// Hybrid shadows look at normals.
+/// Hybrid shadows read normals.
 bool needs_normals(const ViewData& view) {
     const auto* volumes = view.data.find<VolumeList>();
     return volumes != nullptr

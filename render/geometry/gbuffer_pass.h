@@ -20,10 +20,10 @@ namespace limn {
 // a pixel holds one motion, that of the opaque surface behind, which is the sharper. Always finite,
 // at most eight image sizes long; jitter is excluded.
 
-// With forward lighting, which needs no attributes, a depth prepass takes its place.
+// With forward lighting, which needs no attributes, a depth prepass replaces it.
 
-/// Of the depth buffer of a view: with stencil where shadow or light volumes are counted, or where
-/// each pixel is lit once.
+/// Depth format of a view: with stencil if shadow or light volumes use it, or to light each pixel
+/// only once.
 [[nodiscard]] GLenum depth_format(const ViewData& view);
 
 /// Publishes InstanceList in each view.

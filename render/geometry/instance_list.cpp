@@ -23,20 +23,20 @@ namespace {
 
 constexpr std::uint16_t kHidden = 0xffff;
 
-/// How far coarse casters are set back, in departures from their mesh: a departure is across the
-/// surface, this along the light, which may graze it.
-constexpr float kSetBack = 1.5f;
+/// How far coarse casters are moved back, in units of their geometric error: the error is measured
+/// across the surface, this along the light, which may be at a grazing angle.
+constexpr float kErrorScale = 1.5f;
 
 // Of a draw that only compiles (RenderItems::sampled).
 constexpr std::uint32_t kSampledIndices = 3 * 64;
 constexpr std::uint32_t kSampledInstances = 64;
 
-/// Whether `entity` is `whole` or one of its descendants; false if `whole` is null.
-bool is_part_of(const World& world, Entity entity, Entity whole) {
-    if (whole.is_null()) {
+/// Whether `entity` is `root` or one of its descendants; false if `root` is null.
+bool is_part_of(const World& world, Entity entity, Entity root) {
+    if (root.is_null()) {
         return false;
     }
-    while (entity != whole) {
+    while (entity != root) {
         const auto* parent = world.find<Parent>(entity);
         if (parent == nullptr) {
             return false;
@@ -64,10 +64,10 @@ const MeshRange& mesh_of(const RenderItems& items, const DrawState& state) {
     return items.meshes().meshes()[mesh_index(items, state)];
 }
 
-/// CasterVolume's depth where an item is nearest.
+/// Depth of an item's nearest point in the view of a CasterVolume.
 float nearest_depth(const CasterVolume& volume, const RenderItemBlock& block, std::uint32_t i) {
     const Vec3 row = volume.depth_row;
-    return glm::dot(row, block.boxes.middle(i)) + volume.depth_row.w
+    return glm::dot(row, block.boxes.center(i)) + volume.depth_row.w
            - glm::dot(glm::abs(row), block.boxes.half(i));
 }
 
@@ -130,7 +130,7 @@ void InstanceCollector::collect_casters(
         .frustum = volume.frustum,
         .shading = volume.shading,
         .eye = volume.eye,
-        .reach = volume.reach,
+        .range = volume.range,
         .casters = &volume};
     collect_from(items, casters, ring, list);
 }
@@ -150,14 +150,14 @@ void InstanceCollector::collect_from(
     });
 
     commands_.clear();
-    place_keys(items, selection.velocity, list);
+    assign_slots(items, selection.velocity, list);
     list.visible = static_cast<int>(visible_count_);
     list.opaque_instances = static_cast<int>(opaque_count_);
     if (selection.boxes) {
         list.boxes.resize((visible_count_ + kCullBlock - 1) / kCullBlock);
     }
     list.instances = ring.allocate(visible_count_ * sizeof(layout::InstanceRecord));
-    list.before = ring.allocate(selection.velocity ? visible_count_ * sizeof(Affine) : 0);
+    list.previous = ring.allocate(selection.velocity ? visible_count_ * sizeof(Affine) : 0);
     blended_.resize(visible_count_ - opaque_count_);
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
@@ -186,7 +186,7 @@ void InstanceCollector::count_block(
     cull_boxes(selection.frustum, boxes, count, visible);
     if (selection.casters != nullptr) {
         cull_visible_boxes(selection.shading, boxes, count, visible);
-        cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
+        cull_boxes_by_distance(selection.eye, selection.range, boxes, count, visible);
     }
     for (std::uint32_t i = 0; i < block.size(); ++i) {
         DrawKey key = block.keys[i];
@@ -199,7 +199,7 @@ void InstanceCollector::count_block(
             key |= static_cast<DrawKey>(level_of(items, block, i, *selection.casters)) << kLevelBit;
         }
         // Distance to the far side of the box, so that large surroundings (floor, walls) come last.
-        const float far_side = glm::dot(selection.forward, boxes.middle(i) - selection.eye)
+        const float far_side = glm::dot(selection.forward, boxes.center(i) - selection.eye)
                                + glm::dot(glm::abs(selection.forward), boxes.half(i));
         work.local[i] = table.count(key, far_side);
     }
@@ -211,7 +211,7 @@ std::uint32_t InstanceCollector::level_of(
     const DrawState state = draw_state(block.keys[i]);
     const std::vector<CoarseRange>& coarse = mesh_of(items, state).coarse;
     const bool holes = items.materials().batch(state.batch).features.has(kAlphaMask);
-    // Coarse triangles have none where skin was flat before it folded.
+    // Coarse levels are made of the rest mesh: they lack triangles where skin folds.
     const bool folded = state.deformed && items.shapes()[state.index].displacement > 0;
     if (coarse.empty() || state.inflated || holes || folded) {
         return 0;
@@ -226,22 +226,22 @@ std::uint32_t InstanceCollector::level_of(
     return level;
 }
 
-void InstanceCollector::set_back(
+void InstanceCollector::push_back_caster(
     const RenderItems& items, const RenderItemBlock& block, std::uint32_t i, DrawKey key,
     const CasterVolume& volume, Affine& world) {
     const DrawState state = draw_state(key);
     if (state.level == 0) {
         return;
     }
-    const float departure = kSetBack * mesh_of(items, state).coarse[state.level - 1].error
-                            * std::sqrt(largest_scale2(world));
+    const float offset = kErrorScale * mesh_of(items, state).coarse[state.level - 1].error
+                         * std::sqrt(largest_scale2(world));
     if (volume.away != Vec3(0)) {
         for (int axis = 0; axis < 3; ++axis) {
-            world.row[axis].w += departure * volume.away[axis];
+            world.row[axis].w += offset * volume.away[axis];
         }
         return;
     }
-    const float factor = 1 + departure / std::max(nearest_depth(volume, block, i), 1e-6f);
+    const float factor = 1 + offset / std::max(nearest_depth(volume, block, i), 1e-6f);
     for (int axis = 0; axis < 3; ++axis) {
         world.row[axis] *= factor;
         world.row[axis].w += (1 - factor) * volume.eye[axis];
@@ -253,7 +253,7 @@ void InstanceCollector::write_block(
     BlockWork& work, InstanceList& list) {
     const MaterialPool& materials = items.materials();
     auto* instances = reinterpret_cast<layout::InstanceRecord*>(list.instances.data);
-    auto* previous_transforms = reinterpret_cast<Affine*>(list.before.data);
+    auto* previous_transforms = reinterpret_cast<Affine*>(list.previous.data);
     if (work.keys.empty()) {
         return;
     }
@@ -262,30 +262,30 @@ void InstanceCollector::write_block(
             continue;
         }
         KeyCount& kind = work.keys[work.local[i]];
-        const std::uint32_t place = kind.place++;
+        const std::uint32_t slot = kind.slot++;
         Affine a = block.world_at(i, items.time());
         if (selection.casters != nullptr) {
-            set_back(items, block, i, kind.key, *selection.casters, a);
+            push_back_caster(items, block, i, kind.key, *selection.casters, a);
         }
         const std::uint32_t record = materials.record_of(block.surfaces[i].material);
-        instances[place] = {
+        instances[slot] = {
             {a.row[0], a.row[1], a.row[2]},
             record,
             (draw_state(kind.key).mirrored ? 1u : 0u) | materials.model_of(record) << 8,
-            place,
+            slot,
             block.inflation(i)};
         if (selection.boxes) {
-            list.boxes[place / kCullBlock].set(
-                place % kCullBlock, block.boxes.middle(i), block.boxes.half(i));
+            list.boxes[slot / kCullBlock].set(
+                slot % kCullBlock, block.boxes.center(i), block.boxes.half(i));
         }
         if (selection.velocity) {
-            previous_transforms[place] =
+            previous_transforms[slot] =
                 block.world_at(i, items.previous_time(selection.previous_alpha));
         }
         if (is_blended(kind.key)) {
-            const Vec3 middle = transform_point(a, center(items.local_bounds(block, i)));
-            blended_[place - opaque_count_] = {
-                glm::dot(selection.forward, middle), place, kind.key};
+            const Vec3 box_center = transform_point(a, center(items.local_bounds(block, i)));
+            blended_[slot - opaque_count_] = {
+                glm::dot(selection.forward, box_center), slot, kind.key};
         }
     }
 }
@@ -329,23 +329,23 @@ void InstanceCollector::group_keys() {
     });
 }
 
-void InstanceCollector::place_keys(const RenderItems& items, bool velocity, InstanceList& list) {
+void InstanceCollector::assign_slots(const RenderItems& items, bool velocity, InstanceList& list) {
     group_keys();
-    std::uint32_t place = 0;
+    std::uint32_t slot = 0;
     opaque_count_ = 0;
     for (const Group& group : groups_) {
-        const std::uint32_t first = place;
+        const std::uint32_t first = slot;
         for (std::size_t i = group.first_entry; i < group.end_entry; ++i) {
             KeyCount& kind = blocks_[entries_[i].block].keys[entries_[i].local];
-            kind.place = place;
-            place += kind.count;
+            kind.slot = slot;
+            slot += kind.count;
         }
         if (!is_blended(group.key)) {
-            add_command(group.key, first, place - first, items, velocity, list);
-            opaque_count_ = place;
+            add_command(group.key, first, slot - first, items, velocity, list);
+            opaque_count_ = slot;
         }
     }
-    visible_count_ = place;
+    visible_count_ = slot;
 }
 
 void InstanceCollector::order_blended(const RenderItems& items, bool velocity, InstanceList& list) {

@@ -42,7 +42,7 @@ struct InstanceList {
     std::vector<DrawRun> blended;  ///< back to front
     gpu::RingSlice commands;
     gpu::RingSlice instances;  ///< layout::InstanceRecord
-    gpu::RingSlice before;     ///< previous transforms (Affine); empty unless requested
+    gpu::RingSlice previous;   ///< previous transforms (Affine); empty unless requested
     std::span<const DrawCommand>
         command_values;           ///< CPU copy of `commands`, valid until the next collect()
     std::vector<BoxBlock> boxes;  ///< world boxes by instance index; empty unless requested
@@ -54,16 +54,16 @@ struct InstanceList {
     std::int64_t triangles = 0;
 };
 
-/// The region that a light's shadow casters are collected from. Those drawn with coarse triangles
-/// are moved away from the light by what these depart from the mesh, so that where they lie before
-/// a surface they do not shadow it; seen from the light they stay where they are.
+/// The region from which a light's shadow casters are collected. Casters drawn with coarse
+/// triangles are moved away from the light by the geometric error of their level, so that they do
+/// not shadow the mesh itself; their projection onto the light's view does not change.
 struct CasterVolume {
     Frustum frustum;
-    Frustum shading = kEverywhere;  ///< casters outside shade nothing visible
+    Frustum shading = kEverywhere;  ///< the shadows of casters outside fall on nothing visible
     Vec3 eye = {0, 0, 0};
-    float reach = INFINITY;  ///< from the eye [m]
+    float range = INFINITY;  ///< from the eye [m]
     Vec3 away = {0, 0, 0};   ///< unit, along parallel light; 0: light comes from the eye
-    // What a texel of the map is, for the choice of coarse triangles (CoarseTriangles): at `p`,
+    // Texel density of the map, for the choice of coarse triangles (CoarseTriangles): at `p`,
     // texels_per_unit / dot(depth_row, p) texels per meter.
     float texels_per_unit = 0;
     Vec4 depth_row = {0, 0, 0, 1};
@@ -73,7 +73,7 @@ struct CasterVolume {
 /// Reuses its memory from frame to frame.
 class InstanceCollector {
   public:
-    /// Culls, sorts and writes into `ring`. `velocity` also fills `before`; `boxes` the boxes.
+    /// Culls, sorts and writes into `ring`. `velocity` also fills `previous`, `boxes` the boxes.
     void collect(
         const RenderItems& items, const RenderView& view, bool velocity, gpu::RingBuffer& ring,
         InstanceList& list, bool boxes = false);
@@ -83,16 +83,16 @@ class InstanceCollector {
         InstanceList& list);
 
   private:
-    /// Which items.
+    /// Which items to collect.
     struct Selection {
         Frustum frustum;
-        Frustum shading = kEverywhere;  ///< of casters
+        Frustum shading = kEverywhere;  ///< for casters
         Vec3 eye = {0, 0, 0};
         Vec3 forward = {0, 0, 0};
-        float reach = INFINITY;
+        float range = INFINITY;
         float previous_alpha = 0;
         bool velocity = false;
-        const CasterVolume* casters = nullptr;  ///< null: not of casters
+        const CasterVolume* casters = nullptr;  ///< null: not for shadow casters
         Entity hidden = {};
         bool boxes = false;
     };
@@ -100,7 +100,7 @@ class InstanceCollector {
     struct KeyCount {
         DrawKey key = 0;
         std::uint32_t count = 0;
-        std::uint32_t place = 0;
+        std::uint32_t slot = 0;
         float distance = INFINITY;  ///< to the far side of the nearest box [m]
     };
     struct BlockWork {
@@ -130,23 +130,23 @@ class InstanceCollector {
     void collect_from(
         const RenderItems& items, const Selection& selection, gpu::RingBuffer& ring,
         InstanceList& list);
-    /// Culls a block and counts the keys of what is visible.
+    /// Culls a block and counts the keys of its visible items.
     void count_block(
         const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
         BlockWork& work) const;
-    /// The level of coarse triangles that `volume` needs of an item: DrawState::level.
+    /// The coarsest level of an item that is fine enough for `volume`: DrawState::level.
     static std::uint32_t level_of(
         const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
         const CasterVolume& volume);
-    /// Moves a caster away from the light by what the triangles of its key depart from its mesh.
-    static void set_back(
+    /// Moves a caster away from the light by the geometric error of its level.
+    static void push_back_caster(
         const RenderItems& items, const RenderItemBlock& block, std::uint32_t i, DrawKey key,
         const CasterVolume& volume, Affine& world);
     void write_block(
         const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
         BlockWork& work, InstanceList& list);
     void group_keys();
-    void place_keys(const RenderItems& items, bool velocity, InstanceList& list);
+    void assign_slots(const RenderItems& items, bool velocity, InstanceList& list);
     void order_blended(const RenderItems& items, bool velocity, InstanceList& list);
     void add_command(
         DrawKey key, std::uint32_t first, std::uint32_t count, const RenderItems& items,

@@ -46,7 +46,7 @@ Vec2 second_uv(const MeshData& mesh, std::size_t i) {
     return i < mesh.uvs1.size() ? mesh.uvs1[i] : first_uv(mesh, i);
 }
 
-/// Writes what `pack(mesh, i)` makes of every vertex.
+/// Writes `pack(mesh, i)` for every vertex i.
 template <typename Pack>
 void write_stream(
     VertexStreams& streams, VertexStream stream, std::uint32_t first, const MeshData& mesh,
@@ -86,7 +86,7 @@ void MeshPool::update(std::span<const MeshData> meshes) {
     const std::size_t known = std::min(meshes_.size(), meshes.size());
     meshes_.resize(std::max(meshes_.size(), meshes.size()));
     std::vector<char> drawable(meshes.size());
-    std::vector<const MeshData*> fresh(meshes.size());  // of which coarser levels are made
+    std::vector<const MeshData*> fresh(meshes.size());  // to be simplified
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i >= known || meshes_[i].version != meshes[i].version) {
             drawable[i] = is_drawable(meshes[i]) ? 1 : 0;

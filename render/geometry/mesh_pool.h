@@ -14,7 +14,7 @@ namespace limn {
 // All meshes in one set of vertex streams and one index buffer, so that a multi-draw covers any of
 // them without a state change. Full buffers are replaced by ones twice as large, copied on the GPU.
 // A mesh that was edited or freed (MeshData::version) is uploaded anew; its old range is reused.
-// Coarser triangles are made of new meshes only: what is edited once may be edited every frame.
+// Only new meshes get coarser triangles: a mesh that is edited once may be edited every frame.
 
 /// Coarser triangles of a mesh, for its shadows.
 struct CoarseRange {
@@ -40,8 +40,8 @@ class MeshPool {
   public:
     MeshPool();
 
-    /// Uploads the meshes beyond those it has, and those of another version than before. A mesh
-    /// with an out-of-range index or without triangles is logged and draws nothing.
+    /// Uploads new meshes, and those whose version has changed. A mesh with an out-of-range index
+    /// or without triangles is logged and draws nothing.
     void update(std::span<const MeshData> meshes);
     /// Removes all meshes; the buffers stay allocated.
     void clear();

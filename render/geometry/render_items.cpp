@@ -48,7 +48,7 @@ bool has_changed(const ChunkView& chunk, std::uint32_t since) {
 }  // namespace
 
 Bounds RenderItemBlock::box(std::size_t i) const {
-    return {boxes.middle(i) - boxes.half(i), boxes.middle(i) + boxes.half(i)};
+    return {boxes.center(i) - boxes.half(i), boxes.center(i) + boxes.half(i)};
 }
 
 Bounds RenderItems::local_bounds(const RenderItemBlock& block, std::size_t i) const {
@@ -83,7 +83,7 @@ void RenderItems::update(
     std::atomic<std::size_t> refreshed = 0;
     query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
-                         std::span<const PreviousWorldTransform> before,
+                         std::span<const PreviousWorldTransform> previous,
                          std::span<const Inflate> inflate) {
         RenderItemBlock& block = *blocks_[chunk.index()];
         const bool kept = same_sources && block.archetype_ == &chunk.archetype()
@@ -93,7 +93,7 @@ void RenderItems::update(
         block.entities = chunk.entities();
         block.surfaces = surfaces;
         block.now = now;
-        block.before = before;
+        block.previous = previous;
         block.inflate = inflate;
         block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
         block.casts_shadows = !chunk.has<NoShadow>();
@@ -126,16 +126,16 @@ void RenderItems::add_particles() {
                 copies.entities.assign(end - first, entity);
                 copies.surfaces.clear();
                 copies.now.clear();
-                copies.before.clear();
+                copies.previous.clear();
                 for (std::size_t i = first; i < end; ++i) {
                     copies.surfaces.push_back({particles[i].mesh, mesh.material});
                     copies.now.push_back({particles[i].now});
-                    copies.before.push_back({particles[i].before});
+                    copies.previous.push_back({particles[i].before});
                 }
                 block.entities = copies.entities;
                 block.surfaces = copies.surfaces;
                 block.now = copies.now;
-                block.before = copies.before;
+                block.previous = copies.previous;
                 block.inflate = {};
                 block.jumps = nullptr;
                 block.casts_shadows = !world_->has<NoShadow>(entity);
@@ -165,14 +165,14 @@ void RenderItems::refresh(RenderItemBlock& block) const {
             const Bounds& own = deformed ? (*shapes_)[shape].bounds : meshes[mesh].bounds;
             const Bounds local = block.inflate.empty() ? own : inflated(own, block.inflate[i]);
             const Affine a = block.world_at(i, time());
-            const Vec3 middle = transform_point(a, center(local));
+            const Vec3 box_center = transform_point(a, center(local));
             const Vec3 half = transform_half_extent(a, half_extent(local));
             det = determinant(a);
-            // One sum that is not finite if any part is not.
-            const float sum =
-                middle.x + middle.y + middle.z + half.x + half.y + half.z + std::abs(det);
+            // The sum is not finite if any term is not.
+            const float sum = box_center.x + box_center.y + box_center.z + half.x + half.y + half.z
+                              + std::abs(det);
             if (std::abs(sum) < INFINITY) {
-                c = middle;
+                c = box_center;
                 h = half;
             }
         }

@@ -23,13 +23,13 @@ class World;
 // frame. The camera, faces of probes, mirrors, shadow maps and shadow volumes all cull and draw
 // these items; nothing else asks the world for meshes.
 //
-// Items are in blocks, one per chunk of the world and in its order. A block whose chunk neither
-// changed nor moves since the last frame is kept: change versions of its columns tell. In a world
-// at rest a frame costs one comparison per chunk.
+// Items are in blocks, one per chunk of the world and in its order. A block is kept if its chunk,
+// by the change versions of its columns, has neither changed nor moved since the last frame. In a
+// world at rest a frame costs one comparison per chunk.
 
 // Particles that are meshes (ParticleMesh) are items, too, in blocks after those of the world.
 
-/// Draw state of an item as a number, by which items are sorted and counted. From the high bits:
+/// Draw state of an item as a number, by which items are sorted and counted. From high bits to low:
 /// blended, inflated, deformed, batch (28 bits), mirrored, level of coarse triangles (3 bits),
 /// index of the mesh or, if deformed, of the deformed instance (29 bits).
 using DrawKey = std::uint64_t;
@@ -70,16 +70,16 @@ struct RenderItemBlock {
     std::span<const Entity> entities;
     std::span<const MeshInstance> surfaces;
     std::span<const WorldTransform> now;
-    std::span<const PreviousWorldTransform> before;  ///< empty: static
-    std::span<const Inflate> inflate;                ///< empty: not inflated
-    const StepJumps* jumps = nullptr;                ///< null: none in the last step
-    bool casts_shadows = true;                       ///< no NoShadow
+    std::span<const PreviousWorldTransform> previous;  ///< empty: static
+    std::span<const Inflate> inflate;                  ///< empty: not inflated
+    const StepJumps* jumps = nullptr;                  ///< null: none in the last step
+    bool casts_shadows = true;                         ///< no NoShadow
 
-    /// World-space boxes. What cannot be drawn (no such mesh, no triangles, a transform that is not
-    /// finite) has a box that no frustum contains.
+    /// World-space boxes. Items that cannot be drawn (no such mesh, no triangles, a transform that
+    /// is not finite) have a box outside every frustum.
     BoxBlock boxes;
     DrawKey keys[kCullBlock];
-    /// Hash of all that a shadow map shows of the item; 0: blended, casts no shadow. Made by
+    /// Hash of everything that changes the item's shadow; 0: blended, casts no shadow. Computed by
     /// RenderItems::hash_casters().
     std::uint64_t caster_hashes[kCullBlock];
 
@@ -88,32 +88,32 @@ struct RenderItemBlock {
         return inflate.empty() ? 0.0f : inflate[i].distance;
     }
     [[nodiscard]] Affine world_at(std::size_t i, const StepTime& time) const {
-        if (before.empty() || (time.alpha == 1.0f && time.shown == 1.0f)) {
+        if (previous.empty() || (time.alpha == 1.0f && time.shown == 1.0f)) {
             return now[i].world;
         }
-        return jumps == nullptr ? mix_affine(before[i].world, now[i].world, time.alpha)
-                                : limn::world_at(jumps, entities[i], now[i], &before[i], time);
+        return jumps == nullptr ? mix_affine(previous[i].world, now[i].world, time.alpha)
+                                : limn::world_at(jumps, entities[i], now[i], &previous[i], time);
     }
     [[nodiscard]] bool is_drawable(std::size_t i) const { return boxes.half_x[i] >= 0; }
     [[nodiscard]] Bounds box(std::size_t i) const;
 
   private:
     friend class RenderItems;
-    /// What the block was made of.
+    /// The rows that the block was built from.
     const Archetype* archetype_ = nullptr;
     std::uint32_t first_row_ = 0;
     bool hashed_ = false;
-    /// Items that are no rows of the world: the spans are these.
+    /// Items that are not rows of the world: the spans refer to these.
     struct Copies {
         std::vector<Entity> entities;
         std::vector<MeshInstance> surfaces;
         std::vector<WorldTransform> now;
-        std::vector<PreviousWorldTransform> before;
+        std::vector<PreviousWorldTransform> previous;
     };
     Copies copies_;
 };
 
-/// Reuses its memory, and keeps what did not change, from frame to frame.
+/// Reuses its memory, and keeps unchanged blocks, from frame to frame.
 class RenderItems {
   public:
     /// Reads the world at `alpha`. Call after `shapes` was updated.
@@ -128,7 +128,7 @@ class RenderItems {
     [[nodiscard]] const RenderItemBlock& block(std::size_t i) const { return *blocks_[i]; }
     /// Number of items, whether they can be drawn or not.
     [[nodiscard]] std::size_t size() const { return size_; }
-    /// Blocks that the last update() had to make anew.
+    /// Blocks that the last update() rebuilt.
     [[nodiscard]] std::size_t refreshed() const { return refreshed_; }
 
     /// Fills caster_hashes of all blocks.
@@ -161,7 +161,7 @@ class RenderItems {
     const MaterialPool* materials_ = nullptr;
     DeformedList* shapes_ = nullptr;
     float alpha_ = 1;
-    // Of the last update, to know what changed.
+    // State of the last update, to detect changes.
     std::uint32_t epoch_ = 0;
     std::uint32_t version_ = 0;
     std::uint64_t mesh_revision_ = 0;

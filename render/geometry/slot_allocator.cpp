@@ -24,10 +24,10 @@ std::optional<std::uint32_t> SlotAllocator::allocate(std::uint32_t count) {
     return std::nullopt;
 }
 
-std::uint32_t SlotAllocator::allocate_or_grow(std::uint32_t count, std::uint32_t least) {
+std::uint32_t SlotAllocator::allocate_or_grow(std::uint32_t count, std::uint32_t min_capacity) {
     std::optional<std::uint32_t> first = allocate(count);
     if (!first) {
-        grow(std::max({capacity_ + count, 2 * capacity_, least}));
+        grow(std::max({capacity_ + count, 2 * capacity_, min_capacity}));
         first = allocate(count);
     }
     return *first;

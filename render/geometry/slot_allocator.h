@@ -12,9 +12,10 @@ class SlotAllocator {
   public:
     /// First of `count` > 0 consecutive items; nullopt if no free range is large enough.
     [[nodiscard]] std::optional<std::uint32_t> allocate(std::uint32_t count);
-    /// The same; grows to at least twice the capacity, and to at least `least`, where there is no
-    /// such range.
-    [[nodiscard]] std::uint32_t allocate_or_grow(std::uint32_t count, std::uint32_t least = 0);
+    /// The same; if there is no such range, grows to at least twice the capacity and at least
+    /// `min_capacity`.
+    [[nodiscard]] std::uint32_t
+    allocate_or_grow(std::uint32_t count, std::uint32_t min_capacity = 0);
     /// Frees a range returned by allocate(count).
     void release(std::uint32_t first, std::uint32_t count);
     /// Adds free items at the end; `capacity` must not shrink.

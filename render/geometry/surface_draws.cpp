@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-/// The instance streams point into this frame's part of the ring.
+/// Points the instance streams at this frame's part of the ring buffer.
 void set_instance_streams(gpu::VertexArray& vertices, const InstanceList& list) {
     const GLuint id = vertices.id();
     glVertexArrayVertexBuffer(
@@ -22,7 +22,7 @@ void set_instance_streams(gpu::VertexArray& vertices, const InstanceList& list) 
         sizeof(layout::InstanceRecord));
     glVertexArrayBindingDivisor(id, kInstanceStream, 1);
     // No program reads this stream when it is empty, but something must be bound.
-    const gpu::RingSlice& previous = list.before.size > 0 ? list.before : list.instances;
+    const gpu::RingSlice& previous = list.previous.size > 0 ? list.previous : list.instances;
     glVertexArrayVertexBuffer(
         id, kPreviousTransformStream, previous.buffer, static_cast<GLintptr>(previous.offset),
         sizeof(Affine));
@@ -41,8 +41,7 @@ void draw_commands(
         static_cast<int>(count));
 }
 
-/// Draws a run for its depth: `programs` get no more features than decide where its points are and
-/// where there are holes.
+/// Draws a run for its depth: `programs` get only the features that move vertices or make holes.
 void draw_depth(
     PassContext& context, const ViewData& view, const InstanceList& list, const DrawRun& run,
     ProgramVariants& programs, const gpu::PipelineState& state) {
@@ -68,7 +67,7 @@ void draw_depth(
 
 SurfaceFeatures program_features(SurfaceFeatures features, std::uint32_t more) {
     features.bits |= more;
-    // A vertex that is not measured for its motion is drawn alike wherever it comes from.
+    // Without velocity the program does not depend on whether vertices are deformed.
     features.bits &= features.has(kVelocity) ? ~0u : ~std::uint32_t{kDeformed};
     return features;
 }

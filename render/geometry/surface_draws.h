@@ -17,18 +17,18 @@ namespace limn {
 
 /// What every run of a pass has in common.
 struct SurfaceDraw {
-    const Variant* variant = nullptr;  ///< of the programs, beside the features of the surface
-    std::uint32_t features = 0;        ///< of SurfaceFeature, beside those of the surface
-    gpu::PipelineState state;          ///< winding and culled sides are those of each run
-    int light = -1;                    ///< uniform light_index of programs that light with one
+    const Variant* variant = nullptr;  ///< of the programs, added to the surface's features
+    std::uint32_t features = 0;        ///< of SurfaceFeature, added to those of the surface
+    gpu::PipelineState state;          ///< winding and culled faces are set per run
+    int light = -1;  ///< uniform light_index, if the programs shade a single light
 };
 
 void draw_runs(
     PassContext& context, const ViewData& view, std::span<const DrawRun> runs,
     ProgramVariants& programs, const SurfaceDraw& draw);
 
-/// Draws the objects that single lights reach: `runs` of `commands`, indirect draw commands in
-/// place of those of the instance list.
+/// Draws the objects that single lights affect: `runs` of `commands`, indirect draw commands that
+/// replace those of the instance list.
 void draw_light_runs(
     PassContext& context, const ViewData& view, std::span<const LightRun> runs,
     const gpu::RingSlice& commands, ProgramVariants& programs, const SurfaceDraw& draw);
@@ -38,14 +38,15 @@ void draw_depths(
     PassContext& context, const ViewData& view, std::span<const DrawRun> runs,
     ProgramVariants& programs);
 
-/// Draws shadow casters for their depth alone, both sides: `programs` get no more features than
+/// Draws shadow casters for their depth alone, both sides: `programs` get only the features that
 /// decide where a surface has holes.
 void draw_casters(
     PassContext& context, const ViewData& view, const InstanceList& casters,
     ProgramVariants& programs, const gpu::PipelineState& state);
 
-/// Draws the opaque instances for where they are and were, without their materials, visible sides
-/// only; needs the view's velocity. `prepare(program)` sets the uniforms of each program.
+/// Draws the opaque instances with their current and previous positions, without their materials,
+/// visible sides only; needs the view's velocity. `prepare(program)` sets the uniforms of each
+/// program.
 template <typename Prepare>
 void draw_motions(
     PassContext& context, const ViewData& view, ProgramVariants& programs,
@@ -56,29 +57,29 @@ struct DrawnImages {
     std::vector<const gpu::Texture*> arrays;
 };
 
-/// The same, of images that are lit texel by texel.
+/// The same, for images that are lit texel by texel.
 struct ShadedImages {
     std::vector<const gpu::Texture*> arrays;
 };
 
-/// The same, of normal maps that are composed of several.
+/// The same, for normal maps that are composed of several.
 struct WrinkledImages {
     std::vector<const gpu::Texture*> arrays;
 };
 
-/// `reads`, the DrawnImages, the ShadedImages, the WrinkledImages and, where meshes are deformed in
-/// this frame, their vertices: what passes that call the functions above must declare.
+/// What passes that call the functions above must declare: `reads`, the DrawnImages, the
+/// ShadedImages, the WrinkledImages and, if meshes are deformed in this frame, their vertices.
 [[nodiscard]] std::vector<Use>
 mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {});
 
 // ---- parts of the above ----
 
-/// Of a surface, what decides where the vertices of its mesh are drawn.
+/// The features of a surface that move the vertices of its mesh.
 [[nodiscard]] SurfaceFeatures moving_features(const SurfaceFeatures& features);
 
 /// Binds instance streams, material records and draw commands of a list.
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list);
-/// `state` with the sides culled that a run does not show.
+/// `state` with the face culling of a run.
 [[nodiscard]] gpu::PipelineState visible_sides(gpu::PipelineState state, const DrawRun& run);
 void draw_run(
     gpu::Device& device, const FrameData& frame, const InstanceList& list, const DrawRun& run);

@@ -15,8 +15,8 @@ namespace limn {
 namespace {
 
 constexpr float kMaxCells = 128;  // along an axis
-/// Entries per triangle, on average: long thin triangles reach through far more cells than a
-/// surface of that many has.
+/// Mean entries per triangle: long thin triangles cross far more cells than the triangles of an
+/// ordinary surface.
 constexpr std::size_t kMaxEntries = 32;
 
 template <typename Visit>
@@ -58,7 +58,8 @@ TriangleGrid::TriangleGrid(std::span<const Vec3> positions, std::span<const std:
         low_ = glm::min(low_, positions[index]);
         high = glm::max(high, positions[index]);
     }
-    // Surfaces fill a share of the cells that grows as the area: sides as the square root.
+    // A surface of n triangles covers about as many cells as triangles if the grid has sqrt(n)
+    // cells a side.
     const Vec3 size = high - low_;
     const float longest = std::max({size.x, size.y, size.z, 1e-6f});
     const auto count = static_cast<float>(indices.size() / 3);
@@ -124,17 +125,18 @@ std::size_t TriangleGrid::number_of(const IVec3& cell) const {
 float TriangleGrid::distance(const Vec3& p, float enough) const {
     const IVec3 center = cell_of(p);
     const int rings = std::max({cells_.x, cells_.y, cells_.z});
-    // How far at least the cells beyond a ring are from p, where there are any on that side.
+    // Lower bound of the distance from p to the cells beyond a ring, on the sides where there are
+    // any.
     const auto beyond = [&](int ring) {
-        float least = INFINITY;
+        float bound = INFINITY;
         for (int axis = 0; axis < 3; ++axis) {
             const float at = (p[axis] - low_[axis]) / side_;
             const int low = center[axis] - ring;
             const int high = center[axis] + ring + 1;
-            least = low > 0 ? std::min(least, at - static_cast<float>(low)) : least;
-            least = high < cells_[axis] ? std::min(least, static_cast<float>(high) - at) : least;
+            bound = low > 0 ? std::min(bound, at - static_cast<float>(low)) : bound;
+            bound = high < cells_[axis] ? std::min(bound, static_cast<float>(high) - at) : bound;
         }
-        return (least - 0.001f) * side_;  // against rounding
+        return (bound - 0.001f) * side_;  // against rounding
     };
     float nearest = INFINITY;
     for (int ring = 0; ring <= rings; ++ring) {

@@ -17,11 +17,11 @@ class TriangleGrid {
     /// must outlive the grid.
     TriangleGrid(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 
-    /// The distance of `p` from the nearest triangle, or any that is at most `enough` [m].
+    /// Distance from `p` to the nearest triangle, or to any triangle within `enough` [m].
     [[nodiscard]] float distance(const Vec3& p, float enough) const;
 
-    /// Triangles in all cells together: at most 32 times their number, unless a single cell or a
-    /// few have all of them.
+    /// Triangle references in all cells: at most 32 per triangle, unless the grid has only one or a
+    /// few cells.
     [[nodiscard]] std::size_t entries() const { return triangles_.size(); }
 
   private:
@@ -38,8 +38,8 @@ class TriangleGrid {
     Vec3 low_ = {0, 0, 0};
     float side_ = 1;                        ///< of a cell [m]
     IVec3 cells_ = {1, 1, 1};               ///< along each axis
-    std::vector<std::uint32_t> first_;      ///< by cell, and the end
-    std::vector<std::uint32_t> triangles_;  ///< of one cell after the other
+    std::vector<std::uint32_t> first_;      ///< start of each cell's list, plus the end
+    std::vector<std::uint32_t> triangles_;  ///< the cells' lists, one after the other
     std::vector<Box> boxes_;                ///< around each triangle
 };
 

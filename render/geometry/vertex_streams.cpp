@@ -20,7 +20,7 @@ struct StreamInfo {
     const char* name;
     std::size_t stride;
     bool always;              ///< every mesh has it
-    VertexStream stand_in{};  ///< read in its place while it is absent; itself: a constant
+    VertexStream stand_in{};  ///< read instead while it is absent; itself: a constant
 };
 /// In the order of VertexStream.
 constexpr StreamInfo kStreams[kVertexStreams] = {

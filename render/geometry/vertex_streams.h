@@ -10,9 +10,9 @@
 
 namespace limn {
 
-// The vertex attributes of meshes as named streams, a buffer each: a pass fetches what its shader
-// declares, and what no mesh has takes no memory. A further stream is one row of the table in
-// vertex_streams.cpp, its packing in mesh_pool.cpp and its input in lib/mesh_vertex.glsl.
+// The vertex attributes of meshes as named streams, one buffer each: a pass fetches what its shader
+// declares, and an attribute that no mesh has takes no memory. A further stream is one row of the
+// table in vertex_streams.cpp, its packing in mesh_pool.cpp and its input in lib/mesh_vertex.glsl.
 // Techniques: shade.pipeline-model
 
 enum class VertexStream : std::uint8_t {
@@ -34,7 +34,7 @@ struct PackedFrame {
 };
 static_assert(sizeof(PackedFrame) == 16);
 
-/// Further vertex buffer bindings of mesh.vert: per instance, bound by whoever draws.
+/// Additional vertex buffer bindings of mesh.vert: per instance, bound by the pass that draws.
 inline constexpr unsigned kInstanceStream = kVertexStreams;
 inline constexpr unsigned kPreviousTransformStream = kVertexStreams + 1;
 
@@ -50,9 +50,9 @@ class VertexStreams {
   public:
     explicit VertexStreams(std::string name);
 
-    /// Grows to `capacity` vertices; keeps all.
+    /// Grows to `capacity` vertices; keeps their contents.
     void reserve(std::uint32_t capacity);
-    /// Creates an absent stream, with the values that stood in for it.
+    /// Creates an absent stream, filled with the values that were read instead of it.
     void require(VertexStream stream);
     [[nodiscard]] bool has(VertexStream stream) const {
         return static_cast<bool>(buffers_[static_cast<std::size_t>(stream)]);

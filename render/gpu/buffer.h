@@ -28,8 +28,8 @@ class Buffer {
                              : Buffer(label, items.size_bytes(), BufferUse::Static, items.data());
     }
 
-    /// Replaces bytes from `offset` on, within bounds; Dynamic buffers only. The first one after
-    /// clear() or copy_from() waits for the GPU: not for every frame.
+    /// Replaces bytes from `offset` on, within bounds; Dynamic buffers only. The first write after
+    /// clear() or copy_from() waits for the GPU: do not do this every frame.
     void write(std::size_t offset, std::span<const std::byte> bytes);
     template <typename T>
     void write(std::size_t offset, std::span<const T> items) {
@@ -37,8 +37,8 @@ class Buffer {
         write(offset, std::as_bytes(items));
     }
 
-    /// Sets its first `bytes`, all by default, to the 32-bit `word`, on the GPU. Contents are not
-    /// what const is about here, as in textures.
+    /// Sets its first `bytes`, all by default, to the 32-bit `word`, on the GPU. As in textures,
+    /// const does not protect the contents.
     void clear(std::uint32_t word, std::size_t bytes) const;
     void clear(std::uint32_t word) const { clear(word, size_); }
     /// Copies `bytes` of another buffer, within bounds of both, on the GPU.

@@ -24,9 +24,8 @@ class Context;
 
 struct ContextDesc {
     bool debug =
-        kDebugContextByDefault;  ///< errors become messages (and tests fail); costs some speed
-    const Context* share =
-        nullptr;  ///< a context whose buffers, textures and programs this one sees
+        kDebugContextByDefault;      ///< errors become messages (and tests fail); costs some speed
+    const Context* share = nullptr;  ///< share buffers, textures and programs with this context
 };
 
 /// Creates the context and makes it current on this thread.

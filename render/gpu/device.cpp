@@ -83,13 +83,13 @@ void Device::invalidate_state() {
     images_.fill({.texture = kUnknown});
     uniforms_.fill({.buffer = kUnknown});
     storage_.fill({.buffer = kUnknown});
-    seen_deletions_ = deletion_count();
+    known_deletions_ = deletion_count();
 }
 
 void Device::invalidate_deleted_objects() {
     // OpenGL unbinds deleted names and may reuse them for other objects. Programs and framebuffers
     // deleted while bound are handled the same way.
-    if (seen_deletions_ != deletion_count()) {
+    if (known_deletions_ != deletion_count()) {
         const bool state_known = state_known_;
         const std::array<int, 4> viewport = viewport_;
         const std::array<int, 4> scissor = scissor_;

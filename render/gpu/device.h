@@ -92,15 +92,15 @@ class Device {
     void draw_ids(int count);
     /// Points without attributes, from gl_VertexID 0 .. count - 1.
     void draw_points(int count);
-    /// Quads without attributes: corner gl_VertexID % 4 of quad gl_VertexID / 4, as a strip has
-    /// them. In one piece up to kQuadsAtOnce; not instances, which waste lanes on so few vertices.
+    /// Quads without attributes: corner gl_VertexID % 4 of quad gl_VertexID / 4, in strip order. A
+    /// single draw up to kQuadsAtOnce; not instanced, which would waste lanes on so few vertices.
     void draw_quads(int count);
-    static constexpr int kQuadsAtOnce = 16384;  ///< whose vertices 16 bits can name
+    static constexpr int kQuadsAtOnce = 16384;  ///< limited by 16-bit vertex indices
     /// One triangle that covers the viewport, from gl_VertexID alone.
     void draw_fullscreen();
     void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
-    /// Between dispatches of one pass of the frame graph: later ones see what earlier ones have
-    /// written to storage buffers. The graph does this between passes.
+    /// Between dispatches of one pass of the frame graph: makes storage buffer writes of earlier
+    /// dispatches visible to later ones. The graph does this between passes.
     void storage_barrier();
     /// As many groups of `group` x `group` as cover `width` x `height` items.
     void dispatch_over(int width, int height, int group);
@@ -181,7 +181,7 @@ class Device {
     std::array<ImageBinding, 8> images_ = {};
     std::array<BufferBinding, kUnits> uniforms_ = {};
     std::array<BufferBinding, kUnits> storage_ = {};
-    std::uint64_t seen_deletions_ = 0;
+    std::uint64_t known_deletions_ = 0;
 };
 
 /// Loads the program and combines it with `state`.

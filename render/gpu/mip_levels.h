@@ -10,9 +10,9 @@ class Device;
 class Program;
 }  // namespace gpu
 
-// The mip levels of a 2D texture of floats that was drawn or computed. A software OpenGL has
-// glGenerateTextureMipmap; drivers of GPUs do that by drawing, which is slow on those made for
-// computing (subsurface_pass.h), so that there a compute shader does it.
+// The mip levels of a 2D texture of floats that was drawn or computed. A software OpenGL uses
+// glGenerateTextureMipmap; drivers of GPUs implement that by drawing, which is slow on data-center
+// GPUs (subsurface_pass.h), so there a compute shader does it.
 //
 // Shaders  mip_level.comp
 

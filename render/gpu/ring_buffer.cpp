@@ -74,16 +74,17 @@ RingSlice RingBuffer::allocate(std::size_t size, std::size_t alignment) {
     const std::uint64_t needed = std::max<std::uint64_t>(size, 1);
     for (int attempt = 0;; ++attempt) {
         const std::uint64_t lap = head_ / capacity_ * capacity_;
-        std::uint64_t place = round_up(head_ - lap, step);
-        std::uint64_t start = lap + place;
-        if (place + needed > capacity_) {
+        std::uint64_t offset = round_up(head_ - lap, step);
+        std::uint64_t start = lap + offset;
+        if (offset + needed > capacity_) {
             start = lap + capacity_;  // too little left at the end: wrap around
-            place = 0;
+            offset = 0;
         }
         if (needed <= capacity_ && start + needed - tail_ <= capacity_) {
             head_ = start + needed;
             return {
-                current_.data + place, current_.object.id(), static_cast<std::size_t>(place), size};
+                current_.data + offset, current_.object.id(), static_cast<std::size_t>(offset),
+                size};
         }
         if (attempt == 0) {
             free_done_frames(

@@ -66,8 +66,8 @@ class Assembler {
   public:
     Assembler(
         const ShaderFiles& files, const std::vector<ShaderDefine>& defines,
-        std::vector<ShaderFileVersion>* seen)
-        : files_(files), defines_(defines), seen_(seen) {}
+        std::vector<ShaderFileVersion>* requested)
+        : files_(files), defines_(defines), requested_(requested) {}
 
     Result<ShaderSource> run(std::string_view path) {
         const Status status = add_file(path, "shader");
@@ -78,14 +78,14 @@ class Assembler {
     }
 
   private:
-    /// `place` prefixes the error message if the file is missing.
-    Status add_file(std::string_view path, const std::string& place) {
-        if (seen_ != nullptr) {
-            seen_->push_back({std::string(path), files_.version(path)});
+    /// `location` prefixes the error message if the file is missing.
+    Status add_file(std::string_view path, const std::string& location) {
+        if (requested_ != nullptr) {
+            requested_->push_back({std::string(path), files_.version(path)});
         }
         const std::optional<std::string> body = files_.read(path);
         if (!body) {
-            return fail("{}: no file {} found, expected it in the shader folder", place, path);
+            return fail("{}: no file {} found, expected it in the shader folder", location, path);
         }
         const auto number = source_.files.size();
         source_.files.emplace_back(path);
@@ -206,16 +206,16 @@ class Assembler {
     void emit(std::string_view text, std::size_t number, int line) {
         source_.text += text;
         source_.text += '\n';
-        source_.places.push_back(
+        source_.lines.push_back(
             {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(line)});
     }
 
     Status add_include(std::string_view argument, int line, std::size_t number) {
-        const std::string place = fmt::format("{}:{}", source_.files[number], line);
+        const std::string location = fmt::format("{}:{}", source_.files[number], line);
         const std::size_t end = argument.find('"', 1);
         if (argument.size() < 3 || argument.front() != '"' || end == std::string_view::npos
             || end == 1) {
-            return fail("{}: '#include {}' found, expected #include \"path\"", place, argument);
+            return fail("{}: '#include {}' found, expected #include \"path\"", location, argument);
         }
         constexpr std::string_view kRootInCpp = "render/shaders/";
         std::string_view wanted = argument.substr(1, end - 1);
@@ -225,7 +225,7 @@ class Assembler {
         std::optional<std::string> path = clean_path(wanted);
         if (!path) {
             return fail(
-                "{}: include of '{}' found, expected a path inside the shader folder", place,
+                "{}: include of '{}' found, expected a path inside the shader folder", location,
                 wanted);
         }
         if (!files_.read(*path)) {
@@ -242,12 +242,12 @@ class Assembler {
             for (auto it = cycle; it != open_.end(); ++it) {
                 chain += *it + " -> ";
             }
-            return fail("{}: include cycle {}{} found, expected none", place, chain, *path);
+            return fail("{}: include cycle {}{} found, expected none", location, chain, *path);
         }
         if (std::find(source_.files.begin(), source_.files.end(), *path) != source_.files.end()) {
             return Done{};  // each file once
         }
-        return add_file(*path, place);
+        return add_file(*path, location);
     }
 
     static std::string_view take_line(std::string_view& body) {
@@ -262,7 +262,7 @@ class Assembler {
 
     const ShaderFiles& files_;
     const std::vector<ShaderDefine>& defines_;
-    std::vector<ShaderFileVersion>* seen_;
+    std::vector<ShaderFileVersion>* requested_;
     ShaderSource source_;
     std::vector<std::string> open_;  // files that are being read, outermost first
 };
@@ -333,8 +333,8 @@ std::uint64_t ShaderFiles::version(std::string_view path) const {
 
 Result<ShaderSource> assemble_shader(
     const ShaderFiles& files, std::string_view path, const std::vector<ShaderDefine>& defines,
-    std::vector<ShaderFileVersion>* files_seen) {
-    return Assembler(files, defines, files_seen).run(path);
+    std::vector<ShaderFileVersion>* requested) {
+    return Assembler(files, defines, requested).run(path);
 }
 
 namespace {
@@ -355,7 +355,7 @@ bool take_number(std::string_view& text, std::size_t& number) {
 }
 
 /// If `line` begins with a source location, removes it and stores its line number.
-bool take_place(std::string_view& line, std::size_t& number) {
+bool take_location(std::string_view& line, std::size_t& number) {
     std::string_view rest = line;
     for (const std::string_view prefix : {"ERROR: ", "WARNING: "}) {
         if (rest.starts_with(prefix)) {
@@ -399,9 +399,9 @@ std::string name_files_in_log(std::string_view log, const ShaderSource& source) 
         out += out.empty() ? "" : "\n";
         std::string_view message = line;
         std::size_t number = 0;
-        if (take_place(message, number) && number >= 1 && number <= source.places.size()) {
-            const ShaderSource::Place place = source.places[number - 1];
-            out += fmt::format("{}:{}: {}", source.files[place.file], place.line, message);
+        if (take_location(message, number) && number >= 1 && number <= source.lines.size()) {
+            const ShaderSource::Line origin = source.lines[number - 1];
+            out += fmt::format("{}:{}: {}", source.files[origin.file], origin.line, message);
         } else {
             out += line;
         }

@@ -21,8 +21,8 @@ namespace limn::gpu {
 /// embedded in the program.
 class ShaderFiles {
   public:
-    /// The embedded files, and the folder they came from if it still exists, so that edits work;
-    /// and the generated ones.
+    /// The embedded and generated files, and the folder they came from if it still exists, so that
+    /// edits work.
     [[nodiscard]] static ShaderFiles standard();
     /// Only what put() adds.
     ShaderFiles() = default;
@@ -51,13 +51,13 @@ struct ShaderDefine {
 };
 
 struct ShaderSource {
-    struct Place {
+    struct Line {
         std::uint32_t file;  ///< index into `files`
         std::uint32_t line;  ///< from 1
     };
     std::string text;                ///< ready for glShaderSource
     std::vector<std::string> files;  ///< the shader itself first
-    std::vector<Place> places;       ///< origin of each line of `text`
+    std::vector<Line> lines;         ///< origin of each line of `text`
 };
 
 /// A file and its ShaderFiles::version() from before it was read, so that no edit is missed.
@@ -67,10 +67,10 @@ struct ShaderFileVersion {
 };
 
 /// Fails with "file:line: ..." for a missing file, a cycle, a bad #include or a missing #version.
-/// `files_seen`, if given, receives every file that was requested, also on failure, for reloading.
+/// `requested`, if given, receives every file that was requested, also on failure, for reloading.
 [[nodiscard]] Result<ShaderSource> assemble_shader(
     const ShaderFiles& files, std::string_view path, const std::vector<ShaderDefine>& defines = {},
-    std::vector<ShaderFileVersion>* files_seen = nullptr);
+    std::vector<ShaderFileVersion>* requested = nullptr);
 
 /// A compiler's log with its "0:line" (Mesa, AMD) or "0(line)" (NVIDIA) turned into "file:line".
 [[nodiscard]] std::string name_files_in_log(std::string_view log, const ShaderSource& source);

@@ -16,7 +16,7 @@
 namespace limn {
 
 // One frame as a list of passes. A pass declares which textures and buffers it reads and writes,
-// and brings the code that draws; the graph does the rest:
+// and a function that draws; the graph does the rest:
 //
 // - a pass whose output is unused is culled; kept and imported resources count as used;
 // - transient textures come from a pool and alias when their lifetimes do not overlap;
@@ -98,8 +98,8 @@ struct Use {
     use.clear = value;
     return use;
 }
-/// A target of which the pass writes every pixel: its previous contents, and the passes that drew
-/// them, are not needed.
+/// A target of which the pass writes every pixel: its previous contents are not needed, nor the
+/// passes that drew them.
 [[nodiscard]] inline Use discarded(TextureId texture) {
     return {texture.index, Use::How::Discarded};
 }
@@ -107,7 +107,7 @@ struct Use {
 [[nodiscard]] inline Use image(TextureId texture) {
     return {texture.index, Use::How::Image};
 }
-/// For the reads: the depth buffer to test against without writing.
+/// As a read: the depth buffer to test against without writing.
 [[nodiscard]] inline Use depth_tested(TextureId texture) {
     return {texture.index, Use::How::DepthTest};
 }
@@ -118,7 +118,7 @@ struct Use {
     return use;
 }
 
-/// For the reads: bound to a texture unit before the pass runs; `sampler` must outlive the frame.
+/// As a read: bound to a texture unit before the pass runs; `sampler` must outlive the frame.
 [[nodiscard]] inline Use sampled(Use use, unsigned unit, const gpu::Sampler* sampler = nullptr) {
     use.unit = static_cast<int>(unit);
     use.sampler = sampler;
@@ -178,8 +178,8 @@ class FrameGraph {
     [[nodiscard]] TextureId import(std::string_view name, const gpu::Texture& texture);
     [[nodiscard]] BufferId import(std::string_view name, const gpu::Buffer& buffer);
 
-    /// Passes that are added until end_scope() are named "scope/pass", as those of a further view;
-    /// an empty scope changes no name.
+    /// Passes that are added until end_scope() are named "scope/pass", to distinguish views; an
+    /// empty scope changes no name.
     void begin_scope(std::string_view scope);
     void end_scope();
 
@@ -208,11 +208,11 @@ class FrameGraph {
     /// Fails on a read before any write, a texture that is both read and written in one pass, or
     /// targets of different sizes. execute() aborts on these.
     [[nodiscard]] Status validate() const;
-    /// In debug contexts every draw is also checked: a program that reads a texture or buffer which
-    /// passes of this frame write, without its pass declaring that, or one that its pass draws to,
-    /// stops.
+    /// In debug contexts every draw is also checked: aborts if a program reads a texture or buffer
+    /// that passes of this frame write and its pass does not declare, or one that its pass draws
+    /// to.
     void execute();
-    /// Such hazards are listed by hazards() instead, for tests.
+    /// For tests: such hazards are listed by hazards() instead of aborting.
     void collect_hazards(bool on);
     [[nodiscard]] const std::vector<std::string>& hazards() const;  ///< of the last frame
 

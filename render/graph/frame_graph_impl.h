@@ -63,8 +63,8 @@ struct FrameGraph::Impl {
         double gpu_ms = 0;
         double last_cpu_ms = 0;
         double last_gpu_ms = 0;
-        bool cpu_seen = false;
-        bool gpu_seen = false;
+        bool cpu_valid = false;
+        bool gpu_valid = false;
         std::uint64_t frame = 0;  // of last_cpu_ms
     };
     /// Bump allocator for captures of passes: blocks never move.
@@ -102,8 +102,8 @@ struct FrameGraph::Impl {
     std::vector<std::uint32_t> timed_names;  // of timings
     double total_cpu_ms = 0;
     double total_gpu_ms = 0;
-    bool total_cpu_seen = false;
-    bool total_gpu_seen = false;
+    bool total_cpu_valid = false;
+    bool total_gpu_valid = false;
     Stats stats;
     bool collects_hazards = false;
     std::vector<std::string> hazards;
@@ -138,8 +138,8 @@ struct FrameGraph::Impl {
     [[nodiscard]] IVec2 bind_targets(const Pass& pass);
     void clear_target(GLuint framebuffer, const Use& use, int color_index);
     void run_pass(Pass& pass, int number, PassContext& context);
-    /// What an undeclared or conflicting use of a resource by the running pass is, "" if there is
-    /// none: `program` reads a texture or buffer that passes of this frame write.
+    /// Describes an undeclared or conflicting use, by the running pass, of a texture or buffer that
+    /// passes of this frame write and `program` reads; "" if there is none.
     [[nodiscard]] std::string find_hazard(const gpu::Program& program) const;
     void check_hazards(const gpu::Program& program);
     [[nodiscard]] const gpu::Texture& physical_texture(const Resource& resource) const;

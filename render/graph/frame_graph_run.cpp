@@ -13,10 +13,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kFrameStart = ~0u;  // tag of the first timestamp of a frame
 constexpr double kSmoothing =
-    0.1;  // weight of the newest frame: a memory of about 20 frames; by eye
+    0.1;  // weight of the newest frame: averages over about 20 frames; by eye
 constexpr std::size_t kMaxColors = 8;
 
-// All accesses that may follow a shader write; a barrier costs the same whatever its bits.
+// All accesses that may follow a shader write; a barrier costs the same for any set of bits.
 constexpr GLbitfield kTextureBarrier =
     GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT
     | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT;
@@ -62,7 +62,7 @@ void FrameGraph::execute() {
     if (graph.gpu_timing) {
         graph.timer.end_frame();
     }
-    // Code outside the graph reads the results without a barrier of its own.
+    // Code outside the graph reads the results without issuing a barrier.
     bool unsynced = false;
     for (Impl::Resource& r : graph.resources) {
         if ((r.imported() || r.slot != TargetPool::kNoOwner) && graph.unsynced(r)) {
@@ -74,7 +74,7 @@ void FrameGraph::execute() {
         glMemoryBarrier(GL_ALL_BARRIER_BITS);
         ++graph.stats.barriers;
     }
-    smooth(graph.total_cpu_ms, graph.total_cpu_seen, milliseconds(Clock::now() - begin));
+    smooth(graph.total_cpu_ms, graph.total_cpu_valid, milliseconds(Clock::now() - begin));
     graph.executed = true;
     graph.stats.pool_textures = graph.pool.texture_count();
     graph.stats.framebuffers = graph.pool.framebuffer_count();
@@ -393,10 +393,10 @@ void FrameGraph::Impl::collect_gpu_times(bool wait) {
                 [&](const auto& later) { return later.tag == marks[i].tag; });
             if (last_of_name) {
                 Times& t = times[marks[i].tag];
-                smooth(t.gpu_ms, t.gpu_seen, t.last_gpu_ms);
+                smooth(t.gpu_ms, t.gpu_valid, t.last_gpu_ms);
             }
         }
-        smooth(total_gpu_ms, total_gpu_seen, span_ms(marks.front().time_ns, marks.back().time_ns));
+        smooth(total_gpu_ms, total_gpu_valid, span_ms(marks.front().time_ns, marks.back().time_ns));
     }
 }
 
@@ -410,7 +410,7 @@ void FrameGraph::Impl::publish_timings() {
         }
         timed_names.push_back(pass.name);
         Times& t = times[pass.name];
-        smooth(t.cpu_ms, t.cpu_seen, t.last_cpu_ms);
+        smooth(t.cpu_ms, t.cpu_valid, t.last_cpu_ms);
         timings.push_back({names[pass.name], t.cpu_ms, t.gpu_ms, t.last_cpu_ms, t.last_gpu_ms});
     }
 }

@@ -82,7 +82,7 @@ BufferId measure_image(
             program.set("key", request.key);
             program.set("adaptation_blend", request.blend);
             program.set("adaptation_range", request.adaptation_range);
-            program.set("clipped_share", request.clipped_share);
+            program.set("clipped_fraction", request.clipped_share);
             context.bind_storage(layout::kStatisticsPartsBinding, parts);
             context.bind_storage(layout::kHistogramBinding, histogram);
             context.bind_storage(layout::kStatisticsBinding, measure);

@@ -70,7 +70,7 @@ void sum_on_cpu(
         });
 }
 
-/// What lies in, above or below water is lit by.
+/// The water surfaces and caustics that light surfaces in, above or below water.
 struct WaterLights {
     const BufferTexture* records;
     const gpu::Texture* maps;

@@ -10,8 +10,8 @@
 
 namespace limn {
 
-// Caustics: light that waves focus and scatter onto what lies below them
-// (caustic.projected-vertices), and that they reflect up onto what stands above.
+// Caustics: light that waves focus and scatter onto surfaces below them
+// (caustic.projected-vertices), and that they reflect up onto surfaces above.
 //
 // Reads    CausticList, water displacement, shadow atlas
 // Writes   caustic maps: irradiance relative to that under flat water
@@ -20,11 +20,11 @@ namespace limn {
 //          lib/under_water.glsl and lib/over_water.glsl read the maps
 //
 // Rays enter at the points of a grid on the surface, weighted by Fresnel transmittance and shadowed
-// by what stands above, and are followed to the ground that the light through flat water would hit
-// there. A cell of four rays is split into as many parts as stay together where they land, and
-// these are summed per texel in integers: no light is lost where waves fold it over, and the sum
-// does not depend on order. All maps of a frame lie in an atlas and take three dispatches; where
-// OpenGL runs on the CPU, the CPU sums them itself (caustic_splat.h).
+// by what stands above, and are traced to the ground that light through flat water would hit there.
+// A cell of four rays is subdivided until each part lands on about a texel, and the parts are
+// summed per texel in integers: no light is lost where waves fold it over, and the sum does not
+// depend on order. All maps of a frame lie in an atlas and take three dispatches; where OpenGL runs
+// on the CPU, the CPU sums them itself (caustic_splat.h).
 //
 // After Shah, Konttinen and Pattanaik, "Caustics Mapping", 2007, but with areas that carry light
 // instead of triangles. Of objects in the water only the surface nearest to the water counts: light
@@ -40,7 +40,7 @@ struct CausticMaps {
 /// Completes the CausticList of each view, publishes CausticMaps in draw().
 struct CausticsEffect {
     ProgramVariants rays;
-    bool on_cpu = false;  ///< sums are made there
+    bool on_cpu = false;  ///< splats are summed on the CPU
     const gpu::Program* splat = nullptr;
     const gpu::Program* map = nullptr;
     gpu::Texture maps{};  ///< the atlas; 1x1 until there is a map

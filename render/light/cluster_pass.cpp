@@ -47,7 +47,7 @@ BufferId create_indices(FrameGraph& graph, std::size_t capacity) {
     return graph.create_buffer({.name = "light indices", .bytes = rounded(4 * capacity)});
 }
 
-/// The lists of a view that no light reaches.
+/// The empty lists of a view without lights.
 ClusterLists clear_clusters(FrameGraph& graph, ClusterPass& pass, const ClusterShape& shape) {
     const ClusterLists lists = {
         create_cells(graph, shape), create_indices(graph, 0), &pass.cells, &pass.indices};
@@ -162,27 +162,27 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
 
     auto& lights = view.data.publish<LightList>();
     lights = frame.data.get<LightList>();
-    auto& placed = view.data.publish<ClusterLights>();
-    placed.max_entries = std::min(kMaxListEntries, BufferTexture::max_texel_count());
-    place_lights(view.camera, lights, placed);
-    placed.light_records.upload(*frame.ring, placed.lights);
-    placed.box_records.upload(*frame.ring, placed.boxes);
-    if (placed.dropped > 0 && !dropped_reported) {
+    auto& culled = view.data.publish<ClusterLights>();
+    culled.max_entries = std::min(kMaxListEntries, BufferTexture::max_texel_count());
+    cull_lights(view.camera, lights, culled);
+    culled.light_records.upload(*frame.ring, culled.lights);
+    culled.box_records.upload(*frame.ring, culled.boxes);
+    if (culled.dropped > 0 && !dropped_reported) {
         log_warn(
             "lights: {} of {} cover so much of the image that the cluster lists have no room for "
             "them (ClusterLights::max_entries); they are not shown",
-            placed.dropped, lights.reach.size());
+            culled.dropped, lights.ranges.size());
         dropped_reported = true;
     }
     view.block = frame.ring->push_value(
-        make_view_block(view.camera, placed.shape, lights, method.infinite_viewer));
+        make_view_block(view.camera, culled.shape, lights, method.infinite_viewer));
 
     Variant& variant = view.lighting.variant;
     variant.add_if(lights.directional > 0, "DIRECTIONAL_LIGHTS");
     variant.add_if(lights.spots > 0, "SPOT_LIGHTS");
     variant.add_if(lights.spot_angles, "SPOT_ANGLES");
     variant.add_if(lights.linear_fade, "LINEAR_FADE");
-    variant.add_if(!lights.reach.empty(), "LOCAL_LIGHTS");
+    variant.add_if(!lights.ranges.empty(), "LOCAL_LIGHTS");
     add_shading_models(variant, frame.materials->shading_models());
     return true;
 }
@@ -190,13 +190,13 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
 void LightListEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const bool by_clusters = view.data.get<LightingMethod>().method == LightMethod::Clustered
                              || !view.data.get<InstanceList>().blended.empty();
-    if (!by_clusters || view.data.get<LightList>().reach.empty()) {
+    if (!by_clusters || view.data.get<LightList>().ranges.empty()) {
         return;
     }
-    const auto& placed = view.data.get<ClusterLights>();
-    const ClusterLists lists = placed.lights.empty()
-                                   ? clear_clusters(graph, clusters, placed.shape)
-                                   : build_clusters(graph, clusters, placed, view);
+    const auto& culled = view.data.get<ClusterLights>();
+    const ClusterLists lists = culled.lights.empty()
+                                   ? clear_clusters(graph, clusters, culled.shape)
+                                   : build_clusters(graph, clusters, culled, view);
     auto& published = view.data.publish<ClusterLists>();
     published = lists;
     view.lighting.reads.insert(view.lighting.reads.end(), {lists.cells, lists.indices});

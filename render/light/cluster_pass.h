@@ -35,7 +35,7 @@ struct ClusterPass {
 struct ClusterLists {
     BufferId cells;    ///< offset and length of each cell's list
     BufferId indices;  ///< the lists one after the other: indices into the light records
-    /// The same as buffer textures, from the pass on that fills them.
+    /// The same as buffer textures, once the pass that fills them has run.
     const BufferTexture* cell_texture = nullptr;
     const BufferTexture* index_texture = nullptr;
 };

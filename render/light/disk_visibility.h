@@ -4,10 +4,11 @@
 
 namespace limn {
 
-/// What disk_visibility.frag finds the share in sight of a disk in the image from: one texel.
+/// Input of disk_visibility.frag, which finds the visible fraction of a disk in the image: one
+/// texel.
 struct DiskSource {
     Vec2 uv = {0, 0};
-    float depth = 0;   ///< what has a greater one is before it
+    float depth = 0;   ///< surfaces of greater depth occlude it
     float radius = 0;  ///< [px]
 };
 

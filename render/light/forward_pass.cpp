@@ -21,17 +21,17 @@
 namespace limn {
 namespace {
 
-constexpr int kTurns = 255;  ///< distinct stencil references
+constexpr int kStencilRefs = 255;  ///< distinct stencil references
 
-/// Shades the nearest surface, and only one of several at equal depth, once per turn; the stencil
-/// must be cleared after every kTurns turns.
-gpu::PipelineState nearest_once(int turn) {
+/// Shades the nearest surface, and only one of several at equal depth, once per draw; the stencil
+/// must be cleared after every kStencilRefs draws.
+gpu::PipelineState nearest_once(int draw) {
     const gpu::StencilFace other_turns = {.func = GL_NOTEQUAL, .pass = GL_REPLACE};
     return {
         .depth = {.write = false, .func = GL_EQUAL},
         .stencil = {
             .test = true,
-            .reference = static_cast<std::uint8_t>(1 + turn % kTurns),
+            .reference = static_cast<std::uint8_t>(1 + draw % kStencilRefs),
             .front = other_turns,
             .back = other_turns}};
 }
@@ -73,7 +73,7 @@ meshes(gpu::Device& device, const char* vertex, const char* geometry, const char
 }
 
 void draw_object_major(
-    PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int turn) {
+    PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int draw) {
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
     bind_shadow_masks(context, view);
@@ -94,19 +94,19 @@ void draw_object_major(
     draw_runs(
         context, view, view.data.get<InstanceList>().opaque,
         pass.rates[static_cast<std::size_t>(row.rate)],
-        {.variant = &variant, .state = nearest_once(turn)});
+        {.variant = &variant, .state = nearest_once(draw)});
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
     bind_shadow_masks(context, view);
-    int turn = 0;  // the first is that of the surroundings
+    int draw = 0;  // the first is the draw of ambient light
     const auto next_turn = [&] {
-        if (++turn % kTurns == 0) {
+        if (++draw % kStencilRefs == 0) {
             clear_stencil(context.device(), *pass.nothing);
         }
-        gpu::PipelineState state = nearest_once(turn);
+        gpu::PipelineState state = nearest_once(draw);
         state.blend = gpu::kBlendAdd;
         return state;
     };
@@ -157,7 +157,7 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, Te
     const auto& method = view.data.get<LightingMethod>();
     if (method.method == LightMethod::ObjectMajor) {
         bool by_facets = false;  // the depth was drawn through a geometry shader, as the rate is
-        const auto light = [&](const char* name, ShadingRate rate, const Use& into, int turn) {
+        const auto light = [&](const char* name, ShadingRate rate, const Use& into, int draw) {
             const bool facets = *row_of(rate).geometry != '\0';
             if (std::exchange(by_facets, facets) != facets) {
                 const Use depth[] = {cleared(view.gbuffer.depth)};
@@ -171,14 +171,14 @@ void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, Te
             }
             const Use writes[] = {into, view.gbuffer.depth};
             graph.add_pass(
-                name, std::span(reads), writes, [&pass, &view, rate, turn](PassContext& context) {
-                    draw_object_major(context, pass, view, rate, turn);
+                name, std::span(reads), writes, [&pass, &view, rate, draw](PassContext& context) {
+                    draw_object_major(context, pass, view, rate, draw);
                 });
         };
         light("objects", method.shading, cleared(view.radiance), 0);
         if (method.compared) {
             light("objects, compared", *method.compared, cleared(compared), 1);
-            if (view.frame->warm_up) {  // keys switch methods
+            if (view.frame->warm_up) {  // the user can switch methods with keys
                 for (const ShadingRateRow& row : kShadingRateRows) {
                     light("objects, any method", row.rate, compared, 1);
                 }

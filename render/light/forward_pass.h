@@ -8,12 +8,13 @@
 namespace limn {
 
 // Forward lighting after a depth prepass, without a G-buffer: either a loop over objects, each with
-// the lights that reach it (LightMethod::ObjectMajor), or a loop over lights, each added over the
-// objects that it reaches (LightMethod::LightMajor). Kept for comparison with the clusters.
+// the lights that reach it (LightMethod::ObjectMajor), or a loop over lights, each blended
+// additively over the objects that it reaches (LightMethod::LightMajor). Kept for comparison with
+// the clusters.
 //
 // Reads    InstanceList, LightObjects, light records, environment, HighlightMaps
 // Writes   depth, radiance: linear; alpha 1 where there is a surface
-// Order    in place of the G-buffer and draw_lights()
+// Order    instead of the G-buffer and draw_lights()
 // Shaders  mesh.vert, depth_first.frag, forward_base.frag, forward_one.frag; with
 //          LightMethod::ObjectMajor those of the ShadingRate (shading_rates.h), after
 //          facet_depth.geom if they have a geometry shader
@@ -26,15 +27,15 @@ struct ForwardPass {
     std::vector<ProgramVariants> rates = {};  ///< by ShadingRate
     ProgramVariants base;
     ProgramVariants one;
-    ProgramVariants vertex_depth;  ///< of rates without a geometry shader, after others
+    ProgramVariants vertex_depth;  ///< of rates without a geometry shader
     ProgramVariants facet_depth;   ///< of rates with a geometry shader
     const gpu::Program* nothing = nullptr;
 };
 
 [[nodiscard]] Result<ForwardPass> create_forward_pass(gpu::Device& device);
 
-/// Draws all opaque surfaces, whose depth is in view.gbuffer, into view.radiance; where two methods
-/// of shading are compared also into `compared`, which is else not valid().
+/// Draws all opaque surfaces, whose depth is in view.gbuffer, into view.radiance, and, if two
+/// methods of shading are compared, also into `compared`, which is otherwise not valid().
 void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view, TextureId compared);
 
 }  // namespace limn

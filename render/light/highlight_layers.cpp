@@ -31,7 +31,7 @@ HighlightLayers layers_by_exponent(std::span<const Material> materials) {
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
 
-    HighlightLayers layers = {.exponents = {1}, .of_record = {0, 0}};  // those of no material
+    HighlightLayers layers = {.exponents = {1}, .of_record = {0, 0}};  // without a material
     const std::size_t kept = std::min(all.size(), kMaxHighlightLayers - 1);
     for (std::size_t i = 0; i < kept; ++i) {
         layers.exponents.push_back(all[kept == all.size() ? i : i * (all.size() - 1) / (kept - 1)]);

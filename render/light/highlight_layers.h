@@ -13,8 +13,8 @@ namespace limn {
 
 struct Material;
 
-/// Published in the views of which a rate reads them: by HighlightMap, empty if none reads that
-/// one.
+/// Published in the views that read them: by HighlightMap, empty if no rate of the view reads that
+/// map.
 struct HighlightMaps {
     struct Map {
         TextureId layers;
@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxHighlightLayers = 64;
 
 /// Which layer of the highlight maps each material reads.
 struct HighlightLayers {
-    std::vector<float> exponents;  ///< by layer, of Blinn's highlight; [0] is 1: diffuse
+    std::vector<float> exponents;  ///< of Blinn's highlight, by layer; [0] is 1: diffuse
     std::vector<std::uint32_t>
         of_record;  ///< by MaterialPool record; 0 where there is no highlight
 };
@@ -37,12 +37,11 @@ struct HighlightLayers {
 /// Highlights", 1994).
 [[nodiscard]] float highlight_exponent(const Material& material);
 
-/// A layer for every exponent, whatever the number of materials. If they are more than
-/// kMaxHighlightLayers, as many of them, evenly spaced among them in order, and materials read the
-/// next one.
+/// One layer per distinct exponent. If there are more than kMaxHighlightLayers, an evenly spaced
+/// subset of the sorted exponents, and materials read the next one.
 [[nodiscard]] HighlightLayers layers_by_exponent(std::span<const Material> materials);
 
-/// A layer for every Blinn or Phong material; by exponent if they are too many.
+/// One layer per Blinn or Phong material; by exponent if there are too many.
 [[nodiscard]] HighlightLayers layers_by_material(std::span<const Material> materials);
 
 }  // namespace limn

@@ -28,7 +28,7 @@ namespace {
 
 constexpr unsigned kHighlightGroup = 8;
 
-/// Whether a rate of the frame reads the map; methods that are compared will be switched.
+/// Whether a rate of the frame reads the map; also if the user can switch to one.
 bool is_in_use(const FrameData& frame, HighlightMap map) {
     const auto* rendering = frame.world->find_resource<Rendering>();
     const auto* comparison = frame.world->find_resource<ShadingComparison>();
@@ -37,14 +37,14 @@ bool is_in_use(const FrameData& frame, HighlightMap map) {
            || (comparison != nullptr && row_of(comparison->right).map == map);
 }
 
-/// Whether a rate of the view does.
+/// Whether a rate of the view reads the map.
 bool reads(const ViewData& view, HighlightMap map) {
     const auto& method = view.data.get<LightingMethod>();
     return (view.frame->warm_up && method.compared) || row_of(method.shading).map == map
            || (method.compared && row_of(*method.compared).map == map);
 }
 
-/// The middle of the boxes around the objects of each layer.
+/// The center of the bounds of the objects of each layer.
 std::vector<Vec3> layer_centers(const FrameData& frame, const HighlightLayers& layers) {
     std::vector<Bounds> boxes(layers.exponents.size());
     for (std::size_t n = 0; n < frame.items->block_count(); ++n) {

@@ -10,26 +10,25 @@
 
 namespace limn {
 
-// Textures that take the place of a part of the lighting, for the rates that read them
-// (ShadingRateRow::map): Blinn maps (fakephong.blinn-texture), a layer per exponent for all lights
-// and views; or sphere maps of all lights in the camera's axes (fakephong.envmap-bake), a layer per
-// material.
+// Textures that replace a part of the lighting, for the rates that read them (ShadingRateRow::map):
+// Blinn maps (fakephong.blinn-texture), a layer per exponent for all lights and views; or sphere
+// maps of all lights in the camera's axes (fakephong.envmap-bake), a layer per material.
 //
 // Reads    materials; of sphere maps: light records, the boxes of all objects
 // Writes   HighlightMaps, the view's HighlightBlock
 // Order    after LightList, before surfaces are lit
 // Shaders  highlight_maps.comp, highlight_environment.comp
 //
-// Baked again only when something has changed. In a sphere map lights have one direction, that from
-// the middle of all objects of the material: a lamp among them shines from a wrong side. It has no
-// shadows.
+// Baked again only when something has changed. In a sphere map each light has one direction, as
+// seen from the center of all objects of the material: a lamp among them lights them from the wrong
+// side. Sphere maps have no shadows.
 
 inline constexpr int kHighlightMapSize = 256;  ///< [px]
 
 struct HighlightMapEffect {
-    /// What a texture was made of.
+    /// What a texture was baked from.
     struct Source {
-        std::vector<Vec4> layers = {};  ///< middle of the objects [m]; w: exponent of Blinn's lobe
+        std::vector<Vec4> layers = {};  ///< center of the objects [m]; w: exponent of Blinn's lobe
         std::vector<layout::LightRecord> lights = {};
         int directional = 0;
         Affine camera = {};
@@ -54,7 +53,7 @@ struct HighlightMapEffect {
     bool prepare(const FrameData& frame, ViewData& view);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
-    /// The part of draw() for one map, which is baked if something has changed.
+    /// The part of draw() for one map: bakes it if something has changed.
     HighlightMaps::Map
     draw_map(FrameGraph& graph, const FrameData& frame, const ViewData& view, bool by_view);
 };

@@ -32,7 +32,7 @@ Vec3 camera_position(const RenderView& view) {
     return {r[0].w, r[1].w, r[2].w};
 }
 
-bool is_unbounded(const LightReach& light) {
+bool is_unbounded(const LightRange& light) {
     return !(light.radius < kMaxDistance);
 }
 
@@ -42,7 +42,7 @@ Vec2 slopes_of_circle(float x, float z, float radius) {
     if (tangent2 <= 0) {
         return {-INFINITY, INFINITY};
     }
-    // The two tangents; one that points backward bounds nothing.
+    // The two tangents; one that points backward gives no bound.
     const float tangent = std::sqrt(tangent2);
     const float down = z * tangent + x * radius;
     const float up = z * tangent - x * radius;
@@ -87,7 +87,7 @@ layout::uvec2 pack(const ClusterBox& box) {
 
 }  // namespace
 
-ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightReach> reach) {
+ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRange> ranges) {
     ClusterShape shape;
     while (std::max(view.width, view.height) > shape.tile * kMaxTiles) {
         shape.tile *= 2;
@@ -96,12 +96,12 @@ ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRea
     shape.rows = (view.height + shape.tile - 1) / shape.tile;
     const Vec3 eye = camera_position(view);
     float farthest = view.near * 100;
-    for (const LightReach& light : reach) {
+    for (const LightRange& light : ranges) {
         const float end = to_view(view.world_from_camera, light.center - eye).z + light.radius;
         farthest = std::isfinite(end) ? std::max(farthest, end) : farthest;
     }
     farthest = std::min(farthest, 0.5f * kMaxDistance);
-    // The first slice ends at a hundredth of the whole depth or more.
+    // The first slice ends at a hundredth of the depth range or more.
     const float nearest = std::max(view.near, farthest * 0.01f);
     shape.depth_scale = static_cast<float>(shape.slices - 1) / std::log2(farthest / nearest);
     shape.depth_bias = 1.0f - shape.depth_scale * std::log2(nearest);
@@ -109,14 +109,14 @@ ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRea
 }
 
 bool find_cells(
-    const RenderView& view, const ClusterShape& shape, const LightReach& light, ClusterBox& box) {
+    const RenderView& view, const ClusterShape& shape, const LightRange& light, ClusterBox& box) {
     box = {{0, shape.columns - 1}, {0, shape.rows - 1}, {0, shape.slices - 1}};
     if (is_unbounded(light)) {
         return true;
     }
-    const ReachSphere around = reach_sphere(light);
-    const float radius = around.radius * (1 + kSlack);
-    const Vec3 c = to_view(view.world_from_camera, around.center - camera_position(view));
+    const RangeSphere bounds = range_sphere(light);
+    const float radius = bounds.radius * (1 + kSlack);
+    const Vec3 c = to_view(view.world_from_camera, bounds.center - camera_position(view));
     const float end = (c.z + radius) * (1 + kSlack);
     if (!(end > view.near)) {
         return false;
@@ -136,15 +136,15 @@ bool find_cells(
     return columns.begin <= columns.end && rows.begin <= rows.end;
 }
 
-void place_lights(const RenderView& view, const LightList& lights, ClusterLights& clusters) {
-    clusters.shape = make_cluster_shape(view, lights.reach);
+void cull_lights(const RenderView& view, const LightList& lights, ClusterLights& clusters) {
+    clusters.shape = make_cluster_shape(view, lights.ranges);
     clusters.lights.clear();
     clusters.boxes.clear();
     clusters.capacity = 0;
     clusters.dropped = 0;
     const Vec3 eye = camera_position(view);
-    for (std::size_t i = 0; i < lights.reach.size(); ++i) {
-        const LightReach& light = lights.reach[i];
+    for (std::size_t i = 0; i < lights.ranges.size(); ++i) {
+        const LightRange& light = lights.ranges[i];
         ClusterBox box;
         if (!find_cells(view, clusters.shape, light, box)) {
             continue;
@@ -153,11 +153,11 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
             ++clusters.dropped;
             continue;
         }
-        const ReachSphere around = reach_sphere(light);
-        const float radius2 = is_unbounded(light) ? -1.0f : square(around.radius * (1 + kSlack));
+        const RangeSphere bounds = range_sphere(light);
+        const float radius2 = is_unbounded(light) ? -1.0f : square(bounds.radius * (1 + kSlack));
         const auto index = static_cast<float>(i + static_cast<std::size_t>(lights.directional));
         clusters.lights.push_back(
-            {Vec4(to_view(view.world_from_camera, around.center - eye), radius2),
+            {Vec4(to_view(view.world_from_camera, bounds.center - eye), radius2),
              Vec4(to_view(view.world_from_camera, light.center - eye), light.cosine),
              Vec4(to_view(view.world_from_camera, light.axis), index)});
         clusters.boxes.push_back(pack(box));

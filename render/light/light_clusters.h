@@ -14,8 +14,8 @@ namespace limn {
 // Clustered light culling: the view frustum is cut into screen tiles and depth slices, and every
 // cell gets the list of the lights whose sphere (and cone) touches it. A pixel then reads only its
 // cell's list. Conservative: a light that reaches a point is in the list of the point's cell,
-// whatever the rounding; lists may hold lights that do not reach. Lists keep the order of the
-// lights, so sums do not depend on how the lists were made.
+// despite rounding; lists may hold lights that do not reach the cell. Lists keep the order of the
+// lights, so sums do not depend on how the lists were built.
 //
 // The CPU does the work that is linear in the lights: it transforms each to view space and finds
 // the box of cells that its sphere may touch. The boxes' volumes bound the total length of all
@@ -65,14 +65,14 @@ struct ClusterLights {
 
 /// Shape whose slices span the distances from the near plane to the end of the farthest light.
 [[nodiscard]] ClusterShape
-make_cluster_shape(const RenderView& view, std::span<const LightReach> reach);
+make_cluster_shape(const RenderView& view, std::span<const LightRange> ranges);
 
 /// Fills `clusters` with the `lights` that reach into the view.
-void place_lights(const RenderView& view, const LightList& lights, ClusterLights& clusters);
+void cull_lights(const RenderView& view, const LightList& lights, ClusterLights& clusters);
 
 /// The cells that a light may touch; false if it is wholly behind the camera or off screen.
 [[nodiscard]] bool find_cells(
-    const RenderView& view, const ClusterShape& shape, const LightReach& light, ClusterBox& box);
+    const RenderView& view, const ClusterShape& shape, const LightRange& light, ClusterBox& box);
 
 /// The cell of a pixel at `distance` along the view axis [m]; the same as in lib/lighting.glsl.
 [[nodiscard]] int cell_of(const ClusterShape& shape, float pixel_x, float pixel_y, float distance);

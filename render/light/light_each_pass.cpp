@@ -59,11 +59,11 @@ void add_over_screen(
 
 void add_in_volume(
     gpu::Device& device, LightEachPass& pass, const ViewData& view, int light,
-    const LightReach& reach) {
-    const bool cone = reach.cosine > kMinConeCosine;
-    const float sine = std::sqrt(std::max(1 - square(reach.cosine), 0.0f));
-    const Vec4 sphere = Vec4(reach.center, reach.radius);
-    const Vec4 axis = cone ? Vec4(reach.axis, sine / reach.cosine) : Vec4(0, 1, 0, 0);
+    const LightRange& range) {
+    const bool cone = range.cosine > kMinConeCosine;
+    const float sine = std::sqrt(std::max(1 - square(range.cosine), 0.0f));
+    const Vec4 sphere = Vec4(range.center, range.radius);
+    const Vec4 axis = cone ? Vec4(range.axis, sine / range.cosine) : Vec4(0, 1, 0, 0);
     const gpu::Program* shade = one_light_program(pass.volume, view, cone ? "CONE" : nullptr);
     if (shade == nullptr) {
         return;
@@ -78,8 +78,8 @@ void add_in_volume(
     }
 }
 
-/// What the light shaders read and test: G-buffer and depth. Volumes write the stencil of the depth
-/// buffer, and OpenGL leaves sampling its depth at the same time undefined: they sample a copy.
+/// G-buffer and depth, which the light shaders sample. Volumes write the stencil of the depth
+/// buffer, and sampling its depth at the same time is undefined in OpenGL: they sample a copy.
 std::vector<Use> gbuffer_reads(FrameGraph& graph, const ViewData& view) {
     const TextureId depth = view.gbuffer.depth;
     if (view.data.get<LightingMethod>().method != LightMethod::Volumes) {
@@ -139,11 +139,11 @@ void draw_each_light(FrameGraph& graph, LightEachPass& pass, const ViewData& vie
         for (int i = 0; i < lights.directional; ++i) {
             add_over_screen(context.device(), pass, view, i, true);
         }
-        for (const layout::ClusterLight& placed : view.data.get<ClusterLights>().lights) {
-            const int light = static_cast<int>(placed.axis.w);
-            const LightReach& reach = lights.reach[light - lights.directional];
-            if (method == LightMethod::Volumes && std::isfinite(reach.radius)) {
-                add_in_volume(context.device(), pass, view, light, reach);
+        for (const layout::ClusterLight& culled : view.data.get<ClusterLights>().lights) {
+            const int light = static_cast<int>(culled.axis.w);
+            const LightRange& range = lights.ranges[light - lights.directional];
+            if (method == LightMethod::Volumes && std::isfinite(range.radius)) {
+                add_in_volume(context.device(), pass, view, light, range);
             } else {
                 add_over_screen(context.device(), pass, view, light, false);
             }

@@ -10,7 +10,7 @@ namespace limn {
 //
 // Reads    G-buffer, light records, environment
 // Writes   radiance: linear; alpha 1 where there is a surface
-// Order    after the G-buffer, in place of draw_lights()
+// Order    after the G-buffer, instead of draw_lights()
 // Shaders  light_base.frag, light_one.frag, light_volume.vert, nothing.frag
 //
 // A volume is drawn twice. First both its sides into the stencil with the depth test failing: back

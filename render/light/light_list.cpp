@@ -18,7 +18,7 @@ namespace {
 
 /// With Falloff::None the multiplier makes the window a step at the radius.
 constexpr float kStep = 1e30f;
-/// Minimum difference of the two cones' cosines (or angles): equal cones make a hard edge
+/// Minimum difference of the two cones' cosines (or angles): equal cones have a hard edge
 /// (light.spot-falloff).
 constexpr float kMinConeWidth = 1e-4f;
 
@@ -50,7 +50,7 @@ float power_of(const DirectionalLight& light) {
     return light.illuminance;
 }
 
-/// Whatever its pulse: what a frame needs would change with that.
+/// Regardless of its pulse, so that the shaders of a frame do not change with it.
 template <typename Light>
 bool is_on(const Light& light) {
     return light.enabled && light.color * power_of(light) != Vec3(0);
@@ -76,7 +76,7 @@ void set_attenuation(layout::LightRecord& record, const Attenuation& attenuation
     }
 }
 
-float reach_radius(const layout::LightRecord& record) {
+float light_radius(const layout::LightRecord& record) {
     return record.position.w > 0 ? 1 / std::sqrt(record.position.w) : INFINITY;
 }
 
@@ -185,7 +185,7 @@ layout::LightRecord make_record(const DirectionalLight& light, const Vec3& axis,
 
 void collect_lights(const World& world, float alpha, LightList& list, bool all) {
     list.records.clear();
-    list.reach.clear();
+    list.ranges.clear();
     list.shadowed.clear();
     list.projecting.clear();
     list.points = 0;
@@ -226,8 +226,8 @@ void collect_lights(const World& world, float alpha, LightList& list, bool all) 
                 if (is_valid(record) && last == (entity.shadow != nullptr)) {
                     list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                     list.records.push_back(record);
-                    list.reach.push_back({position_of(entity.pose), reach_radius(record)});
-                    add_extras(list, entity, LightKind::Point, reach_radius(record));
+                    list.ranges.push_back({position_of(entity.pose), light_radius(record)});
+                    add_extras(list, entity, LightKind::Point, light_radius(record));
                     ++list.points;
                 }
             });
@@ -241,11 +241,11 @@ void collect_lights(const World& world, float alpha, LightList& list, bool all) 
                     list.spot_angles =
                         list.spot_angles || light.profile == SpotProfile::LinearAngle;
                     list.records.push_back(record);
-                    list.reach.push_back(
-                        {position_of(entity.pose), reach_radius(record), axis_of(entity.pose),
+                    list.ranges.push_back(
+                        {position_of(entity.pose), light_radius(record), axis_of(entity.pose),
                          std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
                     add_extras(
-                        list, entity, LightKind::Spot, reach_radius(record), light.outer_angle);
+                        list, entity, LightKind::Spot, light_radius(record), light.outer_angle);
                     ++list.spots;
                 }
             });
@@ -261,7 +261,7 @@ void add_particle_lights(const World& world, float back, LightList& list) {
                 const layout::LightRecord record = make_record(one, position, factor);
                 if (is_valid(record)) {
                     list.records.push_back(record);
-                    list.reach.push_back({position, reach_radius(record)});
+                    list.ranges.push_back({position, light_radius(record)});
                     ++list.points;
                 }
             };
@@ -273,13 +273,13 @@ void add_particle_lights(const World& world, float back, LightList& list) {
                     continue;
                 }
                 const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
-                const float share = age / std::max(pool.life[i], 1e-6f);
+                const float relative_age = age / std::max(pool.life[i], 1e-6f);
                 add(Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back,
-                    sample_curve(light.curve, std::min(share, 1.0f)));
+                    sample_curve(light.curve, std::min(relative_age, 1.0f)));
                 ++count;
             }
             if (count == 0) {
-                add(Vec3(0), 0);  // so that shaders have a loop over lights all the time
+                add(Vec3(0), 0);  // keeps the loop over lights in the shaders
             }
         });
 }

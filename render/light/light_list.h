@@ -15,12 +15,12 @@ class World;
 
 // The world's lights as one packed array that shaders loop over without testing types: directional
 // lights first, then point lights, then spots, then point lights and spots that cast shadows or
-// project cookies, each in world order. Disabled, black and broken (not finite) lights are left
-// out, LightPulse is applied; a light that it turns black for a moment stays. Formulas:
-// bench/oracles/light_oracle.h.
+// project cookies, each in world order. Disabled, black and invalid (not finite) lights are left
+// out. LightPulse is applied; a light that is momentarily black because of it stays in the list.
+// Formulas: bench/oracles/light_oracle.h.
 
 /// The range of a point or spot light: a sphere, for spots cut to a cone.
-struct LightReach {
+struct LightRange {
     Vec3 center;            ///< [m]
     float radius = 0;       ///< [m]; INFINITY: unbounded
     Vec3 axis = {0, 0, 0};  ///< of a spot, unit; 0: omnidirectional
@@ -40,7 +40,7 @@ struct ShadowedLight {
     Vec3 right = {1, 0, 0};     ///< x axis of the light's entity
     float radius = INFINITY;    ///< [m]
     float outer_angle = 0;      ///< of a spot [rad]
-    bool for_volumes = false;   ///< its map only finds where volumes are counted
+    bool for_volumes = false;   ///< its map only classifies the pixels that need shadow volumes
 };
 
 /// A spot or directional light that projects a cookie (Projector).
@@ -53,7 +53,7 @@ struct ProjectingLight {
 
 struct LightList {
     std::vector<layout::LightRecord> records;
-    std::vector<LightReach> reach;            ///< of the point and spot lights only
+    std::vector<LightRange> ranges;           ///< of the point and spot lights only
     std::vector<ShadowedLight> shadowed;      ///< in the order of the records
     std::vector<ProjectingLight> projecting;  ///< in the order of the records
     double time = 0;                          ///< time shown [s]
@@ -70,11 +70,11 @@ struct LightList {
 };
 
 /// Fills `list` from the entities with WorldTransform and a light; `alpha` as in RenderView. With
-/// `all` lights also from those that are off.
+/// `all`, lights that are off are included.
 void collect_lights(const World& world, float alpha, LightList& list, bool all = false);
 
-/// Appends a point light for every particle of a ParticleLight, where it is `back` seconds before
-/// the end of the step.
+/// Appends a point light for every particle of a ParticleLight, at its position `back` seconds
+/// before the end of the step.
 void add_particle_lights(const World& world, float back, LightList& list);
 
 /// Whether some light is off: disabled or black.

@@ -9,9 +9,9 @@
 namespace limn {
 namespace {
 
-/// Appends instance `place` of the draw `kind` to the light's commands.
+/// Appends instance `instance` of the draw `kind` to the light's commands.
 void add_object(
-    const DrawCommand& kind, std::uint32_t place, std::uint32_t light, std::uint32_t run,
+    const DrawCommand& kind, std::uint32_t instance, std::uint32_t light, std::uint32_t run,
     LightDraws& result) {
     if (result.runs.empty() || result.runs.back().light != light || result.runs.back().run != run) {
         result.runs.push_back({light, run, static_cast<std::uint32_t>(result.commands.size()), 0});
@@ -19,12 +19,12 @@ void add_object(
     LightRun& draws = result.runs.back();
     DrawCommand* last = draws.command_count > 0 ? &result.commands.back() : nullptr;
     if (last != nullptr && last->base_instance >= kind.base_instance
-        && last->base_instance + last->instance_count == place) {
+        && last->base_instance + last->instance_count == instance) {
         ++last->instance_count;
         return;
     }
     result.commands.push_back(kind);
-    result.commands.back().base_instance = place;
+    result.commands.back().base_instance = instance;
     result.commands.back().instance_count = 1;
     ++draws.command_count;
 }
@@ -32,14 +32,14 @@ void add_object(
 }  // namespace
 
 void append_objects_of_light(
-    const LightReach& light, std::span<const BoxBlock> boxes, int count,
+    const LightRange& light, std::span<const BoxBlock> boxes, int count,
     std::vector<std::uint32_t>& objects) {
-    const ReachSphere around = reach_sphere(light);
+    const RangeSphere bounds = range_sphere(light);
     std::uint8_t touched[kCullBlock];
     for (int first = 0; first < count; first += kCullBlock) {
         const int n = std::min(count - first, kCullBlock);
         std::fill_n(touched, n, std::uint8_t{1});
-        cull_boxes_by_distance(around.center, around.radius, boxes[first / kCullBlock], n, touched);
+        cull_boxes_by_distance(bounds.center, bounds.radius, boxes[first / kCullBlock], n, touched);
         for (int i = 0; i < n; ++i) {
             if (touched[i] != 0) {
                 objects.push_back(static_cast<std::uint32_t>(first + i));
@@ -56,9 +56,9 @@ void collect_light_objects(
     found.objects.clear();
     for (const layout::ClusterLight& light : clusters.lights) {
         const auto record = static_cast<std::uint32_t>(light.axis.w);
-        const std::uint32_t reach = record - static_cast<std::uint32_t>(lights.directional);
+        const std::uint32_t range = record - static_cast<std::uint32_t>(lights.directional);
         append_objects_of_light(
-            lights.reach[reach], list.boxes, list.opaque_instances, found.objects);
+            lights.ranges[range], list.boxes, list.opaque_instances, found.objects);
         found.lights.push_back(record);
         found.begin.push_back(static_cast<std::uint32_t>(found.objects.size()));
     }

@@ -39,7 +39,7 @@ struct LightObjects {
 
 /// Appends those of the first `count` boxes that the light may reach.
 void append_objects_of_light(
-    const LightReach& light, std::span<const BoxBlock> boxes, int count,
+    const LightRange& light, std::span<const BoxBlock> boxes, int count,
     std::vector<std::uint32_t>& objects);
 
 /// Fills `found` for the opaque instances of `list`, which must have been collected with boxes.
@@ -55,7 +55,7 @@ struct ObjectLights {
 };
 void list_lights_of_objects(const LightObjects& found, int objects, ObjectLights& result);
 
-/// The same as draws: one command for consecutive objects with equal mesh.
+/// The same as draw commands: one for consecutive objects with equal mesh.
 struct LightDraws {
     std::vector<LightRun> runs;
     std::vector<DrawCommand> commands;

@@ -52,7 +52,7 @@ void upload_objects(
     }
 }
 
-/// The pass, created when it is first needed; null, and logged, if it cannot be.
+/// The pass, created on first use; null, with a logged error, if that fails.
 template <typename Pass>
 Pass* get_or_create(
     std::optional<Pass>& pass, gpu::Device& device, Result<Pass> (*create)(gpu::Device&)) {
@@ -104,7 +104,7 @@ void draw_lit(
     }
 }
 
-/// One draw per lobe, so that no pixel computes those of others: a software OpenGL would.
+/// One draw per lobe, so that no pixel evaluates other lobes, as a software OpenGL would.
 void draw_each_lobe(PassContext& context, ProgramVariants& programs, const ViewData& view) {
     const ShadingModelSet lobes = lobes_of(view.frame->materials->shading_models());
     const auto& bounds = view.data.get<LobeBounds>();

@@ -15,20 +15,18 @@ namespace limn {
 //
 // Reads    G-buffer or depth, light records and clusters, LightingInputs
 // Writes   radiance: linear; alpha 1 where there is a surface, black elsewhere; where the view
-// spreads
-//          light within surfaces (subsurface_pass.h), that light apart
+//          has subsurface scattering (subsurface_pass.h), that light to a separate target
 // Order    after the G-buffer, shadows and caustics
 // Shaders  shading_lobes.frag, light_pass.frag, lib/lighting.glsl
 //
 // Clustered: one pass for any number of lights, a pixel sums the lights of its cluster
 // (deferred.light-pass); the depth test restricts it to surfaces, or to those of one lobe after the
-// other where the level has several. The older methods, kept for
-// comparison, are light_each_pass.h (one light at a time over the G-buffer) and forward_pass.h
-// (surfaces lit while they are drawn).
+// other where the level has several. The older methods, kept for comparison, are light_each_pass.h
+// (one light at a time over the G-buffer) and forward_pass.h (surfaces lit while they are drawn).
 
 struct LightEffect {
     ProgramVariants clustered;
-    ProgramVariants lobes;                 ///< where a level has several, or light spreads
+    ProgramVariants lobes;                 ///< for several lobes, or subsurface scattering
     std::optional<LightEachPass> each{};   ///< created when a level first asks for it
     std::optional<ForwardPass> forward{};  ///< the same
     ProjectorPool projectors{};

@@ -10,18 +10,18 @@
 
 namespace limn {
 
-// What passes that light surfaces share: how they do it, and the LightingInputs of a view.
+// Shared by passes that light surfaces: the method, and the LightingInputs of a view.
 
-/// How surfaces meet lights in a view; published in prepare() before all that depends on it.
+/// How the surfaces of a view are lit; published in prepare() before everything that depends on it.
 struct LightingMethod {
     LightMethod method = LightMethod::Clustered;
-    ShadingRate shading = ShadingRate::Pixel;  ///< the others with LightMethod::ObjectMajor
+    ShadingRate shading = ShadingRate::Pixel;  ///< other rates only with LightMethod::ObjectMajor
     std::optional<ShadingRate> compared;  ///< lit a second time, ObjectMajor (ComparedRadiance)
     bool worst_blinn_axis = false;        ///< that of HighlightBlock::blinn_axis otherwise
     bool blinn_diffuse = false;
-    bool screen_interpolation = false;  ///< of what forward shaders interpolate
+    bool screen_interpolation = false;  ///< of the varyings of forward shaders
     HardwareDefects hardware = {};
-    bool infinite_viewer = false;  ///< specular light as seen from infinitely far away
+    bool infinite_viewer = false;  ///< specular light with the viewer at infinity
 
     /// Whether surfaces are lit while they are drawn.
     [[nodiscard]] bool is_forward() const {
@@ -44,7 +44,7 @@ struct ShadingLobes {
 };
 inline constexpr gpu::PipelineState kWhereLobe = kWhereBackground;
 
-/// Binds the view's uniform block and all that its LightingInputs say.
+/// Binds the view's uniform block and its LightingInputs.
 void bind_lighting(PassContext& context, const ViewData& view);
 
 /// `reads` and those of the view's LightingInputs.
@@ -62,8 +62,8 @@ struct ComparedRadiance {
     TextureId right;
 };
 
-/// The layers of shadow masks, as this frame's graph knows them: one per light with a shadow volume
-/// (shadow_volume_pass.h). They hold for the opaque surfaces alone.
+/// The layers of shadow masks, as textures of this frame's graph: one per light with a shadow
+/// volume (shadow_volume_pass.h). They are valid for opaque surfaces only.
 struct ShadowMasks {
     TextureId layers;
 };

@@ -18,7 +18,7 @@ PixelBounds all_pixels(const RenderView& view) {
 PixelBounds pixels_of(const RenderView& view, const Bounds& box) {
     Vec2 low(INFINITY);
     Vec2 high(-INFINITY);
-    int ahead = 0;  // corners; one that is NaN is neither
+    int ahead = 0;  // corners in front of the camera; NaN counts as neither
     int behind = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 p = {

@@ -10,10 +10,10 @@ namespace limn {
 class RenderItems;
 struct RenderView;
 
-// Where a view may show the surfaces of each lobe (ShadingModelRow::lobe): the pixels within which
-// passes over the screen that are for one lobe alone are drawn.
+// Screen bounds of the surfaces of each lobe (ShadingModelRow::lobe) in a view: full-screen passes
+// for a single lobe are restricted to these pixels.
 
-/// Pixels low .. high - 1 of a view, from below; none if they are not in this order.
+/// Pixels low .. high - 1 of a view, counted from the bottom; empty unless low < high.
 struct PixelBounds {
     IVec2 low = {0, 0};
     IVec2 high = {0, 0};
@@ -24,8 +24,8 @@ struct PixelBounds {
 /// By lobe_number().
 using LobeBounds = std::array<PixelBounds, kMaxShadingModels>;
 
-/// Of what is drawn with the materials of `items`. Boxes of items that reach behind the camera, but
-/// are not all behind it, and all items of the base lobe count as the whole view.
+/// Bounds of `items` by the lobe of their material. A box that straddles the camera plane counts as
+/// the whole view, and so does the base lobe.
 [[nodiscard]] LobeBounds find_lobe_bounds(const RenderItems& items, const RenderView& view);
 
 }  // namespace limn

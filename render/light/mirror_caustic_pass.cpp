@@ -71,8 +71,8 @@ void MirrorCausticEffect::collect(FrameData& frame) {
                   const WorldTransform& now, const PreviousWorldTransform* before) {
             if (is_finite_mirror(settings) && settings.strength > 0) {
                 const float alpha = frame.camera.alpha;
-                const Affine place = world_at(jumps, entity, now, before, {alpha, alpha});
-                mirrors.push_back({settings, surface.mesh.index, place});
+                const Affine pose = world_at(jumps, entity, now, before, {alpha, alpha});
+                mirrors.push_back({settings, surface.mesh.index, pose});
             }
         });
 }

@@ -35,7 +35,7 @@ Vec3 pixel_of(const ImageData& image, int x, int y) {
     return color;
 }
 
-/// Resamples the image to the size of a layer: the mean of the pixels under each texel.
+/// Resamples the image to the size of a layer with a box filter.
 std::vector<Vec4> resample(const ImageData& image) {
     constexpr int kSize = kProjectorImageSize;
     std::vector<Vec4> texels;

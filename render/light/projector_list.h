@@ -22,7 +22,7 @@ inline constexpr int kProjectorImageSize = 512;  ///< side of a layer [texels]
 /// The animation frame at `time` [s].
 [[nodiscard]] int projector_frame(const Projector& projector, double time);
 
-/// For a light at `pose`; `layer` of images().
+/// Record of a light at `pose` whose cookie is `layer` of images().
 [[nodiscard]] layout::ProjectorRecord make_projector_record(
     const Projector& projector, LightKind kind, const Affine& pose, double time, int layer);
 

@@ -9,11 +9,11 @@ namespace limn {
 //
 // Reads    ComparedRadiance; ShadingComparison
 // Writes   radiance, a new texture
-// Order    right after surfaces are lit: sky, water and all that follows is the same for both
+// Order    right after surfaces are lit: sky, water and all later passes are the same for both
 // Shaders  shading_comparison.frag
 //
-// A difference is that of the channels, each as in an image of 8 bits, to a power (thesis, equation
-// 6.2, with exponent 1/10). It is stored so that the linear tone curve displays it as it is.
+// The difference is that of each channel, quantized to 8 bits, raised to a power (thesis, equation
+// 6.2, with exponent 1/10). It is stored so that the linear tone curve displays it unchanged.
 
 struct ShadingComparisonEffect {
     const gpu::Program* program = nullptr;

@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t kMaxLabel = 48;        ///< glyphs
 constexpr std::size_t kMaxColumnLabel = 12;  ///< of a column
 
-/// As shading_marks.frag has it: a float holds three glyphs exactly.
+/// Layout of shading_marks.frag: a float holds three glyphs exactly.
 struct Label {
     Mat4 glyphs = Mat4(0);
     int length = 0;
@@ -63,7 +63,7 @@ std::array<Label, 2> make_labels(const World& world, const ShadingComparison& co
     return {make_label(left), make_label(right)};
 }
 
-/// The names of columns, each in one column of the matrices.
+/// The names of columns, one per column of the matrices.
 struct ColumnLabels {
     Mat4 low = Mat4(0);
     Mat4 high = Mat4(0);

@@ -10,7 +10,7 @@ namespace limn {
 // Reads    ComparedRadiance, or radiance where nothing is compared; ShadingComparison,
 //          WrinkleComparison, ScanlinePlot
 // Writes   radiance
-// Order    after the lens, which does not blur them
+// Order    after the lens, so that it does not blur them
 // Shaders  shading_marks.frag
 //
 // Columns of the plot are those of the image, so that each value lies below its pixel. The curve of

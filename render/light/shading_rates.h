@@ -7,16 +7,16 @@
 
 namespace limn {
 
-// The methods of shading, as shaders. A method is a value of ShadingRate, a row here, and what it
-// does once per vertex or triangle and what a pixel makes of that: a few lines each, over
-// lib/facet.glsl, lib/facet_pixel.glsl, lib/map_vertex.glsl and lib/map_pixel.glsl.
+// The methods of shading, as shaders. A method is a value of ShadingRate, a row here, and shaders
+// of a few lines, one per vertex or triangle and one per pixel, on top of lib/facet.glsl,
+// lib/facet_pixel.glsl, lib/map_vertex.glsl and lib/map_pixel.glsl.
 // Techniques: fakephong.pipeline
 
-/// Textures that take the place of a part of the lighting (highlight_map_pass.h).
+/// Textures that replace a part of the lighting (highlight_map_pass.h).
 enum class HighlightMap : std::uint8_t {
     None,
-    Blinn,        ///< over the plane coordinates of a light
-    Environment,  ///< over the mirrored view direction
+    Blinn,        ///< indexed by the plane coordinates of a light
+    Environment,  ///< indexed by the reflected view direction
 };
 
 struct ShadingRateRow {
@@ -25,11 +25,11 @@ struct ShadingRateRow {
     const char* geometry;  ///< "": none
     const char* fragment;
     HighlightMap map = HighlightMap::None;
-    int single_lights = 0;  ///< of how many lights it keeps terms at most (lib/single_lights.glsl)
+    int single_lights = 0;       ///< maximum lights with separate terms (lib/single_lights.glsl)
     bool reads_diffuse = false;  ///< as Rendering::blinn_diffuse says
 };
 
-inline constexpr int kMaxSingleLights = 8;   ///< what fits between shader stages
+inline constexpr int kMaxSingleLights = 8;   ///< limited by the varyings between shader stages
 inline constexpr int kMaxDiffuseLights = 4;  ///< the same with Rendering::blinn_diffuse
 
 /// In the order of ShadingRate.

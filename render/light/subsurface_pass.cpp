@@ -30,7 +30,7 @@ IVec2 size_of(const PixelBounds& bounds) {
     return glm::max(bounds.high - bounds.low, IVec2(0));
 }
 
-/// Of the programs that add what leaves surfaces.
+/// Definitions of the programs that add the scattered light.
 Variant diffusion_variant() {
     Variant variant("MATERIAL_RECORDS");
     variant.add("SHADING_LOBE", static_cast<int>(kSubsurfaceLobe));

@@ -11,29 +11,28 @@ namespace gpu {
 class Program;
 }
 
-// Light that scatters under surfaces of the shading model Subsurface and leaves around the point
+// Light that scatters below surfaces of the shading model Subsurface and exits around the point
 // where it entered, by the normalized profile of Christensen and Burley (2015) over the material's
 // mean free path.
 //
-// Reads    diffuse light before the albedo, which the light pass draws apart; G-buffer, depth
-// Writes   radiance: adds what leaves, times the albedo there
+// Reads    diffuse light without albedo, from the light pass; G-buffer, depth
+// Writes   radiance: adds the exiting light times the albedo there
 // Order    after lights, before all that lies in front of surfaces
 // Shaders  lib/diffused_light.glsl in subsurface.frag or .comp, distance_moments.frag or .comp;
 //          diffusion_profile.h
 //
 // Each pixel sums 80 rings, or 36 or 20 where they cover few pixels, in the tangent plane of its
-// surface, in meters, so that neither distance nor tilt changes what is seen; each ring is one
-// sample of a mip level about as wide as the ring's share of the plane. What lies off the plane
-// counts less by how much farther it is, what does not scatter not at all, and the rest is scaled
-// to a share of one: uniform light is unchanged.
+// surface, in meters, so that the result depends neither on distance nor on tilt; each ring is one
+// sample, from the mip level whose texels are about as large as the ring's area. Samples off the
+// plane are weighted down by their extra distance, pixels that do not scatter have weight zero, and
+// the weights are normalized: uniform light is unchanged.
 //
-// Only pixels within the boxes of such surfaces are visited, none where no box is in view. A
-// software OpenGL runs fragment shaders, which skip all others early; a GPU runs the same function
-// in compute shaders, as GPUs made for computing rasterize with few of their processors.
+// Only pixels within the screen bounds of such surfaces are processed. A software OpenGL runs
+// fragment shaders, which skip all others early; a GPU runs the same function in compute shaders,
+// as data-center GPUs have little rasterization hardware.
 //
 // Only with LightMethod::Clustered; the others shade such surfaces without diffusion, and so do
-// probes and blended surfaces. Light enters with the albedo of where it leaves: textures stay
-// sharp.
+// probes and blended surfaces. Albedo is taken at the exit point only: textures stay sharp.
 
 struct SubsurfaceEffect {
     bool in_compute;  ///< gpu::Profile::Gpu

@@ -12,22 +12,22 @@
 namespace limn {
 namespace {
 
-// Samples are as dense as the weighted mean of the profiles, the widest one drawn out: its outer
-// rings are so large that they would be met by too few.
-constexpr double kDrawnOut = 2;
-constexpr double kSampledShare =
-    0.995;  ///< of that mean; what is farther out counts to the last ring
+// Sample density is the weighted mean of the profiles, with the widest one stretched: its outer
+// rings are so large that they would get too few samples.
+constexpr double kStretch = 2;
+constexpr double kSampledFraction =
+    0.995;  ///< of that mean; light farther out is added to the last ring
 
-/// Radius within which a share of that mean lies, by bisection.
-double radius_of(double share, const DiffusionDensity& density, const double (&d)[3]) {
+/// Radius that contains a fraction of that mean, by bisection.
+double radius_of(double fraction, const DiffusionDensity& density, const double (&d)[3]) {
     double low = 0;
-    double high = 100 * kDrawnOut * d[0];
+    double high = 100 * kStretch * d[0];
     for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        const double within = density.widest * diffused_within(middle, kDrawnOut * d[0])
-                              + density.middle * diffused_within(middle, d[1])
-                              + density.narrowest * diffused_within(middle, d[2]);
-        (within < share ? low : high) = middle;
+        const double radius = 0.5 * (low + high);
+        const double within = density.widest * diffused_within(radius, kStretch * d[0])
+                              + density.middle * diffused_within(radius, d[1])
+                              + density.narrowest * diffused_within(radius, d[2]);
+        (within < fraction ? low : high) = radius;
     }
     return 0.5 * (low + high);
 }
@@ -57,14 +57,14 @@ void sample_diffusion(const Vec3& d, const DiffusionDensity& density, std::span<
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const bool last = i + 1 == samples.size();
         const double end = first + static_cast<double>(i) * others;
-        const double middle = end - 0.5 * (i == 0 ? first : others);
-        const double outer = radius_of(kSampledShare * end, density, sorted);
-        samples[i].x = static_cast<float>(radius_of(kSampledShare * middle, density, sorted));
+        const double center = end - 0.5 * (i == 0 ? first : others);
+        const double outer = radius_of(kSampledFraction * end, density, sorted);
+        samples[i].x = static_cast<float>(radius_of(kSampledFraction * center, density, sorted));
         for (int c = 0; c < 3; ++c) {
             const auto channel = static_cast<double>(d[c]);
             const double within = last ? 1.0 : diffused_within(outer, channel);
-            const double before = i == 0 ? 0.0 : diffused_within(inner, channel);
-            samples[i][c + 1] = static_cast<float>(within - before);
+            const double previous = i == 0 ? 0.0 : diffused_within(inner, channel);
+            samples[i][c + 1] = static_cast<float>(within - previous);
         }
         inner = outer;
     }

@@ -5,22 +5,22 @@
 
 namespace limn {
 
-TextureId create_drawn_image(FrameGraph& graph, const ImagePool& images, ImageLayer place) {
-    const gpu::Texture& array = images.array(place.array);
+TextureId create_drawn_image(FrameGraph& graph, const ImagePool& images, ImageLayer location) {
+    const gpu::Texture& array = images.array(location.array);
     return create_target(
         graph, "drawn image", array.desc().format, {array.width(), array.height()},
         array.desc().levels);
 }
 
-void place_drawn_image(
-    FrameGraph& graph, const ImagePool& images, TextureId drawn, ImageLayer place) {
-    const TextureId array = graph.import("images", images.array(place.array));
+void store_drawn_image(
+    FrameGraph& graph, const ImagePool& images, TextureId drawn, ImageLayer location) {
+    const TextureId array = graph.import("images", images.array(location.array));
     graph.add_pass(
-        "place drawn image", {}, {image(drawn), image(array)},
-        [drawn, place, &images](PassContext& context) {
+        "store drawn image", {}, {image(drawn), image(array)},
+        [drawn, location, &images](PassContext& context) {
             const gpu::Texture& texture = context.texture(drawn);
             glGenerateTextureMipmap(texture.id());
-            texture.copy_to(images.array(place.array), static_cast<int>(place.layer));
+            texture.copy_to(images.array(location.array), static_cast<int>(location.layer));
         });
 }
 

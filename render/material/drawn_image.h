@@ -7,15 +7,15 @@ namespace limn {
 class ImagePool;
 struct ImageLayer;
 
-// Images of materials that passes draw before the views, such as combined or lit textures.
+// Material images that passes draw before the views, such as combined or lit textures.
 
-/// A target like the array that the image lies in, to draw level 0 of.
+/// A render target with the format and size of the image, for its level 0.
 [[nodiscard]] TextureId
-create_drawn_image(FrameGraph& graph, const ImagePool& images, ImageLayer place);
+create_drawn_image(FrameGraph& graph, const ImagePool& images, ImageLayer location);
 
-/// Adds a pass that makes the mip levels of `drawn` and copies it to the image: copied, since
-/// materials may read other layers of the array by the same texture.
-void place_drawn_image(
-    FrameGraph& graph, const ImagePool& images, TextureId drawn, ImageLayer place);
+/// Adds a pass that generates the mip levels of `drawn` and copies them to the image. It is not
+/// drawn there directly, since materials may be reading other layers of the same texture array.
+void store_drawn_image(
+    FrameGraph& graph, const ImagePool& images, TextureId drawn, ImageLayer location);
 
 }  // namespace limn

@@ -16,10 +16,10 @@
 namespace limn {
 namespace {
 
-constexpr float kThreads = 64;           // of a work group
-constexpr float kMaxRounds = 32768;      // of loops in a dispatch; llvmpipe ends it after 65,535
-constexpr float kRoundsPerSegment = 48;  // besides those over the pixels around it
-constexpr int kMaxSegments = 1024;       // in a dispatch
+constexpr float kThreads = 64;           // per work group
+constexpr float kMaxRounds = 32768;      // loop iterations per dispatch; llvmpipe stops at 65,535
+constexpr float kRoundsPerSegment = 48;  // not counting those over the pixels around it
+constexpr int kMaxSegments = 1024;       // per dispatch
 
 /// Layout of furrow_trace.comp.
 struct Progress {
@@ -27,7 +27,7 @@ struct Progress {
     std::uint32_t furrow = 0;
     std::uint32_t backward = 0;
     std::uint32_t segment = 0;
-    Vec2 place = {0, 0};
+    Vec2 position = {0, 0};
     std::int32_t left = 0;
     std::int32_t unused = 0;
 };
@@ -36,11 +36,11 @@ struct Progress {
 int segment_budget(const FurrowStyle& style) {
     const FurrowFunctions& f = style.functions;
     const auto largest = [](const Vec2& line) { return std::max(line.x, line.x + 2.0f * line.y); };
-    const float reach =
+    const float radius =
         style.scale * (largest(f.length) + largest(f.density) + 2.0f * f.width) + 4.0f;
     return std::clamp(
         static_cast<int>(
-            kMaxRounds / (kRoundsPerSegment + 2.0f * reach + reach * reach / kThreads)),
+            kMaxRounds / (kRoundsPerSegment + 2.0f * radius + radius * radius / kThreads)),
         1, kMaxSegments);
 }
 

@@ -30,7 +30,7 @@ struct FurrowTextures {
     gpu::Texture normal;  ///< RGBA16F: unit; s to the right, t up, z outwards
 };
 
-/// `cover` has the triangle of each pixel, or -1 (cover_furrow_map). Waits for the GPU every few
+/// `cover` holds the triangle of each pixel, or -1 (cover_furrow_map). Waits for the GPU every few
 /// segments, so that no dispatch runs long.
 [[nodiscard]] FurrowTextures make_furrow_textures(
     gpu::Device& device, const FurrowMaker& maker, const FurrowMap& map,

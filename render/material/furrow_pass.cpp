@@ -50,7 +50,7 @@ std::vector<float> vertex_spacings(const MeshData& mesh) {
     return sums;
 }
 
-/// `spacing`: 0 for edited vertices, which are sparse.
+/// `spacing`: 0 for edited vertices, which are few.
 void append_vectors(
     const Vec3& at, const FurrowVectors& vectors, float length, float spacing,
     std::vector<FurrowMark>& marks) {
@@ -96,25 +96,26 @@ void upload_heights(ShownFurrows& furrows, Entity entity, const FurrowSkin& skin
     furrows.heights.upload(std::as_bytes(std::span(skin.height)));
 }
 
-void place_images(FurrowEffect& effect, const FrameData& frame) {
+void upload_images(FurrowEffect& effect, const FrameData& frame) {
     if (frame.assets_replaced) {
-        effect.placed.clear();
+        effect.uploaded.clear();
     }
     std::size_t count = 0;
     frame.world->query<const FurrowSkin>().each([&](Entity entity, const FurrowSkin& skin) {
-        if (count == effect.placed.size()) {
-            effect.placed.emplace_back();
+        if (count == effect.uploaded.size()) {
+            effect.uploaded.emplace_back();
         }
-        PlacedFurrows& placed = effect.placed[count++];
-        if (!skin.fault.empty() || (placed.entity == entity && placed.version == skin.version)) {
+        UploadedFurrows& uploaded = effect.uploaded[count++];
+        if (!skin.fault.empty()
+            || (uploaded.entity == entity && uploaded.version == skin.version)) {
             return;
         }
-        placed = {entity, skin.version};
+        uploaded = {entity, skin.version};
         ImagePool& images = frame.materials->images();
         images.replace(skin.source.normals, skin.normals);
         images.replace(skin.source.heights, skin.heights);
     });
-    effect.placed.resize(count);
+    effect.uploaded.resize(count);
 }
 
 void show_meshes(FurrowEffect& effect, FrameData& frame) {
@@ -214,7 +215,7 @@ bool FurrowEffect::is_used(const FrameData& frame) {
 }
 
 void FurrowEffect::collect(FrameData& frame) {
-    place_images(*this, frame);
+    upload_images(*this, frame);
     show_meshes(*this, frame);
 }
 

@@ -25,14 +25,12 @@ struct MeshData;
 //
 // Deformed meshes are shown at rest.
 
-/// A line with round caps, or a dot, in the space of the mesh. Layout of furrow_mark.vert: three
-/// texels.
+/// A line with round caps, or a dot, in mesh space. Layout of furrow_mark.vert: three texels.
 struct FurrowMark {
     Vec3 from = {0, 0, 0};
     float radius = 1;  ///< [px] of an image of 720 rows
     Vec3 to = {0, 0, 0};
-    float spacing =
-        0;  ///< distance to similar marks [m], which limits the radius; 0: none are near
+    float spacing = 0;  ///< spacing of similar marks [m], which limits the radius; 0: no limit
     Vec4 color = {1, 1, 1, 1};  ///< display values
 };
 static_assert(sizeof(FurrowMark) == 48);
@@ -42,7 +40,7 @@ static_assert(sizeof(FurrowMark) == 48);
     return radius * std::max(static_cast<float>(rows) / 720.0f, 0.5f);
 }
 
-inline constexpr float kFurrowTipRadius = 3.5f;  ///< of vectors that can be dragged
+inline constexpr float kFurrowTipRadius = 3.5f;  ///< tips of vectors that can be dragged
 inline constexpr Vec4 kFurrowVertexColor = {0, 0, 1, 1};
 inline constexpr Vec4 kFurrowFieldColor[2] = {{1, 0, 0, 1}, {0, 1, 0, 1}};
 inline constexpr Vec4 kFurrowHaloColor = {1, 0.6f, 0, 1};  ///< around the selected vertex
@@ -66,8 +64,8 @@ struct ShownFurrows {
     gpu::Texture heights;
 };
 
-/// A skin whose images were uploaded.
-struct PlacedFurrows {
+/// A skin whose images have been uploaded.
+struct UploadedFurrows {
     Entity entity;
     std::uint32_t version = 0;  ///< of the FurrowSkin
 };
@@ -76,7 +74,7 @@ struct FurrowEffect {
     const gpu::Program* faces = nullptr;
     const gpu::Program* marks = nullptr;
     gpu::Sampler texels;
-    std::vector<PlacedFurrows> placed = {};  ///< in world order
+    std::vector<UploadedFurrows> uploaded = {};  ///< in world order
     std::vector<ShownFurrows> shown = {};
 
     static Result<FurrowEffect> create(gpu::Device& device, const RenderSettings&);

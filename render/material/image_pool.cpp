@@ -9,7 +9,7 @@
 namespace limn {
 namespace {
 
-/// Beyond this a further layer begins a further array: drivers allocate arrays in one piece.
+/// Larger arrays are split: drivers allocate an array in one piece.
 constexpr std::size_t kMaxArrayBytes = std::size_t{256} << 20;
 
 struct ImageFormat {
@@ -30,7 +30,7 @@ ImageFormat image_format(const ImageData& image) {
     return {GL_RGBA8, GL_UNSIGNED_BYTE, 4};
 }
 
-/// Of level 0. The image must have a size.
+/// Bytes of level 0. The image must not be empty.
 std::size_t image_bytes(const ImageData& image) {
     return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)
            * image_format(image).bytes;
@@ -79,46 +79,46 @@ void ImagePool::update(std::span<const ImageData> images) {
         return;
     }
     const std::size_t first_array = arrays_.size();
-    for (const gpu::TextureDesc& desc : place(images)) {
+    for (const gpu::TextureDesc& desc : allocate_layers(images)) {
         create_array(desc);
     }
     for (std::size_t i = first; i < images.size(); ++i) {
-        const ImageLayer place = images_[i].place;
-        if (place.array != 0) {
+        const ImageLayer location = images_[i].location;
+        if (location.array != 0) {
             // The first row of the image is row 0 of the texture, where v = 0, as in glTF.
-            arrays_[place.array].texture.upload<std::uint8_t>(
+            arrays_[location.array].texture.upload<std::uint8_t>(
                 std::span(images[i].pixels).first(image_bytes(images[i])), GL_RGBA,
-                image_format(images[i]).type, 0, static_cast<int>(place.layer));
+                image_format(images[i]).type, 0, static_cast<int>(location.layer));
         }
     }
     for (std::size_t i = first_array; i < arrays_.size(); ++i) {
         arrays_[i].texture.generate_mipmaps();
     }
     for (std::size_t i = first; i < images.size(); ++i) {
-        if (images_[i].place.array != 0) {
-            const gpu::Texture& array = arrays_[images_[i].place.array].texture;
+        if (images_[i].location.array != 0) {
+            const gpu::Texture& array = arrays_[images_[i].location.array].texture;
             images_[i].texture = array.view(
-                images[i].name, array.desc().format, static_cast<int>(images_[i].place.layer));
+                images[i].name, array.desc().format, static_cast<int>(images_[i].location.layer));
         }
     }
 }
 
 void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
-    const ImageLayer place = find(id);
-    if (place.array == 0) {
+    const ImageLayer location = find(id);
+    if (location.array == 0) {
         return;
     }
-    gpu::Texture& array = arrays_[place.array].texture;
+    gpu::Texture& array = arrays_[location.array].texture;
     gpu::TextureDesc level = array.desc();
     level.levels = 1;
     level.depth = 1;
     if (pixels.size() == gpu::texture_bytes(level)) {
-        array.upload(std::as_bytes(pixels), 0, static_cast<int>(place.layer));
-        array.generate_mipmaps();  // of all layers: those of a view alone stay as they were on Mesa
+        array.upload(std::as_bytes(pixels), 0, static_cast<int>(location.layer));
+        array.generate_mipmaps();  // all layers: Mesa ignores a view of one layer
     }
 }
 
-std::vector<gpu::TextureDesc> ImagePool::place(std::span<const ImageData> images) {
+std::vector<gpu::TextureDesc> ImagePool::allocate_layers(std::span<const ImageData> images) {
     const int max_size = device_.caps().max_texture_size;
     const int max_layers = std::min(device_.caps().max_texture_layers, 1 << layout::kLayerBits);
     std::vector<gpu::TextureDesc> arrays;
@@ -142,7 +142,7 @@ std::vector<gpu::TextureDesc> ImagePool::place(std::span<const ImageData> images
         } else {
             ++found->depth;
         }
-        images_.back().place = {
+        images_.back().location = {
             static_cast<std::uint32_t>(arrays_.size()) + index,
             static_cast<std::uint32_t>(arrays[index].depth) - 1};
     }

@@ -17,9 +17,9 @@ class Device;
 // of one texture array, so that materials which differ in their images alone are drawn together.
 // An image that is missing, broken or too large is magenta.
 //
-// Images are only added: those of one update() share arrays, later ones get arrays of their own.
+// Images are only added: images of one update() share arrays, later ones get new arrays.
 
-/// Where an image is.
+/// Location of an image.
 struct ImageLayer {
     std::uint32_t array = 0;  ///< 0: the magenta one
     std::uint32_t layer = 0;
@@ -30,16 +30,16 @@ class ImagePool {
     explicit ImagePool(gpu::Device& device);
 
     void clear();
-    /// Uploads those beyond size().
+    /// Uploads the images beyond size().
     void update(std::span<const ImageData> images);
     [[nodiscard]] std::size_t size() const { return images_.size(); }
-    /// Replaces the pixels of an image, given in its format as ImageData has them; where there is
-    /// no such image, or they are not as many, nothing.
+    /// Replaces the pixels of an image, in its own format and the layout of ImageData; does nothing
+    /// if there is no such image or the size differs.
     void replace(ImageId id, std::span<const std::uint8_t> pixels);
 
     /// Magenta if there is no such image.
     [[nodiscard]] ImageLayer find(ImageId id) const {
-        return id.index < images_.size() ? images_[id.index].place : ImageLayer{};
+        return id.index < images_.size() ? images_[id.index].location : ImageLayer{};
     }
     /// The image as a texture of its own; null if there is no such image, or it is broken.
     [[nodiscard]] const gpu::Texture* find_texture(ImageId id) const {
@@ -48,7 +48,7 @@ class ImagePool {
     [[nodiscard]] const gpu::Texture& array(std::uint32_t array) const {
         return arrays_[array].texture;
     }
-    /// The same texels without decoding sRGB; empty but for sRGB arrays in the software profile.
+    /// The same texels without decoding sRGB; empty except for sRGB arrays in the software profile.
     [[nodiscard]] const gpu::Texture& encoded(std::uint32_t array) const {
         return arrays_[array].encoded;
     }
@@ -59,12 +59,12 @@ class ImagePool {
         gpu::Texture encoded;
     };
     struct Image {
-        ImageLayer place;
+        ImageLayer location;
         gpu::Texture texture;  ///< a view of its layer
     };
 
-    /// Chooses layers for new images; returns the arrays to create.
-    [[nodiscard]] std::vector<gpu::TextureDesc> place(std::span<const ImageData> images);
+    /// Assigns layers to new images; returns the arrays to create.
+    [[nodiscard]] std::vector<gpu::TextureDesc> allocate_layers(std::span<const ImageData> images);
     void create_array(const gpu::TextureDesc& desc);
 
     gpu::Device& device_;

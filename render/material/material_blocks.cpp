@@ -35,7 +35,7 @@ std::optional<layout::SkinBlock> make_skin_block(const Material& m) {
                                            : std::nullopt;
 }
 
-/// Beer-Lambert: of light, exp(-absorption * distance) is left.
+/// Beer-Lambert: the transmittance is exp(-absorption * distance).
 std::optional<layout::ClearBlock> make_clear_block(const Material& m) {
     if (m.transmission <= 0) {
         return std::nullopt;
@@ -88,7 +88,7 @@ std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) 
 
 struct BlockKind {
     std::uint32_t number;
-    std::uint32_t texels;  ///< at most
+    std::uint32_t texels;  ///< maximum size
     /// Appends the block of a material; false if it has none.
     bool (*append)(const Material&, std::vector<Vec4>&);
 };
@@ -120,7 +120,7 @@ constexpr BlockKind kKinds[] = {
     block_kind<make_subsurface_block>(layout::kSubsurfaceBlock),
 };
 
-/// What a material with all blocks needs fits the offsets, and each kind has its number.
+/// Whether the offsets can hold a material with all blocks, and each kind has its number.
 constexpr bool kinds_fit() {
     std::uint32_t texels = 0;
     for (std::size_t i = 0; i < std::size(kKinds); ++i) {

@@ -11,15 +11,15 @@
 
 namespace limn {
 
-// The maps of a material: which it has, at which texture units they are, and where on the surface
-// they lie. A new map is a slot number in shaders/material_maps_gpu.h, a row in material_maps.cpp
-// and a field of Material.
+// The maps of a material: which it has, their texture units and their texture coordinates. A new
+// map is a slot number in shaders/material_maps_gpu.h, a row in material_maps.cpp and a field of
+// Material.
 
 struct MapSlot {
     std::uint32_t number;
     const char* definition;  ///< of shaders: its value is the texture unit
     TextureSlot Material::*texture;
-    bool trilinear;  ///< on a software OpenGL, too
+    bool trilinear;  ///< also on a software OpenGL
 };
 /// By number.
 [[nodiscard]] std::span<const MapSlot> map_slots();
@@ -41,7 +41,7 @@ class MapUnits {
     [[nodiscard]] std::uint32_t unit(std::uint32_t slot) const {
         return static_cast<std::uint32_t>(bits_ >> 4 * slot & 15) - 1;
     }
-    /// Without the other slots.
+    /// Only this slot.
     [[nodiscard]] MapUnits only(std::uint32_t slot) const {
         MapUnits one;
         one.bits_ = bits_ & std::uint64_t{15} << 4 * slot;
@@ -55,7 +55,7 @@ class MapUnits {
 };
 static_assert(4 * layout::kMaxMapSlots <= 64 && layout::kMapUnits < 15);
 
-/// A texture array with the sampler that a map reads it by.
+/// A texture array and the sampler of a map that reads it.
 struct MapBinding {
     std::uint32_t array = 0;    ///< of ImagePool
     std::uint32_t sampler = 0;  ///< of MaterialPool
@@ -63,10 +63,10 @@ struct MapBinding {
     bool operator==(const MapBinding&) const = default;
 };
 
-/// What the maps of a material have bound, by texture unit. A map takes the unit of an equal one.
+/// The bindings of a material's maps, by texture unit. Equal maps share a unit.
 class MapBindings {
   public:
-    /// The unit of a map; none if all units are taken by others.
+    /// The unit of a map; none if all units are in use.
     [[nodiscard]] std::optional<std::uint32_t> add(const MapBinding& map);
     [[nodiscard]] std::span<const MapBinding> used() const {
         return std::span(bindings_).first(count_);
@@ -78,10 +78,10 @@ class MapBindings {
     std::uint32_t count_ = 0;
 };
 
-/// Sets the layer of a slot in MaterialRecord::maps, which must be 0 there.
+/// Sets the layer of a slot in MaterialRecord::maps, which must still be 0.
 void set_layer(Vec4& maps, std::uint32_t slot, std::uint32_t layer);
 
-/// Same set of texture coordinates and same transform.
+/// Whether both use the same set of texture coordinates and the same transform.
 [[nodiscard]] bool same_uv(const TextureSlot& a, const TextureSlot& b);
 
 /// The SurfaceFeature kUvMap, kUvMaps or, if all maps use the first uv set untransformed, 0.

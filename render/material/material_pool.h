@@ -23,10 +23,10 @@ class Device;
 // the same program, fixed state, texture arrays and samplers share a batch: instances of a batch
 // are drawn together, whatever their mesh and material.
 //
-// Cheaper settings on a software OpenGL, which pays for what is free on a GPU: the sRGB of the base
-// color is decoded after filtering (a third of the cost), only the base color is filtered
-// trilinearly, and nothing anisotropically (five times the cost). Emission is decoded before
-// filtering: between lit and dark windows the error would show.
+// Cheaper settings on a software OpenGL, where filtering that is free on a GPU has a cost: the sRGB
+// of the base color is decoded after filtering (a third of the cost), only the base color is
+// filtered trilinearly, and nothing anisotropically (five times the cost). Emission is decoded
+// before filtering: at the edges of lit windows the error would be visible.
 
 /// Materials that share a draw state.
 struct SurfaceBatch {
@@ -39,9 +39,9 @@ class MaterialPool {
   public:
     MaterialPool(gpu::Device& device, float anisotropy);
 
-    /// Uploads what is new in `assets`: images beyond those it has, and all materials if any were
-    /// added or their version changed. `fresh`: these are other assets than last time. A map that
-    /// would need one texture array more than a material has units is left out, with an error.
+    /// Uploads changes of `assets`: new images, and all materials if any were added or their
+    /// version changed. `fresh`: the assets were replaced since the last call. A map that would
+    /// need one texture array more than a material has units is left out, with an error.
     void update(const Assets& assets, bool fresh);
 
     /// Record index of a material; 0 for none, 1 for an unknown one.
@@ -55,9 +55,9 @@ class MaterialPool {
     [[nodiscard]] std::uint32_t model_of(std::uint32_t record) const { return models_[record]; }
     [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
     [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
-    /// Those that some material has.
+    /// The models that some material uses.
     [[nodiscard]] ShadingModelSet shading_models() const { return shading_models_; }
-    /// Whether light spreads under the surface of some material (subsurface_pass.h).
+    /// Whether some material has subsurface scattering (subsurface_pass.h).
     [[nodiscard]] bool diffuses() const { return diffuses_; }
 
     void bind_textures(std::uint32_t textures) const;
@@ -68,7 +68,7 @@ class MaterialPool {
   private:
     void upload_records();
     void add_material(const Material& material);
-    /// Chooses the units of its maps and writes their layers.
+    /// Assigns texture units to its maps and writes their layers.
     void add_maps(const Material& material, SurfaceBatch& batch, layout::MaterialRecord& record);
     [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot, bool trilinear);
     [[nodiscard]] std::uint32_t index_of(const MapBindings& bindings);

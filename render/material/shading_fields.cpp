@@ -14,10 +14,10 @@ constexpr unsigned kClassic =
     bit(ShadingModel::Blinn) | bit(ShadingModel::Phong) | bit(ShadingModel::Skin);
 constexpr unsigned kHair = bit(ShadingModel::Hair);
 
-/// A field that some models do not read, and those that do.
+/// A field that only some models read, and those models.
 struct FieldReaders {
     std::string_view field;
-    unsigned models;  ///< a bit each
+    unsigned models;  ///< one bit per model
 };
 constexpr FieldReaders kFieldReaders[] = {
     {"metalness", kMirrors},

@@ -61,7 +61,7 @@ std::string prepare_where(const ShadingModelRow& row) {
         row.definition, lobe_number(row.model), is_model({&row, 1}, "s.model"), row.name);
 }
 
-/// Replaces the response of the base by that of `lobe`, which `rows` have.
+/// Replaces the response of the base lobe by that of `lobe`, which `rows` have.
 std::string respond_where(std::string_view lobe, std::span<const ShadingModelRow> rows) {
     return fmt::format(
         "#if defined(SHADING_LOBE) && SHADING_LOBE == {0}\n    response = lobe_{1}(r, c);\n"
@@ -70,7 +70,7 @@ std::string respond_where(std::string_view lobe, std::span<const ShadingModelRow
         lobe_number(rows[0].model), lobe, is_defined(rows), is_model(rows, "r.model"));
 }
 
-/// The rows other than the base's, by a lobe other than the base's.
+/// The rows that do not use the base lobe, by their lobe.
 std::map<std::string_view, std::vector<ShadingModelRow>> rows_by_lobe() {
     std::map<std::string_view, std::vector<ShadingModelRow>> rows;
     for (const ShadingModelRow& row : kOthers) {

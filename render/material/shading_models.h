@@ -13,8 +13,8 @@ namespace limn {
 class Variant;
 
 // The shading models that surfaces are lit with. A model is a value of ShadingModel, a row here and
-// a file render/shaders/shade_<name>.glsl; lib/reflector.glsl says what the file contains. From the
-// rows come the numbers in the G-buffer, the definitions of lit programs, and the GLSL that calls
+// a file render/shaders/shade_<name>.glsl; lib/reflector.glsl says what the file contains. The rows
+// generate the numbers in the G-buffer, the definitions of lit programs, and the GLSL that calls
 // the functions of each model. A program calls only the models that some material of the level has.
 
 struct ShadingModelRow {
@@ -46,7 +46,7 @@ static_assert(std::size(kShadingModels) < kMaxShadingModels, "0 is no surface");
     return static_cast<std::uint32_t>(model) + 1;
 }
 
-/// The same for all models with the lobe of this one: the number of the first of them.
+/// The stored number of the first model with the same lobe.
 [[nodiscard]] constexpr std::uint32_t lobe_number(ShadingModel model) {
     const std::string_view lobe = kShadingModels[static_cast<std::size_t>(model)].lobe;
     std::size_t first = 0;

@@ -6,7 +6,8 @@ namespace limn {
 
 struct Material;
 
-/// Color by the material's pigments, a factor of its base color, linear; (1, 1, 1) without any.
+/// Color of the material's pigments, a factor of its base color, linear; (1, 1, 1) without
+/// pigments.
 ///
 /// Plane: (0.97, 0.87, 0.67) - melanin (0.69, 0.71, 0.90) - blood (0, 0.24, 0.24), clamped at 0
 /// (skin.melanin-blood; Bando 2001, after Cotton et al. 1999). Values without physical meaning.

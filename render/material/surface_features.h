@@ -9,8 +9,8 @@ namespace limn {
 
 class Variant;
 
-/// What the program of any surface may have to do, beside reading its maps; what single effects add
-/// are hooks (surface_hooks.h). Each bit is a definition of lib/material.glsl, mesh.vert and
+/// What the program of a surface may need besides reading its maps; additions of single effects are
+/// hooks (surface_hooks.h). Each bit is a definition of lib/material.glsl, mesh.vert and
 /// gbuffer.frag; their names are in surface_features.cpp.
 enum SurfaceFeature : std::uint32_t {
     kUvMap = 1u << 0,

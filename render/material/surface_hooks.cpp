@@ -21,14 +21,14 @@ static_assert(std::size(kSurfaceHooks) <= kMaxSurfaceHooks);
 
 constexpr std::uint64_t kHookBits = 16;
 
-/// Where the bits of a hook begin in HookBits.
+/// Offset of a hook's bits in HookBits.
 std::size_t first_bit(const SurfaceHook& hook) {
     const auto* const found = std::find(std::begin(kSurfaceHooks), std::end(kSurfaceHooks), &hook);
     LIMN_CHECK_NOTE(found != std::end(kSurfaceHooks), "the hook is not in the list");
     return kHookBits * static_cast<std::size_t>(found - std::begin(kSurfaceHooks));
 }
 
-/// How GLSL declares a point, and passes on its arguments.
+/// The GLSL parameters of a hook point, and its arguments.
 struct PointText {
     const char* name;
     const char* parameters;

@@ -10,16 +10,15 @@ class Variant;
 struct SurfaceFeatures;
 struct SurfaceHook;
 
-// How effects take part in the programs that draw surfaces. What any surface may need is a
-// SurfaceFeature and lib/material.glsl; what one effect adds, such as wrinkles, is a SurfaceHook: a
-// small set of bits that only the effect knows the meaning of, their definitions, and GLSL files
-// with functions that the shaders call. A hook is declared in a file of its effect
-// (wrinkle_hook.h) and has a line in the list of surface_hooks.cpp, whose order is that of the
-// calls.
+// How effects extend the programs that draw surfaces. What any surface may need is a SurfaceFeature
+// and in lib/material.glsl; what one effect adds, such as wrinkles, is a SurfaceHook: a small set
+// of bits whose meaning is private to the effect, their definitions, and GLSL files with functions
+// that the shaders call. A hook is declared in a file of its effect (wrinkle_hook.h) and has a line
+// in the list of surface_hooks.cpp, whose order is that of the calls.
 //
 // Shaders include what is generated from the list:
 //
-//     generated/position_hooks.glsl   HookPoint::Position, of all that draws meshes
+//     generated/position_hooks.glsl   HookPoint::Position, of all passes that draw meshes
 //     generated/vertex_hooks.glsl     HookPoint::Vertex, of mesh.vert
 //     generated/surface_hooks.glsl    all other points, of lib/material.glsl
 //
@@ -29,7 +28,7 @@ struct SurfaceHook;
 /// Where a hook is called: each is a function `<hook>_<point>`.
 enum class HookPoint : std::uint8_t {
     Position,  ///< (inout vec3 position): moves a vertex in mesh space
-    Vertex,    ///< (inout vec3 tangent, vec3 normal): in world space; passes on what fragments need
+    Vertex,    ///< (inout vec3 tangent, vec3 normal): in world space; writes varyings of the effect
     Uv,        ///< (inout vec4 uv): both sets of texture coordinates, before any map is read
     Color,     ///< (inout vec4 color): before the colors of vertices
     Normal,    ///< (inout vec3 normal): in tangent space, not unit; after the normal maps
@@ -65,8 +64,8 @@ struct SurfaceHook {
     const char* position_file = nullptr;  ///< with HookPoint::Position
     const char* vertex_file = nullptr;    ///< with HookPoint::Vertex
     const char* surface_file = nullptr;   ///< with any other point
-    /// Adds what the hook does for an instance with these bits to the features of its material;
-    /// also called for instances that have none.
+    /// Adds to the features of a material what the hook needs for an instance with these bits; also
+    /// called for instances without any.
     void (*add)(SurfaceFeatures& features, std::uint16_t instance);
 };
 
@@ -76,7 +75,7 @@ struct SurfaceHook {
 /// Calls SurfaceHook::add of each.
 void add_hooks(SurfaceFeatures& features, const HookBits& instance);
 
-/// Those that move vertices, which passes that draw no color need, too.
+/// The hooks that move vertices, which depth-only passes need, too.
 [[nodiscard]] HookBits moving_hooks(const HookBits& hooks);
 
 /// Adds the definition of each bit.

@@ -72,7 +72,7 @@ void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame
                 shader.set("gain", gain);
                 shader.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
             });
-        place_drawn_image(graph, images, combined, target);
+        store_drawn_image(graph, images, combined, target);
     });
 }
 

@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-/// Turns normals of the entity, which should scale evenly, into the space of the camera.
+/// Rotates normals of the entity, which should be scaled uniformly, into camera space.
 Mat3 camera_from_mesh(const Affine& world_from_camera, const Affine& world_from_mesh) {
     const Mat3 camera(to_mat4(world_from_camera));
     const Mat3 mesh(to_mat4(world_from_mesh));
@@ -44,7 +44,7 @@ void TextureShadeEffect::collect(FrameData& frame) {
 
 void TextureShadeEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     const ImagePool& images = frame.materials->images();
-    const auto draw = [&](const TextureShade& shade, const WorldTransform& place) {
+    const auto draw = [&](const TextureShade& shade, const WorldTransform& transform) {
         const gpu::Texture* normals = images.find_texture(shade.normals);
         const gpu::Texture* color = images.find_texture(shade.color);
         const ImageLayer target = images.find(shade.target);
@@ -57,7 +57,7 @@ void TextureShadeEffect::draw_shared(FrameGraph& graph, const FrameData& frame) 
         };
         const gpu::Texture& array = images.array(target.array);
         const TextureId shaded = create_drawn_image(graph, images, target);
-        const Mat3 rotation = camera_from_mesh(frame.camera.world_from_camera, place.world);
+        const Mat3 rotation = camera_from_mesh(frame.camera.world_from_camera, transform.world);
         add_fullscreen_pass(
             graph, "shade texture",
             {array_of(shade.normals), array_of(shade.color),
@@ -76,7 +76,7 @@ void TextureShadeEffect::draw_shared(FrameGraph& graph, const FrameData& frame) 
                 shader.set("unrolled", shade.unrolled ? 1 : 0);
                 shader.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
             });
-        place_drawn_image(graph, images, shaded, target);
+        store_drawn_image(graph, images, shaded, target);
     };
     frame.world->query<const TextureShade, const WorldTransform>().each(draw);
 }

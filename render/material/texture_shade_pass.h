@@ -12,9 +12,9 @@ namespace limn {
 // Order    before surfaces are drawn
 // Shaders  texture_shade.frag
 //
-// Normals are rotated into the space of the camera: those of an unrolled cylinder are rolled up
-// first. One image a frame, whatever the number of views: mirrors and probes show what the camera
-// sees.
+// Normals are rotated into camera space: those of an unrolled cylinder are rolled up first. One
+// image per frame, whatever the number of views: mirrors and probes show the lighting for the
+// camera.
 
 struct TextureShadeEffect {
     const gpu::Program* program = nullptr;

@@ -14,7 +14,7 @@ struct WaterSurfaces;
 // Order    before water
 // Shaders  texture_waves.frag
 
-/// Adds no pass if no water has such waves; resizes `tiles` if it has more than before.
+/// Adds no pass if no water has such waves; grows `tiles` if necessary.
 void draw_texture_waves(
     FrameGraph& graph, const gpu::Program* program, gpu::Texture& tiles,
     const WaterSurfaces& waters);

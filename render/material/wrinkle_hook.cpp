@@ -25,7 +25,7 @@ constexpr HookDefinition kWrinkleDefinitions[] = {
     {kWrinkleBounce, "WRINKLE_BOUNCE"},
 };
 
-/// Only skin that wrinkles reads its wrinkle map, and none where the strain is shown in its place.
+/// Only skin that wrinkles reads its wrinkle map, unless the strain is visualized instead.
 void add_wrinkles(SurfaceFeatures& features, std::uint16_t instance) {
     const bool shows_strain = (instance & kWrinkleView) != 0;
     if (instance == 0 || shows_strain) {

@@ -14,7 +14,7 @@ namespace limn {
 
 /// Bits of kWrinkleHook; of an instance without wrinkles none.
 enum WrinkleFeature : std::uint16_t {
-    kWrinkled = 1u << 0,  // draws wrinkles, in whatever way; has no definition
+    kWrinkled = 1u << 0,  // draws wrinkles by any method; has no definition
     kWrinkleBlend = 1u << 1,
     kWrinkleFade = 1u << 2,
     kWrinkleFlat = 1u << 3,

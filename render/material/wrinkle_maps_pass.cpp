@@ -17,7 +17,7 @@
 namespace limn {
 namespace {
 
-/// Four weights from the region `first` on.
+/// Weights of four regions from `first` on.
 Vec4 weights_of(const WrinkleWeights* weights, std::size_t first) {
     Vec4 found = {0, 0, 0, 0};
     for (std::size_t i = 0; weights != nullptr && i < 4; ++i) {
@@ -27,7 +27,7 @@ Vec4 weights_of(const WrinkleWeights* weights, std::size_t first) {
     return found;
 }
 
-/// Scale and offset from texels of a wrinkle map to normals; 128 of 255 is flat, exactly.
+/// Scale and offset from texels of a wrinkle map to normals; 128 of 255 is exactly flat.
 Vec2 decoding_of(const gpu::Texture& map) {
     return map.desc().format == GL_RGBA8 ? Vec2(255, -128) / 127.0f : Vec2(2, -1);
 }
@@ -61,7 +61,7 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         const bool measures = response != nullptr && measured != nullptr;
         const WrinkleWeights* const weights =
             measures ? &measured->weights : frame.world->find<WrinkleWeights>(entity);
-        const float influence = measures ? response->share : 1.0f;
+        const float strength = measures ? response->share : 1.0f;
         const bool more = images.find_texture(maps.second_masks) != nullptr;
         const std::array<ImageId, 5> sources = {
             maps.base, maps.stretched, maps.compressed, maps.first_masks,
@@ -97,15 +97,15 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
              read(2), read(3), read(4)},
             {target_level(discarded(composed), 0)}, program,
             [&array, first, second, decoding, by_slopes,
-             influence](PassContext&, const gpu::Program& shader) {
+             strength](PassContext&, const gpu::Program& shader) {
                 shader.set("size", Vec2(array.width(), array.height()));
                 shader.set("first_weights", first);
                 shader.set("second_weights", second);
                 shader.set("decoding", decoding);
-                shader.set("share", influence);
+                shader.set("strength", strength);
                 shader.set("by_slopes", by_slopes ? 1 : 0);
             });
-        place_drawn_image(graph, images, composed, target);
+        store_drawn_image(graph, images, composed, target);
     };
     frame.world->query<const WrinkleMaps>().each(draw);
 }

@@ -69,20 +69,20 @@ void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector
     const std::uint32_t triangle = at.corner / 3;
     const std::uint32_t corner = at.corner % 3;
     const Vec2& across = rest.across[triangle];
-    const float share[3] = {-across.x - across.y, across.x, across.y};  // of each corner's position
+    const float weights[3] = {-across.x - across.y, across.x, across.y};  // of the corners
     const std::uint32_t next = (corner + 1) % 3;
     const std::uint32_t last = (corner + 2) % 3;
     const float factor = rest.mean_length ? at.weight : std::sqrt(at.weight);
     const std::uint32_t mark = (counts_by_stretch(rest, at) ? layout::kWrinkleStretch : 0u)
                                | (rest.wide ? layout::kWrinkleAway : 0u);
     texels.push_back({rest.corners[3 * triangle + next] | mark, rest.corners[3 * triangle + last]});
-    texels.push_back({bits(factor * share[next]), bits(factor * share[last])});
+    texels.push_back({bits(factor * weights[next]), bits(factor * weights[last])});
     if (mark != 0) {
         texels.push_back({bits(at.weight), rest.corners[at.corner]});
     }
 }
 
-/// `number(v)` is stored with each vertex.
+/// Stores `number(v)` with each vertex.
 template <typename Number>
 void append_rest(const WrinkleRest& rest, std::vector<Texel>& texels, Number number) {
     const std::size_t begin = texels.size();
@@ -104,7 +104,7 @@ std::uint32_t pack_mask(const WrinkleState& state, const std::vector<float>& mas
     return v < mask.size() ? glm::packUnorm2x16({mask[v], resting}) : 0u;
 }
 
-/// All blocks, at least one of vertices without triangles; then the heights.
+/// All blocks, or one of vertices without triangles if there are none; then the heights.
 std::vector<Texel> rest_texels(const WrinkleState& state) {
     std::vector<Texel> texels;
     const auto number = [&state](std::size_t block) {
@@ -183,19 +183,19 @@ void forget_others(WrinkleRestPool& pool, std::uint64_t assets) {
     }
 }
 
-/// Weights of a drawing method and of alpha, which replaces it.
-struct TierShares {
+/// Weights of the drawing method and of alpha, which replaces it at a distance.
+struct TierWeights {
     float own = 1;
     float shade = 0;
 };
 
-/// Whether it can be drawn without tangents.
+/// Whether the method can be drawn without tangents.
 bool is_shade(WrinkleMethod method) {
     return method == WrinkleMethod::Alpha || method == WrinkleMethod::Directional
            || method == WrinkleMethod::Photo;
 }
 
-TierShares tier_shares(const WrinkleSurface& surface, float distance, bool tangents) {
+TierWeights tier_weights(const WrinkleSurface& surface, float distance, bool tangents) {
     const float any = fade_until(surface.none_from, distance);
     const float own = is_shade(surface.method) ? 1.0f
                       : tangents               ? fade_until(surface.shade_from, distance)
@@ -205,16 +205,16 @@ TierShares tier_shares(const WrinkleSurface& surface, float distance, bool tange
 
 /// Distance from the camera to the center of an instance [m].
 float distance_to_shape(const FrameData& frame, Entity entity, const DeformedInstance& shape) {
-    const auto* const place = frame.world->find<WorldTransform>(entity);
-    const Vec3 middle = 0.5f * (shape.bounds.min + shape.bounds.max);
-    const Vec3 at = place != nullptr ? transform_point(place->world, middle) : middle;
+    const auto* const transform = frame.world->find<WorldTransform>(entity);
+    const Vec3 center = 0.5f * (shape.bounds.min + shape.bounds.max);
+    const Vec3 at = transform != nullptr ? transform_point(transform->world, center) : center;
     const Affine& eye = frame.camera.world_from_camera;
     return glm::distance(at, Vec3(eye.row[0].w, eye.row[1].w, eye.row[2].w));
 }
 
 layout::WrinkleJob make_job(
     const WrinkleSurface& surface, const WrinkleState& state, const WrinkleRestPool::Range& rest,
-    const TierShares& shares, const DeformedInstance& shape) {
+    const TierWeights& weights, const DeformedInstance& shape) {
     layout::WrinkleJob job{};
     job.rest = rest.first_texel;
     job.displacement = shape.displacement;
@@ -226,12 +226,12 @@ layout::WrinkleJob make_job(
     job.lambda = surface.lambda;
     job.beta = surface.beta;
     job.slack = surface.slack;
-    job.share = surface.share;
+    job.fold_fraction = surface.share;
     job.driver = static_cast<std::uint32_t>(used_driver(surface));
     job.mean_length = !state.rests.empty() && state.rests[0].mean_length ? 1u : 0u;
     job.activation = surface.activation;
-    job.own_share = shares.own;
-    job.shade_share = shares.shade;
+    job.own_weight = weights.own;
+    job.shade_weight = weights.shade;
     if (state.rests.size() > 1) {
         job.second = block_texels(state.rests[0]);
     }
@@ -283,10 +283,10 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         }
         const auto& state = *frame.world->find<WrinkleState>(entity);
         const auto& surface = *frame.world->find<WrinkleSurface>(entity);
-        const TierShares shares = tier_shares(
+        const TierWeights weights = tier_weights(
             surface, distance_to_shape(frame, entity, shape),
             frame.meshes->meshes()[shape.mesh.index].tangents);
-        layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), shares, shape);
+        layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), weights, shape);
         displaced = displaced || job.heights != 0;
         if (shape.wrinkle_columns) {
             job.method = layout::kWrinkleColumns;

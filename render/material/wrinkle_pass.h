@@ -15,12 +15,11 @@ namespace limn {
 // the strength of its wrinkles (wrinkle.compression.*). lib/material.glsl draws them.
 //
 // Reads    WrinkleState, WrinkleSurface; positions of DeformedVertices
-// Writes   DeformedVertices: strengths by kind of drawing; heights of folds that move the skin; the
-// view's WrinkleColumns
-//          and what lit programs must do for wrinkled skin
+// Writes   DeformedVertices: wrinkle strengths per drawing method; heights of folds that
+//          displace skin; the view's WrinkleColumns
 // Order    after deform_pass, before everything that draws meshes
-// Shaders  wrinkle.comp, lib/wrinkle.glsl; layout in wrinkle_gpu.h. lib/mesh_vertex.glsl displaces
-// the vertices
+// Shaders  wrinkle.comp, lib/wrinkle.glsl; layout in wrinkle_gpu.h; lib/mesh_vertex.glsl displaces
+//          the vertices
 
 /// Meshes at rest on the GPU, by WrinkleState::source.
 struct WrinkleRestPool {

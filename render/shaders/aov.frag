@@ -21,17 +21,17 @@ uniform int shadow_view_count;
 layout(location = 0) out vec4 value;
 
 #if AOV == 5
-// Area of a view's shadow map [texels] under the pixel of a surface at the end of `ray`, 0 outside of the map. The
+// Area [texels] that a pixel covers in a view's shadow map, for a surface at the end of `ray`; 0 outside the map. The
 // same as texels_per_pixel() (render/shadow/shadow_view.h).
 float texels_under_pixel(int view_index, vec3 ray, vec3 normal, vec3 right, vec3 up) {
     int at = view_index * int(kShadowViewTexels);
-    vec4 place = vec4(view.camera_ws.xyz + ray, 1.0);
+    vec4 position = vec4(view.camera_ws.xyz + ray, 1.0);
     vec4 row_s = texelFetch(shadow_views, at);
     vec4 row_t = texelFetch(shadow_views, at + 1);
     vec4 row_q = texelFetch(shadow_views, at + 3);
     vec4 rect = texelFetch(shadow_views, at + 7);
-    float q = dot(row_q, place);
-    vec2 st = vec2(dot(row_s, place), dot(row_t, place)) / q;
+    float q = dot(row_q, position);
+    vec2 st = vec2(dot(row_s, position), dot(row_t, position)) / q;
     vec3 speed_s = row_s.xyz - st.x * row_q.xyz;
     vec3 speed_t = row_t.xyz - st.y * row_q.xyz;
     vec3 along_x = right - ray * (dot(normal, right) / dot(normal, ray));

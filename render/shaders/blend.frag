@@ -1,8 +1,8 @@
 // Alpha-blended surfaces, forward shaded from back to front. Opacity scales diffuse but not specular light: nearly
-// clear glass still reflects the lamps. Premultiplied. Definition TRANSMISSION: of clear media, which replace what is
-// behind them by the same refracted.
+// clear glass still reflects the lamps. Premultiplied. Definition TRANSMISSION: for clear media, which replace the
+// image behind them by the refracted one.
 #version 450
-#define UNMASKED  // shadow masks are of the opaque surfaces behind
+#define UNMASKED  // shadow masks are for the opaque surfaces behind
 #include "lib/lighting.glsl"
 #include "lib/material.glsl"
 #include "lib/height_fog.glsl"
@@ -20,22 +20,22 @@ void main() {
     vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
     Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, cell_list(gl_FragCoord.xy, distance));
 
-    // The share that is reflected does not transmit the background.
+    // The reflected fraction does not transmit the background.
     Reflector r = make_reflector(s, to_viewer(position_ws));
     float mirror = dot(r.mirror, vec3(1.0 / 3.0));
 #ifdef TRANSMISSION
     ClearMedium medium = clear_medium(s.material);
     float clear = medium.transmission * (1.0 - s.metalness);
-    vec3 seen = transmitted_radiance(medium, position_ws, s.normal_ws, r.to_camera, s.roughness);
+    vec3 behind = transmitted_radiance(medium, position_ws, s.normal_ws, r.to_camera, s.roughness);
     light.diffuse *= 1.0 - clear;
-    vec3 through = opacity * clear * (1.0 - mirror) * s.albedo * seen;  // with the fog in front of it
-    float clear_share = opacity * clear * (1.0 - mirror);
+    vec3 through = opacity * clear * (1.0 - mirror) * s.albedo * behind;  // with the fog in front of it
+    float clear_coverage = opacity * clear * (1.0 - mirror);
 #else
     const vec3 through = vec3(0.0);
-    const float clear_share = 0.0;
+    const float clear_coverage = 0.0;
 #endif
     float coverage = opacity + (1.0 - opacity) * mirror;
     vec4 fog = fog_before(position_ws);
     vec3 own = (opacity * (light.diffuse + s.emission) + light.specular) * (1.0 - fog.a);
-    radiance = vec4(storable(own + fog.rgb * (coverage - clear_share) + through), coverage);
+    radiance = vec4(storable(own + fog.rgb * (coverage - clear_coverage) + through), coverage);
 }

@@ -1,5 +1,6 @@
-// Highlights by one fetch per light from a Blinn map (fakephong.blinn-map, fakephong.blinn-texture); none where the
-// light is behind the surface, as in lit(). Definitions SINGLE_LIGHTS and BLINN_DIFFUSE: lib/single_lights.glsl, lib/map_lights.glsl.
+// Highlights by one fetch per light from a Blinn map (fakephong.blinn-map, fakephong.blinn-texture); none if the light
+// is behind the surface, as in lit(). Definitions SINGLE_LIGHTS and BLINN_DIFFUSE: lib/single_lights.glsl,
+// lib/map_lights.glsl.
 // Techniques: fakephong.blinn-map
 #version 450
 #include "lib/map_pixel.glsl"

@@ -1,5 +1,5 @@
-// Lit at vertices, but highlights by coordinates in a Blinn map, a pair per light (fakephong.blinn-map). Definitions
-// SINGLE_LIGHTS and WORST_AXIS: lib/single_lights.glsl, lib/highlight_map.glsl.
+// Lit per vertex, but with coordinates in a Blinn map for highlights, one pair per light (fakephong.blinn-map).
+// Definitions SINGLE_LIGHTS and WORST_AXIS: lib/single_lights.glsl, lib/highlight_map.glsl.
 // Techniques: fakephong.blinn-map
 #version 450
 #include "lib/map_vertex.glsl"

@@ -25,7 +25,7 @@ void main() {
     uint count = min(32u, light_count - min(begin, light_count));
     uint bits = 0u;
     for (uint i = 0u; i < count; ++i) {
-        bits |= boxes_meet(texelFetch(boxes, int(begin + i)).xy, first, last) ? 1u << i : 0u;
+        bits |= boxes_intersect(texelFetch(boxes, int(begin + i)).xy, first, last) ? 1u << i : 0u;
     }
     masks[block * word_count(light_count) + word] = bits;
 }

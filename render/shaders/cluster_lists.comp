@@ -21,23 +21,23 @@ layout(std430, binding = kClusterIndicesBinding) writeonly buffer Indices {
 };
 #endif
 
-bool touches(int light, uvec3 cell, CellBox box, vec3 middle, float half_diagonal) {
+bool touches(int light, uvec3 cell, CellBox box, vec3 center, float half_diagonal) {
     vec4 sphere = texelFetch(cluster_lights, light * int(kClusterLightTexels));
     vec4 apex = texelFetch(cluster_lights, light * int(kClusterLightTexels) + 1);
     vec3 axis = texelFetch(cluster_lights, light * int(kClusterLightTexels) + 2).xyz;
-    return boxes_meet(texelFetch(boxes, light).xy, cell, cell) && !sphere_outside(sphere.xyz, sphere.w, box)
-           && !cone_outside(apex.xyz, axis, apex.w, middle, half_diagonal);
+    return boxes_intersect(texelFetch(boxes, light).xy, cell, cell) && !sphere_outside(sphere.xyz, sphere.w, box)
+           && !cone_outside(apex.xyz, axis, apex.w, center, half_diagonal);
 }
 
 void main() {
     uint i = gl_LocalInvocationID.x;
-    uvec3 place = uvec3(i % kBlockColumns, i / kBlockColumns % kBlockRows, i / (kBlockColumns * kBlockRows));
-    uvec3 cell = block_position(gl_WorkGroupID.x) * kBlockSize + place;
+    uvec3 offset = uvec3(i % kBlockColumns, i / kBlockColumns % kBlockRows, i / (kBlockColumns * kBlockRows));
+    uvec3 cell = block_position(gl_WorkGroupID.x) * kBlockSize + offset;
     uvec3 n = cell_counts();
     bool inside = all(lessThan(cell, n));
     uint number = inside ? (cell.z * n.y + cell.y) * n.x + cell.x : 0u;
     CellBox box = cell_box(min(cell, n - 1u));
-    vec3 middle = 0.5 * (box.low + box.high);
+    vec3 center = 0.5 * (box.low + box.high);
     float half_diagonal = 0.5 * length(box.high - box.low);
 
     uint words = word_count(light_count_of(cluster_lights));
@@ -51,7 +51,7 @@ void main() {
         while (bits != 0u) {  // uniform over the block
             int light = int(word * 32u) + findLSB(bits);
             bits &= bits - 1u;
-            if (inside && touches(light, cell, box, middle, half_diagonal)) {
+            if (inside && touches(light, cell, box, center, half_diagonal)) {
 #ifdef FILL
                 indices[begin + found] = uint(texelFetch(cluster_lights, light * int(kClusterLightTexels) + 2).w);
 #endif

@@ -1,9 +1,9 @@
-// The begin of each cell's list: the exclusive prefix sum of the lengths. One group; each invocation sums a run of
+// The start of each cell's list: the exclusive prefix sum of the lengths. One group; each invocation sums a run of
 // cells, the group scans the runs.
 #version 450
 #include "cluster_gpu.h"
 
-layout(local_size_x = 1024) in;  // the largest that OpenGL promises: runs are read one cell after another
+layout(local_size_x = 1024) in;  // the largest size that OpenGL guarantees: runs are read one cell after another
 layout(std430, binding = kClusterCellsBinding) buffer Cells {
     uvec2 cells[];  // begin and length of each list
 };
@@ -23,9 +23,9 @@ void main() {
     }
     sums[i] = sum;
     // Hillis and Steele 1986: after step n, sums[i] covers the 2^n runs that end with i.
-    for (uint reach = 1u; reach < gl_WorkGroupSize.x; reach *= 2u) {
+    for (uint stride = 1u; stride < gl_WorkGroupSize.x; stride *= 2u) {
         barrier();
-        uint before = i >= reach ? sums[i - reach] : 0u;
+        uint before = i >= stride ? sums[i - stride] : 0u;
         barrier();
         sums[i] += before;
     }

@@ -45,7 +45,7 @@ struct Lists {
     int influence_end;
     int offset;
     int offset_end;
-    int place;  // on the patches of a surface
+    int anchor;  // on the patches of a surface
 };
 
 vec3 unpack_turn(uint a, uint b, bool second) {
@@ -130,12 +130,12 @@ Vertex follow_surface(Vertex v, int texel, int patches) {
     PatchPoint at = evaluate_patch(patches + kPatchTexels * int(a.x), uintBitsToFloat(a.y), uintBitsToFloat(a.z));
     mat3 axes = patch_axes(at, offset.z);
     vec3 normal = patch_normal(axes, vec3(b.zw, c.x));
-    return Vertex(place_on_patch(at, offset), unit_or(normal, v.normal), unit_or(axes * c.yzw, v.tangent));
+    return Vertex(point_on_patch(at, offset), unit_or(normal, v.normal), unit_or(axes * c.yzw, v.tangent));
 }
 
 Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight, uint first_control, uint patches) {
     if ((kFlags & kDeformPatches) != 0u) {
-        v = follow_surface(v, lists.place, int(patches));
+        v = follow_surface(v, lists.anchor, int(patches));
     }
     if ((kFlags & kDeformMorphs) != 0u) {
         v = add_morphs(v, lists, int(first_weight));
@@ -164,11 +164,11 @@ void main() {
     if (number >= job0.y) {
         return;
     }
-    uint place = job0.z + number - first_vertex;
+    uint vertex = job0.z + number - first_vertex;
 
     if ((kFlags & kDeformCopyPrevious) != 0u) {
         for (uint i = 0u; i < 3u; ++i) {
-            previous[3u * place + i] = positions[3u * place + i];
+            previous[3u * vertex + i] = positions[3u * vertex + i];
         }
     }
     int texel = int(job0.x + kRestTexels * number);
@@ -185,18 +185,18 @@ void main() {
         int(job0.x + kRestTexels * (job0.y + 1u) + kOnPatchTexels * number));
     if ((kFlags & kDeformPrevious) != 0u) {
         vec3 p = deformed(v, lists, job1.y, job1.w, job2.y, job2.w).position;
-        previous[3u * place] = p.x;
-        previous[3u * place + 1u] = p.y;
-        previous[3u * place + 2u] = p.z;
+        previous[3u * vertex] = p.x;
+        previous[3u * vertex + 1u] = p.y;
+        previous[3u * vertex + 2u] = p.z;
     }
     if ((kFlags & kDeformCurrent) != 0u) {
         Vertex now = deformed(v, lists, job1.x, job1.z, job2.x, job2.z);
-        positions[3u * place] = now.position.x;
-        positions[3u * place + 1u] = now.position.y;
-        positions[3u * place + 2u] = now.position.z;
+        positions[3u * vertex] = now.position.x;
+        positions[3u * vertex + 1u] = now.position.y;
+        positions[3u * vertex + 2u] = now.position.z;
         vec3 normal = unit_or(now.normal, uintBitsToFloat(b.xyz));
         vec3 tangent = unit_or(now.tangent, uintBitsToFloat(c.xyz));
-        frames[place] = uvec4(
+        frames[vertex] = uvec4(
             packSnorm2x16(normal.xy),
             packSnorm2x16(vec2(normal.z, 0.0)),
             packSnorm2x16(tangent.xy),

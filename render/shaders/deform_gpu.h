@@ -1,8 +1,8 @@
 // Input of deform.comp, as texels of four 32-bit numbers. Shared by C++ and GLSL.
 //
-// A mesh in bind pose is a block of texels: three per vertex - position and its first influence, normal and its
-// first offset, tangent - and a sentinel vertex, which ends the lists of the last; for a mesh on the patches of a
-// surface three per vertex - patch, u, v, offset, normal, tangent (surface_anchors.h); then influences, two per texel -
+// A mesh in bind pose is a block of texels: three per vertex - position and its first influence, normal and its first
+// offset, tangent - and a sentinel vertex, which ends the lists of the last; for a mesh on the patches of a surface
+// three more per vertex - patch, u, v, offset, normal, tangent (surface_anchors.h); then influences, two per texel -
 // joint, weight, joint, weight - and morph offsets, two texels each - position and target, normal and tangent as six
 // 16-bit fractions of kMaxUnitDifference. Indices into these lists count texels from the beginning of the block.
 

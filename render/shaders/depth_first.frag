@@ -3,7 +3,7 @@
 // Techniques: engine.depth-first, shade.z-prepass
 #version 450
 #ifdef ALPHA_MASK
-#define LIT_AT_VERTICES  // colors alone
+#define LIT_AT_VERTICES  // colors only
 #include "lib/view.glsl"
 #include "lib/material.glsl"
 #endif

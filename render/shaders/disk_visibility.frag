@@ -1,4 +1,4 @@
-// The part of each disk in the image that nothing hides, one texel per disk (disk_visibility.h).
+// The visible fraction of each disk in the image, one texel per disk (disk_visibility.h).
 // Techniques: engine.lens-flare
 #version 450
 #include "disk_visibility_gpu.h"

@@ -1,4 +1,4 @@
-// Bindings of disk_visibility.frag, and of what reads its texture. Shared by C++ and GLSL.
+// Bindings of disk_visibility.frag, and of shaders that read its texture. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once

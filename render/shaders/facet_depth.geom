@@ -1,5 +1,5 @@
-// Triangles as they are. A software OpenGL rounds places otherwise after a geometry shader, so that triangles which go
-// through one later must do so for their depth, too.
+// Passes triangles through. A software OpenGL rounds positions differently after a geometry shader, so that triangles
+// which pass through one later must do so in the depth prepass, too.
 #version 450
 #include "lib/facet.glsl"
 

@@ -5,7 +5,7 @@
 
 layout(location = 1) out vec3 position_ws;
 layout(location = 6) flat out uint object;
-layout(location = 9) flat out vec3 facet_normals[7];  // unit: around the triangle, then that of the face
+layout(location = 9) flat out vec3 facet_normals[7];  // unit: around the triangle, then the face normal
 
 void main() {
     vec3 normals[7];

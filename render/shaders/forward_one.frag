@@ -1,4 +1,4 @@
-// Forward-shaded light of a single light, drawn again and added (light.structure-light-major).
+// Forward-shaded light of a single light, blended additively (light.structure-light-major).
 // Techniques: light.structure-light-major
 #version 450
 #include "lib/lighting.glsl"

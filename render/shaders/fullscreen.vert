@@ -1,6 +1,6 @@
-// One triangle that covers the target, at the far plane: with the depth test GL_EQUAL it draws where no surface is,
-// with GL_LESS where one is. Definition:
-//   SHADING_LOBE  at the depth of the pixels of this lobe (shading_lobes.frag)
+// One triangle that covers the target, at the far plane: with the depth test GL_EQUAL it draws where there is no
+// surface, with GL_LESS where there is one. Definition:
+//   SHADING_LOBE  draws at the depth of this lobe's pixels (shading_lobes.frag)
 #version 450
 
 void main() {

@@ -1,4 +1,4 @@
-// Bindings that most passes over a whole image have. Shared by C++ and GLSL.
+// Bindings of most full-screen passes. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once

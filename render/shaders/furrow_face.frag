@@ -10,10 +10,10 @@ layout(location = 0) in vec3 position_ms;
 layout(location = 1) in vec2 uv;
 layout(location = 0) out vec4 display;
 
-uniform vec3 eye;          // in the space of the mesh
+uniform vec3 eye;          // in mesh space
 uniform int shows_height;  // 0: white
 
-const float kMinWhite = 0.45;  // of faces viewed edge-on; by eye
+const float kMinWhite = 0.45;  // brightness of faces viewed edge-on; by eye
 
 void main() {
     if (scene_hides(gl_FragCoord.xyz)) {

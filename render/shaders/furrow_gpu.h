@@ -1,4 +1,4 @@
-// Bindings of the passes that make and show furrows. Shared by C++ and GLSL.
+// Bindings of the passes that grow and visualize furrows. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once

@@ -7,7 +7,7 @@
 layout(binding = kFurrowMarksUnit) uniform samplerBuffer marks;
 
 layout(location = 0) out vec4 color;
-layout(location = 1) noperspective out vec2 place_px;  // along the line from its beginning, and across
+layout(location = 1) noperspective out vec2 line_px;  // along the line from its beginning, and across
 layout(location = 2) flat out vec2 length_radius_px;
 layout(location = 3) flat out float opacity;
 
@@ -52,12 +52,12 @@ void main() {
     float length_px = distance(from_px, to_px);
     vec2 along = length_px > 1e-3 ? (to_px - from_px) / length_px : vec2(1.0, 0.0);
     opacity = thinned * clamp(max(thinned, length_px), 0.0, 1.0);  // a dot fades in both directions
-    float reach = radius + 1.0;
+    float extent = radius + 1.0;
 
-    place_px = vec2(corner.x * length_px + (2.0 * corner.x - 1.0) * reach, corner.y * reach);
+    line_px = vec2(corner.x * length_px + (2.0 * corner.x - 1.0) * extent, corner.y * extent);
     length_radius_px = vec2(length_px, radius);
     vec4 end = corner.x > 0.5 ? to : from;
-    vec2 at_px = from_px + place_px.x * along + place_px.y * vec2(-along.y, along.x);
+    vec2 at_px = from_px + line_px.x * along + line_px.y * vec2(-along.y, along.x);
     gl_Position =
         behind ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(at_px / (0.5 * size) * end.w, kLift * end.z, end.w);
 }

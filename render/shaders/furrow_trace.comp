@@ -1,5 +1,5 @@
-// Grows the furrows of one field per work group, one after another, bit-identical to content/bake/furrow_trace.cpp:
-// the 64 invocations divide the pixels along and around a segment, and search for the next start together. Stops after
+// Grows the furrows of one field per work group, one after another, bit-identical to content/bake/furrow_trace.cpp: the
+// 64 invocations divide the pixels along and around a segment, and search for the next start in parallel. Stops after
 // `budget` segments, and the next dispatch continues: software OpenGL aborts a shader after 65,535 loop iterations.
 // Techniques: wrinkle.furrow.trace
 #version 450
@@ -25,9 +25,9 @@ layout(std430, binding = kFurrowHeightsBinding) coherent buffer Heights {
 };
 // Progress of a field.
 struct Progress {
-    uint next;      // start to try: triangles, then pixels
-    uint furrow;    // that grows, or 0
-    uint backward;  // its half
+    uint next;      // next candidate start: triangles, then pixels
+    uint furrow;    // the one that grows, or 0
+    uint backward;  // which half of it
     uint segment;
     float x;  // beginning of the segment [px]
     float y;
@@ -204,14 +204,14 @@ void draw(vec2 from, vec2 direction, float length_px, FurrowShape shape, uint fu
     precise float band = 0.5 * shape.density;
     precise float line = 0.5 * shape.width + 0.5;
     precise float owned = max(0.5 * shape.width, 0.5);
-    float reach = max(max(band, line), owned);
-    precise float reach2 = reach * reach;
+    float radius = max(max(band, line), owned);
+    precise float radius2 = radius * radius;
     precise float band2 = band * band;
     precise float line2 = line * line;
     precise float owned2 = owned * owned;
     precise vec2 to = from + direction * length_px;
-    precise vec2 lowest = min(from, to) - reach;
-    precise vec2 highest = max(from, to) + reach;
+    precise vec2 lowest = min(from, to) - radius;
+    precise vec2 highest = max(from, to) + radius;
     ivec2 low = cell_of(lowest);
     ivec2 extent = cell_of(highest) - low + 1;
     for (int i = int(gl_LocalInvocationIndex); i < extent.x * extent.y; i += int(kThreads)) {
@@ -222,7 +222,7 @@ void draw(vec2 from, vec2 direction, float length_px, FurrowShape shape, uint fu
         precise vec2 away = offset - direction * along;
         precise float distance2 = away.x * away.x + away.y * away.y;
         int index = pixel_index(at);
-        if (distance2 > reach2 || index < 0) {
+        if (distance2 > radius2 || index < 0) {
             continue;
         }
         int cell = int(field) * pixels + index;
@@ -274,7 +274,7 @@ bool grow(inout Progress now) {
     float turn = 1.0;
     if (literal_turn == 0) {
         uvec2 key = field == 0u ? uvec2(first_key_x, first_key_y) : uvec2(second_key_x, second_key_y);
-        turn = 2.0 * share_of(philox(uvec4(0u, now.segment * 2u + now.backward, now.furrow, 0u), key).x) - 1.0;
+        turn = 2.0 * unit_float(philox(uvec4(0u, now.segment * 2u + now.backward, now.furrow, 0u), key).x) - 1.0;
     }
     precise float angle = shape.angle * turn;
     vec2 rotation = repeatable_cos_sin(angle);
@@ -295,18 +295,19 @@ bool grow(inout Progress now) {
     return true;
 }
 
-vec2 start_place(uint start) {
+vec2 start_position(uint start) {
     if (start >= uint(triangle_count)) {
         int pixel = int(start) - triangle_count;
         return vec2(pixel % size.x, pixel / size.x) + 0.5;
     }
     int triangle = int(start);
-    precise vec2 middle = (triangle_vec2(triangle, 0) + triangle_vec2(triangle, 2) + triangle_vec2(triangle, 4)) * (1.0 / 3.0);
-    return within(middle);
+    precise vec2 corners = triangle_vec2(triangle, 0) + triangle_vec2(triangle, 2) + triangle_vec2(triangle, 4);
+    precise vec2 center = corners * (1.0 / 3.0);
+    return within(center);
 }
 
 bool may_start(uint start) {
-    vec2 p = start_place(start);
+    vec2 p = start_position(start);
     if (any(lessThan(p, vec2(0.0))) || any(greaterThanEqual(p, vec2(size)))) {
         return false;
     }
@@ -315,11 +316,11 @@ bool may_start(uint start) {
 }
 
 void begin_half(inout Progress now, bool backward) {
-    vec2 place = start_place(now.furrow - 1u);
+    vec2 position = start_position(now.furrow - 1u);
     now.backward = backward ? 1u : 0u;
     now.segment = 0u;
-    now.x = place.x;
-    now.y = place.y;
+    now.x = position.x;
+    now.y = position.y;
     now.left = 0x7fffffff;
 }
 

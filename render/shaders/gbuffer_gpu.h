@@ -1,4 +1,4 @@
-// Texture units of the G-buffer, for all that reads a view's. Shared by C++ and GLSL.
+// Texture units of the G-buffer, for all shaders that read it. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once

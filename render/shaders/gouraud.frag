@@ -1,5 +1,4 @@
-// Interpolates the light of vertices (light.gouraud). Alpha-masked holes need no test: the depth prepass has left them
-// out.
+// Interpolates per-vertex light (light.gouraud). Alpha-masked holes need no test: the depth prepass has left them out.
 // Techniques: light.gouraud
 #version 450
 #define LIT_AT_VERTICES

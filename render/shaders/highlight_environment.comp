@@ -1,6 +1,6 @@
-// Highlights of all lights in sphere maps of the camera's axes (fakephong.envmap-bake): the sum of E (W.L)^(n / 4), W the
-// direction that a texel stands for and n the exponent of Blinn's highlight. All lights count as directional, as they
-// are seen from the middle of a layer's objects. Texels at the edge are 0, as those beyond the disc.
+// Highlights of all lights in sphere maps of the camera's axes (fakephong.envmap-bake): the sum of E (W.L)^(n / 4), W
+// the direction of a texel and n the exponent of Blinn's highlight. All lights count as directional, with the direction
+// from the center of a layer's objects. Texels at the edge are 0, like those beyond the disc.
 // Techniques: fakephong.envmap-bake
 #version 450
 #define LINEAR_FADE
@@ -12,7 +12,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = kHighlightRecordsUnit) uniform samplerBuffer layers;  // middle of its objects [m]; w: exponent n
+layout(binding = kHighlightRecordsUnit) uniform samplerBuffer layers;  // center of its objects [m]; w: exponent n
 layout(binding = kLightsUnit) uniform samplerBuffer lights;  // LightRecord
 layout(binding = kHighlightMapsImage, rgba16f) writeonly uniform image2DArray maps;
 

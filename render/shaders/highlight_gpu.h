@@ -1,4 +1,4 @@
-// What highlight maps need of a view (lib/highlight_map.glsl). Shared by C++ and GLSL; std140.
+// Data of a view for highlight maps (lib/highlight_map.glsl). Shared by C++ and GLSL; std140.
 
 #ifdef __cplusplus
 #pragma once

@@ -1,6 +1,6 @@
 // Blinn maps (fakephong.blinn-texture): a layer per exponent n of (1 - x^2 - y^2)^(n / 2) over the unit disc, which is
-// (N.H)^n where (x, y) is N projected along H, and N.L where n = 1. Texels at the edge are 0, as what is addressed
-// beyond the disc.
+// (N.H)^n where (x, y) is N projected along H, and N.L where n = 1. Texels at the edge are 0, so that lookups beyond
+// the disc return 0.
 // Techniques: fakephong.blinn-texture
 #version 450
 #include "highlight_gpu.h"

@@ -1,5 +1,5 @@
-// The pixel program of appendix A (fakephong.hw-quadratic). Definition HW_REGISTER, a defect: s and t come in a color
-// register, which has 8 bits and ends at 1.
+// The pixel program of appendix A (fakephong.hw-quadratic). Definition HW_REGISTER, a defect: s and t are passed in a
+// color register, which has 8 bits and saturates at 1.
 // Techniques: fakephong.hw-quadratic
 #version 450
 #define FACET_SAMPLES 6

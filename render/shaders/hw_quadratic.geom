@@ -1,8 +1,8 @@
-// Quadratic shading as the vertex program of the thesis's appendix A computes it (fakephong.hw-quadratic). Its rule that
-// there are no highlights where N.L <= 0 is that of lit(). Definitions, its defects:
-//   HW_FIRST_LIGHT  no lights but the first
-//   HW_MIDPOINTS    normals of midpoints are normalized before the mesh is turned and scaled, not after
-// SINGLE_LIGHTS: lib/single_lights.glsl, plays no part.
+// Quadratic shading as the vertex program of the thesis's appendix A computes it (fakephong.hw-quadratic). Like lit(),
+// it has no highlights where N.L <= 0. Definitions, its defects:
+//   HW_FIRST_LIGHT  only the first light
+//   HW_MIDPOINTS    normals of midpoints are normalized before the mesh is rotated and scaled, not after
+// SINGLE_LIGHTS: lib/single_lights.glsl, unused here.
 // Techniques: fakephong.hw-quadratic
 #version 450
 #include "lib/facet_point.glsl"
@@ -10,7 +10,7 @@
 
 #ifdef HW_MIDPOINTS
 layout(location = 5) in vec3 corner_normal_ms[];
-layout(location = 6) in vec3 corner_scaled_normal[];  // the same, turned and scaled
+layout(location = 6) in vec3 corner_scaled_normal[];  // the same, rotated and scaled
 #endif
 
 layout(location = 9) flat out vec3 sampled[12];

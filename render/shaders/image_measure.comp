@@ -21,7 +21,7 @@ uniform int part_count;
 uniform float key;             // log-average after metering; 0: no metering
 uniform float adaptation_blend;          // adaptation step toward this frame's luminance, 0 .. 1
 uniform vec2 adaptation_range;        // luminance range of adaptation
-uniform float clipped_share;   // of the pixels at either end of the histogram
+uniform float clipped_fraction;   // of the pixels at either end of the histogram
 
 shared StatisticsPart joined[256];
 
@@ -35,13 +35,13 @@ float bin_edge(int bin) {
     return exp2(kHistogramLow + float(bin) / kBinsPerStop);
 }
 
-// The range without `clipped_share` of the pixels above 0 at either end, to the precision of a bin.
-vec2 clipped_range(float least, float largest) {
+// The range without `clipped_fraction` of the pixels above 0 at either end, to the precision of a bin.
+vec2 clipped_range(float smallest, float largest) {
     uint lit = 0u;
     for (int i = 0; i < kHistogramBins; ++i) {
         lit += histogram[i];
     }
-    uint outside = uint(clipped_share * float(lit));
+    uint outside = uint(clipped_fraction * float(lit));
     uint below = 0u;
     int low = 0;
     while (low < kHistogramBins - 1 && below + histogram[low] <= outside) {

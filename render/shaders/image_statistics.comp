@@ -1,6 +1,6 @@
 // Stage 1 of image statistics: every invocation sums up 64 pixels in a fixed order, neighboring invocations read
 // neighboring pixels. Needs no barrier, which is expensive on a software OpenGL.
-//   SURFACES   pixels without a surface hardly count; yet where there are no others, they do
+//   SURFACES   pixels without a surface get a tiny weight, so that they count only if there are no others
 //   HISTOGRAM  also counts luminances, in integers, which do not depend on the order
 // Techniques: hdr.dynamic-range, hdr.log-average
 #version 450

@@ -1,4 +1,4 @@
-// Light of every surface without lights: emission and environment. The base of the passes that add one light each.
+// Light of every surface except from lights: emission and environment. The base of the passes that add one light each.
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/stored_surface.glsl"

@@ -1,5 +1,5 @@
 // Deferred shading: one pass over the G-buffer, each pixel with the lights of its cluster cell. Definition SCATTERED:
-// diffuse light of Subsurface goes to a target of its own.
+// diffuse light of Subsurface goes to a separate target.
 // Techniques: deferred.light-pass, light.multi
 #version 450
 #include "lib/lighting.glsl"
@@ -7,7 +7,7 @@
 
 layout(location = 0) out vec4 radiance;
 #ifdef SCATTERED
-layout(location = 1) out vec4 scattered;  // light that has entered, before the albedo; alpha 1 where it spreads
+layout(location = 1) out vec4 scattered;  // subsurface light without albedo; alpha 1 on such surfaces
 #endif
 
 void main() {

@@ -1,4 +1,4 @@
-// Bounding mesh of a light's volume, of few triangles: a ball around a point light, or with the definition
+// Coarse bounding mesh of a light's volume: a ball around a point light, or with the definition
 //   CONE  a pyramid around a spot's cone
 // Without vertex data: gl_VertexID enumerates the corners of triangles, counterclockwise from outside.
 // Techniques: deferred.light-volume, light.volume-stencil
@@ -9,7 +9,7 @@ uniform vec4 volume_sphere;  // position and radius of the light [m]
 uniform vec4 volume_axis;    // unit; w: tangent of the cone's half angle
 
 const float kStep = 0.785398163397448;  // eighth of a turn
-// Factors by which polygons inscribed in a circle grow to enclose it.
+// Factors that scale polygons inscribed in a circle to enclose it.
 const float kWrapRing = 1.08239220029239;  // 1 / cos(half a step)
 const float kWrapBall = 1.171572875253810;  // its square, for both directions
 

@@ -1,7 +1,8 @@
 // Blocks: parts of a material's record that only some materials have. A kind of block is a struct in a header of its
 // own, a number here and a row in render/material/material_blocks.cpp; shaders read it with block_texel()
-// (lib/material_record.glsl). Of each kind the record holds the first texel, counted from the material's first block:
-// four to a float, as an integer that a float stores exactly; so are texels, up to 2^24 of them (a million materials).
+// (lib/material_record.glsl). The record holds the first texel of each kind, counted from the material's first block:
+// four to a float, as an integer that a float stores exactly. Texel indices are exact, too, up to 2^24 (a million
+// materials).
 
 #ifdef __cplusplus
 #pragma once
@@ -15,7 +16,7 @@ const uint kSkinBlock = 2u;        // material_skin_gpu.h
 const uint kLafortuneBlock = 3u;   // material_lafortune_gpu.h
 const uint kClearBlock = 4u;       // material_clear_gpu.h
 const uint kHairBlock = 5u;        // material_hair_gpu.h
-const uint kSubsurfaceBlock = 6u;  // material_subsurface_gpu.h; the last: its end lies beyond what offsets can say
+const uint kSubsurfaceBlock = 6u;  // material_subsurface_gpu.h; the last: its end may exceed the range of offsets
 
 const uint kBlockOffsetBits = 6u;
 const uint kBlocksPerFloat = 4u;

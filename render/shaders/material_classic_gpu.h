@@ -1,4 +1,4 @@
-// Of materials with the shading models Blinn, Phong and Skin.
+// Block of materials with the shading models Blinn, Phong and Skin.
 
 #ifdef __cplusplus
 #pragma once

@@ -1,4 +1,4 @@
-// Of materials that transmit light.
+// Block of materials that transmit light.
 
 #ifdef __cplusplus
 #pragma once

@@ -1,5 +1,5 @@
-// One material, read from a texture buffer as kMaterialTexels RGBA32F texels, by its index. What only some materials
-// have follows after all records, as blocks (material_blocks_gpu.h).
+// One material, read from a texture buffer as kMaterialTexels RGBA32F texels, by its index. Parts that only some
+// materials have follow after all records, as blocks (material_blocks_gpu.h).
 
 #ifdef __cplusplus
 #pragma once
@@ -11,7 +11,7 @@ struct MaterialRecord {
     vec4 base_color;  // linear, opacity
     vec4 emission;    // w: strength of the normal map
     vec4 factors;     // metalness, roughness, strength of the occlusion map, alpha cutoff
-    vec4 blocks;      // x: texel at which its blocks begin; yzw: where each kind is from there
+    vec4 blocks;      // x: first texel of its blocks; yzw: offset of each kind from there
     vec4 maps;        // layers of its maps (material_maps_gpu.h)
 };
 

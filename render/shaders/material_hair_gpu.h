@@ -1,4 +1,4 @@
-// Of materials with the shading model Hair; made by render/material/hair_lobes.h.
+// Block of materials with the shading model Hair; made by render/material/hair_lobes.h.
 
 #ifdef __cplusplus
 #pragma once
@@ -8,7 +8,7 @@ namespace limn::layout {
 
 struct HairBlock {
     vec4 azimuth;  // concentration and peak of the lobe TT, then of TRT
-    vec4 fiber;    // absorption by the square of the color's logarithm; scattered share; cosine, sine of the scales' tilt
+    vec4 fiber;    // absorption by the color's squared logarithm; scattered fraction; cosine, sine of the scales' tilt
 };
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-// Of materials with the shading model Lafortune.
+// Block of materials with the shading model Lafortune.
 
 #ifdef __cplusplus
 #pragma once
@@ -12,7 +12,7 @@ struct LafortuneLobeRecord {
     vec4 exponent;  // n
 };
 
-const uint kLafortuneTexels = 3u;  // of each lobe
+const uint kLafortuneTexels = 3u;  // per lobe
 
 #ifdef __cplusplus
 static_assert(sizeof(LafortuneLobeRecord) == 16 * kLafortuneTexels);

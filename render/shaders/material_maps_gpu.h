@@ -13,8 +13,8 @@ const uint kMetalRoughSlot = 1u;  // g: roughness, b: metalness, r: occlusion if
 const uint kNormalSlot = 2u;      // tangent space, green up
 const uint kOcclusionSlot = 3u;   // r
 const uint kEmissionSlot = 4u;
-const uint kWrinkleSlot = 5u;  // as the normals; 128 of 255 is flat
-const uint kDetailSlot = 6u;   // as the normals
+const uint kWrinkleSlot = 5u;  // like normals; 128 of 255 is flat
+const uint kDetailSlot = 6u;   // like normals
 const uint kThicknessSlot = 7u;  // g
 
 const uint kMaxMapSlots = 12u;
@@ -27,8 +27,8 @@ const uint kMapUnits = 5u;
 const uint kLayerBits = 8u;
 const uint kLayersPerFloat = 3u;
 
-// A material whose maps do not all use the first uv set untransformed has a kUvBlock: of slot s, texel 2 s = rows
-// (u: xy, v: zw) of a 2x3 map, 2 s + 1 = offset xy, uv set z. If all maps share a uv map, it is that of slot 0.
+// A material whose maps do not all use the first uv set untransformed has a kUvBlock: for slot s, texel 2 s = rows (u:
+// xy, v: zw) of a 2x3 map, 2 s + 1 = offset xy, uv set z. If all maps share a uv map, it is in slot 0.
 
 #ifdef __cplusplus
 static_assert(kMaxMapSlots <= 4 * kLayersPerFloat);

@@ -1,4 +1,4 @@
-// Of materials with the shading model Skin.
+// Block of materials with the shading model Skin.
 
 #ifdef __cplusplus
 #pragma once

@@ -1,12 +1,11 @@
-// Of materials with the shading model Subsurface.
+// Block of materials with the shading model Subsurface.
 //
-// Light that enters at a point leaves around it by the normalized profile of Christensen and Burley, "Approximate
+// Light that enters at a point exits around it by the normalized profile of Christensen and Burley, "Approximate
 // Reflectance Profiles for Efficient Subsurface Scattering", 2015:
 //
-//     R(r) = (exp(-r/d) + exp(-r/3d)) / (8 pi d r),    share within r: 1 - exp(-r/d)/4 - 3 exp(-r/3d)/4
+//     R(r) = (exp(-r/d) + exp(-r/3d)) / (8 pi d r),    fraction within r: 1 - exp(-r/d)/4 - 3 exp(-r/3d)/4
 //
-// The diffusion pass sums it over rings, each sampled at one point; the fewer, the fewer pixels they
-// cover.
+// The diffusion pass sums it over rings, each sampled at one point; fewer rings if they cover few pixels.
 
 #ifdef __cplusplus
 #pragma once
@@ -19,11 +18,11 @@ const uint kFewDiffusionSamples = 36u;
 const uint kFewestDiffusionSamples = 20u;
 
 struct SubsurfaceBlock {
-    vec4 specular;  // reflectance head on; w: share of the second lobe
+    vec4 specular;  // reflectance at normal incidence; w: weight of the second lobe
     vec4 diffusion;  // d for red, green and blue [m]; w: perceptual roughness of the second lobe
-    vec4 samples[kDiffusionSamples];  // x: radius [m], increasing; yzw: share of the profile for red, green and blue
+    vec4 samples[kDiffusionSamples];  // x: radius [m], increasing; yzw: weight for red, green and blue
     vec4 few_samples[kFewDiffusionSamples];  // the same for surfaces far away
-    vec4 fewest_samples[kFewestDiffusionSamples];  // and farther away
+    vec4 fewest_samples[kFewestDiffusionSamples];  // and even farther away
 };
 
 const int kDiffusionTexel = 1;

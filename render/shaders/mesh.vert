@@ -4,8 +4,8 @@
 //   DEFORMED  with VELOCITY: vertices also move in mesh space
 //   OBJECT_LIGHTS  also the index of the instance
 //   TRANSMISSION  also the scale of the instance
-//   CLIPPED  only on one side of view.clip_plane
-// What single effects add is called where hook_vertex() stands (render/material/surface_hooks.h).
+//   CLIPPED  clipped by view.clip_plane
+// Additions of single effects are called by hook_vertex() (render/material/surface_hooks.h).
 // Techniques: shade.passthrough-cube
 #version 450
 #include "lib/material_record.glsl"
@@ -13,7 +13,7 @@
 #include "lib/previous_vertex.glsl"
 #include "lib/view.glsl"
 
-layout(location = 0) out vec3 normal_ws;   // not unit
+layout(location = 0) out vec3 normal_ws;   // not normalized
 layout(location = 1) out vec4 tangent_ws;  // w: sign of the bitangent
 layout(location = 2) out vec4 uv;
 layout(location = 3) out vec4 vertex_color;

@@ -1,4 +1,4 @@
-// A mip level from the next larger one: at the center of each texel, filtered linearly.
+// A mip level from the next finer one, filtered linearly at the center of each texel.
 #version 450
 #include "fullscreen_gpu.h"
 

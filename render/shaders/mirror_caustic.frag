@@ -1,4 +1,4 @@
-// Light that a mirror reflects to a plane, added where its triangles land.
+// Light that a mirror reflects to a plane: additive, in the projected triangles.
 #version 450
 
 uniform vec3 color;

@@ -1,4 +1,4 @@
-// A mirror's vertices, moved to where they reflect the light (lib/caustic_landing.glsl).
+// A mirror's vertices, projected to where they reflect the light (lib/caustic_landing.glsl).
 // Techniques: caustic.reflection-plane
 #version 450
 #include "lib/caustic_landing.glsl"
@@ -17,7 +17,7 @@ uniform vec4 look;   // mirror_vertex()
 layout(location = 0) out float lit;
 layout(location = 1) out float dark;  // > 0 in triangles with an unlit vertex
 
-const float kNearer = 1.0005;  // depth bias toward the camera, against the plane on which it lies
+const float kNearer = 1.0005;  // depth bias toward the camera, against z-fighting with the plane
 
 void main() {
     vec4 p = vec4(position_ms, 1.0);

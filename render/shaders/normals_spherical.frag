@@ -4,13 +4,13 @@
 #version 450
 #include "lib/facet_normal.glsl"
 
-// From unit a to unit b along the great circle; the face's normal where they are opposite.
+// From unit a to unit b along the great circle; the face normal if they are opposite.
 vec3 slerp(vec3 a, vec3 b, float t) {
     float cosine = dot(a, b);
     if (cosine < -0.999999) {
         return facet_normals[6];
     }
-    if (cosine > 0.9999) {  // as good as the chord, and sin(angle) is not near 0
+    if (cosine > 0.9999) {  // the chord is accurate enough, and sin(angle) is near 0
         return normalize(mix(a, b, t));
     }
     float angle = acos(cosine);

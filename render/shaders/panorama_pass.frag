@@ -12,7 +12,7 @@ uniform int face;
 uniform float size;       // side of the face [px]
 uniform int mapping;      // PanoramaMapping
 uniform float half_angle;
-uniform vec2 turn;        // cosine and sine of its rotation about the vertical
+uniform vec2 turn;        // cosine and sine of its rotation about the vertical axis
 uniform float level;      // mip level whose texels are about as large as the face's
 uniform float intensity;
 

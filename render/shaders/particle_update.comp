@@ -97,7 +97,7 @@ uint next_word(inout Random random) {
     return word;
 }
 float next_share(inout Random random) {
-    return share_of(next_word(random));
+    return unit_float(next_word(random));
 }
 float next_signed(inout Random random) {
     return -1.0 + 2.0 * next_share(random);

@@ -1,6 +1,6 @@
-// Diffuse light by coordinates in a texture, a pair per light: L on the plane orthogonal to N (fakephong.phong-map, after
-// H. Elias). Light from behind is on the rim. There are no highlights. Definitions SINGLE_LIGHTS and WORST_AXIS:
-// lib/single_lights.glsl, lib/highlight_map.glsl.
+// Texture coordinates for diffuse light, one pair per light: L projected on the plane orthogonal to N
+// (fakephong.phong-map, after H. Elias). Light from behind maps to the rim. There are no highlights. Definitions
+// SINGLE_LIGHTS and WORST_AXIS: lib/single_lights.glsl, lib/highlight_map.glsl.
 // Techniques: fakephong.phong-map
 #version 450
 #define MAP_DIFFUSE

@@ -1,4 +1,4 @@
-// One face of a probe's cube map, without negative, infinite and NaN radiance, which would spoil every mean.
+// One face of a probe's cube map, without negative, infinite and NaN radiance, which would corrupt every mean.
 #version 450
 #include "lib/tone.glsl"
 #include "environment_gpu.h"

@@ -1,5 +1,6 @@
-// Highlights by one fetch per light from a Blinn map, where quadratic coordinates lead (fakephong.quadratic-blinn).
-// Definitions SINGLE_LIGHTS and BLINN_DIFFUSE: lib/single_lights.glsl, lib/map_lights.glsl.
+// Highlights by one fetch per light from a Blinn map, at quadratically interpolated coordinates
+// (fakephong.quadratic-blinn). Definitions SINGLE_LIGHTS and BLINN_DIFFUSE: lib/single_lights.glsl,
+// lib/map_lights.glsl.
 // Techniques: fakephong.quadratic-blinn
 #version 450
 #include "lib/facet_pixel.glsl"
@@ -16,7 +17,7 @@ layout(location = 16) flat in uvec4 map_at[(6 * SINGLE_LIGHTS + 3) / 4];
 layout(location = 12) INTERPOLATED in vec3 diffuse_factor[SINGLE_LIGHTS];
 layout(location = 22) flat in uvec4 diffuse_at[(6 * SINGLE_LIGHTS + 3) / 4];
 
-const float kDiffuseLayer = 0.0;  // of exponent 1: sqrt(1 - x^2 - y^2)
+const float kDiffuseLayer = 0.0;  // exponent 1: sqrt(1 - x^2 - y^2)
 #endif
 
 float map_texel(vec2 at, float layer) {

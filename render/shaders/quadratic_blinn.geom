@@ -1,6 +1,6 @@
 // Coordinates in a Blinn map at corners and midpoints of each triangle, for each light (fakephong.quadratic-blinn). All
-// other light is that of the corners. Definitions SINGLE_LIGHTS, WORST_AXIS and BLINN_DIFFUSE: lib/single_lights.glsl,
-// lib/highlight_map.glsl, lib/map_lights.glsl.
+// other light is evaluated at the corners. Definitions SINGLE_LIGHTS, WORST_AXIS and BLINN_DIFFUSE:
+// lib/single_lights.glsl, lib/highlight_map.glsl, lib/map_lights.glsl.
 // Techniques: fakephong.quadratic-blinn
 #version 450
 #include "lib/facet_point.glsl"
@@ -14,7 +14,7 @@ layout(location = 1) out vec3 diffuse;
 layout(location = 5) out vec3 specular;
 layout(location = 6) flat out float highlight_layer;
 layout(location = 8) out vec4 map_factor[SINGLE_LIGHTS];  // w: N.L
-// 16 bits a coordinate, six pairs a light.
+// 16 bits per coordinate, six pairs per light.
 layout(location = 16) flat out uvec4 map_at[(6 * SINGLE_LIGHTS + 3) / 4];
 #ifdef BLINN_DIFFUSE
 layout(location = 12) out vec3 diffuse_factor[SINGLE_LIGHTS];
@@ -32,29 +32,29 @@ void main() {
 #endif
     vec3 corner_diffuse[3];
     vec3 corner_specular[3];
-    at[6 * SINGLE_LIGHTS] = 0u;  // fills the last vector
+    at[6 * SINGLE_LIGHTS] = 0u;  // pads the last vector
     at[6 * SINGLE_LIGHTS + 1] = 0u;
     for (int i = 0; i < 6; ++i) {
         LitPoint p = lit_point(mesh_point(kSixPoints[i]));
         for (int k = 0; k < SINGLE_LIGHTS; ++k) {
-            vec2 place = vec2(1.0, 0.0);
-            vec2 diffuse_place = vec2(1.0, 0.0);
+            vec2 map_point = vec2(1.0, 0.0);
+            vec2 diffuse_point = vec2(1.0, 0.0);
             vec3 albedo = vec3(0.0);
             vec4 factor = vec4(0.0);
             if (k < p.single) {
                 Incoming light = single_light(p, k);
-                diffuse_place = plane_coordinates(p.reflector.normal, light.to_light);
+                diffuse_point = plane_coordinates(p.reflector.normal, light.to_light);
                 albedo = light.irradiance / kPi * p.reflector.diffuse;
-                place = blinn_coordinates(p.reflector.normal, light.to_light, p.reflector.to_camera);
+                map_point = blinn_coordinates(p.reflector.normal, light.to_light, p.reflector.to_camera);
                 factor = vec4(
                     light.irradiance / kPi * p.reflector.specular_0, dot(p.reflector.normal, light.to_light));
             }
-            at[6 * k + i] = packSnorm2x16(place);
+            at[6 * k + i] = packSnorm2x16(map_point);
             if (i % 2 == 0) {
                 factors[3 * k + i / 2] = factor;
             }
 #ifdef BLINN_DIFFUSE
-            at_diffuse[6 * k + i] = packSnorm2x16(diffuse_place);
+            at_diffuse[6 * k + i] = packSnorm2x16(diffuse_point);
             if (i % 2 == 0) {
                 diffuse_factors[3 * k + i / 2] = albedo;
             }

@@ -1,5 +1,5 @@
-// Vertices of triangles that lib/facet.glsl prepares. Definition HW_MIDPOINTS: also normals as hw_quadratic.geom wants
-// them.
+// Vertices of triangles that lib/facet.glsl prepares. Definition HW_MIDPOINTS: also the normals that hw_quadratic.geom
+// needs.
 #version 450
 #include "lib/mesh_vertex.glsl"
 #include "lib/view.glsl"

@@ -2,7 +2,7 @@
 //
 //     f = D + sum max(0, Cx (ux vx + uy vy) + Cz uz vz)^n
 //
-// with u toward the light, v toward the viewer and z along the normal. Reflects no surroundings but diffusely.
+// with u toward the light, v toward the viewer and z along the normal. Reflects the environment only diffusely.
 // Reflector::own: x = index of the material, y = number of lobes. Lafortune et al., "Non-Linear Approximation of
 // Reflectance Functions", 1997.
 // Techniques: skin.brdf-lafortune

@@ -1,5 +1,5 @@
 // Shading model Pbr: metallic-roughness as in glTF. GGX with height-correlated Smith visibility, compensated for
-// multiple scattering, over Lambert. The base of all models: those that follow override what differs.
+// multiple scattering, over Lambert. The base of all models: others override what differs.
 // Techniques: env.control-map, light.microfacet
 // Source of light.microfacet: Walter et al. 2007; Heitz 2014; Turquin 2019
 
@@ -9,7 +9,7 @@
 
 layout(binding = kSpecularAlbedoUnit) uniform sampler2D specular_albedo;  // (scale, bias) of f0 by n.v and roughness
 
-const float kDielectric = 0.04;  // reflectance head on, index of refraction 1.5
+const float kDielectric = 0.04;  // reflectance at normal incidence, index of refraction 1.5
 
 float dielectric_reflectance(SurfaceSample s) {
 #ifdef TRANSMISSION
@@ -26,7 +26,7 @@ vec2 lobe_albedo(float n_v, float roughness) {
     return texture(specular_albedo, (vec2(min(n_v, 1.0), roughness) * (size - 1.0) + 0.5) / size).rg;
 }
 
-// Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Both compensate the
+// Metalness is the fraction of the surface that is metal (env.control-map); the rest is dielectric. Both compensate the
 // energy lost by single scattering: Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019.
 void prepare_pbr(inout Reflector r, SurfaceSample s) {
     float roughness = max(s.roughness, kMinRoughness);

@@ -1,4 +1,5 @@
-// Shading model Phong: kd n.l + ks (r.v)^shininess, r the mirrored light (light.phong-model). Otherwise as Blinn.
+// Shading model Phong: kd n.l + ks (r.v)^shininess, r the reflected light direction (light.phong-model). Otherwise as
+// Blinn.
 // Techniques: fakephong.illum-phong, light.phong-model
 
 #include "lib/classic_lobe.glsl"

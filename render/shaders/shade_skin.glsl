@@ -1,10 +1,10 @@
-// Shading model Skin: Blinn plus a rim that each light adds, whatever its direction; it imitates light scattered in
-// soft skin (char.skin-shade).
+// Shading model Skin: Blinn plus a rim that each light adds, regardless of its direction; it imitates light scattered
+// in soft skin (char.skin-shade).
 // Techniques: char.skin-shade, skin.blinn
 
 #include "lib/classic_lobe.glsl"
 
-// Rim light by the cosine to the viewer: the listing's form, or the text's, which is wider.
+// Rim light by the cosine to the viewer: the form of the paper's listing, or of its text, which is wider.
 float skin_rim(float n_v, bool wide) {
     float away = 1.0 - clamp(n_v, 0.0, 1.0);
     return wide ? away * (2.0 - away) : away * away;

@@ -1,6 +1,6 @@
-// Shading model Subsurface, for skin: diffuse light that scatters under the surface, below two GGX lobes, one of them of
-// an oily film. Light that the lobes do not reflect is diffuse; the diffusion pass decides where it leaves the surface.
-// Reflector::own: x = roughness^4 of the second lobe, y = its weight.
+// Shading model Subsurface, for skin: diffuse light that scatters under the surface, below two GGX lobes, one of them
+// for an oily film. Light that the lobes do not reflect is diffuse; the diffusion pass determines where it exits the
+// surface. Reflector::own: x = roughness^4 of the second lobe, y = its weight.
 // Techniques: skin.gloss
 // Source of skin.gloss: Donner and Jensen 2006
 

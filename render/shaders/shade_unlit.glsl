@@ -1,5 +1,5 @@
 // Shading model Unlit: (1 - m) color + m surroundings, m = metalness (env.control-map). split_unlit() has moved the
-// first part into the emission and left the mirrored share m as albedo; lights add nothing.
+// first part into the emission and left the mirrored fraction m as albedo; lights add nothing.
 // Techniques: env.control-map
 
 void prepare_unlit(inout Reflector r, SurfaceSample s) {

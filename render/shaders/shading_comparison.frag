@@ -15,7 +15,7 @@ uniform float exponent;
 
 layout(location = 0) out vec4 radiance;
 
-// As in an image of 8 bits, where the power of a difference of less than a step is 0.
+// Quantized to 8 bits, so that differences below one step become 0.
 vec3 quantized(vec3 color) {
     return round(255.0 * clamp(color, 0.0, 1.0)) / 255.0;
 }

@@ -1,5 +1,5 @@
-// The lobe that lights each pixel, as a depth: its number / 16, 0 where no surface is. Triangles over the screen at this
-// depth then draw no pixels but those of a lobe.
+// The lobe that lights each pixel, as a depth: its number / 16, 0 where there is no surface. Full-screen triangles at
+// this depth then draw only the pixels of a lobe.
 // Techniques: deferred.light-pass
 #version 450
 #include "lib/stored_surface.glsl"

@@ -13,10 +13,10 @@ layout(binding = kRightRadianceUnit) uniform sampler2D right_radiance;
 uniform float row;          // 0 .. 1 from below
 uniform float plot_height;  // of the image; 0: no plot
 uniform float divider;      // of the width; negative: none
-uniform int curves;         // 1: of the left image alone
+uniform int curves;         // 1: of the left image only
 uniform mat4 left_label;    // glyphs of lib/small_text.glsl, three in each number, lowest byte first
 uniform mat4 right_label;
-uniform ivec2 label_lengths;  // left, right; without a divider the left one alone, in the middle
+uniform ivec2 label_lengths;  // left, right; without a divider only the left one, centered
 uniform int columns;              // of the same width, each with a name; 0: none
 uniform vec2 column_borders;      // of the first and the last, 0 .. 1 of the width
 uniform mat4 column_labels_low;   // of the first four, then of the others, as left_label
@@ -62,9 +62,9 @@ float plotted(float value, float plot) {
 float curve(sampler2D image, vec2 p, float plot, float width) {
     int x = int(p.x);
     float nearest = 1e9;
-    int reach = int(ceil(width)) + 1;
-    vec2 last = vec2(float(x - reach) + 0.5, plotted(brightness(image, x - reach), plot));
-    for (int i = 1 - reach; i <= reach; ++i) {
+    int radius = int(ceil(width)) + 1;
+    vec2 last = vec2(float(x - radius) + 0.5, plotted(brightness(image, x - radius), plot));
+    for (int i = 1 - radius; i <= radius; ++i) {
         vec2 next = vec2(float(x + i) + 0.5, plotted(brightness(image, x + i), plot));
         nearest = min(nearest, distance_to_segment(p, last, next));
         last = next;

@@ -1,4 +1,4 @@
-// Adds the light that leaves surfaces around where it entered to the image, by blending.
+// Adds subsurface light, which exits around the point where it entered, by blending.
 // Techniques: skin.diffusion
 #version 450
 #include "lib/diffused_light.glsl"

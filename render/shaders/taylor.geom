@@ -1,13 +1,13 @@
-// What a second-order Taylor series of the light about the centroid of a triangle needs (fakephong.taylor; Bishop and
-// Weimer, "Fast Phong Shading", 1986). The series of L.N / |N| is linear in L: it is L times that of N / |N|, which all
-// lights share, also that of highlights with H in place of L. Lights and viewer count as infinitely far: L and H are
-// those of the middle. Definition SINGLE_LIGHTS: lib/single_lights.glsl.
+// Prepares a second-order Taylor series of the light about the centroid of a triangle (fakephong.taylor; Bishop and
+// Weimer, "Fast Phong Shading", 1986). The series of L.N / |N| is linear in L: it is L times the series of N / |N|,
+// which all lights share; highlights use H instead of L. Lights and viewer count as infinitely far: L and H are
+// evaluated at the centroid. Definition SINGLE_LIGHTS: lib/single_lights.glsl.
 // Techniques: fakephong.taylor
 #version 450
 #include "lib/facet_point.glsl"
 #include "lib/single_lights.glsl"
 
-layout(location = 1) out vec3 diffuse;   // of all else, at vertices
+layout(location = 1) out vec3 diffuse;   // of all other light, at vertices
 layout(location = 5) out vec3 specular;
 layout(location = 6) flat out vec3 to_camera;
 layout(location = 8) flat out vec3 normal_series[6];  // n, n_s, n_t, n_ss, n_st, n_tt; zero if the normals cancel
@@ -37,16 +37,16 @@ void main() {
     vec3 series[6] = series_of(
         corner_normal_ws[1] - corner_normal_ws[0], corner_normal_ws[2] - corner_normal_ws[0],
         (corner_normal_ws[0] + corner_normal_ws[1] + corner_normal_ws[2]) / 3.0);
-    LitPoint middle = lit_point(mesh_point(vec2(1.0 / 3.0)));
-    vec3 viewer = middle.reflector.to_camera;
-    float side = dot(middle.reflector.normal, series[0]) < 0.0 ? -1.0 : 1.0;  // of double-sided surfaces
+    LitPoint centroid = lit_point(mesh_point(vec2(1.0 / 3.0)));
+    vec3 viewer = centroid.reflector.to_camera;
+    float side = dot(centroid.reflector.normal, series[0]) < 0.0 ? -1.0 : 1.0;  // for double-sided surfaces
     vec4 vectors[SINGLE_LIGHTS];
     vec3 irradiances[SINGLE_LIGHTS];
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {
         vectors[k] = vec4(0.0);
         irradiances[k] = vec3(0.0);
-        if (k < middle.single) {
-            Incoming light = single_light(middle, k);
+        if (k < centroid.single) {
+            Incoming light = single_light(centroid, k);
             vec3 sum = light.to_light + viewer;
             vectors[k] = vec4(light.to_light, inversesqrt(max(dot(sum, sum), 1e-8)));
             irradiances[k] = light.irradiance;

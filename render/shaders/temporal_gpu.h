@@ -1,4 +1,4 @@
-// Bindings of temporal.frag, beside fullscreen_gpu.h. Shared by C++ and GLSL.
+// Bindings of temporal.frag, in addition to fullscreen_gpu.h. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once

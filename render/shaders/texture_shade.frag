@@ -1,5 +1,5 @@
-// Skin lit in the space of its texture: Blinn's highlight, a directional light and a directional view that are fixed to
-// the camera (Bando 2001, 4.2).
+// Skin lit in texture space: Blinn's highlight, a directional light and a directional view that are fixed to the camera
+// (Bando 2001, 4.2).
 // Techniques: wrinkle.furrow.texture-space-shading
 #version 450
 #include "lib/tone.glsl"
@@ -10,7 +10,7 @@ layout(binding = kShadedColorUnit) uniform sampler2D surface;  // its color
 
 uniform vec2 size;              // of the target [px]
 uniform mat3 camera_from_mesh;  // may scale
-uniform vec3 to_light;          // in the space of the camera, unit
+uniform vec3 to_light;          // in camera space, unit
 uniform vec3 strengths;         // ambient, light, specular
 uniform float shininess;
 uniform bool unrolled;  // normals are those of a cylinder

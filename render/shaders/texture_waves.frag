@@ -1,5 +1,5 @@
-// Slopes of the waves that fit into a tile: by x, by z, and the sum of their squares, from whose mean follows the
-// variance that mip levels lose.
+// Slopes of the waves that fit into a tile: by x, by z, and the sum of their squares, whose mean gives the variance
+// that mip levels lose.
 // Techniques: water.geometric-texture-split
 #version 450
 #include "water_detail_gpu.h"
@@ -15,12 +15,12 @@ layout(location = 0) out vec4 slopes;
 const float kTurn = 6.28318530718;
 
 void main() {
-    vec2 place = gl_FragCoord.xy / texels;
+    vec2 tile_uv = gl_FragCoord.xy / texels;
     vec2 slope = vec2(0.0);
     for (int i = first; i < first + count; ++i) {
         vec4 wave = texelFetch(waves, i);
         // Reduced to one period, for the precision of the cosine.
-        slope += wave.w * wave.xy * cos(kTurn * fract(dot(wave.xy, place)) + wave.z);
+        slope += wave.w * wave.xy * cos(kTurn * fract(dot(wave.xy, tile_uv)) + wave.z);
     }
     slopes = vec4(slope, dot(slope, slope), 0.0);
 }

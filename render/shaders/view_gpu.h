@@ -10,7 +10,7 @@ struct ViewBlock {
     mat4 clip_from_world;      // with the jitter
     mat4 previous_clip_from_world;  // previous frame's clip_from_world, without the jitter
     vec4 camera_ws;            // w: near plane [m]
-    vec4 ray_right;            // world direction by which one unit of NDC x turns the view ray; w: jitter, NDC x
+    vec4 ray_right;            // added to the view ray per unit of NDC x, in world space; w: jitter, NDC x
     vec4 ray_up;               // the same for y; w: jitter, NDC y
     vec4 ray_forward;          // unit; w: 1 = shading assumes an infinitely distant viewer
     vec4 size;                 // width, height [px], 1 / width, 1 / height
@@ -18,13 +18,13 @@ struct ViewBlock {
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first point or
                                // spot light with a shadow or a cookie
     vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
-    vec4 orthographic;         // x: how far the eye is behind an orthographic camera [m], where fog and shadow cascades begin
+    vec4 orthographic;         // x: distance of the eye behind an orthographic camera, where fog and cascades begin [m]
 };
 
 const uint kViewBinding = 0u;
 
-// Blocks that effects publish for a view (ViewData::publish_block). Each has a number of its own, kEffectBlocks + n, which
-// its effect's header states; in a view for which nobody publishes it, it is all zeros.
+// Blocks that effects publish for a view (ViewData::publish_block). Each has its own number, kEffectBlocks + n, stated
+// in its effect's header; in a view for which it is not published, it is all zeros.
 const uint kEffectBlocks = 8u;
 const uint kMaxEffectBlocks = 4u;
 const uint kEffectBlockBytes = 256u;  // of each, at most

@@ -16,10 +16,10 @@ layout(std430, binding = kWrinklePositionsBinding) readonly buffer Positions {
     float positions[];
 };
 layout(std430, binding = kWrinklesBinding) writeonly buffer Wrinkles {
-    uvec2 wrinkles[];  // four half floats, as mesh.vert reads them
+    uvec2 wrinkles[];  // four half floats, in the layout of mesh.vert
 };
 layout(std430, binding = kFoldHeightsBinding) writeonly buffer FoldHeights {
-    float fold_heights[];  // along the normal, in mesh space [m]; written for displaced skin alone
+    float fold_heights[];  // along the normal, in mesh space [m]; written for displaced skin only
 };
 
 uniform uint group_count;
@@ -53,7 +53,7 @@ float compression(int triangle, int end, uint vertex, uint first, bool mean_leng
     return ratio >= 0.0 && ratio < 1e30 ? ratio : 1.0;
 }
 
-// The same for a vertex in a block of the mesh at `rest_first`.
+// The compression of a vertex by a block of the mesh at `rest_first`.
 float block_compression(uint rest_first, uint block, uint number, uint first, bool mean_length) {
     int at = int(rest_first + block + number);
     int begin = int(rest_first + texelFetch(rest, at).x);
@@ -63,22 +63,22 @@ float block_compression(uint rest_first, uint block, uint number, uint first, bo
 
 // FoldTable of a job, linearly interpolated.
 float fold_strength(int job, float e) {
-    float place = clamp(e, 0.0, 1.0) * float(kFoldSteps - 1u);
-    int i = min(int(place), int(kFoldSteps) - 2);
+    float entry = clamp(e, 0.0, 1.0) * float(kFoldSteps - 1u);
+    int i = min(int(entry), int(kFoldSteps) - 2);
     float low = uintBitsToFloat(texelFetch(jobs, job + 4 + i / 4)[i % 4]);
     float high = uintBitsToFloat(texelFetch(jobs, job + 4 + (i + 1) / 4)[(i + 1) % 4]);
-    return mix(low, high, place - float(i)) * sqrt(clamp(e, 0.0, 1.0));
+    return mix(low, high, entry - float(i)) * sqrt(clamp(e, 0.0, 1.0));
 }
 
-// Strength of the wrinkles at this compression, without the mask: of isometric folds, and of all other methods.
-float folded_strength(int job, uvec4 job1, float share, float ratio) {
-    return fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), share));
+// Strength of the wrinkles at this compression, without the mask: for isometric folds, and for all other methods.
+float folded_strength(int job, uvec4 job1, float folding, float ratio) {
+    return fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), folding));
 }
 float raised_strength(uvec4 job1, float ratio) {
     return max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
 }
-float strength_of(int job, uvec4 job1, float share, float ratio) {
-    return job1.x == kWrinkleIsometric ? folded_strength(job, job1, share, ratio) : raised_strength(job1, ratio);
+float strength_of(int job, uvec4 job1, float folding, float ratio) {
+    return job1.x == kWrinkleIsometric ? folded_strength(job, job1, folding, ratio) : raised_strength(job1, ratio);
 }
 
 void main() {
@@ -93,8 +93,8 @@ void main() {
     if (number >= job0.y) {
         return;
     }
-    uvec4 job2 = texelFetch(jobs, job + 2);  // share, driver, mean_length, activation
-    uvec4 job3 = texelFetch(jobs, job + 3);  // second, third, own_share, shade_share
+    uvec4 job2 = texelFetch(jobs, job + 2);  // fold_fraction, driver, mean_length, activation
+    uvec4 job3 = texelFetch(jobs, job + 3);  // second, third, own_weight, shade_weight
     uint first = job0.z - first_vertex;
     uvec4 job8 = texelFetch(jobs, job + 8);  // heights, displacement, resting
     float resting = uintBitsToFloat(job8.z);
@@ -121,14 +121,14 @@ void main() {
 
     uint method = job1.x;
     float activation = uintBitsToFloat(job2.w);
-    float share = uintBitsToFloat(job2.x);
+    float folding = uintBitsToFloat(job2.x);
     if (method == kWrinkleColumns) {
-        vec2 both = vec2(folded_strength(job, job1, share, ratio), raised_strength(job1, ratio));
+        vec2 both = vec2(folded_strength(job, job1, folding, ratio), raised_strength(job1, ratio));
         both = mask * activation * (job2.y == kWrinkleByRadius ? vec2(1.0) : both);
         wrinkles[first + number] = uvec2(packHalf2x16(both), 0u);
         return;
     }
-    float strength = mask * activation * (job2.y == kWrinkleByRadius ? 1.0 : strength_of(job, job1, share, ratio));
+    float strength = mask * activation * (job2.y == kWrinkleByRadius ? 1.0 : strength_of(job, job1, folding, ratio));
     bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
     float own = strength * uintBitsToFloat(job3.z);
     float shade = min(strength, 1.0) * uintBitsToFloat(job3.w);
@@ -143,7 +143,7 @@ void main() {
         vec2 second_mask = unpackUnorm2x16(texelFetch(rest, int(job0.x + job3.x + number)).y);
         own_ratio.y = block_compression(job0.x, job3.x, number, first, mean_length);
         float second_ratio = rested_ratio(own_ratio.y, resting * second_mask.y);
-        float second = second_mask.x * activation * strength_of(job, job1, share, second_ratio);
+        float second = second_mask.x * activation * strength_of(job, job1, folding, second_ratio);
         float second_own = second * uintBitsToFloat(job3.z);
         by_method.y = steep ? second_own : 0.0;
         by_method.w = (steep ? 0.0 : second_own) + min(second, 1.0) * uintBitsToFloat(job3.w);

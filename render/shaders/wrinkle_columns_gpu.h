@@ -14,7 +14,7 @@ namespace limn::layout {
 struct WrinkleColumns {
     uint count;
     uint methods;  // kWrinkle*, four bits each, the first column's lowest
-    float left;    // where the columns begin and end, 0 .. 1 of the width
+    float left;    // left and right end of the columns, 0 .. 1 of the width
     float right;
 };
 

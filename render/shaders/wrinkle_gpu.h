@@ -1,14 +1,14 @@
 // Input of wrinkle.comp. Shared by C++ and GLSL.
 //
-// A mesh at rest is a block of texels of two 32-bit numbers, or three consecutive blocks for strain. First one texel per
+// A rest mesh is a block of texels of two 32-bit numbers, or three consecutive blocks for strain. First one texel per
 // vertex plus the end: its first triangle as a texel of the first block, and its mask and its shortening at rest, 16
-// bits each; the second and third block have the angle and the side of its tangent instead (WrinkleState::frames; 0:
-// none). A second layer is another block, with its own mask. Then two texels per triangle at a vertex, whose third
-// corner is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the
-// square root of the triangle's weight at the vertex (the weight itself if lengths are averaged). Flags in the highest
-// bits of the first of them announce one more texel, with the weight and the third corner: for a triangle that counts by
-// its stretch, and for one that is not at that vertex. Last, for displaced skin, the fold heights of both layers per
-// vertex.
+// bits each; the second and third block hold the angle and the sign of its tangent frame instead (WrinkleState::frames;
+// 0: none). A second layer is another block, with its own mask. Then two texels per triangle at a vertex, whose third
+// corner is that vertex: the two other corners, and the direction across its wrinkles as weights of the edges to them,
+// times the square root of the triangle's weight at the vertex (the weight itself if lengths are averaged). Flags in
+// the highest bits of the first of them mark one more texel, with the weight and the third corner: for a triangle that
+// is measured by its stretch, and for one that is not at that vertex. Last, for displaced skin, the fold heights of
+// both layers per vertex.
 
 #ifdef __cplusplus
 #pragma once
@@ -26,14 +26,14 @@ struct WrinkleJob {
     float lambda;
     float beta;
     float slack;
-    float share;
+    float fold_fraction;
     uint driver;       // kWrinkleBy*
-    uint mean_length;  // 1: means are of lengths
+    uint mean_length;  // 1: lengths are averaged, not their squares
     float activation;
-    uint second;       // of strain: where its second and third block begin, from the first; else that of a second layer, or 0
+    uint second;       // offset of the second block (for strain) or second layer, or 0
     uint third;
-    float own_share;   // weights of the method, and of alpha which replaces it
-    float shade_share;
+    float own_weight;   // weights of the method, and of alpha which replaces it
+    float shade_weight;
     vec4 folds[4];     // FoldTable
     uint heights;      // offset of the heights from the first texel of the mesh; 0: none
     float displacement; // fraction of them that displaces vertices
@@ -55,7 +55,7 @@ const uint kWrinkleBlend = 6u;
 const uint kWrinkleStrainView = 7u;
 const uint kWrinkleModel = 8u;
 const uint kWrinklePhoto = 9u;
-const uint kWrinkleColumns = 15u;  // none of them: the fragments choose, by WrinkleColumns
+const uint kWrinkleColumns = 15u;  // chosen per fragment, by WrinkleColumns
 
 // WrinkleDriver
 const uint kWrinkleByStrain = 2u;

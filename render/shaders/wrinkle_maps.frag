@@ -14,7 +14,7 @@ uniform vec2 size;            // of the target [px]
 uniform vec4 first_weights;   // -1 .. 1
 uniform vec4 second_weights;
 uniform vec4 decoding;        // scale and offset of texels of the stretched map (xy) and the compressed one (zw)
-uniform float share;         // fraction of the influence of both maps, 0 .. 1
+uniform float strength;       // factor of the influence of both maps, 0 .. 1
 uniform bool by_slopes;
 
 layout(location = 0) out vec4 normal;
@@ -22,7 +22,7 @@ layout(location = 0) out vec4 normal;
 void main() {
     vec2 uv = gl_FragCoord.xy / size;
     vec4 skin = textureLod(base, uv, 0.0);
-    vec2 influence = share * wrinkle_influence(
+    vec2 influence = strength * wrinkle_influence(
         textureLod(first_masks, uv, 0.0), textureLod(second_masks, uv, 0.0), first_weights, second_weights);
     if (influence == vec2(0.0)) {
         normal = skin;  // unchanged, to the bit

@@ -6,7 +6,7 @@
 namespace limn::layout {
 #endif
 
-// One after the other, as WrinkleMapsEffect binds them.
+// Consecutive, as WrinkleMapsEffect binds them.
 const uint kWrinkleBaseUnit = 0u;
 const uint kWrinkleStretchedUnit = 1u;
 const uint kWrinkleCompressedUnit = 2u;

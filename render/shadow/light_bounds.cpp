@@ -113,7 +113,7 @@ LightBounds light_bounds(const RenderView& view, const Vec3& center, float radiu
     return bounds;
 }
 
-ReachSphere reach_sphere(const LightReach& reach) {
+RangeSphere range_sphere(const LightRange& reach) {
     // A sector of half angle up to 45 degrees fits into the sphere through its apex and rim; a
     // wider one, up to 90 degrees, into the sphere around the rim.
     const bool cone = reach.axis != Vec3(0) && reach.cosine > 0 && std::isfinite(reach.radius);
@@ -128,7 +128,7 @@ ReachSphere reach_sphere(const LightReach& reach) {
     return {reach.center + reach.axis * (reach.radius * reach.cosine), reach.radius * sine};
 }
 
-bool reaches_box(const LightReach& reach, const Bounds& box) {
+bool reaches_box(const LightRange& reach, const Bounds& box) {
     const Vec3 nearest = glm::clamp(reach.center, box.min, box.max);
     const Vec3 offset = nearest - reach.center;
     if (glm::dot(offset, offset) > square(reach.radius)) {

@@ -5,7 +5,7 @@
 namespace limn {
 
 struct RenderView;
-struct LightReach;
+struct LightRange;
 
 // Screen-space bounds of a light's range: a rectangle of pixels (shadow.light-scissor) and a range
 // of depths (shadow.depth-bounds). Outside, nothing is lit or shadowed by it, so shadow volumes
@@ -42,14 +42,14 @@ struct SlopeRange {
 [[nodiscard]] LightBounds light_bounds(const RenderView& view, const Vec3& center, float radius);
 
 /// A tight bounding sphere of the light's range: for a narrow cone centered on its axis.
-struct ReachSphere {
+struct RangeSphere {
     Vec3 center;
     float radius = 0;
 };
-[[nodiscard]] ReachSphere reach_sphere(const LightReach& reach);
+[[nodiscard]] RangeSphere range_sphere(const LightRange& reach);
 
 /// Whether the light can reach something in the box: sphere against box, and for spots also the
 /// cone against the sphere around the box (shadow.caster-cull).
-[[nodiscard]] bool reaches_box(const LightReach& reach, const Bounds& box);
+[[nodiscard]] bool reaches_box(const LightRange& reach, const Bounds& box);
 
 }  // namespace limn

@@ -51,12 +51,12 @@ slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     if (light.kind == LightKind::Directional) {
         return slice;
     }
-    LightReach reach = {light.position, light.radius};
+    LightRange reach = {light.position, light.radius};
     if (light.kind == LightKind::Spot) {
         reach.axis = light.axis;
         reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi));
     }
-    const ReachSphere sphere = reach_sphere(reach);
+    const RangeSphere sphere = range_sphere(reach);
     const LightBounds bounds = light_bounds(view, sphere.center, sphere.radius);
     if (is_empty(bounds)) {
         return std::nullopt;

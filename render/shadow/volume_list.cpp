@@ -23,11 +23,11 @@ constexpr std::uint32_t kMirrored = 1;
 /// Enlarges a finite light range slightly, so that rounding at the rim gives no false shadow.
 constexpr float kVolumeRim = 1.001f;
 
-LightReach volume_range(const ShadowedLight& light) {
+LightRange volume_range(const ShadowedLight& light) {
     if (light.kind == LightKind::Directional) {
         return {{0, 0, 0}, INFINITY};
     }
-    LightReach reach = {light.position, light.radius * kVolumeRim};
+    LightRange reach = {light.position, light.radius * kVolumeRim};
     if (light.kind == LightKind::Spot) {
         reach.axis = light.axis;
         reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi)) / kVolumeRim;
@@ -145,7 +145,7 @@ void VolumeCollector::collect(
         Candidate& candidate = candidates_[i];
         ShadowedLight& light = lights.shadowed[candidate.shadowed];
         const bool hybrid = light.settings.method == ShadowMethod::Hybrid;
-        const ReachSphere sphere = reach_sphere(candidate.reach);
+        const RangeSphere sphere = range_sphere(candidate.reach);
         const LightBounds bounds = light_bounds(view, sphere.center, sphere.radius);
         const bool needed = shades[i] && !is_empty(bounds);
         if (candidate.served && needed

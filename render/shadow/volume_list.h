@@ -91,7 +91,7 @@ class VolumeCollector {
         std::size_t shadowed = 0;  ///< index into LightList::shadowed
         ShadowVolume settings;
         Vec4 light;  ///< homogeneous
-        LightReach reach;
+        LightRange reach;
         bool served = true;
     };
     struct Caster {

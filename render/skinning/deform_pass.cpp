@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-/// Binds the vertices of a batch in one of their streams.
+/// Binds the range of a stream that holds the vertices of a batch.
 void bind_stream(
     gpu::Device& device, unsigned binding, const gpu::Buffer& buffer, const DeformBatch& batch,
     std::size_t stride) {
@@ -23,8 +23,8 @@ void bind_stream(
         (batch.end_vertex - batch.first_vertex) * stride);
 }
 
-/// What a job does depends on which shapes have changed since the last frame, and the one before.
-/// All that may come to that, for jobs that are otherwise alike.
+/// The flags of a job depend on whether its shape changed in this frame and in the previous one.
+/// Lists all variants that may occur for jobs that are otherwise equal.
 std::vector<std::uint32_t> flags_of_later_frames(std::uint32_t flags, bool with_previous) {
     constexpr std::uint32_t kCurrent = layout::kDeformCurrent;
     constexpr std::uint32_t kPrevious = layout::kDeformPrevious;
@@ -64,9 +64,10 @@ void run_batch(
         return;
     }
     device.use(*program);
-    const gpu::Buffer& before = vertices.before() ? vertices.before() : vertices.positions();
+    const gpu::Buffer& previous =
+        vertices.previous_positions() ? vertices.previous_positions() : vertices.positions();
     bind_stream(device, layout::kDeformPositionsBinding, vertices.positions(), batch, sizeof(Vec3));
-    bind_stream(device, layout::kDeformPreviousBinding, before, batch, sizeof(Vec3));
+    bind_stream(device, layout::kDeformPreviousBinding, previous, batch, sizeof(Vec3));
     bind_stream(
         device, layout::kDeformFramesBinding, vertices.frames(), batch, sizeof(PackedFrame));
     program->set("first_group", batch.first_group);
@@ -109,7 +110,7 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bo
         pass.controls.bind(device, layout::kDeformControlsUnit);
         for (const DeformBatch& batch : shapes.work().batches) {
             if (warm_up) {
-                const bool before{shapes.vertices().before()};
+                const bool previous{shapes.vertices().previous_positions()};
                 for (const std::uint32_t flags : flags_of_later_frames(batch.flags, before)) {
                     run_batch(device, pass, shapes.vertices(), batch, flags);
                 }

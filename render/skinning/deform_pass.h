@@ -30,11 +30,11 @@ struct DeformPass {
 
 [[nodiscard]] Result<DeformPass> create_deform_pass(gpu::Device& device);
 
-/// Adds no pass if no shape changed. With `warm_up` the programs that other frames may need run
-/// first; their results are overwritten, or of no use.
+/// Adds no pass if no shape changed. With `warm_up`, first runs the programs that later frames may
+/// need; their results are overwritten or unused.
 void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bool warm_up = false);
 
-/// Computes them once a frame, for all views: they request what they draw in prepare().
+/// Deforms meshes once per frame, for all views, which request in prepare() what they draw.
 struct DeformEffect {
     DeformPass pass;
 

@@ -21,8 +21,8 @@ struct DeformSource {
     std::string fault;  ///< why it is drawn in rest pose; empty if it is deformed
 };
 
-/// Of `entity`, an instance of `mesh`. `joint_count`: number of joints that the mesh's weights
-/// refer to. The mesh itself must be valid (check_deformable).
+/// Finds the inputs of `entity`, an instance of `mesh`. `joint_count`: number of joints that the
+/// mesh's weights refer to. The mesh itself must be valid (check_deformable).
 [[nodiscard]] DeformSource find_deform_source(
     const World& world, const Assets& assets, Entity entity, MeshId mesh, std::uint32_t joint_count,
     const Deformed& settings);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t kEvaluateGrain = 16;
 
-/// Of all by which folds move vertices, beside the positions. Not 0.
+/// Hash of everything that determines how folds displace vertices, except positions. Never 0.
 std::uint64_t hash_folds(const WrinkleSurface& surface, std::uint64_t source, float displacement) {
     std::uint64_t hash = hash_combine(source, static_cast<std::uint64_t>(surface.method));
     for (const float number :
@@ -55,7 +55,8 @@ std::uint64_t hash_at(const std::vector<T>& before, const std::vector<T>& now, f
         hash_combine(hash_values(before), hash_values(now)), std::bit_cast<std::uint32_t>(alpha));
 }
 
-/// Hash of what jumps and is shown as before; 0 if nothing is.
+/// Hash of the values that jump in this step but are still shown before their jump; 0 if there are
+/// none.
 template <typename T>
 std::uint64_t hash_before_jumps(const std::vector<ValueJump<T>>& jumps, float shown) {
     std::uint64_t hash = 0;
@@ -101,7 +102,7 @@ std::span<const SurfaceAnchor> anchors_of(const World& world, Entity entity) {
                : std::span<const SurfaceAnchor>{};
 }
 
-/// Of a shape, within 0 and 1; 1 without one.
+/// Weight of a shape, clamped to 0 .. 1; 1 if there is none.
 float weight_of(const std::vector<float>& weights, std::uint32_t shape) {
     return shape == kNoAsset        ? 1.0f
            : shape < weights.size() ? std::clamp(weights[shape], 0.0f, 1.0f)
@@ -137,10 +138,10 @@ DeformedList::Entry& DeformedList::entry_of(Entity entity) {
 }
 
 void DeformedList::release(Entry& entry) {
-    if (entry.placed) {
+    if (entry.allocated) {
         vertices_.release(entry.first_vertex, entry.vertex_count);
     }
-    entry.placed = false;
+    entry.allocated = false;
     entry.drawn = 0;
     entry.drawn_previous = 0;
 }
@@ -208,11 +209,11 @@ void DeformedList::find_wrinkles(
     if (!displaced) {
         return;
     }
-    const Vec3 middle = transform_point(
+    const Vec3 center = transform_point(
         world.get<WorldTransform>(entry.entity).world,
         center(meshes_->meshes()[entry.mesh.index].bounds));
     entry.displacement =
-        surface->displacement * fade_until(surface->displacement_until, glm::distance(middle, eye));
+        surface->displacement * fade_until(surface->displacement_until, glm::distance(center, eye));
     if (entry.displacement > 0) {
         entry.largest_fold = wrinkles->largest_fold;
         entry.folds = hash_folds(*surface, wrinkles->source, entry.displacement);
@@ -359,10 +360,10 @@ bool DeformedList::has_hook(const SurfaceHook& hook, unsigned bits) const {
 
 std::int32_t DeformedList::request(std::uint32_t index, bool before) {
     Entry& entry = entries_[index];
-    if (!entry.placed) {
+    if (!entry.allocated) {
         entry.vertex_count = entry.rest->vertex_count;
         entry.first_vertex = vertices_.allocate(*meshes_, meshes_->meshes()[entry.mesh.index]);
-        entry.placed = true;
+        entry.allocated = true;
     }
     entry.requested = true;
     entry.previous_requested = entry.previous_requested || before;

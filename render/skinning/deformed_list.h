@@ -25,10 +25,10 @@ struct SurfaceBindingState;
 
 // Tracks the deformed instances of a frame, where their vertices are stored, and which must be
 // recomputed. Once per frame update() visits every Deformed: its bounds and a hash of its shape are
-// known before anything is culled. Whoever draws an instance requests its vertices; only requested
-// ones are computed, once for all views, and only if the shape changed. Instances that cannot be
-// deformed (the character is gone, joints are missing or not finite) are not in the list: they are
-// drawn in rest pose, which is logged once.
+// known before anything is culled. Passes request the vertices of the instances that they draw;
+// only requested vertices are computed, once for all views, and only if the shape changed.
+// Instances that cannot be deformed (the character is gone, joints are missing or not finite) are
+// not in the list: they are drawn in rest pose, which is logged once.
 //
 //     shapes.update(world, meshes, view.alpha, view.previous_alpha);
 //     collector.collect(world, view, meshes, shapes, ...);    // and shadows, probes
@@ -42,8 +42,8 @@ struct DeformedInstance {
     HookBits hooks;                ///< what effects add to its surface
     bool wrinkled = false;         ///< has a WrinkleState, and draws it
     bool wrinkle_columns = false;  ///< by the methods of a WrinkleComparison
-    float resting = 1;             ///< share of WrinkleState::resting
-    float displacement = 0;        ///< share of their heights by which folds move the skin
+    float resting = 1;             ///< fraction of WrinkleState::resting
+    float displacement = 0;        ///< fraction of the fold heights that displaces the skin
 };
 
 /// Jobs that share one dispatch: of the same kind, with their vertices within the range that a
@@ -81,7 +81,7 @@ class DeformedList {
     void update(
         const World& world, const MeshPool& meshes, float alpha, float previous_alpha,
         const Vec3& eye = {0, 0, 0});
-    /// Discards all shapes, for other assets.
+    /// Discards all shapes, when the assets are replaced.
     void forget();
 
     /// Index of an instance; kNone if it is not deformed.
@@ -96,10 +96,10 @@ class DeformedList {
     /// Whether some instance has one of these bits of a hook.
     [[nodiscard]] bool has_hook(const SurfaceHook& hook, unsigned bits) const;
 
-    /// Requests an instance's vertices, with `before` also its previous positions. Returns its base
-    /// vertex.
-    std::int32_t request(std::uint32_t index, bool before);
-    /// Calls f(entity, instance, first vertex, number of vertices) of every requested instance.
+    /// Requests an instance's vertices, with `previous` also its previous positions. Returns its
+    /// base vertex.
+    std::int32_t request(std::uint32_t index, bool previous);
+    /// Calls f(entity, instance, first vertex, number of vertices) for every requested instance.
     template <typename F>
     void each_requested(F&& f) const {
         for (const std::uint32_t i : active_) {
@@ -126,7 +126,7 @@ class DeformedList {
         bool active = false;     ///< deformed in this frame
         bool requested = false;  ///< in this frame
         bool previous_requested = false;
-        bool placed = false;  ///< has vertices allocated
+        bool allocated = false;  ///< has vertices in DeformedVertices
         std::uint32_t first_vertex = 0;
         std::uint32_t vertex_count = 0;
         std::uint64_t drawn = 0;           ///< shape of its vertices; 0: none
@@ -134,8 +134,8 @@ class DeformedList {
         std::uint64_t previous_shape = 0;  ///< shape of the previous frame
         std::uint64_t evaluated = 0;       ///< shape of the bounds and palette
         std::uint32_t resting_shape = 0;   ///< of WrinkleState
-        std::uint64_t folds = 0;           ///< hash of how folds move the skin; 0: they do not
-        float largest_fold = 0;            ///< bound of how far
+        std::uint64_t folds = 0;           ///< hash of the displacement by folds; 0: none
+        float largest_fold = 0;            ///< upper bound of that displacement [m]
         std::vector<Affine> palette;       ///< mesh from rest pose, one per joint
         std::vector<float> weights;
         std::vector<Vec4> controls;  ///< packed deformers

@@ -34,8 +34,9 @@ std::vector<BufferId> import_deformed(FrameGraph& graph, const DeformedVertices&
     std::vector<BufferId> buffers = {
         graph.import("deformed positions", vertices.positions()),
         graph.import("deformed frames", vertices.frames())};
-    if (vertices.before()) {
-        buffers.push_back(graph.import("previous deformed positions", vertices.before()));
+    if (vertices.previous_positions()) {
+        buffers.push_back(
+            graph.import("previous deformed positions", vertices.previous_positions()));
     }
     if (vertices.wrinkles()) {
         buffers.push_back(graph.import("wrinkle strengths", vertices.wrinkles()));

@@ -15,8 +15,8 @@ struct MeshRange;
 
 // Vertex storage of deformed meshes: each instance has its own copy, so that every pass draws it
 // like any other mesh. The streams are those of the MeshPool and are drawn with its indices;
-// deform_pass writes positions and frames, the rest is copied from the mesh. The positions of the
-// previous frame are a stream that exists since velocity was first requested.
+// deform_pass writes positions and frames, the rest is copied from the mesh. The stream of previous
+// positions exists once velocity has been requested.
 
 class DeformedVertices {
   public:
@@ -37,7 +37,7 @@ class DeformedVertices {
     }
     [[nodiscard]] const gpu::Buffer& frames() const { return streams_.buffer(VertexStream::Frame); }
     /// Null until needed.
-    [[nodiscard]] const gpu::Buffer& before() const {
+    [[nodiscard]] const gpu::Buffer& previous_positions() const {
         return streams_.buffer(VertexStream::PreviousPosition);
     }
     /// Null until needed.
@@ -56,7 +56,7 @@ class DeformedVertices {
     VertexStreams streams_;
 };
 
-/// The buffers that deform_pass and wrinkle_pass write, as the graph knows them.
+/// Imports the buffers that deform_pass and wrinkle_pass write into the graph.
 [[nodiscard]] std::vector<BufferId>
 import_deformed(FrameGraph& graph, const DeformedVertices& vertices);
 

@@ -39,8 +39,8 @@ struct SkinBounds {
 [[nodiscard]] SkinBounds make_skin_bounds(const MeshData& mesh);
 
 /// `palette`: posed mesh from rest pose, one per joint of the skin; empty: morph targets only.
-/// Matrices for dual quaternions have no scale. Missing weights are 0. `displacement`: by which
-/// deformers move any vertex at most [m]. The result is not finite if a joint that influences a
+/// Matrices for dual quaternions have no scale. Missing weights are 0. `displacement`: upper bound
+/// of how far deformers move a vertex [m]. The result is not finite if a joint that influences a
 /// vertex is not.
 [[nodiscard]] Bounds posed_bounds(
     const SkinBounds& bounds, std::span<const Affine> palette, Skinning skinning,

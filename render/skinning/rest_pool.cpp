@@ -22,8 +22,8 @@ layout::uint bits_of(float x) {
 /// Two components as 16-bit snorm fractions of kMaxUnitDifference.
 layout::uint pack_snorm(float x, float y) {
     const auto one = [](float v) {
-        const float share = std::isfinite(v) ? v / layout::kMaxUnitDifference : 0.0f;
-        const long number = std::lround(std::clamp(share, -1.0f, 1.0f) * 32767.0f);
+        const float fraction = std::isfinite(v) ? v / layout::kMaxUnitDifference : 0.0f;
+        const long number = std::lround(std::clamp(fraction, -1.0f, 1.0f) * 32767.0f);
         return static_cast<layout::uint>(number) & 0xffffu;
     };
     return one(x) | one(y) << 16;
@@ -47,7 +47,7 @@ std::vector<std::vector<Offset>> offsets_of_vertices(const MeshData& mesh) {
     return offsets;
 }
 
-/// The influences of all vertices; `first` receives the start of each vertex's, and the end.
+/// The influences of all vertices; `first` receives the start of each vertex's list, plus the end.
 Texels
 influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std::size_t>& first) {
     Texels texels;

@@ -14,7 +14,7 @@
 
 namespace limn {
 
-/// A mesh in rest pose, as deform.comp reads it.
+/// A mesh in rest pose, in the layout of deform.comp.
 struct RestMesh {
     std::uint32_t first_texel = 0;
     std::uint32_t texel_count = 0;  ///< 0: not uploaded
@@ -30,7 +30,7 @@ struct RestMesh {
 /// uploaded when its first instance appears, and again after it was edited.
 class RestPool {
   public:
-    /// `anchors`: of its vertices on patches, one each, or empty.
+    /// `anchors`: of its vertices on patches, one per vertex, or empty.
     [[nodiscard]] const RestMesh&
     get(const Assets& assets, MeshId mesh, std::span<const SurfaceAnchor> anchors = {});
     void clear();

@@ -12,9 +12,9 @@ namespace limn {
 
 namespace {
 
-constexpr float kSameValue = 1e-4f;      // relative difference that is no jump
+constexpr float kSameValue = 1e-4f;      // smaller relative differences are no jump
 constexpr float kSameCosine = 1e-6f;     // 1 - |cos(angle / 2)| of rotations: 0.16 degrees
-constexpr float kInstantaneous = 1e-3f;  // a segment that is shorter, in steps, is a jump
+constexpr float kInstantaneous = 1e-3f;  // a segment shorter than this, in steps, is a jump
 
 bool differ(float a, float b) {
     return std::abs(a - b) > kSameValue;
@@ -26,17 +26,18 @@ bool differ(const Quat& a, const Quat& b) {
     return std::abs(glm::dot(glm::normalize(a), glm::normalize(b))) < 1.0f - kSameCosine;
 }
 
-/// From one row of keys to another at a time within the step.
+/// A jump from one row of keys to another at a time within the step.
 struct RowJump {
     float at = kNoJump;
     std::size_t from = 0;
     std::size_t to = 0;
 };
 
-/// The key whose value a sheet with step interpolation has.
+/// The key whose value a sheet with step interpolation holds at `time`.
 std::size_t step_row(const ClipSheet& sheet, float time) {
-    const KeyPlace place = find_keys(sheet.times, time);
-    return std::min(place.u < 1.0f ? place.first : place.first + 1, sheet.times.size() - 1);
+    const KeyInterval interval = find_keys(sheet.times, time);
+    return std::min(
+        interval.u < 1.0f ? interval.first : interval.first + 1, sheet.times.size() - 1);
 }
 
 /// A step in time as it is played: forward, or backward.
@@ -47,7 +48,7 @@ class PlayedStep {
           wraps_(step.loops && (step.from < 0.0f || step.from > duration)),
           boundary_(step.from < 0.0f ? 0.0f : duration) {}
 
-    /// Where it begins, within the clip [s].
+    /// Its start within the clip [s].
     [[nodiscard]] float start() const { return start_; }
     [[nodiscard]] bool is_forward() const { return step_.to > step_.from; }
     [[nodiscard]] bool wraps() const { return wraps_; }
@@ -69,7 +70,7 @@ class PlayedStep {
     const ClipStep& step_;
     float start_;
     bool wraps_;
-    float boundary_;  // where the loop ends, as `from` counts [s]
+    float boundary_;  // end of the loop, in the time of `from` [s]
 };
 
 RowJump step_key_jump(const ClipSheet& sheet, const PlayedStep& step, float end) {
@@ -112,7 +113,7 @@ bool can_jump(const ClipData& clip, const ClipStep& step) {
     return std::isfinite(step.from) && step.from != step.to && clip.duration > 0.0f;
 }
 
-/// Lowers the times of those whose values differ between the two rows.
+/// Lowers the jump times of subjects whose values differ between the two rows.
 template <typename T>
 void mark_changes(
     const ClipSheet& sheet, const std::vector<std::uint16_t>& subjects,

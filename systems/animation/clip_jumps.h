@@ -32,8 +32,8 @@ template <typename Player>
 void find_clip_jumps(
     const ClipData& clip, const ClipStep& step, std::span<float> joints, std::span<float> weights);
 
-/// Joints whose parent jumps do so, too: then fills pose.jumps and lets the previous matrix of what
-/// jumped equal the current one.
+/// A joint jumps with its parent. Fills pose.jumps, and sets the previous matrix of joints that
+/// jumped to the current one.
 void apply_joint_jumps(const SkeletonData& skeleton, std::span<float> at, Pose& pose);
 /// Likewise for morph weights.
 void apply_weight_jumps(std::span<const float> at, MorphWeights& morph);

@@ -40,38 +40,39 @@ struct Hermite {
 class SheetRows {
   public:
     SheetRows(const ClipSheet& sheet, float time)
-        : sheet_(sheet), place_(find_keys(sheet.times, time)),
-          second_(std::min(place_.first + 1, sheet.times.size() - 1)) {
+        : sheet_(sheet), interval_(find_keys(sheet.times, time)),
+          second_(std::min(interval_.first + 1, sheet.times.size() - 1)) {
         if (sheet.interpolation == Interpolation::Step) {
-            place_.first = place_.u < 1.0f ? place_.first : second_;
-            second_ = place_.first;
-            place_.u = 0.0f;
+            interval_.first = interval_.u < 1.0f ? interval_.first : second_;
+            second_ = interval_.first;
+            interval_.u = 0.0f;
         }
     }
 
-    /// put(i, value) for each of the row's `count` values.
+    /// Calls put(i, value) for each of the row's `count` values.
     template <typename T, typename Put>
     void each_value(const std::vector<T>& values, std::size_t count, Put&& put) const {
         const bool is_cubic = sheet_.interpolation == Interpolation::Cubic;
         const std::size_t width = is_cubic ? 3 * count : count;
-        const T* first = values.data() + place_.first * width;
+        const T* first = values.data() + interval_.first * width;
         const T* second = values.data() + second_ * width;
         if (is_cubic) {
-            const Hermite hermite(place_.u, sheet_.times[second_] - sheet_.times[place_.first]);
+            const Hermite hermite(
+                interval_.u, sheet_.times[second_] - sheet_.times[interval_.first]);
             for (std::size_t i = 0; i < count; ++i) {
                 put(i, hermite.blend(first + i, second + i, count));
             }
             return;
         }
-        const float u = place_.u;
+        const float u = interval_.u;
         for (std::size_t i = 0; i < count; ++i) {
             put(i, first[i] * (1.0f - u) + second[i] * u);
         }
     }
 
-    [[nodiscard]] float u() const { return place_.u; }
+    [[nodiscard]] float u() const { return interval_.u; }
     [[nodiscard]] std::span<const Quat> first(std::size_t count) const {
-        return {sheet_.rotations.data() + place_.first * count, count};
+        return {sheet_.rotations.data() + interval_.first * count, count};
     }
     [[nodiscard]] std::span<const Quat> second(std::size_t count) const {
         return {sheet_.rotations.data() + second_ * count, count};
@@ -79,7 +80,7 @@ class SheetRows {
 
   private:
     const ClipSheet& sheet_;
-    KeyPlace place_;
+    KeyInterval interval_;
     std::size_t second_;
 };
 
@@ -107,7 +108,7 @@ void sample_rotations(const ClipSheet& sheet, const SheetRows& rows, std::span<Q
 
 }  // namespace
 
-KeyPlace find_keys(std::span<const float> times, float t) {
+KeyInterval find_keys(std::span<const float> times, float t) {
     if (times.size() < 2 || !(t > times.front())) {
         return {};
     }

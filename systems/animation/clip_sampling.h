@@ -10,14 +10,14 @@ namespace limn {
 // Evaluation of clips between keys (char.pose-eval).
 
 /// A key interval and the position within it, 0 .. 1.
-struct KeyPlace {
+struct KeyInterval {
     std::size_t first = 0;
     float u = 0.0f;
 };
 
 /// The interval that contains `t` in `times`, which increase (anim.key-lookup). Clamped to the
 /// first key (also for NaN) and the last one. A single key: that key, u = 0.
-[[nodiscard]] KeyPlace find_keys(std::span<const float> times, float t);
+[[nodiscard]] KeyInterval find_keys(std::span<const float> times, float t);
 
 /// `time` [s] mapped into a clip of this duration: wrapped, or clamped at both ends. 0 if `time` is
 /// not finite or the clip has no duration.

@@ -29,7 +29,7 @@ void drive(std::span<const MorphTarget> targets, std::size_t first, std::vector<
     }
 }
 
-/// Shapes jump with what drives them.
+/// Shapes jump with their drivers.
 void drive_jumps(std::span<const MorphTarget> targets, std::size_t first, MorphWeights& morph) {
     if (morph.jumps.empty()) {
         return;

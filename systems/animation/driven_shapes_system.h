@@ -9,9 +9,9 @@
 
 namespace limn {
 
-// Weights of morph targets that follow from those of others. Targets add up in straight lines; an
-// in-between bends the path of one of them (a lid that turns about the eye), a corrective mends
-// what several do together (two units that close the same eye).
+// Weights of morph targets that follow from those of others. Targets move vertices along straight
+// lines; an in-between bends the path of one target (a lid that rotates about the eye), a
+// corrective corrects a combination (two units that close the same eye).
 
 /// Weight of a target with `drivers` while the targets of its list have `weights`: the product of
 /// one factor per driver. A peak of 1 gives its weight, from 0 to 1; a lower one a tent that is 0

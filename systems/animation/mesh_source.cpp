@@ -28,7 +28,8 @@ MeshSource find_mesh_source(
     return source;
 }
 
-void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions) {
+void transform_vertices(
+    const MeshSource& source, const Affine& world, std::vector<Vec3>& positions) {
     if (source.deformed != nullptr) {
         deform_positions(
             *source.data, *source.deformed, source.skin, source.pose, source.morphs,

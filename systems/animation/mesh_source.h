@@ -30,6 +30,7 @@ struct MeshSource {
     const SurfaceBindingState* binding = nullptr);
 
 /// Writes its deformed vertices, transformed by `world`, to `positions`, which is resized.
-void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions);
+void transform_vertices(
+    const MeshSource& source, const Affine& world, std::vector<Vec3>& positions);
 
 }  // namespace limn

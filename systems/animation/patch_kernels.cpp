@@ -33,7 +33,7 @@ constexpr std::size_t kMaxLanes = hn::MaxLanes(d);
 
 namespace {
 
-/// Lengths squared from which a direction is told, those of evaluate_patch and normalize_or.
+/// Squared lengths below which a vector has no direction, as in evaluate_patch and normalize_or.
 constexpr float kMinNormal = 1e-20f;
 constexpr float kMinTangent = 1e-30f;
 
@@ -64,12 +64,12 @@ HWY_INLINE V3 cross(const V3& a, const V3& b) {
 }
 
 /// Barycentric coordinates.
-struct Share {
+struct Barycentric {
     V u, v, w;
 };
 
 /// One step of de Casteljau.
-HWY_INLINE V3 mix(const Share& at, const V3& a, const V3& b, const V3& c) {
+HWY_INLINE V3 mix(const Barycentric& at, const V3& a, const V3& b, const V3& c) {
     return add(add(scale(at.u, a), scale(at.v, b)), scale(at.w, c));
 }
 
@@ -82,10 +82,10 @@ struct Lanes {
     HWY_ALIGN float z[kMaxLanes];
 };
 
-/// As evaluate_patch and the point of the anchor. False where a vertex has no normal or no tangent,
-/// as markers have met: that is for the scalar version.
+/// Like evaluate_patch, plus the anchor's offset. False if a vertex has no normal or no tangent,
+/// because markers coincide: the scalar version handles that.
 HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
-    Share at = {hn::Load(d, lanes.u), hn::Load(d, lanes.v), hn::Zero(d)};
+    Barycentric at = {hn::Load(d, lanes.u), hn::Load(d, lanes.v), hn::Zero(d)};
     at.w = hn::Sub(hn::Sub(hn::Set(d, 1.0f), at.u), at.v);
     const auto step = [&](std::size_t a, std::size_t b, std::size_t c)
                           HWY_ATTR { return mix(at, all(patch[a]), all(patch[b]), all(patch[c])); };
@@ -129,7 +129,7 @@ HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
 HWY_INLINE void move_vertices(
     const SurfaceShape& shape, std::span<const std::uint32_t> vertices, std::span<Vec3> positions) {
     Lanes lanes;
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {  // the last one again in lanes left over
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {  // spare lanes repeat the last one
         const SurfaceAnchor& anchor = shape.anchors[vertices[std::min(i, vertices.size() - 1)]];
         lanes.u[i] = anchor.u;
         lanes.v[i] = anchor.v;

@@ -9,8 +9,8 @@
 
 namespace limn {
 
-// Positions of a mesh on patches (surface_patches.h), for whoever needs the deformed surface. SIMD
-// moves many vertices of one patch at once, so they are visited patch by patch.
+// Positions of a mesh on patches (surface_patches.h), for code that needs the deformed surface.
+// SIMD moves many vertices of one patch at once, so they are visited patch by patch.
 
 /// Vertices that are bound, patch by patch.
 [[nodiscard]] std::vector<std::uint32_t> order_by_patch(std::span<const SurfaceAnchor> anchors);

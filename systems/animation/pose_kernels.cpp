@@ -75,8 +75,8 @@ std::size_t slerp_rotations_vector(
     std::span<const Quat> from, std::span<const Quat> to, float u, std::span<Quat> out) {
     const std::size_t lanes = hn::Lanes(d);
     const V one = hn::Set(d, 1.0f);
-    const V share_from = hn::Set(d, 1.0f - u);
-    const V share_to = hn::Set(d, u);
+    const V fraction_from = hn::Set(d, 1.0f - u);
+    const V fraction_to = hn::Set(d, u);
     std::size_t first = 0;
     for (; first + lanes <= from.size(); first += lanes) {
         V ax;
@@ -94,8 +94,8 @@ std::size_t slerp_rotations_vector(
         const V omega = hn::Max(
             hn::Mul(hn::Sqrt(hn::Sub(one, cosine)), polynomial(pose::kAcos, cosine)),
             hn::Set(d, pose::kMinAngle));
-        const V weight_from = sine_of(hn::Mul(share_from, omega));
-        const V weight_to = hn::CopySign(sine_of(hn::Mul(share_to, omega)), signed_cosine);
+        const V weight_from = sine_of(hn::Mul(fraction_from, omega));
+        const V weight_to = hn::CopySign(sine_of(hn::Mul(fraction_to, omega)), signed_cosine);
         const V x = hn::Add(hn::Mul(weight_from, ax), hn::Mul(weight_to, bx));
         const V y = hn::Add(hn::Mul(weight_from, ay), hn::Mul(weight_to, by));
         const V z = hn::Add(hn::Mul(weight_from, az), hn::Mul(weight_to, bz));

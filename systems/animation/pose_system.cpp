@@ -74,7 +74,7 @@ const T* find_asset(const std::vector<T>& assets, std::uint32_t index) {
     return index < assets.size() ? &assets[index] : nullptr;
 }
 
-/// What plays clips on a character, and how in this step.
+/// The players of clips on a character, and the parameters of this step.
 struct Playback {
     const ClipPlayer* player = nullptr;
     const MorphPlayer* morph_player = nullptr;
@@ -82,7 +82,8 @@ struct Playback {
     float step = 0;  ///< [s]
 };
 
-/// What jumps in this step has no velocity. `pose`: null for an entity with weights only.
+/// Joints and weights that jump in this step get no velocity. `pose`: null for an entity with
+/// weights only.
 void apply_jumps(
     const Assets& assets, const SkeletonData& skeleton, const Playback& playback, Pose* pose,
     MorphWeights* morph) {

@@ -40,7 +40,7 @@ Quat mix_angles(const Quat& from, const Quat& to, float u) {
            * glm::angleAxis(angles.z, Vec3(0, 0, 1));
 }
 
-/// Since a loop last started over at another rotation than that of its last key [s]; infinite if
+/// Time since a loop last restarted at a rotation that differs from its last key [s]; infinite if
 /// it has not.
 double
 seconds_since_restart(const RotationTrack& track, const RotationTrackState& state, double time) {

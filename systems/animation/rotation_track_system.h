@@ -21,7 +21,7 @@ rotation_at(const RotationTrack& track, const RotationTrackState& state, double 
 void add_rotation_track_states(
     Query<const RotationTrack, Without<RotationTrackState>> tracks, Commands commands);
 
-/// Makes the state of changed tracks anew.
+/// Recreates the state of changed tracks.
 void prepare_rotation_tracks(
     Query<const RotationTrack, RotationTrackState, Changed<RotationTrack>> tracks);
 

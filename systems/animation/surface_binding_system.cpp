@@ -328,14 +328,14 @@ void update_surface_bindings(
         state.pose.jumps.clear();
         state.patches_jump.at = kNoJump;
         if (state.corners.empty() || mesh != state.surface_mesh) {
-            state.pose.previous = state.pose.joints;  // the surface is gone: as it was
+            state.pose.previous = state.pose.joints;  // the surface is gone: keep the pose
             state.previous_patches = state.patches;
             return;
         }
         const MeshSource source = find_mesh_source(
             mesh, surfaces.find<const Deformed>(state.surface),
             surfaces.find<const DeformerState>(state.surface), poses, morphs, *assets);
-        place_vertices(source, Affine{}, positions);
+        transform_vertices(source, Affine{}, positions);
         const float jump = first_jump(source.pose, source.morphs);
         if (state.settings.method == SurfaceMethod::Patches) {
             step_patches(positions, jump, state);

@@ -109,7 +109,7 @@ void find_nearest(
 
 using Influences = std::vector<std::pair<std::uint16_t, float>>;
 
-/// `nearest` has one face more than may influence, unless there is none.
+/// `nearest` has one more face than may have influence, if there is one.
 Influences weigh(const std::vector<Near>& nearest, std::size_t count, float unit, float locality) {
     const auto weight = [&](const Near& face) {
         return face_weight(face.distance / unit, locality);
@@ -122,7 +122,7 @@ Influences weigh(const std::vector<Near>& nearest, std::size_t count, float unit
         influences.emplace_back(nearest[i].face, weight(nearest[i]) - rest);
         sum += influences.back().second;
     }
-    if (!(sum > 0.0f)) {  // all as far as the one left out
+    if (!(sum > 0.0f)) {  // all at the distance of the dropped face
         for (auto& influence : influences) {
             influence.second = 1.0f;
         }

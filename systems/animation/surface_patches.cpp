@@ -279,7 +279,7 @@ class PatchBinder {
     std::vector<bool> borders_;  ///< of the edge from each corner to the next
 };
 
-/// Two thirds of the way to `a` from `b`, moved into the plane through `a`.
+/// Two thirds from `b` to `a`, projected into the plane through `a`.
 Vec3 edge_point(const Vec3& a, const Vec3& b, const Vec3& normal_a) {
     return (2.0f * a + b - glm::dot(b - a, normal_a) * normal_a) / 3.0f;
 }

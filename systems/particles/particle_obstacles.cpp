@@ -37,7 +37,7 @@ void follow_mesh(const MeshObstacle& one, ParticleObstacles& obstacles) {
     mesh->frame = obstacles.frame;
     const bool deforms = one.source.deformed != nullptr;
     if (is_new || deforms || mesh->deforms || !are_equal(mesh->world, *one.world)) {
-        place_vertices(one.source, *one.world, mesh->positions);
+        transform_vertices(one.source, *one.world, mesh->positions);
         if (is_new) {
             mesh->bvh = build_mesh_bvh(mesh->positions, one.source.data->indices);
         } else {

@@ -173,7 +173,7 @@ bool fill_surface_table(const SurfaceSource& source, SurfaceTable& table) {
         if (source.mesh.data == nullptr) {
             return false;
         }
-        place_vertices(source.mesh, Affine{}, table.positions);
+        transform_vertices(source.mesh, Affine{}, table.positions);
         return source.surface->on == BirthSurface::Mesh
                    ? sum_areas(source, table)
                    : fill_mesh_volume(table.positions, source.mesh.data->indices, table.volume);

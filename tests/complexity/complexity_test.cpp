@@ -20,7 +20,7 @@ namespace complexity_test {
 
 using namespace limn;
 
-struct Place {
+struct Point {
     float x = 0, y = 0, z = 0;
 };
 struct Speed {
@@ -81,12 +81,12 @@ struct Crowd {
     CommandBuffer buffer;
 
     explicit Crowd(std::size_t n) {
-        register_component<Place>();
+        register_component<Point>();
         register_component<Speed>();
         register_component<Cargo>();
         register_component<Warmth>();
         register_component<Parent>();
-        entities = world.create_many(n, Place{}, Speed{}, Cargo(1));
+        entities = world.create_many(n, Point{}, Speed{}, Cargo(1));
         shuffled = entities;
         std::mt19937 random(7);
         std::shuffle(shuffled.begin(), shuffled.end(), random);
@@ -140,11 +140,11 @@ void make_tree(Crowd& crowd, bool is_deep) {
 
 }  // namespace
 
-TEST_CASE("complexity: one by one, each entity costs the same however many there are") {
+TEST_CASE("complexity: one at a time, the cost per entity does not depend on their number") {
     const OneThread one;
     check_growth("create", [](Crowd& crowd) {
         for (std::size_t i = 0; i < crowd.entities.size(); ++i) {
-            crowd.world.create(Place{}, Cargo(1), Warmth{});
+            crowd.world.create(Point{}, Cargo(1), Warmth{});
         }
     });
     check_growth("destroy in order", [](Crowd& crowd) {
@@ -189,16 +189,16 @@ TEST_CASE("complexity: one by one, each entity costs the same however many there
         });
     check_growth("get", [](Crowd& crowd) {
         for (const Entity entity : crowd.shuffled) {
-            crowd.world.get<Place>(entity).x += 1;
+            crowd.world.get<Point>(entity).x += 1;
         }
     });
 }
 
-TEST_CASE("complexity: in bulk, work grows with the number of entities") {
+TEST_CASE("complexity: bulk operations are linear in the number of entities") {
     const OneThread one;
     check_growth("create_many", [](Crowd& crowd) {
         static_cast<void>(
-            crowd.world.create_many(crowd.entities.size(), Place{}, Cargo(3), Extra{}, Warmth{}));
+            crowd.world.create_many(crowd.entities.size(), Point{}, Cargo(3), Extra{}, Warmth{}));
     });
     check_growth("clear", [](Crowd& crowd) { crowd.world.clear(); });
     check_growth(
@@ -206,19 +206,19 @@ TEST_CASE("complexity: in bulk, work grows with the number of entities") {
         [](Crowd& crowd) { crowd.world.on_remove<Cargo>([](World&, std::span<const Entity>) {}); },
         [](Crowd& crowd) { crowd.world.clear(); });
     check_growth("each and chunks", [](Crowd& crowd) {
-        crowd.world.query<Place, const Speed>().each(
-            [](Place& place, const Speed& speed) { place.x += speed.x; });
-        crowd.world.query<const Place, Changed<Place>>().each([](const Place&) {});
+        crowd.world.query<Point, const Speed>().each(
+            [](Point& point, const Speed& speed) { point.x += speed.x; });
+        crowd.world.query<const Point, Changed<Point>>().each([](const Point&) {});
     });
 }
 
-TEST_CASE("complexity: recording and applying commands grows with their number") {
+TEST_CASE("complexity: recording and applying commands is linear in their number") {
     const OneThread one;
     check_growth("record", [](Crowd& crowd) {
         for (const Entity entity : crowd.entities) {
             crowd.commands().add(entity, Extra{});
             crowd.commands().add(entity, Cargo(2));
-            crowd.commands().add(crowd.commands().create(Place{}), Badge{});
+            crowd.commands().add(crowd.commands().create(Point{}), Badge{});
         }
     });
     const auto check_flush = [](const char* what, const auto& record) {
@@ -266,13 +266,13 @@ TEST_CASE("complexity: recording and applying commands grows with their number")
     });
     check_flush("flush: create", [](Crowd& crowd) {
         for (std::size_t i = 0; i < crowd.entities.size(); ++i) {
-            crowd.commands().create(Place{}, Cargo(2), Warmth{});
+            crowd.commands().create(Point{}, Cargo(2), Warmth{});
         }
     });
     check_flush("flush: create, linked to each other", [](Crowd& crowd) {
         Entity last;
         for (std::size_t i = 0; i < crowd.entities.size(); ++i) {
-            last = crowd.commands().create(Place{}, Friend{last});
+            last = crowd.commands().create(Point{}, Friend{last});
         }
     });
     check_flush("flush: all kinds for each", [](Crowd& crowd) {
@@ -281,7 +281,7 @@ TEST_CASE("complexity: recording and applying commands grows with their number")
             crowd.commands().add(entity, Extra{});
             crowd.commands().remove<Speed>(entity);
             crowd.commands().add(entity, Badge{});
-            crowd.commands().set(entity, Place{1, 2, 3});
+            crowd.commands().set(entity, Point{1, 2, 3});
             crowd.commands().remove<Extra>(entity);
             if (i % 3 == 0) {
                 crowd.commands().destroy(entity);
@@ -304,8 +304,8 @@ TEST_CASE("complexity: recording and applying commands grows with their number")
         },
         [](Crowd& crowd) { crowd.flush(); });
     check_growth("record in tasks and flush", [](Crowd& crowd) {
-        crowd.world.run([](Query<const Place> places, Commands commands) {
-            places.par_each([&](Entity entity, const Place&) {
+        crowd.world.run([](Query<const Point> points, Commands commands) {
+            points.par_each([&](Entity entity, const Point&) {
                 commands.add(entity, Extra{});
                 commands.create(Cargo(1));
             });
@@ -313,8 +313,7 @@ TEST_CASE("complexity: recording and applying commands grows with their number")
     });
 }
 
-TEST_CASE(
-    "complexity: a sync point moves every value at most twice, whatever is done to the entity") {
+TEST_CASE("complexity: a sync point moves every value at most twice, whatever the commands") {
     const OneThread one;
     Crowd crowd(5000);
     const auto moves_of = [&](const auto& record) {
@@ -329,10 +328,10 @@ TEST_CASE(
         crowd.commands().add(entity, Extra{});
         crowd.commands().remove<Speed>(entity);
         crowd.commands().add(entity, Badge{});
-        crowd.commands().remove<Place>(entity);
+        crowd.commands().remove<Point>(entity);
     };
     const auto back = [&](Entity entity) {
-        crowd.commands().add(entity, Place{});
+        crowd.commands().add(entity, Point{});
         crowd.commands().remove<Badge>(entity);
         crowd.commands().remove<Extra>(entity);
         crowd.commands().add(entity, Speed{});
@@ -343,7 +342,7 @@ TEST_CASE(
     CHECK(moves_of(there) <= 2 * crowd.entities.size());
 }
 
-TEST_CASE("complexity: snapshots grow with the world") {
+TEST_CASE("complexity: snapshots are linear in the size of the world") {
     const OneThread one;
     const auto warm_every_second = [](Crowd& crowd) {
         for (std::size_t i = 0; i < crowd.shuffled.size(); i += 2) {
@@ -366,7 +365,7 @@ TEST_CASE("complexity: snapshots grow with the world") {
     });
 }
 
-TEST_CASE("complexity: prefabs and trees grow with the number of their entities") {
+TEST_CASE("complexity: prefabs and trees are linear in the number of their entities") {
     const OneThread one;
     Prefab prefab;
     check_growth(
@@ -405,10 +404,10 @@ TEST_CASE("complexity: prefabs and trees grow with the number of their entities"
     });
 }
 
-TEST_CASE("complexity: a query finds new archetypes without looking at the old ones again") {
+TEST_CASE("complexity: a query finds new archetypes without checking old ones again") {
     const OneThread one;
     const auto make_archetypes = [](Crowd& crowd) {
-        const auto query = crowd.world.query<const Place, Without<Extra>>();
+        const auto query = crowd.world.query<const Point, Without<Extra>>();
         for (std::size_t i = 0; i < crowd.entities.size(); ++i) {
             const Entity entity = crowd.entities[i];
             const auto flag = [&]<int number>() {
@@ -432,26 +431,27 @@ TEST_CASE("complexity: iterating allocates nothing") {
     Crowd crowd(3000);
     crowd.world.add(crowd.entities[5], Warmth{1});
     const auto iterate = [&] {
-        crowd.world.query<Place, const Speed>().each([](Place& a, const Speed& b) { a.x += b.x; });
-        crowd.world.query<const Place, Optional<const Speed>>().chunks(
-            [](ChunkView, std::span<const Place>, std::span<const Speed>) {});
-        crowd.world.query<const Warmth, const Place>().each([](const Warmth&, const Place&) {});
-        crowd.world.query<const Place, Changed<Place>>().each([](const Place&) {});
-        static_cast<void>(crowd.world.query<const Place, Without<Badge>>().count());
-        static_cast<void>(crowd.world.query<const Place>().find<const Place>(crowd.entities[7]));
+        crowd.world.query<Point, const Speed>().each([](Point& a, const Speed& b) { a.x += b.x; });
+        crowd.world.query<const Point, Optional<const Speed>>().chunks(
+            [](ChunkView, std::span<const Point>, std::span<const Speed>) {});
+        crowd.world.query<const Warmth, const Point>().each([](const Warmth&, const Point&) {});
+        crowd.world.query<const Point, Changed<Point>>().each([](const Point&) {});
+        static_cast<void>(crowd.world.query<const Point, Without<Badge>>().count());
+        static_cast<void>(crowd.world.query<const Point>().find<const Point>(crowd.entities[7]));
     };
     iterate();  // finds the archetypes
     CHECK(work_of(iterate).allocations == 0);
 }
 
-TEST_CASE("complexity: creating, changing and destroying allocate nothing once memory is there") {
+TEST_CASE(
+    "complexity: creating, changing and destroying allocate nothing once memory is reserved") {
     const OneThread one;
     Crowd crowd(3000);
     const auto round = [&] {
         for (int i = 0; i < 2000; ++i) {
-            const Entity entity = crowd.world.create(Place{}, Cargo(1), Warmth{});
+            const Entity entity = crowd.world.create(Point{}, Cargo(1), Warmth{});
             crowd.world.add(entity, Extra{});
-            crowd.world.remove<Place>(entity);
+            crowd.world.remove<Point>(entity);
             crowd.world.remove<Warmth>(entity);
             crowd.world.destroy(entity);
         }
@@ -460,7 +460,7 @@ TEST_CASE("complexity: creating, changing and destroying allocate nothing once m
     CHECK(work_of(round).allocations == 0);
 }
 
-TEST_CASE("complexity: recording and applying commands allocate nothing once memory is there") {
+TEST_CASE("complexity: recording and applying commands allocate nothing once memory is reserved") {
     const OneThread one;
     Crowd crowd(3000);
     std::vector<Entity> created;
@@ -475,7 +475,7 @@ TEST_CASE("complexity: recording and applying commands allocate nothing once mem
             }
             crowd.commands().set(entity, Cargo(round));
             crowd.commands().add(entity, Warmth{round});
-            crowd.commands().destroy(crowd.commands().create(Place{}));
+            crowd.commands().destroy(crowd.commands().create(Point{}));
         }
     };
     Work recording;

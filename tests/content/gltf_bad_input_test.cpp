@@ -277,9 +277,9 @@ TEST_CASE("gltf: a primitive without vertices, indices or whole triangles is tol
 TEST_CASE("gltf: a root that is there twice or has a parent is drawn once") {
     check_all_drawn({
         {R"([{"nodes": [0]}])", R"([{"nodes": [0, 0]}])",
-         "scenes[0].nodes: found node 0, which is there already, expected each root once"},
+         "scenes[0].nodes: found node 0, which is listed already, expected each root once"},
         {R"([{"nodes": [0]}])", R"([{"nodes": [0, 1]}])",
-         "scenes[0].nodes: found node 1, which is there already, expected each root once"},
+         "scenes[0].nodes: found node 1, which is listed already, expected each root once"},
         {R"([{"nodes": [0]}])", R"([{"nodes": [1, 0]}])",
          "scenes[0].nodes: found node 1, which has a parent, expected each root once"},
         {R"("children": [1])", R"("children": [1, 1])",

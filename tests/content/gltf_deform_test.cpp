@@ -237,7 +237,7 @@ TEST_CASE("gltf deform: a morph target has the drivers that the file names") {
         return R"("extras": {"targetNames": ["rise", "pull"], "targetDrivers": {)" + list + "}},";
     };
     const GltfScene scene = loaded([&](Flag& f) {
-        f.normals.clear();  // targets are made anew with their normals
+        f.normals.clear();  // targets are recomputed with their normals
         f.extras = drivers(R"("pull": [{"target": "rise", "peak": 0.5}, {"target": "rise"}])");
     });
     CHECK(scene.meshes[0].morphs[0].drivers.empty());
@@ -278,7 +278,7 @@ TEST_CASE(
     for (const MorphTarget& morph : mesh.morphs) {
         REQUIRE(morph.normals.size() == morph.vertices.size());
         REQUIRE(morph.tangents.size() == morph.vertices.size());
-        // The normals of the mesh in that shape, made anew, are those of the target.
+        // The normals of the mesh in that shape, recomputed, are those of the target.
         MeshData shape = mesh;
         for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
             shape.positions[morph.vertices[i]] += morph.positions[i];
@@ -380,7 +380,7 @@ TEST_CASE("gltf deform: a bad part of a morph target or its weights costs that p
            "for 2 keys of 2 morph targets; the channel is left out");
 }
 
-TEST_CASE("gltf deform: normals of a morph target that are not finite are made anew") {
+TEST_CASE("gltf deform: normals of a morph target that are not finite are recomputed") {
     // The flag's normals are the file's, so that only those of this target are made.
     const auto with = [](float x) {
         return loaded([&](Flag& f) {
@@ -395,7 +395,7 @@ TEST_CASE("gltf deform: normals of a morph target that are not finite are made a
     CHECK(
         bad.warnings[0]
         == "flag.glb: meshes[0].primitives[0].targets[0].NORMAL: found NaN or infinity in element "
-           "2, expected finite numbers; its normals are made anew");
+           "2, expected finite numbers; its normals are recomputed");
     const std::vector<MorphTarget>& morphs = bad.meshes[0].morphs;
     REQUIRE(morphs[0].normals.size() == morphs[0].vertices.size());
     for (const Vec3& normal : morphs[0].normals) {

@@ -249,7 +249,7 @@ TEST_CASE("gltf: a bad normal becomes that of the triangles about it, the others
     }
 }
 
-TEST_CASE("gltf: bad tangents are made anew, bad texture coordinates are 0, bad colors white") {
+TEST_CASE("gltf: bad tangents are recomputed, bad texture coordinates are 0, bad colors white") {
     const GltfScene plain = load_square({});
     for (const float bad : {0.0f, std::nanf("")}) {
         const GltfScene scene = load_with_attribute<float>(

@@ -182,7 +182,7 @@ TEST_CASE(
             REQUIRE(placed.ok());
             CHECK(placed->size() == 3);
             std::size_t next = 1;
-            for (const PlacedUnit& unit : *placed) {
+            for (const SelectedUnit& unit : *placed) {
                 CHECK(unit.at == next);
                 next += unit.unit.count;
             }
@@ -217,7 +217,7 @@ TEST_CASE(
         value += 5.0f;
     }
     const std::vector<SpeechUnit> units = generate_units(recordings);
-    const auto cost = [&](const std::vector<PlacedUnit>& cover) {
+    const auto cost = [&](const std::vector<SelectedUnit>& cover) {
         std::vector<float> from(kMouthAxes);
         std::vector<float> to(kMouthAxes);
         float jumps = 0.0f;

@@ -65,7 +65,7 @@ bool is_smooth(const BezierKnot& knot) {
 }  // namespace
 
 TEST_CASE(
-    "bezier: chords measure the way from below, the better the more they are"
+    "bezier: chords underestimate the length, and more chords less so"
     * technique("anim.arclength")) {
     // The arch is 2 long; until u it is 3 u - 3 u^2 + 2 u^3.
     const ChordTable table = measure_chords(kArch);
@@ -81,27 +81,28 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bezier: equal shares of the way are equally long, equal steps of u are not"
+    "bezier: equal fractions of the length are equally long, equal steps of u are not"
     * technique("anim.arclength")) {
     const ChordTable table = measure_chords(kBend);
     CHECK(unevenness(kBend, [](float u) { return u; }) == test::near(4.1301).epsilon(1e-4));
-    const float even = unevenness(kBend, [&](float share) { return table.parameter_at(share); });
+    const float even =
+        unevenness(kBend, [&](float fraction) { return table.parameter_at(fraction); });
     CHECK(even == test::near(1.042).epsilon(1e-3));
 }
 
 TEST_CASE(
-    "bezier: on a straight, even curve the share is u; on a point it is, too"
+    "bezier: on a straight, even curve the fraction is u; also on a single point"
     * technique("anim.arclength")) {
     const ChordTable line = measure_chords(Bezier<float>{2, 3, 4, 5});
     const ChordTable point = measure_chords(Bezier<float>{7, 7, 7, 7});
     CHECK(line.total() == test::near(3));
     CHECK(point.total() == 0);
-    for (const float share : {-1.0f, 0.0f, 0.005f, 0.37f, 0.995f, 1.0f, 2.0f}) {
-        const float expected = std::clamp(share, 0.0f, 1.0f);
-        CHECK(line.parameter_at(share) == test::near(expected).epsilon(1e-5));
-        CHECK(point.parameter_at(share) == expected);
+    for (const float fraction : {-1.0f, 0.0f, 0.005f, 0.37f, 0.995f, 1.0f, 2.0f}) {
+        const float expected = std::clamp(fraction, 0.0f, 1.0f);
+        CHECK(line.parameter_at(fraction) == test::near(expected).epsilon(1e-5));
+        CHECK(point.parameter_at(fraction) == expected);
     }
-    // A way of which some is no way at all.
+    // A curve with a stretch of length 0.
     const ChordTable late = measure_chords(Bezier<float>{0, 0, 0, 1});
     CHECK(late.parameter_at(0) >= 0);
     CHECK(late.parameter_at(1) == 1);
@@ -111,7 +112,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bezier: joined curves are classed by place, direction and speed"
+    "bezier: joins are classified by position, direction and speed"
     * technique("anim.bezier-join")) {
     for (const float k : {1.0f, 2.0f}) {
         const Joined joined(k);
@@ -136,7 +137,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bezier: a key may slide, turn and move with its control points, and stays smooth"
+    "bezier: a key that slides, rotates or moves with its control points stays smooth"
     * technique("anim.bezier-edit")) {
     const BezierKnot knot = {Vec3(1, 0, 0), Vec3(2, 1, 0.5f), Vec3(4, 3, 1.5f)};
     REQUIRE(is_smooth(knot));
@@ -145,9 +146,9 @@ TEST_CASE(
         CHECK(is_smooth(slid));
         CHECK(slid.before == knot.before);
         CHECK(slid.after == knot.after);
-        const float share =
+        const float fraction =
             glm::length(slid.key - slid.before) / glm::length(slid.after - slid.before);
-        CHECK(share == test::near(std::clamp(t, 0.01f, 0.99f)).epsilon(1e-4));
+        CHECK(fraction == test::near(std::clamp(t, 0.01f, 0.99f)).epsilon(1e-4));
     }
     const BezierKnot turned = rotate_knot(knot, rotation_about({1, -1, 2}, 0.7f));
     CHECK(is_smooth(turned));
@@ -183,7 +184,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bezier: every cubic is the parabolic blend of some corners, and comes back from them"
+    "bezier: every cubic is the parabolic blend of some corners, and is restored from them"
     * technique("anim.boehm-quadrangle")) {
     Random random(3, 0, 0, 0);
     for (int i = 0; i < 100; ++i) {

@@ -43,7 +43,7 @@ Vec3 right(const Quat& q) {
 
 }  // namespace
 
-TEST_CASE("camera path: it is at every key at the key's time and stays at the last") {
+TEST_CASE("camera path: it is at every key at its time and stays at the last one") {
     const CameraPath path = walk();
     for (const CameraKey& key : path.keys) {
         CHECK(
@@ -63,7 +63,7 @@ TEST_CASE("camera path: evenly spaced keys on a line give constant speed") {
     }
 }
 
-TEST_CASE("camera path: speed and direction have no steps at the keys") {
+TEST_CASE("camera path: speed and direction are continuous at the keys") {
     const CameraPath path = walk();
     for (const double t : {2.0, 3.0, 7.0}) {
         const Vec3 before = velocity(path, t, -0.002);
@@ -74,7 +74,7 @@ TEST_CASE("camera path: speed and direction have no steps at the keys") {
     }
 }
 
-TEST_CASE("camera path: on a line it never goes back, however uneven the times") {
+TEST_CASE("camera path: on a line it never moves backward, however uneven the times") {
     const CameraPath path =
         path_through({{0, 0, 0}, {1, 0, 0}, {9, 0, 0}, {10, 0, 0}}, {0, 5, 5.5f, 12});
     float last = 0;
@@ -85,7 +85,7 @@ TEST_CASE("camera path: on a line it never goes back, however uneven the times")
     }
 }
 
-TEST_CASE("camera path: between two keys at one place it stands still and may turn") {
+TEST_CASE("camera path: between two keys at one position it stands still but may rotate") {
     CameraPath path = path_through({{0, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, 0, 4}}, {0, 1, 2, 3});
     path.keys[1].look_at = {3, 0, -5};
     path.keys[2].look_at = {8, 0, 0};
@@ -98,7 +98,7 @@ TEST_CASE("camera path: between two keys at one place it stands still and may tu
         < 0.1f);
 }
 
-TEST_CASE("camera path: a loop repeats and goes through its seam without a step") {
+TEST_CASE("camera path: a loop repeats and is continuous at its seam") {
     CameraPath path =
         path_through({{0, 0, 0}, {4, 0, 0}, {4, 0, 4}, {0, 0, 4}, {0, 0, 0}}, {0, 2, 4, 6, 8});
     path.loop = true;
@@ -111,7 +111,7 @@ TEST_CASE("camera path: a loop repeats and goes through its seam without a step"
     CHECK(glm::length(velocity(path, 8, -0.002) - velocity(path, 8, 0.002)) < 0.03f);
 }
 
-TEST_CASE("camera path: along a curve it neither stops nor hurries between keys of even distance") {
+TEST_CASE("camera path: along a curve its speed is even between evenly spaced keys") {
     std::vector<Vec3> corners;
     std::vector<float> times;
     for (int i = 0; i <= 5; ++i) {
@@ -128,7 +128,7 @@ TEST_CASE("camera path: along a curve it neither stops nor hurries between keys 
     }
 }
 
-TEST_CASE("camera path: aims look where they should, with a level horizon") {
+TEST_CASE("camera path: aims point at their target, with a level horizon") {
     CameraPath path = walk();
     for (double t = 0; t <= 9; t += 0.25) {
         const CameraPose pose = camera_pose(path, t);
@@ -148,7 +148,7 @@ TEST_CASE("camera path: roll tips the camera about its view axis") {
     CHECK(right(q).y == test::near(0.5f));
 }
 
-TEST_CASE("camera path: keys out of order do no harm") {
+TEST_CASE("camera path: keys out of order are harmless") {
     CameraPath path = path_through({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {5, 5, 1});
     for (const bool loop : {false, true}) {
         path.loop = loop;
@@ -161,9 +161,9 @@ TEST_CASE("camera path: keys out of order do no harm") {
 }
 
 TEST_CASE(
-    "camera path: interpolated rotations are set upright without turning the view"
+    "camera path: interpolated rotations are made upright without changing the view direction"
     * technique("anim.camera-upright")) {
-    // anim.camera-upright: half way from rest to yaw 90 times pitch 60 the camera rolls.
+    // anim.camera-upright: halfway from rest to yaw 90 times pitch 60 the camera rolls.
     const Quat end = glm::angleAxis(radians(90.0f), Vec3(0, 1, 0))
                      * glm::angleAxis(radians(60.0f), Vec3(1, 0, 0));
     const Quat half = glm::slerp(Quat(1, 0, 0, 0), end, 0.5f);

@@ -10,22 +10,22 @@ using namespace limn::test;
 
 namespace {
 
-// What the system below saw in its last run; a system has no other way out.
-struct Seen {
+// Entities that the systems below found in their last run; a system has no other output.
+struct Found {
     std::vector<Entity> entities;
 };
 
-void look(Query<const Position, Changed<Position>> query, Res<Seen> seen) {
-    seen->entities.clear();
-    query.each([&](Entity entity, const Position&) { seen->entities.push_back(entity); });
+void look(Query<const Position, Changed<Position>> query, Res<Found> found) {
+    found->entities.clear();
+    query.each([&](Entity entity, const Position&) { found->entities.push_back(entity); });
 }
-void look_at_heat(Query<const Heat, Changed<Heat>> query, Res<Seen> seen) {
-    seen->entities.clear();
-    query.each([&](Entity entity, const Heat&) { seen->entities.push_back(entity); });
+void look_at_heat(Query<const Heat, Changed<Heat>> query, Res<Found> found) {
+    found->entities.clear();
+    query.each([&](Entity entity, const Heat&) { found->entities.push_back(entity); });
 }
-void look_at_either(Query<With<Position>, Changed<Mass, Heat>> query, Res<Seen> seen) {
-    seen->entities.clear();
-    query.each([&](Entity entity) { seen->entities.push_back(entity); });
+void look_at_either(Query<With<Position>, Changed<Mass, Heat>> query, Res<Found> found) {
+    found->entities.clear();
+    query.each([&](Entity entity) { found->entities.push_back(entity); });
 }
 void read_only(Query<const Position> query) {
     query.each([](const Position&) {});
@@ -38,30 +38,30 @@ void move_marked(Query<Position, With<Marked>> query) {
 }
 
 template <typename F>
-std::size_t seen_by(World& world, F system) {
+std::size_t found_by(World& world, F system) {
     world.run(system);
-    return world.resource<Seen>().entities.size();
+    return world.resource<Found>().entities.size();
 }
 
 }  // namespace
 
 TEST_CASE(
-    "change: a system sees everything the first time and then nothing until something changes") {
+    "change: a system finds everything in its first run, then nothing until something changes") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     world.create_many(3000, Position{});
-    CHECK(seen_by(world, look) == 3000);
-    CHECK(seen_by(world, look) == 0);
+    CHECK(found_by(world, look) == 3000);
+    CHECK(found_by(world, look) == 0);
     world.run(read_only);
-    CHECK(seen_by(world, look) == 0);
+    CHECK(found_by(world, look) == 0);
     world.run(move_all);
-    CHECK(seen_by(world, look) == 3000);
-    CHECK(seen_by(world, look) == 0);
+    CHECK(found_by(world, look) == 3000);
+    CHECK(found_by(world, look) == 0);
 }
 
 TEST_CASE("change: reading does not count, writing counts for the chunk of the row and no other") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     const std::vector<Entity> entities = world.create_many(3000, Position{}, Mass{});
     world.run(look);
     static_cast<void>(world.get<const Position>(entities[5]));
@@ -69,73 +69,73 @@ TEST_CASE("change: reading does not count, writing counts for the chunk of the r
     static_cast<void>(std::as_const(world).find(entities[5], component_id<Position>));
     world.query<const Position>().each([](const Position&) {});
     world.get<Mass>(entities[5]).value = 1;
-    CHECK(seen_by(world, look) == 0);
+    CHECK(found_by(world, look) == 0);
     world.get<Position>(entities[1500]).x = 1;
     world.run(look);
-    const std::vector<Entity> seen = world.resource<Seen>().entities;
-    CHECK(seen == std::vector<Entity>(entities.begin() + 1024, entities.begin() + 2048));
+    const std::vector<Entity> found = world.resource<Found>().entities;
+    CHECK(found == std::vector<Entity>(entities.begin() + 1024, entities.begin() + 2048));
     static_cast<void>(world.find(entities[2999], component_id<Position>));
-    CHECK(seen_by(world, look) == 3000 - 2048);
+    CHECK(found_by(world, look) == 3000 - 2048);
 }
 
-TEST_CASE("change: a system does not see what it wrote itself, others do") {
-    static constexpr auto touch = [](Query<Position, Changed<Position>> query, Res<Seen> seen) {
-        seen->entities.clear();
+TEST_CASE("change: a system does not find its own writes, others do") {
+    static constexpr auto touch = [](Query<Position, Changed<Position>> query, Res<Found> found) {
+        found->entities.clear();
         query.each([&](Entity entity, Position& position) {
             position.x += 1;
-            seen->entities.push_back(entity);
+            found->entities.push_back(entity);
         });
     };
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     world.create_many(10, Position{});
-    CHECK(seen_by(world, touch) == 10);
-    CHECK(seen_by(world, touch) == 0);
-    CHECK(seen_by(world, look) == 10);
+    CHECK(found_by(world, touch) == 10);
+    CHECK(found_by(world, touch) == 0);
+    CHECK(found_by(world, look) == 10);
     world.run(move_all);
-    CHECK(seen_by(world, touch) == 10);
+    CHECK(found_by(world, touch) == 10);
 }
 
-TEST_CASE("change: writing between runs is seen by the next run") {
+TEST_CASE("change: writes between runs are found by the next run") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     const Entity entity = world.create(Position{});
-    CHECK(seen_by(world, look) == 1);
+    CHECK(found_by(world, look) == 1);
     for (int i = 0; i < 5; ++i) {
         world.get<Position>(entity).x = 1;
-        CHECK(seen_by(world, look) == 1);
-        CHECK(seen_by(world, look) == 0);
+        CHECK(found_by(world, look) == 1);
+        CHECK(found_by(world, look) == 0);
     }
 }
 
-TEST_CASE("change: rows that come, go or move count for their chunks") {
+TEST_CASE("change: added, removed and moved rows count as changes of their chunks") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     std::vector<Entity> entities = world.create_many(4096, Position{});
     world.run(look);
     const Entity added = world.create(Position{});
-    CHECK(seen_by(world, look) == 1);
+    CHECK(found_by(world, look) == 1);
     world.destroy(added);
-    CHECK(seen_by(world, look) == 0);
-    world.destroy(entities[0]);  // the last takes its place
-    CHECK(seen_by(world, look) == 1024 + 1023);
+    CHECK(found_by(world, look) == 0);
+    world.destroy(entities[0]);  // replaced by the last row
+    CHECK(found_by(world, look) == 1024 + 1023);
     world.add<Marked>(entities[2000]);
-    CHECK(seen_by(world, look) == 1024 + 1022 + 1);
+    CHECK(found_by(world, look) == 1024 + 1022 + 1);
 }
 
-TEST_CASE("change: writing a part in parallel marks that part") {
+TEST_CASE("change: writing a part in parallel marks only that part") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     world.create_many(5000, Position{});
     world.create_many(2500, Position{}, Marked{});
     world.run(look);
     world.run(move_marked);
-    CHECK(seen_by(world, look) == 2500);
+    CHECK(found_by(world, look) == 2500);
 }
 
-TEST_CASE("change: mark_unchanged takes back what a span announced") {
+TEST_CASE("change: mark_unchanged undoes the change of a span") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     world.create_many(3000, Position{});
     world.run(look);
     static constexpr auto touch_one_chunk = [](Query<Position> query) {
@@ -148,11 +148,11 @@ TEST_CASE("change: mark_unchanged takes back what a span announced") {
         });
     };
     world.run(touch_one_chunk);
-    CHECK(seen_by(world, look) == 1024);
-    CHECK(seen_by(world, look) == 0);
+    CHECK(found_by(world, look) == 1024);
+    CHECK(found_by(world, look) == 0);
 }
 
-TEST_CASE("change: queries outside of systems say since when") {
+TEST_CASE("change: queries outside of systems specify since when") {
     World world;
     const std::vector<Entity> entities = world.create_many(2000, Position{});
     CHECK(world.query<Changed<Position>>().count() == 2000);
@@ -172,37 +172,37 @@ TEST_CASE("change: queries outside of systems say since when") {
 
 TEST_CASE("change: sparse components have versions too") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     std::vector<Entity> entities = world.create_many(3000, Position{}, Heat{});
-    CHECK(seen_by(world, look_at_heat) == 3000);
-    CHECK(seen_by(world, look_at_heat) == 0);
+    CHECK(found_by(world, look_at_heat) == 3000);
+    CHECK(found_by(world, look_at_heat) == 0);
     static_cast<void>(world.get<const Heat>(entities[0]));
-    CHECK(seen_by(world, look_at_heat) == 0);
+    CHECK(found_by(world, look_at_heat) == 0);
     world.get<Heat>(entities[0]).degrees = 1;
-    CHECK(seen_by(world, look_at_heat) == 1024);
+    CHECK(found_by(world, look_at_heat) == 1024);
     static_cast<void>(std::as_const(world).find(entities[2999], component_id<Heat>));
-    CHECK(seen_by(world, look_at_heat) == 0);
+    CHECK(found_by(world, look_at_heat) == 0);
     static_cast<void>(world.find(entities[2999], component_id<Heat>));
-    CHECK(seen_by(world, look_at_heat) == 3000 - 2048);
+    CHECK(found_by(world, look_at_heat) == 3000 - 2048);
     world.query<Heat>().each([](Heat&) {});
-    CHECK(seen_by(world, look_at_heat) == 3000);
+    CHECK(found_by(world, look_at_heat) == 3000);
     world.get<Position>(entities[0]).x = 2;
-    CHECK(seen_by(world, look_at_heat) == 0);
+    CHECK(found_by(world, look_at_heat) == 0);
 }
 
-TEST_CASE("change: Changed<A, B> is either of them, of entities that have both") {
+TEST_CASE("change: Changed<A, B> matches a change of either, for entities with both") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     const Entity both = world.create(Position{}, Mass{}, Heat{});
     world.create(Position{}, Mass{});
-    CHECK(seen_by(world, look_at_either) == 1);
-    CHECK(seen_by(world, look_at_either) == 0);
+    CHECK(found_by(world, look_at_either) == 1);
+    CHECK(found_by(world, look_at_either) == 0);
     world.get<Mass>(both).value = 2;
-    CHECK(seen_by(world, look_at_either) == 1);
+    CHECK(found_by(world, look_at_either) == 1);
     world.get<Heat>(both).degrees = 2;
-    CHECK(seen_by(world, look_at_either) == 1);
+    CHECK(found_by(world, look_at_either) == 1);
     world.get<Position>(both).x = 2;
-    CHECK(seen_by(world, look_at_either) == 0);
+    CHECK(found_by(world, look_at_either) == 0);
 }
 
 TEST_CASE("change: several Changed terms must all hold") {
@@ -218,7 +218,7 @@ TEST_CASE("change: several Changed terms must all hold") {
     CHECK(count() == 1);
 }
 
-TEST_CASE("change: resources know whether they were written") {
+TEST_CASE("change: resources record whether they were written") {
     struct Result {
         std::vector<bool> changed;
     };
@@ -239,7 +239,7 @@ TEST_CASE("change: resources know whether they were written") {
     CHECK(world.resource<Result>().changed == std::vector<bool>{true, false, false, true});
 }
 
-TEST_CASE("change: a resource that is asked for as const is not written") {
+TEST_CASE("change: a resource requested as const is not written") {
     World world;
     world.insert_resource(Mass{3});
     const std::uint32_t before = world.resource_version(component_id<Mass>);
@@ -256,20 +256,20 @@ TEST_CASE("change: versions may wrap around") {
     for (const std::uint32_t start : {0x7ffffff0u, 0xfffffff0u}) {
         World world;
         world.set_version(start);
-        world.insert_resource(Seen{});
+        world.insert_resource(Found{});
         world.create_many(2000, Position{});
-        CHECK(seen_by(world, look) == 2000);
+        CHECK(found_by(world, look) == 2000);
         for (int i = 0; i < 40; ++i) {
-            CHECK(seen_by(world, look) == 0);
+            CHECK(found_by(world, look) == 0);
             world.run(move_all);
-            CHECK(seen_by(world, look) == 2000);
+            CHECK(found_by(world, look) == 2000);
         }
     }
 }
 
-TEST_CASE("change: what changed very long ago never becomes new again") {
+TEST_CASE("change: an old change never counts as new again") {
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     const Entity entity = world.create(Position{}, Heat{});
     world.run(look);
     std::uint32_t version = world.version();
@@ -281,13 +281,13 @@ TEST_CASE("change: what changed very long ago never becomes new again") {
         CHECK(world.query<Changed<Position>>().since(recently).count() == 0);
         CHECK(world.query<Changed<Heat>>().since(recently).count() == 0);
         CHECK(world.query<Changed<Position>>().count() == 1);
-        CHECK(seen_by(world, look) == 0);
+        CHECK(found_by(world, look) == 0);
     }
     world.get<Position>(entity).x = 1;
-    CHECK(seen_by(world, look) == 1);
+    CHECK(found_by(world, look) == 1);
 }
 
-TEST_CASE("change: a value that commands replace has changed") {
+TEST_CASE("change: a value replaced by commands has changed") {
     static constexpr auto replace_both = [](Query<const Position> query, Commands commands) {
         query.each([&](Entity entity, const Position&) {
             commands.set(entity, Position{1, 2, 3});
@@ -295,13 +295,13 @@ TEST_CASE("change: a value that commands replace has changed") {
         });
     };
     World world;
-    world.insert_resource(Seen{});
+    world.insert_resource(Found{});
     world.create(Position{}, Heat{});
     world.run(look);
     world.run(look_at_heat);
-    CHECK(seen_by(world, look) + seen_by(world, look_at_heat) == 0);
+    CHECK(found_by(world, look) + found_by(world, look_at_heat) == 0);
     world.run(replace_both);
-    CHECK(seen_by(world, look) == 1);
-    CHECK(seen_by(world, look_at_heat) == 1);
-    CHECK(seen_by(world, look) + seen_by(world, look_at_heat) == 0);
+    CHECK(found_by(world, look) == 1);
+    CHECK(found_by(world, look_at_heat) == 1);
+    CHECK(found_by(world, look) + found_by(world, look_at_heat) == 0);
 }

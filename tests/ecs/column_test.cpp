@@ -109,7 +109,7 @@ TEST_CASE("column: a range keeps its base and its contents while it grows") {
     }
 }
 
-TEST_CASE("column: a range commits little at first and never far more than asked") {
+TEST_CASE("column: a range commits little at first and never much more than requested") {
     VirtualRange range(std::size_t{1} << 30, skew_of(2));
     range.commit(1);
     CHECK(range.usable() >= 64 * 1024);
@@ -132,7 +132,7 @@ TEST_CASE("column: a range that is large at once wastes little but its skew") {
     CHECK(range.committed() < kBytes + kSkewRange + (64 << 10) + 4096);
 }
 
-TEST_CASE("column: skews differ for as many positions as anyone uses, also within a page's lines") {
+TEST_CASE("column: skews differ for all positions in use, also within the lines of a page") {
     std::set<std::size_t> skews;
     for (std::size_t position = 0; position < 4096; ++position) {
         CHECK(skew_of(position) < kSkewRange);
@@ -157,7 +157,7 @@ TEST_CASE("column: a moved range has one owner") {
     a.data()[9] = std::byte{1};
 }
 
-TEST_CASE("column: the pool gives a freed block out again and counts what is used") {
+TEST_CASE("column: the pool reuses freed blocks and counts those in use") {
     BlockPool pool;
     std::byte* small = pool.allocate(4096);
     std::byte* large = pool.allocate(65536);
@@ -204,7 +204,8 @@ TEST_CASE("column: tables around multiples of 1024 rows are aligned and padded")
     }
 }
 
-TEST_CASE("column: small archetypes share the pool, large ones are promoted once and stay") {
+TEST_CASE(
+    "column: small archetypes share the pool, large ones are promoted once and stay promoted") {
     World world;
     world.create(Position{}, Velocity{});
     Archetype& rows = *world.core().archetypes.back();
@@ -235,7 +236,7 @@ TEST_CASE("column: values survive every growth, those that own memory too") {
     }
 }
 
-TEST_CASE("column: a component larger than a block has columns of its own from the first row") {
+TEST_CASE("column: a component larger than a block has its own columns from the first row") {
     struct Huge {
         std::array<unsigned char, 100'000> bytes{};
     };
@@ -246,7 +247,7 @@ TEST_CASE("column: a component larger than a block has columns of its own from t
     CHECK(world.get<Huge>(entity).bytes[99'999] == 3);
 }
 
-TEST_CASE("column: what a range gives back is zero when it is used again, and the rest is kept") {
+TEST_CASE("column: memory that a range has released is zero when reused, the rest is kept") {
     for (const std::size_t expected : {std::size_t{0}, std::size_t{8} << 20}) {
         VirtualRange range(std::size_t{1} << 30, skew_of(9), expected);
         range.commit(std::size_t{8} << 20);
@@ -265,7 +266,7 @@ TEST_CASE("column: what a range gives back is zero when it is used again, and th
     }
 }
 
-TEST_CASE("column: the pool gives back what lies beyond the last block in use") {
+TEST_CASE("column: the pool releases memory beyond the last block in use") {
     BlockPool pool;
     std::vector<std::byte*> blocks;
     for (int i = 0; i < 20; ++i) {

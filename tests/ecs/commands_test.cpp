@@ -82,7 +82,7 @@ TEST_CASE("commands: the last value wins, set only replaces") {
     CHECK_FALSE(world.has<Note>(c));
 }
 
-TEST_CASE("commands: for an entity that is gone they are dropped") {
+TEST_CASE("commands: commands for a destroyed entity are dropped") {
     World world;
     CommandBuffer first;
     CommandBuffer second;
@@ -104,7 +104,7 @@ TEST_CASE("commands: for an entity that is gone they are dropped") {
     CHECK(second.empty());
 }
 
-TEST_CASE("commands: an entity moves at most once, whatever is done to it") {
+TEST_CASE("commands: an entity moves at most once, whatever the commands") {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);
@@ -128,7 +128,8 @@ TEST_CASE("commands: an entity moves at most once, whatever is done to it") {
     CHECK_FALSE(world.has<Velocity>(entity));
 }
 
-TEST_CASE("commands: a created entity may be changed, destroyed and named by components at once") {
+TEST_CASE("commands: a created entity can immediately be changed, destroyed and referenced by "
+          "components") {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);
@@ -148,7 +149,7 @@ TEST_CASE("commands: a created entity may be changed, destroyed and named by com
     CHECK_FALSE(world.alive(a));
 }
 
-TEST_CASE("commands: a placeholder of an earlier run names nothing") {
+TEST_CASE("commands: a placeholder of an earlier run is invalid") {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);
@@ -314,7 +315,7 @@ TEST_CASE("commands: an entity may be destroyed while it is iterated over") {
     world.query<const Mass>().each([](const Mass& mass) { REQUIRE(mass.value >= 500); });
 }
 
-TEST_CASE("commands: without types they do the same") {
+TEST_CASE("commands: type-erased commands do the same") {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);
@@ -331,8 +332,7 @@ TEST_CASE("commands: without types they do the same") {
     CHECK(world.get<Mass>(made).value == 1);
 }
 
-TEST_CASE(
-    "commands: recorded by threads of one's own, they have no order, and the sync point says so") {
+TEST_CASE("commands: commands recorded by custom threads have no order, and the sync point stops") {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);
@@ -342,7 +342,7 @@ TEST_CASE(
     buffer.discard();
 }
 
-TEST_CASE("commands: what several threads recorded is put into the order of its chunks") {
+TEST_CASE("commands: commands of several threads are sorted by chunk") {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);

@@ -130,7 +130,7 @@ TEST_CASE("component bytes: every field counts in the hash") {
     CHECK(differs([](Route& r) { r.text = "y"; }));
 }
 
-TEST_CASE("component bytes: cut off bytes are refused at every length") {
+TEST_CASE("component bytes: truncated bytes are rejected at every length") {
     const std::vector<std::byte> bytes = bytes_of(sample());
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         Route read;
@@ -139,7 +139,7 @@ TEST_CASE("component bytes: cut off bytes are refused at every length") {
     }
 }
 
-TEST_CASE("component bytes: what is no bool, no enumerator or no possible count is refused") {
+TEST_CASE("component bytes: invalid bools, enumerators and counts are rejected") {
     std::vector<std::byte> bytes = bytes_of(sample());
     Route read;
     const auto refused = [&] {
@@ -166,7 +166,7 @@ TEST_CASE("component bytes: all entities of a component are found") {
     CHECK(found == std::vector<Entity>{{1, 2}, {}, {3, 4}, {}, {5, 6}});
 }
 
-TEST_CASE("component bytes: the layout tells types with other fields apart") {
+TEST_CASE("component bytes: the layout hash distinguishes types with different fields") {
     CHECK(layout_hash(component_info<PointLight>()) == layout_hash(component_info<PointLight>()));
     CHECK(layout_hash(component_info<PointLight>()) != layout_hash(component_info<SpotLight>()));
     CHECK(layout_hash(component_info<Spin>()) != layout_hash(component_info<Sway>()));

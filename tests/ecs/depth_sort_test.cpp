@@ -97,7 +97,7 @@ TEST_CASE("particle sort: 32-bit keys are sorted as by std::stable_sort") {
 }
 
 TEST_CASE(
-    "particle sort: 32-bit keys are sorted wherever they lie and however little they differ"
+    "particle sort: 32-bit keys are sorted whatever their range and however small their differences"
     * technique("particle.distance-sort")) {
     SortScratch scratch;
     constexpr std::uint32_t kEnd = 0xffffffff;
@@ -141,7 +141,7 @@ TEST_CASE("particle sort: any number of threads gives the same bits") {
     set_thread_count(before);
 }
 
-TEST_CASE("particle sort: keys ascend from far to near, NaN first, the dead last") {
+TEST_CASE("particle sort: keys ascend from far to near, NaN first, dead particles last") {
     const float inf = std::numeric_limits<float>::infinity();
     const float far_to_near[] = {std::nanf(""), inf, 1e30f,   100, 1.0000001f, 1,
                                  1e-40f,        0,   -1e-40f, -1,  -1e30f,     -inf};
@@ -226,8 +226,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bitonic sort: all permutations of eight come out sorted"
-    * technique("particle.bitonic-sort")) {
+    "bitonic sort: all permutations of eight are sorted" * technique("particle.bitonic-sort")) {
     std::vector<std::uint32_t> permutation = {0, 1, 2, 3, 4, 5, 6, 7};
     int permutations = 0;
     bool all_sorted = true;
@@ -242,7 +241,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "bitonic sort: all binary vectors of sixteen come out sorted, so everything does"
+    "bitonic sort: all binary vectors of sixteen are sorted, and so is everything"
     * technique("particle.bitonic-sort")) {
     bool all_sorted = true;
     for (std::uint32_t bits = 0; bits < 1u << 16; ++bits) {

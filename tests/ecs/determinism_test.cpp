@@ -31,7 +31,7 @@ struct Age {
     std::uint32_t frames = 0;
 };
 /// Where it is with all its parents added.
-struct Place {
+struct Point {
     Vec3 position = {0, 0, 0};
 };
 struct Excited {};
@@ -124,7 +124,7 @@ void give_birth(Query<const Spot, const Age> parents, Res<const Frame> frame, Co
                 const Entity first = commands.create(
                     Spot{0.5f * spots[i].position}, Age{}, Parent{entity, random.below(3)});
                 const Entity second = commands.create(Elder{first}, Spot{}, Drift{}, Age{});
-                commands.add(second, Place{});
+                commands.add(second, Point{});
                 commands.add(first, Elder{second});
                 if (random.below(4) == 0) {
                     commands.destroy(first);
@@ -181,10 +181,10 @@ void excite(
     });
 }
 
-void place(HierarchyRef hierarchy, Query<const Spot> spots, Query<Place> places) {
+void place(HierarchyRef hierarchy, Query<const Spot> spots, Query<Point> points) {
     spots.each([&](Entity entity, const Spot& spot) {
-        if (Place* const placed = places.find<Place>(entity)) {
-            placed->position = spot.position;
+        if (Point* const point = points.find<Point>(entity)) {
+            point->position = spot.position;
         }
     });
     for (std::uint32_t depth = 1; depth <= hierarchy->depth_count(); ++depth) {
@@ -192,9 +192,9 @@ void place(HierarchyRef hierarchy, Query<const Spot> spots, Query<Place> places)
         parallel_for(nodes.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Spot* const above = spots.find<const Spot>(nodes[i].parent);
-                Place* const placed = places.find<Place>(nodes[i].entity);
-                if (above != nullptr && placed != nullptr) {
-                    placed->position += above->position;
+                Point* const point = points.find<Point>(nodes[i].entity);
+                if (above != nullptr && point != nullptr) {
+                    point->position += above->position;
                 }
             }
         });
@@ -295,7 +295,7 @@ std::vector<std::uint64_t> history(int threads, std::uint64_t shuffle) {
     note_order<Drift>(world);
     for (int i = 0; i < 3000; ++i) {
         const Spot spot{{static_cast<float>(i), 1, 0}};
-        i % 2 == 0 ? world.create(spot, Drift{}, Age{static_cast<std::uint32_t>(i % 7)}, Place{})
+        i % 2 == 0 ? world.create(spot, Drift{}, Age{static_cast<std::uint32_t>(i % 7)}, Point{})
                    : world.create(spot, Drift{}, Age{});
     }
     Schedule schedule = make_schedule();
@@ -312,7 +312,7 @@ std::vector<std::uint64_t> history(int threads, std::uint64_t shuffle) {
 
 }  // namespace
 
-TEST_CASE("determinism: one history for 1 to 64 threads and any order of tasks") {
+TEST_CASE("determinism: the same history for 1 to 64 threads and any order of tasks") {
     const JobsGuard guard;
     const std::vector<std::uint64_t> expected = history(1, 0);
     CHECK(expected.front() != expected.back());

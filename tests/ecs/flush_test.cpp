@@ -285,7 +285,8 @@ std::vector<std::vector<Step>> make_lists(std::uint32_t entities, std::mt19937& 
 
 }  // namespace
 
-TEST_CASE("flush: rows moved in ranges, singly or folded end up the same, and so do observers") {
+TEST_CASE(
+    "flush: rows moved in ranges, one at a time or folded end up the same, as do observer calls") {
     std::mt19937 random(11);
     Counted::living = 0;
     for (const std::uint32_t count : {5u, 768u, 1023u, 1024u, 1025u, 2048u, 2049u, 3072u}) {
@@ -318,7 +319,7 @@ TEST_CASE("flush: rows moved in ranges, singly or folded end up the same, and so
     CHECK(Counted::living == 0);
 }
 
-TEST_CASE("flush: an archetype that leaves as a whole hands its columns over, and comes back") {
+TEST_CASE("flush: an archetype that moves as a whole hands over its columns, there and back") {
     World world;
     const std::vector<Entity> entities = world.create_many(5000, Position{1, 2, 3}, Mass{4});
     world.query<Position>().each(
@@ -417,7 +418,7 @@ TEST_CASE("flush: all of a query are destroyed, added to and removed from in one
     }
 }
 
-TEST_CASE("flush: a query that follows sparse values changes its rows in their own order") {
+TEST_CASE("flush: a query led by a sparse set changes rows in the order of that set") {
     World world;
     const std::vector<Entity> all = world.create_many(3000, Position{});
     // Heat comes from behind, so that the query visits the rows from behind.
@@ -442,7 +443,7 @@ TEST_CASE("flush: a query that follows sparse values changes its rows in their o
     }
 }
 
-TEST_CASE("flush: what it learned about archetypes is forgotten when they begin anew") {
+TEST_CASE("flush: cached plans are dropped when archetypes are reset") {
     World world;
     const auto grow = [&](auto value) {
         world.run([&](Query<const Position> rows, Commands commands) {
@@ -484,7 +485,7 @@ TEST_CASE("flush: only sync points with commands count") {
     CHECK(world.flush_stats().commands == 3);
 }
 
-TEST_CASE("flush: disabled rows are none of the query's") {
+TEST_CASE("flush: disabled rows do not belong to the query") {
     World world;
     const std::vector<Entity> entities = world.create_many(2500, Switch{1});
     for (std::size_t i = 0; i < entities.size(); i += 2) {
@@ -528,7 +529,7 @@ TEST_CASE("flush: an observer may start another sync point") {
     }
 }
 
-TEST_CASE("flush: rows keep their order when they move, and gaps are filled from behind") {
+TEST_CASE("flush: rows keep their order when they move, and gaps are filled from the end") {
     World world;
     CommandBuffer buffer;
     const Commands commands(buffer);

@@ -33,7 +33,7 @@ TEST_CASE("hash: XXH64 gives the published values for short and long input") {
         == 0x02a2e85470d6fd96ull);
 }
 
-TEST_CASE("hash: XXH64 gives the published values with a seed, for every way a tail can be cut") {
+TEST_CASE("hash: XXH64 gives the published values with a seed, for every tail length") {
     constexpr std::uint64_t kSeed = 2654435761u;
     const std::vector<unsigned char> bytes = sanity_buffer();
     CHECK(hash_bytes(bytes.data(), 0, kSeed) == 0xac75fda2929b17efull);
@@ -46,7 +46,7 @@ TEST_CASE("hash: XXH64 gives the published values with a seed, for every way a t
     CHECK(hash_bytes(bytes.data(), 222, kSeed) == 0x20cb8ab7ae10c14aull);
 }
 
-TEST_CASE("hash: where the bytes lie does not matter") {
+TEST_CASE("hash: the alignment of the bytes does not matter") {
     const std::vector<unsigned char> bytes = sanity_buffer();
     std::vector<unsigned char> moved(bytes.size() + 16);
     for (std::size_t shift = 0; shift < 16; ++shift) {

@@ -60,7 +60,7 @@ using namespace limn;
 using namespace hierarchy_test;
 
 TEST_CASE(
-    "hierarchy: a child has its parent and the parent its children, in the order they came"
+    "hierarchy: a child has its parent and the parent its children, in the order of their links"
     * technique("engine.render-object")) {
     World world;
     const Entity root = world.create(Transform{});
@@ -87,7 +87,7 @@ TEST_CASE(
     check_order(world);
 }
 
-TEST_CASE("hierarchy: a link given at creation counts as well") {
+TEST_CASE("hierarchy: a link given at creation counts, too") {
     World world;
     const Entity root = world.create();
     const Entity a = world.create(Parent{root});
@@ -122,7 +122,7 @@ TEST_CASE("hierarchy: a cycle is refused with a reason and changes nothing") {
     check_order(world);
 }
 
-TEST_CASE("hierarchy: a cycle written directly is reported, opened, and hangs nothing") {
+TEST_CASE("hierarchy: a cycle written directly is reported and broken, and nothing hangs") {
     World world;
     const Entity a = world.create();
     const Entity b = world.create(Parent{a});
@@ -147,7 +147,7 @@ TEST_CASE("hierarchy: a cycle written directly is reported, opened, and hangs no
     CHECK_FALSE(world.alive(below));
 }
 
-TEST_CASE("hierarchy: children of an entity that is gone are roots") {
+TEST_CASE("hierarchy: children of a destroyed entity are roots") {
     World world;
     const Entity root = world.create();
     const Entity child = world.create(Parent{root});
@@ -169,7 +169,8 @@ TEST_CASE("hierarchy: children of an entity that is gone are roots") {
     check_order(world);
 }
 
-TEST_CASE("hierarchy: destroying a tree destroys what is below, children first, and nothing else") {
+TEST_CASE(
+    "hierarchy: destroying a tree destroys all descendants, children first, and nothing else") {
     std::vector<Entity> gone;
     World world;
     const Entity root = world.create(Transform{});
@@ -237,7 +238,8 @@ TEST_CASE("hierarchy: random changes keep the order right") {
     }
 }
 
-TEST_CASE("hierarchy: a system gets it up to date, also after a system before it moved a link") {
+TEST_CASE("hierarchy: a system gets an up-to-date hierarchy, also after an earlier system changed "
+          "a link") {
     World world;
     const Entity a = world.create();
     const Entity b = world.create();

@@ -94,7 +94,7 @@ TEST_CASE("jobs: several threads work at the same time") {
     CHECK(arrived == 4);
 }
 
-TEST_CASE("jobs: a job may start jobs of its own") {
+TEST_CASE("jobs: a job may start other jobs") {
     const ThreadCountGuard guard;
     for (const int threads : kThreadCounts) {
         set_thread_count(threads);

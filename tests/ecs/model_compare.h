@@ -13,7 +13,7 @@
 #include <vector>
 
 // Is a world what the reference says? Looked at from all sides: entity by entity, through queries
-// of several shapes, each in every way of iterating, and by what has changed.
+// of several shapes, with every kind of iteration, and by what has changed.
 
 namespace limn::test::model {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-// Does a query visit what the reference says? Queries of several shapes, each in every way of
+// Does a query visit what the reference says? Queries of several shapes, with every kind of
 // iterating.
 
 namespace limn::test::model {
@@ -88,7 +88,7 @@ class ComparedQueries : public ComparedValues {
     }
 
   private:
-    /// With the shared component, of all teams or of one; kTeams is none that anybody has been in.
+    /// With the shared component, of all teams or of one; kTeams was never used.
     void compare_team_shape(unsigned shape, std::int64_t team) {
         switch (shape) {
         case 16:
@@ -263,7 +263,7 @@ class ComparedQueries : public ComparedValues {
         }
     }
 
-    /// Of a shared component all rows are given the same one.
+    /// All rows get the same value of a shared component.
     template <typename Term>
     static const ModelTeam& argument(const ModelTeam& team, std::size_t) {
         return team;

@@ -13,12 +13,12 @@
 #include <tuple>
 #include <utility>
 
-// The components of the model test, one a Kind of the reference, of every way of storing them; and
+// The components of the model test, one per Kind of the reference, with every kind of storage; and
 // how a value of each is made from, and read back to, what the reference knows of it.
 
 namespace limn::test {
 
-/// A number that no two entities share, so that the test finds what commands have created.
+/// A number unique to each entity, so that the test finds the entities that commands have created.
 struct ModelSerial {
     std::uint32_t number = 0;
 };

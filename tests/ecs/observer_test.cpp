@@ -24,7 +24,7 @@ auto note(Log& log, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("observer: each way of adding and removing is told once, with all its entities") {
+TEST_CASE("observer: every operation that adds or removes calls once, with all its entities") {
     Log log;
     World world;
     world.on_add<Label>(note(log, "+label"));
@@ -54,8 +54,8 @@ TEST_CASE("observer: each way of adding and removing is told once, with all its 
     CHECK(log == Log{"-label 50"});
 }
 
-TEST_CASE(
-    "observer: at the end of the world, what is left is told as removed, before resources go") {
+TEST_CASE("observer: when the world is destroyed, remaining components count as removed, before "
+          "resources") {
     Log log;
     {
         World world;
@@ -143,7 +143,7 @@ TEST_CASE("observer: on_remove must not change the structure") {
 }
 
 TEST_CASE(
-    "observer: a sync point tells each observer once, entities in the order of the commands") {
+    "observer: a sync point calls each observer once, with entities in the order of the commands") {
     Log log;
     std::vector<Entity> removed;  // outlives the world, whose end calls observers
     World world;
@@ -175,7 +175,7 @@ TEST_CASE(
     CHECK(world.get<Label>(entities[5]).text == "other");
 }
 
-TEST_CASE("observer: restoring tells what was there as removed and what comes as added") {
+TEST_CASE("observer: restoring a snapshot removes the old components and adds the new ones") {
     Log log;
     World world;
     world.on_add<Label>(note(log, "+label"));

@@ -60,7 +60,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "path: control points at thirds of the way make straight lines at constant speed"
+    "path: control points at thirds of a segment give straight lines at constant speed"
     * technique("anim.bezier-track")) {
     PathShape shape;
     shape.knots = {
@@ -91,7 +91,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("path: equal distances are equal ways, round and round" * technique("anim.arclength")) {
+TEST_CASE(
+    "path: equal distances are equal arc lengths, lap after lap" * technique("anim.arclength")) {
     const PathData path = *make_path(circle());
     const double length = path.length();
     CHECK(length == test::near(2 * kPi * 10).epsilon(1e-3));
@@ -130,10 +131,10 @@ TEST_CASE("path: roll leans to the right, smoothly from knot to knot") {
     shape.knots[1].roll = 0.5f;
     const PathData path = *make_path(shape);
     CHECK(path_frame_at(path, 0).up == Vec3(0, 1, 0));
-    const PathFrame middle = path_frame_at(path, 10);
+    const PathFrame halfway = path_frame_at(path, 10);
     const Vec3 right = {-1, 0, 0};  // looking along +z
-    CHECK(glm::dot(middle.up, right) == test::near(std::sin(0.5)));
-    CHECK(middle.up.y == test::near(std::cos(0.5)));
+    CHECK(glm::dot(halfway.up, right) == test::near(std::sin(0.5)));
+    CHECK(halfway.up.y == test::near(std::cos(0.5)));
     float last = 0;
     for (int i = 0; i <= 100; ++i) {
         const float roll = path_frame_at(path, 0.1 * i).roll;
@@ -143,7 +144,7 @@ TEST_CASE("path: roll leans to the right, smoothly from knot to knot") {
     }
 }
 
-TEST_CASE("path: a knot on its control point, or two in one place, still have a direction") {
+TEST_CASE("path: a knot on its control point, or two at one position, still have a direction") {
     PathShape shape;
     shape.knots = {
         {{0, 0, 0}, {}, {1e-9f, 0, 0}, 0},
@@ -162,7 +163,7 @@ TEST_CASE("path: a knot on its control point, or two in one place, still have a 
 }
 
 TEST_CASE(
-    "path: of a smooth one all joins are of one speed, of a bent one there are corners"
+    "path: all joins of a smooth path have equal speed, a bent one has corners"
     * technique("anim.bezier-join")) {
     PathShape shape = circle();
     CHECK(path_joins(*make_path(shape)) == std::vector<BezierJoin>(4, BezierJoin::Speed));
@@ -175,13 +176,13 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "path: a knot slides between its control points and turns them, and stays smooth"
+    "path: a knot that slides between its control points or rotates them stays smooth"
     * technique("anim.bezier-edit")) {
     PathShape shape = circle();
     shape.knots[0].slide = 0.25f;
     shape.knots[1].turn = glm::angleAxis(0.5f, Vec3(0, 1, 0));
     const PathData path = *make_path(shape);
-    // Between (10, 0, k) and (10, 0, -k), a quarter of the way from the first.
+    // Between (10, 0, k) and (10, 0, -k), a quarter of the distance from the first.
     CHECK(path.segments[0][0].x == test::near(10));
     CHECK(path.segments[0][0].z == test::near(0.5 * 10 * 0.5522847));
     const Vec3 out = path.segments[1][1] - path.segments[1][0];
@@ -195,7 +196,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "path: corners of a parabolic blend make the curve that the blend is"
+    "path: the corners of a parabolic blend give the curve of the blend"
     * technique("anim.boehm-quadrangle, anim.parabolic-blend")) {
     PathShape shape;
     shape.curve = PathCurve::Parabolic;
@@ -209,7 +210,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("path: what is no way is refused with its place") {
+TEST_CASE("path: an invalid path is rejected with its location") {
     PathShape shape;
     CHECK(make_path(shape).error().message == "found 0 knots, expected at least 2");
     shape.knots = {knot({1, 2, 3}), knot({1, 2, 3})};

@@ -65,7 +65,7 @@ TEST_CASE("periodic: waves at the eighths of a period" * technique("engine.perio
 }
 
 TEST_CASE(
-    "periodic: without amplitude it is constant, and shares are clamped"
+    "periodic: without amplitude it is constant, and fractions are clamped"
     * technique("engine.periodic")) {
     for (const double t : {0.0, 0.1, 7.3, 1e9}) {
         CHECK(evaluate(constant_function(0.7f), t) == 0.7f);

@@ -68,7 +68,7 @@ using namespace limn;
 using namespace prefab_test;
 
 TEST_CASE(
-    "prefab: a copy has the shape and the values of the original, and links of its own"
+    "prefab: a copy has the structure and values of the original, with its own links"
     * technique("engine.stock-active")) {
     Robot robot;
     World& world = robot.world;
@@ -115,7 +115,7 @@ TEST_CASE("prefab: sparse tags, which have no value to read, are copied like oth
 }
 
 TEST_CASE(
-    "prefab: many copies come in one batch and do not share links"
+    "prefab: many copies are created in one batch and do not share links"
     * technique("engine.stock-active")) {
     Robot robot;
     World& world = robot.world;
@@ -141,7 +141,7 @@ TEST_CASE(
     CHECK(spawn(world, Prefab{}, 3).empty());
 }
 
-TEST_CASE("prefab: one written by hand names its entities by number") {
+TEST_CASE("prefab: a hand-written prefab references its entities by number") {
     Prefab prefab;
     prefab.entities.resize(2);
     prefab.entities[0].components = {AnyComponent::of(OrbitCamera{.target = prefab_entity(1)})};

@@ -95,7 +95,7 @@ TEST_CASE("query: archetypes that appear later are found") {
     CHECK(query.count() == 3);
 }
 
-TEST_CASE("query: each hands out the entity's own components, writable where they are not const") {
+TEST_CASE("query: each passes the entity's own components, writable unless const") {
     World world;
     const std::vector<Entity> all = fill(world, 300);
     world
@@ -147,7 +147,7 @@ TEST_CASE("query: the order is that of archetypes and rows, and the same every t
     CHECK(std::equal(heated.begin(), heated.end(), set.begin(), set.end()));
 }
 
-TEST_CASE("query: archetypes that are none of the query's do not change its order") {
+TEST_CASE("query: archetypes that do not match the query do not change its order") {
     const auto visit = [](bool with_others) {
         World world;
         std::vector<double> order;
@@ -290,7 +290,7 @@ TEST_CASE("query: single gives the only entity and stops when there is none or m
                 }).empty());
 }
 
-TEST_CASE("query: find reaches other entities of the query and no others") {
+TEST_CASE("query: find gets other entities of the query and no others") {
     World world;
     const Entity inside = world.create(Mass{3}, Heat{2});
     const Entity outside = world.create(Position{});
@@ -367,8 +367,7 @@ TEST_CASE("query: a const world answers queries of several threads at the same t
     world.create(Mass{});
 }
 
-TEST_CASE(
-    "query: gather visits those of a list that are alive and match, in the order of the list") {
+TEST_CASE("query: gather visits the entities of a list that are alive and match, in list order") {
     World world;
     std::vector<Entity> list;
     std::vector<std::size_t> expected;
@@ -411,7 +410,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("query: gather marks what it hands out for writing as changed, and nothing else") {
+TEST_CASE("query: gather marks what it passes for writing as changed, and nothing else") {
     World world;
     const std::vector<Entity> all = world.create_many(5000, Position{}, Velocity{});
     const std::uint32_t before = world.version();
@@ -426,7 +425,7 @@ TEST_CASE("query: gather marks what it hands out for writing as changed, and not
     CHECK(world.query<const Velocity, Changed<Velocity>>().since(before).count() == 0);
 }
 
-TEST_CASE("query: gather looks at sparse components of each entity") {
+TEST_CASE("query: gather checks sparse components of each entity") {
     World world;
     std::vector<Entity> list;
     for (int i = 0; i < 100; ++i) {

@@ -139,7 +139,7 @@ TEST_CASE("reflect: ids are dense, different for different types and the same on
 }
 
 TEST_CASE(
-    "reflect: only what is registered has a name, and a near miss is suggested"
+    "reflect: only registered types have a name, and similar names are suggested"
     * technique("engine.type-registry")) {
     register_all_components();
     register_all_components();
@@ -184,8 +184,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "reflect: every type that a component header describes is registered, or part of one that is") {
+TEST_CASE("reflect: every type that a component header describes is registered, or part of a "
+          "registered one") {
     register_all_components();
     std::string headers;
     for (const auto& entry :
@@ -213,7 +213,7 @@ TEST_CASE(
     CHECK(described > 15);
 }
 
-TEST_CASE("reflect: fields know type, place and shape" * technique("engine.param-desc")) {
+TEST_CASE("reflect: fields have type, offset and shape" * technique("engine.param-desc")) {
     const AllKinds instance;
     const auto offset_of = [&](const auto& member) {
         return static_cast<std::uint32_t>(
@@ -250,7 +250,7 @@ TEST_CASE("reflect: fields know type, place and shape" * technique("engine.param
     CHECK_FALSE(component_info<PointLight>().has_entities);
 }
 
-TEST_CASE("reflect: a type tells how it is stored, moved and compared") {
+TEST_CASE("reflect: a type describes how it is stored, moved and compared") {
     CHECK(component_info<HTTPServer2Tag>().is_tag);
     CHECK(component_info<HTTPServer2Tag>().size == 0);
     CHECK(component_info<Transform>().value_bytes == ValueBytes::All);
@@ -286,7 +286,7 @@ TEST_CASE("reflect: ops construct, copy, move and destroy as often as they say")
     CHECK(Counted::alive == 0);
 }
 
-TEST_CASE("reflect: numbers are read and written, and refused outside their range or type") {
+TEST_CASE("reflect: numbers are read and written, and rejected outside their range or type") {
     AllKinds all;
     CHECK(get_number(field("small"), &all.small) == -3);
     CHECK(set_number(field("small"), &all.small, -10).ok());
@@ -319,7 +319,7 @@ TEST_CASE("reflect: numbers are read and written, and refused outside their rang
     CHECK(all.cell == IVec2(1, 2));  // all or nothing
 }
 
-TEST_CASE("reflect: a limit that a float cannot hold exactly may still be reached") {
+TEST_CASE("reflect: a limit that a float cannot hold exactly is still a valid value") {
     PointLight light;
     FieldInfo info = component_info<PointLight>().fields[1];
     info.meta.max = 0.1;
@@ -409,7 +409,7 @@ TEST_CASE("reflect: equal elements are found equal, different ones different, at
     CHECK_FALSE(equal_elements(field("text"), &a.text, &b.text));
 }
 
-TEST_CASE("reflect: edit distance counts slips of the pen") {
+TEST_CASE("reflect: edit distance counts typing errors") {
     CHECK(edit_distance("", "") == 0);
     CHECK(edit_distance("abc", "") == 3);
     CHECK(edit_distance("kitten", "sitting") == 3);

@@ -20,7 +20,7 @@ TEST_CASE("rng: Philox4x32-10 gives the known answers of Random123") {
         == PhiloxCounter{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1});
 }
 
-TEST_CASE("rng: the same key gives the same numbers, in any order of asking") {
+TEST_CASE("rng: the same key gives the same numbers, in any order of calls") {
     Random first(1, 2, 3, 4);
     Random other(1, 3, 3, 4);
     Random again(1, 2, 3, 4);
@@ -67,7 +67,7 @@ TEST_CASE("rng: uniform stays in 0 <= x < 1 with the mean and variance of an eve
     CHECK(squares / kCount - mean * mean == test::near(1.0 / 12.0).epsilon(0.005));
 }
 
-TEST_CASE("rng: below reaches every number about equally often and no other") {
+TEST_CASE("rng: below gives every number about equally often and no other") {
     Random random(8, 0, 0, 0);
     std::vector<int> counts(7);
     for (int i = 0; i < 70'000; ++i) {

@@ -51,7 +51,7 @@ float angle_of(const Quat& q) {
 }  // namespace
 
 TEST_CASE(
-    "rotation: exp undoes log, also near no rotation and near a whole turn"
+    "rotation: exp is the inverse of log, also near the identity and near a full turn"
     * technique("anim.quat-algebra")) {
     Quats quats;
     for (int i = 0; i < 1000; ++i) {
@@ -71,7 +71,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation: the unit quaternion of nothing, of infinity and of NaN is no rotation"
+    "rotation: normalizing zero, infinite and NaN quaternions gives the identity"
     * technique("anim.quat-algebra")) {
     CHECK(normalize_or_identity(Quat(0, 0, 0, 0)) == kNone);
     CHECK(normalize_or_identity(Quat(NAN, 1, 0, 0)) == kNone);
@@ -104,7 +104,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation: axis and angle come back, from 0 to a whole turn"
+    "rotation: axis and angle are restored, from 0 to a full turn"
     * technique("anim.quat-axis-angle")) {
     CHECK(apart(about_z(90), Quat(0.70710678f, 0, 0, 0.70710678f)) < 1e-7f);
     const Vec3 axis = glm::normalize(Vec3(2, -1, 0.5f));
@@ -122,7 +122,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation: an affine map scales along the mesh's axes, turns, then moves; -q is the same"
+    "rotation: an affine map scales along the mesh's axes, rotates, then translates; -q is the same"
     * technique("anim.quat-to-matrix")) {
     Quats quats;
     for (int i = 0; i < 1000; ++i) {
@@ -167,7 +167,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation: scale and shear are taken out of a matrix, mirrors and flat ones are refused"
+    "rotation: scale and shear are removed from a matrix, mirrored and flat ones are rejected"
     * technique("anim.quat-from-matrix")) {
     const Quat q = rotation_about({1, 2, 3}, 1.1f);
     Mat3 m = glm::mat3_cast(q);
@@ -181,7 +181,7 @@ TEST_CASE(
     CHECK_FALSE(extract_rotation(m).has_value());
 }
 
-TEST_CASE("rotation: slerp goes the great circle at constant speed" * technique("anim.slerp")) {
+TEST_CASE("rotation: slerp follows the great circle at constant speed" * technique("anim.slerp")) {
     CHECK(apart(slerp(kNone, about_z(90), 1.0f / 3), Quat(0.965926f, 0, 0, 0.258819f)) < 1e-6f);
     CHECK(apart(slerp(kNone, about_z(90), 0.25f), Quat(0.980785f, 0, 0, 0.195090f)) < 1e-6f);
     Quats quats;
@@ -216,7 +216,7 @@ TEST_CASE(
         CHECK(turned(slerp(kNone, -kNone, u), kNone) < 1e-7f);
         const Quat stays = slerp_along(kNone, -kNone, u);
         CHECK(glm::length(stays) == test::near(1));
-        // Half a turn may go either way, but goes evenly.
+        // Half a turn may go in either direction, but at even speed.
         const AxisAngle half =
             axis_angle(to_same_hemisphere(kNone, slerp(kNone, rotation_about(kY, kPi), u)));
         CHECK(half.angle == test::near(u * kPi).epsilon(1e-5));
@@ -225,8 +225,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation: the straight way is slow at the ends and fast in the middle"
-    * technique("anim.quat-lerp")) {
+    "rotation: nlerp is slow at the ends and fast in the center" * technique("anim.quat-lerp")) {
     for (const float u : {0.0f, 0.5f, 1.0f}) {
         CHECK(apart(nlerp(kNone, about_z(90), u), slerp(kNone, about_z(90), u)) < 1e-6f);
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kRows = RowMask::kRows;
 
-/// A mask and what it should hold; a share of the words is full or empty.
+/// A mask and what it should hold; a fraction of the words is full or empty.
 struct Sample {
     RowMask mask{};
     std::bitset<kRows> bits;
@@ -52,7 +52,7 @@ std::vector<std::uint32_t> rows_of(const std::bitset<kRows>& bits) {
 
 }  // namespace
 
-TEST_CASE("row mask: holds what was put into it and nothing else, in order") {
+TEST_CASE("row mask: it holds the rows that were set and no others, in order") {
     Random rng(41, 0, 0, 0);
     for (int round = 0; round < 200; ++round) {
         const Sample sample = random_sample(rng);

@@ -73,13 +73,13 @@ std::vector<std::uint32_t> numbers(std::uint32_t first, std::uint32_t count) {
     return all;
 }
 
-/// Each row with probability `share`, neighbors mostly together.
-std::vector<RowRange> some_ranges(std::uint32_t rows, double share, std::mt19937& random) {
+/// Each row with probability `fraction`, neighbors mostly together.
+std::vector<RowRange> some_ranges(std::uint32_t rows, double fraction, std::mt19937& random) {
     std::vector<RowRange> ranges;
     for (std::uint32_t row = 0; row < rows;) {
         const std::uint32_t count =
             std::min(random() % 3 == 0 ? 1 + std::uint32_t(random() % 700) : 1, rows - row);
-        if (std::uniform_real_distribution<double>(0, 1)(random) < share) {
+        if (std::uniform_real_distribution<double>(0, 1)(random) < fraction) {
             ranges.push_back({row, count});
         }
         row += count;
@@ -111,14 +111,14 @@ constexpr std::uint32_t kSizes[] = {1,    2,    15,   16,   17,   300,  1023,
 
 }  // namespace
 
-TEST_CASE("row moves: ranges arrive in order with their values, and gaps are filled from behind") {
+TEST_CASE("row moves: ranges arrive in order with their values, and gaps are filled from the end") {
     Counted::living = 0;
     std::mt19937 random(7);
     std::vector<RowMove> moves;
     for (const std::uint32_t size : kSizes) {
-        for (const double share : {0.05, 0.5, 0.95, 1.0}) {
+        for (const double fraction : {0.05, 0.5, 0.95, 1.0}) {
             CAPTURE(size);
-            CAPTURE(share);
+            CAPTURE(fraction);
             BlockPool blocks;
             // Mass only goes, Counted only comes: what comes is raw memory.
             Archetype from(0, ids<Position, Label, Mass>(), blocks);
@@ -131,7 +131,7 @@ TEST_CASE("row moves: ranges arrive in order with their values, and gaps are fil
             std::vector<std::uint32_t> left = numbers(0, size);
             std::vector<std::uint32_t> arrived = {100'000, 100'001};
 
-            const std::vector<RowRange> ranges = some_ranges(size, share, random);
+            const std::vector<RowRange> ranges = some_ranges(size, fraction, random);
             CHECK(to.append_from(from, ranges, 5) == 2);
             for (std::uint32_t row = 2; row < to.size(); ++row) {
                 put(to, row, Counted(static_cast<int>(to.entities()[row].index)));
@@ -159,7 +159,7 @@ TEST_CASE("row moves: ranges arrive in order with their values, and gaps are fil
     CHECK(Counted::living == 0);
 }
 
-TEST_CASE("row moves: a gap says its rows are gone, so nothing of them is destroyed again") {
+TEST_CASE("row moves: rows of a gap are already destroyed, so nothing is destroyed twice") {
     Counted::living = 0;
     {
         BlockPool blocks;
@@ -179,7 +179,7 @@ TEST_CASE("row moves: a gap says its rows are gone, so nothing of them is destro
     CHECK(Counted::living == 0);
 }
 
-TEST_CASE("row moves: an empty archetype takes the columns of a large one over") {
+TEST_CASE("row moves: an empty archetype takes over the columns of a large one") {
     Counted::living = 0;
     for (const std::uint32_t size : {1024u, 1025u, 2048u, 5000u}) {
         for (const std::uint32_t rows_before : {0u, 1u, 4000u}) {

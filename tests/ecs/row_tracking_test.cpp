@@ -141,8 +141,8 @@ void write_split(Query<ShownLanes, Without<Chosen>> rows) {
 
 /// Every kind of change, at random.
 void change_something(World& world, std::vector<Entity>& entities, Random& random) {
-    const std::size_t place = random.below(static_cast<std::uint32_t>(entities.size()));
-    const Entity entity = entities[place];
+    const std::size_t index = random.below(static_cast<std::uint32_t>(entities.size()));
+    const Entity entity = entities[index];
     const int value = static_cast<int>(random.below(100));
     switch (random.below(20)) {
     case 0:
@@ -155,7 +155,7 @@ void change_something(World& world, std::vector<Entity>& entities, Random& rando
     case 3:
         if (entities.size() > 1020) {
             world.destroy(entity);
-            entities[place] = entities.back();
+            entities[index] = entities.back();
             entities.pop_back();
         }
         break;
@@ -226,7 +226,7 @@ void change_something(World& world, std::vector<Entity>& entities, Random& rando
 
 using namespace row_tracking_test;
 
-TEST_CASE("row tracking: a copy that reads only the rows it takes never goes out of date") {
+TEST_CASE("row tracking: a copy that reads only the taken rows never becomes outdated") {
     for (const std::uint64_t seed : {1, 2, 3}) {
         for (const std::size_t count : {1023u, 1024u, 1025u, 2049u}) {
             INFO("seed " << seed << ", count " << count);
@@ -254,8 +254,7 @@ TEST_CASE("row tracking: a copy that reads only the rows it takes never goes out
     }
 }
 
-TEST_CASE(
-    "row tracking: taken is what was handed out to be written, row by row, and nothing else") {
+TEST_CASE("row tracking: exactly the rows that were passed for writing are taken") {
     World world;
     const std::vector<Entity> entities =
         world.create_many(3000, Shown{}, ShownIfOn{}, ShownLanes{});
@@ -301,17 +300,17 @@ TEST_CASE(
     CHECK(take<ShownLanes>(world) == Rows{8, 9});
 }
 
-TEST_CASE("row tracking: rows that come, go and move are marked where they are now") {
+TEST_CASE("row tracking: added and moved rows are marked at their new position") {
     World world;
     const std::vector<Entity> entities = world.create_many(2050, Shown{});
     static_cast<void>(take<Shown>(world));
-    world.destroy(entities[10]);  // the last takes its place
+    world.destroy(entities[10]);  // replaced by the last row
     CHECK(take<Shown>(world) == Rows{10});
     world.destroy(entities[2048]);  // the last itself
     CHECK(take<Shown>(world).empty());
     world.create(Shown{});
     CHECK(take<Shown>(world) == Rows{2048});
-    world.add(entities[20], Chosen{});  // to another archetype, and the last to its place
+    world.add(entities[20], Chosen{});  // to another archetype; the last row replaces it
     CHECK(take<Shown>(world) == Rows{20, 2048});
     world.clear();
     CHECK(take<Shown>(world).empty());

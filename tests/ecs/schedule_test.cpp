@@ -171,7 +171,7 @@ std::vector<std::uint64_t> history(int threads, bool always_parallel) {
 using namespace limn;
 using namespace schedule_test;
 
-TEST_CASE("schedule: each system sees what those before it wrote, and nothing of those behind") {
+TEST_CASE("schedule: each system sees the writes of earlier systems, and none of later ones") {
     const ThreadCountGuard guard;
     for (const int threads : {1, 4}) {
         set_thread_count(threads);
@@ -204,7 +204,7 @@ TEST_CASE("schedule: systems that write the same resource run in the order of th
     }
 }
 
-TEST_CASE("schedule: systems that touch different things run at the same time") {
+TEST_CASE("schedule: systems with disjoint accesses run at the same time") {
     const ThreadCountGuard guard;
     set_thread_count(2);
     World world;
@@ -276,7 +276,7 @@ TEST_CASE("schedule: commands wait for a sync point, for an exclusive system or 
     }
 }
 
-TEST_CASE("schedule: the state has one history for any number of threads") {
+TEST_CASE("schedule: the state has the same history for any number of threads") {
     const std::vector<std::uint64_t> expected = history(1, false);
     CHECK(expected.front() != expected.back());
     for (const int threads : {1, 2, 3, 7, 16}) {
@@ -306,7 +306,7 @@ TEST_CASE("schedule: it prints systems, access, order and times as text") {
     CHECK(schedule.to_text().find("mean") != std::string::npos);
 }
 
-TEST_CASE("schedule: it prints itself for Graphviz, without arrows that others imply") {
+TEST_CASE("schedule: it prints itself for Graphviz, without transitive arrows") {
     Schedule schedule;
     schedule.add<write_a>()
         .add<read_a_write_b>()
@@ -322,7 +322,7 @@ TEST_CASE("schedule: it prints itself for Graphviz, without arrows that others i
     CHECK(dot.find("s1 -> s2") == std::string::npos);
     CHECK(dot.find("s1 -> s3") != std::string::npos);
     CHECK(dot.find("s2 -> s3") != std::string::npos);
-    CHECK(dot.find("s0 -> s3") == std::string::npos);  // by way of s1
+    CHECK(dot.find("s0 -> s3") == std::string::npos);  // through s1
     CHECK(dot.find("s3 -> s4 [style=dashed") != std::string::npos);
 }
 
@@ -345,7 +345,7 @@ TEST_CASE("schedule: every system is timed") {
     CHECK(schedule.timings()[0].runs == 0);
 }
 
-TEST_CASE("schedule: no moment of a run is counted for two systems") {
+TEST_CASE("schedule: no time is counted for two systems") {
     const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
     World world;
     Schedule schedule;
@@ -363,7 +363,7 @@ TEST_CASE("schedule: no moment of a run is counted for two systems") {
     CHECK(sum <= whole.count());
 }
 
-TEST_CASE("schedule: a system changes nothing of the world but what it wrote") {
+TEST_CASE("schedule: a system changes nothing in the world except what it wrote") {
     // Changed sees the writes of the systems before, once.
     World world;
     world.create(A{}, B{});

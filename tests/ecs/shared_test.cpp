@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-// Shared components: the value is part of what an entity's archetype is, so that entities of equal
+// Shared components: the value is part of the identity of an archetype, so that entities of equal
 // value are one batch.
 
 namespace shared_test {
@@ -191,15 +191,15 @@ class Model {
             }
         }
         // Each value once, one batch after the other.
-        std::map<Region, std::set<Entity>> seen;
+        std::map<Region, std::set<Entity>> visited;
         std::vector<Region> batches;
         world.query<const Region>().each([&](Entity entity, const Region& key) {
             if (batches.empty() || batches.back() != key) {
                 batches.push_back(key);
             }
-            seen[key].insert(entity);
+            visited[key].insert(entity);
         });
-        CHECK(seen == by_key);
+        CHECK(visited == by_key);
         CHECK(batches.size() == by_key.size());
         for (std::uint32_t id = 0; id < 8; ++id) {
             const Region key{id, id % 2};
@@ -217,14 +217,14 @@ class Model {
     std::map<Entity, Region> keys_;
 };
 
-TEST_CASE("shared: entities of equal value are one batch, whatever was done to them") {
+TEST_CASE("shared: entities of equal value are one batch, whatever their history") {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         CAPTURE(seed);
         Model(seed).run(600);
     }
 }
 
-TEST_CASE("shared: where finds what looking at every entity finds, for each kind of call") {
+TEST_CASE("shared: where() finds the same entities as a full scan, for each kind of call") {
     World world;
     std::mt19937 random(5);
     for (int i = 0; i < 9000; ++i) {
@@ -317,7 +317,7 @@ TEST_CASE("shared: another value moves the entity once, the same value not at al
     CHECK(world.get<const Position>(entity).z == 3);
 }
 
-TEST_CASE("shared: another value is a change, and nothing that observers of it hear of") {
+TEST_CASE("shared: another value is a change, but observers are not called") {
     World world;
     std::vector<std::string> log;
     world.on_add<Region>([&](World& w, std::span<const Entity> entities) {
@@ -351,7 +351,7 @@ TEST_CASE("shared: another value is a change, and nothing that observers of it h
     CHECK(log == expected);
 }
 
-TEST_CASE("shared: a thousand values are a thousand batches of rows that are all there") {
+TEST_CASE("shared: a thousand values are a thousand batches without missing rows") {
     World world;
     constexpr std::uint32_t kKeys = 1000;
     std::vector<Entity> entities;
@@ -378,7 +378,7 @@ TEST_CASE("shared: a thousand values are a thousand batches of rows that are all
     CHECK(world.query<With<Position>>().where(Region{0, 7}).count() == 3 * kKeys);
 }
 
-TEST_CASE("shared: an optional one is null where it is not there") {
+TEST_CASE("shared: an optional component is null if it is missing") {
     World world;
     const Entity with = world.create(Position{}, Region{4, 0});
     world.create(Position{});
@@ -394,7 +394,7 @@ TEST_CASE("shared: an optional one is null where it is not there") {
     CHECK(found == 4);
 }
 
-TEST_CASE("shared: snapshots bring back batches and their order, and equal worlds hash alike") {
+TEST_CASE("shared: snapshots restore batches and their order, and equal worlds have equal hashes") {
     register_component<Region>();
     register_component<Parent>();
     for (const std::uint32_t size : {1u, 1023u, 1024u, 1025u, 2047u, 2048u, 2049u}) {
@@ -460,7 +460,7 @@ TEST_CASE("shared: prefabs, statistics and code without types know the value") {
         "structural change"));
 }
 
-TEST_CASE("shared: AnyOf visits what has at least one of its components") {
+TEST_CASE("shared: AnyOf visits entities with at least one of its components") {
     World world;
     std::vector<Entity> expected;
     for (unsigned bits = 0; bits < 16; ++bits) {

@@ -31,7 +31,7 @@ using namespace limn;
 using namespace snapshot_story;
 using namespace delta_test;
 
-TEST_CASE("delta: applied to any earlier snapshot it is the snapshot of its moment, to the byte") {
+TEST_CASE("delta: applied to the earlier snapshot it gives the later one, to the byte") {
     for (std::uint64_t seed = 1; seed <= kStories; ++seed) {
         CAPTURE(seed);
         Story story(seed);
@@ -59,7 +59,7 @@ TEST_CASE("delta: applied to any earlier snapshot it is the snapshot of its mome
     }
 }
 
-TEST_CASE("delta: a chain of deltas, each from the mark of the one before, follows the world") {
+TEST_CASE("delta: a chain of deltas, each from the mark of the previous one, follows the world") {
     for (std::uint64_t seed = 100; seed <= 106; ++seed) {
         CAPTURE(seed);
         Story story(seed);
@@ -107,12 +107,12 @@ TEST_CASE("delta: one entity created and one destroyed cost their chunks, not th
     static_cast<void>(save(world, &mark));
     world.create(StoryPlace{});
     world.destroy(few[1]);
-    // Two chunks of place and entities, two of generations and links.
+    // Two chunks of positions and entities, two of generations and links.
     const std::size_t most = 2 * 1024 * (sizeof(StoryPlace) + sizeof(Entity) + 8);
     CHECK(save_delta(world, mark)->size() < most + 1000);
 }
 
-TEST_CASE("delta: a bit that is set is a change, and costs no values") {
+TEST_CASE("delta: an enable bit that is set is a change, and costs no values") {
     World world;
     register_types();
     const Entity one = world.create_many(5000, StoryLamp{}, StoryAwake{}, StorySpin{})[3000];
@@ -143,7 +143,7 @@ TEST_CASE("delta: taking everything for writing without changing it costs next t
     CHECK(apply_delta(bytes, delta).value() == bytes);
 }
 
-TEST_CASE("delta: changes are seen across the wrap of versions") {
+TEST_CASE("delta: changes are detected across the wraparound of versions") {
     World world;
     register_types();
     world.set_version(0xfffffffeu);
@@ -160,13 +160,13 @@ TEST_CASE("delta: changes are seen across the wrap of versions") {
     CHECK(world.core().now() < 100);
 }
 
-TEST_CASE("delta: to a mark from before versions were forgotten, everything is new") {
+TEST_CASE("delta: relative to a mark older than the clamped versions, everything is new") {
     World world;
     register_types();
     const Entity e = world.create(StoryPlace{});
     SnapshotMark mark;
     const std::vector<std::byte> bytes = save(world, &mark);
-    // The same number again after 2^32 runs, with a change on the way.
+    // The same number again after 2^32 runs, with a change in between.
     const std::uint32_t begin = world.core().now();
     for (std::uint32_t quarter = 1; quarter <= 4; ++quarter) {
         world.set_version(begin + quarter * (1u << 30));
@@ -178,7 +178,7 @@ TEST_CASE("delta: to a mark from before versions were forgotten, everything is n
     CHECK(apply_delta(bytes, save_delta(world, mark).value()).value() == save(world));
 }
 
-TEST_CASE("delta: a restored world goes on from its snapshot with small deltas") {
+TEST_CASE("delta: a restored world continues from its snapshot with small deltas") {
     World world;
     fill_large(world);
     const Entity one = world.create(StoryText{"x"});
@@ -196,7 +196,7 @@ TEST_CASE("delta: a restored world goes on from its snapshot with small deltas")
     CHECK(apply_delta(bytes, save_delta(world, before).value()).value() == save(world));
 }
 
-TEST_CASE("delta: applied to another snapshot it is refused") {
+TEST_CASE("delta: applied to another snapshot it is rejected") {
     Story story(5);
     story.create(10);
     SnapshotMark mark;
@@ -223,7 +223,7 @@ TEST_CASE("delta: applied to another snapshot it is refused") {
     CHECK(refused > 200);
 }
 
-TEST_CASE("delta: cut off or altered, with or without a fitting checksum, it is an error") {
+TEST_CASE("delta: truncated or altered, with or without a matching checksum, it is an error") {
     Story story(9);
     for (int i = 0; i < 60; ++i) {
         story.happen();

@@ -95,7 +95,7 @@ std::vector<std::byte> small_snapshot(Story& story, SnapshotMark* mark = nullptr
 using namespace limn;
 using namespace snapshot_memory_test;
 
-TEST_CASE("snapshot memory: altered or cut off, it allocates no more than its size allows") {
+TEST_CASE("snapshot memory: altered or truncated, it allocates no more than its size allows") {
     Story story(1);
     const std::vector<std::byte> bytes = small_snapshot(story);
     check_restore(bytes);

@@ -157,7 +157,7 @@ TEST_CASE("snapshot: a restored world is the saved one: values, handles, order, 
     CHECK(restored.find_resource<SnapEngine>() == nullptr);  // not registered: not saved
 }
 
-TEST_CASE("snapshot: the restored world gives out the same handles from then on") {
+TEST_CASE("snapshot: the restored world allocates the same handles afterwards") {
     World world;
     fill(world);
     World restored;
@@ -194,7 +194,7 @@ TEST_CASE("snapshot: rolling back undoes whatever happened since") {
     CHECK(world.query<const Transform>().count() == 1500 + 1 + 26);
 }
 
-TEST_CASE("snapshot: rolling back uses the memory there is") {
+TEST_CASE("snapshot: rolling back reuses existing memory") {
     World world;
     register_snapshot_types();
     world.create_many(50'000, Transform{});
@@ -267,7 +267,7 @@ TEST_CASE("snapshot: what cannot be saved is named") {
     }
 }
 
-TEST_CASE("snapshot: cut off at any byte, it is refused and changes nothing") {
+TEST_CASE("snapshot: truncated at any byte, it is rejected and changes nothing") {
     World world;
     register_snapshot_types();
     const Entity e = world.create(Transform{}, Name{"x"});
@@ -289,7 +289,7 @@ TEST_CASE("snapshot: cut off at any byte, it is refused and changes nothing") {
     CHECK(refusal(longer) == "snapshot: found 115 bytes of data, expected the 114 of the pieces");
 }
 
-TEST_CASE("snapshot: any altered byte is found out") {
+TEST_CASE("snapshot: any altered byte is detected") {
     World world;
     register_snapshot_types();
     world.create(Transform{}, Name{"x"});
@@ -308,7 +308,7 @@ TEST_CASE("snapshot: any altered byte is found out") {
     CHECK(refusal({}) == "snapshot: not a snapshot: it does not begin with LIMNSNAP");
 }
 
-TEST_CASE("snapshot: any altered byte with a fitting checksum gives an error or a whole world") {
+TEST_CASE("snapshot: any altered byte with a matching checksum gives an error or a valid world") {
     World world;
     register_snapshot_types();
     const Entity e = world.create(Transform{}, Name{"x"});
@@ -338,7 +338,7 @@ TEST_CASE("snapshot: any altered byte with a fitting checksum gives an error or 
     CHECK(refused > 300);
 }
 
-TEST_CASE("snapshot: a free slot that is missing, there twice or linked by a living one is found") {
+TEST_CASE("snapshot: a free slot that is missing, duplicated or linked by a live one is detected") {
     World world;
     register_snapshot_types();
     const std::vector<Entity> all = world.create_many(4, SnapMark{});
@@ -366,7 +366,7 @@ TEST_CASE("snapshot: a free slot that is missing, there twice or linked by a liv
     CHECK(refusal_with(0, 2) == "snapshot: slots: found a link in slot 0, which is not free");
 }
 
-TEST_CASE("snapshot: a component this program does not know, or knows differently, is named") {
+TEST_CASE("snapshot: a component that is unknown to this program, or differs, is named") {
     World world;
     register_snapshot_types();
     world.create(Transform{});
@@ -386,8 +386,7 @@ TEST_CASE("snapshot: a component this program does not know, or knows differentl
     CHECK(refusal(renamed) == "snapshot: component transform: was saved with different fields");
 }
 
-TEST_CASE(
-    "state hash: it does not depend on threads, nor on the order in which archetypes came to be") {
+TEST_CASE("state hash: it does not depend on threads or on the creation order of archetypes") {
     const int before = thread_count();
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 5}) {

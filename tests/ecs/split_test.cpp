@@ -286,7 +286,7 @@ class Twins {
     std::vector<Entity> entities_;
 };
 
-TEST_CASE("split: no sequence of operations tells a split component from one in a table") {
+TEST_CASE("split: no sequence of operations distinguishes a split component from one in a table") {
     for (unsigned seed = 1; seed <= 12; ++seed) {
         CAPTURE(seed);
         Twins(seed).run(700);
@@ -318,7 +318,7 @@ TEST_CASE("split: lanes are aligned, padded to 16 rows and hold the members in t
             for (std::size_t lane = 0; lane < SplitSpan<BallSplit>::kLanes; ++lane) {
                 const auto address = reinterpret_cast<std::uintptr_t>(balls.lane(lane).data());
                 CHECK(address % kColumnAlign == 0);
-                // Writing the padding must neither fault nor reach another lane.
+                // Writing the padding must neither fault nor touch another lane.
                 for (std::uint32_t i = chunk.size(); i % kRowPadding != 0; ++i) {
                     std::memset(balls.lane(lane).data() + i, 0xee, sizeof(float));
                 }
@@ -380,7 +380,7 @@ TEST_CASE("split: each, chunks and their parallel forms write the same values") 
     }
 }
 
-TEST_CASE("split: an optional one is null or empty where it is not there") {
+TEST_CASE("split: an optional component is null or empty if it is missing") {
     World world;
     const Entity with = world.create(Position{}, ball<BallSplit>(5));
     const Entity without = world.create(Position{});
@@ -402,7 +402,7 @@ TEST_CASE("split: an optional one is null or empty where it is not there") {
 // ---- single values
 // -------------------------------------------------------------------------------
 
-TEST_CASE("split: value, set, read and write copy, and stop where there is none") {
+TEST_CASE("split: value, set, read and write copy, and stop if there is none") {
     World world;
     const Entity entity = world.create(ball<BallSplit>(1));
     const Entity bare = world.create(Position{});
@@ -497,7 +497,7 @@ TEST_CASE("split: writing is a change of its chunk, reading is none") {
         == 1);
 }
 
-TEST_CASE("split: observers hear of it coming and going, and not of new values") {
+TEST_CASE("split: observers are called when it is added and removed, not for new values") {
     World world;
     std::vector<std::string> log;
     world.on_add<BallSplit>([&](World& w, std::span<const Entity> entities) {
@@ -534,7 +534,7 @@ renamed(std::vector<std::byte> bytes, std::string_view from, std::string_view to
     return bytes;
 }
 
-TEST_CASE("split: a snapshot has the bytes of the component in a table, and brings them back") {
+TEST_CASE("split: a snapshot has the same bytes as for a table component, and restores them") {
     register_component<BallSplit>();
     register_component<BallTable>();
     for (const std::uint32_t size : kSizes) {

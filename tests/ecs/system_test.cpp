@@ -48,7 +48,7 @@ std::vector<ComponentId> ids(std::vector<ComponentId> list) {
 template <>
 struct limn::SystemParam<SpeedLog> : ParamGroup<SpeedLog, Query<const Velocity>, Res<Label>> {};
 
-TEST_CASE("system: what it may touch follows from its parameters") {
+TEST_CASE("system: its accesses follow from its parameters") {
     const SystemAccess a = access_of<integrate>();
     CHECK(a.writes == ids({component_id<Position>}));
     CHECK(a.reads == ids({component_id<Velocity>, component_id<Mass>}));
@@ -63,7 +63,7 @@ TEST_CASE("system: what it may touch follows from its parameters") {
     CHECK(access_of<inspect>().reads_all);
 }
 
-TEST_CASE("system: two conflict when one writes what the other touches") {
+TEST_CASE("system: two systems conflict if one writes what the other accesses") {
     static constexpr auto read = [](Query<const Position>) {};
     static constexpr auto write = [](Query<Position>) {};
     static constexpr auto other = [](Query<Velocity, With<Position>>) {};
@@ -112,7 +112,7 @@ TEST_CASE("system: is named after its function") {
     CHECK(make_system<everything>().name() == "everything");
 }
 
-TEST_CASE("system: run gives it what it asks for and applies its commands afterwards") {
+TEST_CASE("system: run passes its parameters and applies its commands afterwards") {
     World world;
     world.insert_resource(Mass{2});
     world.insert_resource(Label{});
@@ -129,7 +129,7 @@ TEST_CASE("system: run gives it what it asks for and applies its commands afterw
     CHECK(world.resource<Label>().numbers == std::vector<int>{4});
 }
 
-TEST_CASE("system: a lambda with captures is one too") {
+TEST_CASE("system: a lambda with captures is a system, too") {
     World world;
     world.create_many(5, Position{});
     int count = 0;
@@ -137,7 +137,7 @@ TEST_CASE("system: a lambda with captures is one too") {
     CHECK(count == 5);
 }
 
-TEST_CASE("system: a structural change inside of one stops, unless it has the world to itself") {
+TEST_CASE("system: a structural change inside a system stops, unless it is exclusive") {
     World world;
     world.create(Position{});
     const auto change = [&](Query<const Position>) { world.create(Position{}); };
@@ -146,7 +146,7 @@ TEST_CASE("system: a structural change inside of one stops, unless it has the wo
     CHECK(world.entity_count() == 2);
 }
 
-TEST_CASE("system: one that moves on to another world sees that one, all of it new") {
+TEST_CASE("system: in another world a system finds everything changed") {
     World first;
     World second;
     first.create(Position{1});

@@ -28,7 +28,7 @@ TEST_CASE("text: each {} is replaced by the next argument") {
     CHECK(fail("{} is gone", "entity 3 v1").message == "entity 3 v1 is gone");
 }
 
-TEST_CASE("text: numbers have as few digits as tell them apart, as fmt writes them") {
+TEST_CASE("text: numbers have the fewest digits that distinguish them, as fmt writes them") {
     for (const double number :
          {0.0, -0.0, 0.1, 1.0, -1.5, 1e15, 123456789012345.0, 1e16, 1e-4, 1.25e-5, 3e300, 5e-324}) {
         CHECK(format_text("{}", number) == fmt::format("{}", number));

@@ -142,22 +142,22 @@ int digest(T* component) {
     return component == nullptr ? -1 : digest(*component);
 }
 
-using Seen = std::vector<std::pair<int, int>>;  // number of the entity, digest of the arguments
+using Visited = std::vector<std::pair<int, int>>;  // number of the entity, digest of the arguments
 
 template <typename... Terms, typename Kind>
-Seen seen_by_each(Side<Kind>& side) {
-    Seen seen;
+Visited visited_by_each(Side<Kind>& side) {
+    Visited visited;
     side.world.template query<Terms...>().each([&](Entity entity, auto&&... arguments) {
         int total = 0;
         ((total = total * 31 + digest(arguments)), ...);
-        seen.emplace_back(side.number_of[entity.index], total);
+        visited.emplace_back(side.number_of[entity.index], total);
     });
-    std::sort(seen.begin(), seen.end());
-    return seen;
+    std::sort(visited.begin(), visited.end());
+    return visited;
 }
 
 template <typename... Terms, typename Kind>
-Seen seen_by_par_each(Side<Kind>& side) {
+Visited visited_by_par_each(Side<Kind>& side) {
     std::vector<int> found(kMaxEntities, -1);
     std::vector<int> times(kMaxEntities, 0);
     side.world.template query<Terms...>().par_each([&](Entity entity, auto&&... arguments) {
@@ -167,13 +167,13 @@ Seen seen_by_par_each(Side<Kind>& side) {
         found[number] = total;
         ++times[number];
     });
-    Seen seen;
+    Visited visited;
     for (std::size_t i = 0; i < kMaxEntities; ++i) {
         for (int k = 0; k < times[i]; ++k) {
-            seen.emplace_back(static_cast<int>(i), found[i]);
+            visited.emplace_back(static_cast<int>(i), found[i]);
         }
     }
-    return seen;
+    return visited;
 }
 
 template <typename... Terms, typename Kind>
@@ -190,7 +190,7 @@ std::vector<int> contained_in(Side<Kind>& side) {
 
 /// Numbers of what chunk.enabled() lets through.
 template <typename... Terms, typename Kind>
-std::vector<int> seen_by_chunks(Side<Kind>& side) {
+std::vector<int> visited_by_chunks(Side<Kind>& side) {
     std::vector<int> numbers;
     side.world.template query<Terms...>().chunks([&](ChunkView chunk, auto&&...) {
         CHECK(chunk.enabled().any());
@@ -203,46 +203,47 @@ std::vector<int> seen_by_chunks(Side<Kind>& side) {
     return numbers;
 }
 
-std::vector<int> numbers_of(const Seen& seen) {
+std::vector<int> numbers_of(const Visited& visited) {
     std::vector<int> numbers;
-    for (const auto& [number, value] : seen) {
+    for (const auto& [number, value] : visited) {
         numbers.push_back(number);
     }
     return numbers;
 }
 
-/// All ways to visit a query, which must agree; what each() saw. `Chunked`: chunks() can do it.
+/// Visits a query with all functions, which must agree; returns what each() visited. `Chunked`:
+/// includes chunks().
 template <bool chunked, typename... Terms, typename Kind>
-Seen seen_by(Side<Kind>& side) {
-    const Seen seen = seen_by_each<Terms...>(side);
-    const std::vector<int> numbers = numbers_of(seen);
-    CHECK(seen_by_par_each<Terms...>(side) == seen);
-    CHECK(side.world.template query<Terms...>().count() == seen.size());
+Visited visited_by(Side<Kind>& side) {
+    const Visited visited = visited_by_each<Terms...>(side);
+    const std::vector<int> numbers = numbers_of(visited);
+    CHECK(visited_by_par_each<Terms...>(side) == visited);
+    CHECK(side.world.template query<Terms...>().count() == visited.size());
     CHECK(contained_in<Terms...>(side) == numbers);
     if constexpr (chunked) {
-        CHECK(seen_by_chunks<Terms...>(side) == numbers);
+        CHECK(visited_by_chunks<Terms...>(side) == numbers);
     }
-    return seen;
+    return visited;
 }
 
 template <typename Kind>
-std::vector<Seen> seen_in_all_queries(Side<Kind>& side) {
+std::vector<Visited> visited_in_all_queries(Side<Kind>& side) {
     using P = typename Kind::Power;
     using M = typename Kind::Motto;
     using L = typename Kind::Lit;
     return {
-        seen_by<true, const P>(side),
-        seen_by<true, const Body, With<P, L>>(side),
-        seen_by<true, const P, Without<L>>(side),
-        seen_by<true, const Body, Without<P, M>>(side),
-        seen_by<true, const P, const M>(side),
-        seen_by<true, With<L>, Without<Body>>(side),
-        seen_by<false, Optional<const P>, Optional<const L>, const Body>(side),
-        seen_by<false, const L, Optional<const M>>(side),
-        seen_by<false, const P, const Chill>(side),
-        seen_by<false, const Chill, Without<L>>(side),
-        seen_by<false, const P, Without<Chill>>(side),
-        seen_by<true, const P, Changed<M>>(side),
+        visited_by<true, const P>(side),
+        visited_by<true, const Body, With<P, L>>(side),
+        visited_by<true, const P, Without<L>>(side),
+        visited_by<true, const Body, Without<P, M>>(side),
+        visited_by<true, const P, const M>(side),
+        visited_by<true, With<L>, Without<Body>>(side),
+        visited_by<false, Optional<const P>, Optional<const L>, const Body>(side),
+        visited_by<false, const L, Optional<const M>>(side),
+        visited_by<false, const P, const Chill>(side),
+        visited_by<false, const Chill, Without<L>>(side),
+        visited_by<false, const P, Without<Chill>>(side),
+        visited_by<true, const P, Changed<M>>(side),
     };
 }
 
@@ -285,10 +286,10 @@ class Law {
             create();
         } else if (dice < (grows ? 22u : 24u)) {
             toggled_.flush();  // the commands before this belong to entities that still live
-            const std::size_t place = random_.below(static_cast<std::uint32_t>(alive_.size()));
-            both([&](auto& side) { side.destroy(alive_[place]); });
-            free_.push_back(alive_[place]);
-            alive_[place] = alive_.back();
+            const std::size_t index = random_.below(static_cast<std::uint32_t>(alive_.size()));
+            both([&](auto& side) { side.destroy(alive_[index]); });
+            free_.push_back(alive_[index]);
+            alive_[index] = alive_.back();
             alive_.pop_back();
         } else {
             const std::size_t number =
@@ -373,8 +374,8 @@ class Law {
 
     void compare() {
         toggled_.flush();
-        const std::vector<Seen> toggled = seen_in_all_queries(toggled_);
-        const std::vector<Seen> plain = seen_in_all_queries(plain_);
+        const std::vector<Visited> toggled = visited_in_all_queries(toggled_);
+        const std::vector<Visited> plain = visited_in_all_queries(plain_);
         for (std::size_t i = 0; i < toggled.size(); ++i) {
             INFO("query " << i);
             REQUIRE(toggled[i] == plain[i]);

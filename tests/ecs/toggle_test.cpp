@@ -70,7 +70,7 @@ TEST_CASE("toggle: adding enables, replacing the value through a reference or se
     CHECK(world.is_enabled<Power>(entity));
 }
 
-TEST_CASE("toggle: commands fold in order, and say nothing to entities without the component") {
+TEST_CASE("toggle: commands fold in order, and do nothing to entities without the component") {
     World world;
     const Entity a = world.create(Body{}, Power{1});
     const Entity b = world.create(Body{});
@@ -103,7 +103,7 @@ TEST_CASE("toggle: commands fold in order, and say nothing to entities without t
     CHECK(world_stats(world).entities == 5);
 }
 
-TEST_CASE("toggle: rows take their bits along when others go, and new rows are enabled") {
+TEST_CASE("toggle: rows keep their bits when others are removed, and new rows are enabled") {
     for (const std::size_t count : {1023u, 1024u, 1025u, 2047u, 2048u, 2049u}) {
         World world;
         std::vector<Entity> entities = world.create_many(count, Power{});
@@ -125,7 +125,7 @@ TEST_CASE("toggle: rows take their bits along when others go, and new rows are e
     }
 }
 
-TEST_CASE("toggle: chunks() skips what is disabled as a whole, and each() leaves it untouched") {
+TEST_CASE("toggle: chunks() skips fully disabled chunks, and each() does not touch them") {
     World world;
     const std::vector<Entity> entities = world.create_many(3000, Power{});
     for (std::size_t i = 1024; i < 2048; ++i) {
@@ -242,7 +242,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("toggle: a bit that changed very long ago never becomes new again") {
+TEST_CASE("toggle: an old change of a bit never counts as new again") {
     World world;
     world.insert_resource(Watched{});
     const Entity entity = world.create(Body{}, Lit{});
@@ -263,7 +263,7 @@ TEST_CASE("toggle: a bit that changed very long ago never becomes new again") {
     CHECK(world.resource<Watched>().lights == 2);
 }
 
-TEST_CASE("toggle: no observer is told of enabling and disabling") {
+TEST_CASE("toggle: enabling and disabling calls no observer") {
     World world;
     int calls = 0;
     world.on_add<Power>([&](World&, std::span<const Entity>) { ++calls; });
@@ -338,7 +338,7 @@ TEST_CASE("toggle: the same bits for any number of threads") {
     CHECK(hashes[2] == hashes[0]);
 }
 
-TEST_CASE("toggle: a snapshot brings every bit back") {
+TEST_CASE("toggle: a snapshot restores every bit") {
     for (const std::size_t count : {1u, 63u, 64u, 65u, 1130u, 3000u}) {
         World world;
         fill_toggled(world, count);
@@ -357,7 +357,7 @@ TEST_CASE("toggle: a snapshot brings every bit back") {
     }
 }
 
-TEST_CASE("toggle: the state hash tells every single bit apart, and forgets what was undone") {
+TEST_CASE("toggle: the state hash depends on every bit, and not on changes that were undone") {
     World world;
     const std::vector<Entity> entities = world.create_many(1030, ToggledCharge{}, ToggledSign{});
     const std::uint64_t enabled = state_hash(world);
@@ -384,7 +384,7 @@ TEST_CASE("toggle: the state hash tells every single bit apart, and forgets what
     CHECK(state_hash(longer) == state_hash(world));
 }
 
-TEST_CASE("toggle: copies of a prefab have disabled what it has") {
+TEST_CASE("toggle: copies of a prefab have the same components disabled") {
     register_toggled();
     World world;
     const Entity root = world.create(ToggledCharge{1}, ToggledSign{});
@@ -402,7 +402,7 @@ TEST_CASE("toggle: copies of a prefab have disabled what it has") {
     CHECK(world.query<With<Parent>, Without<ToggledCharge>>().count() == 4);
 }
 
-TEST_CASE("toggle: bits go along when ranges of rows, whole archetypes and holes in them move") {
+TEST_CASE("toggle: bits move with ranges of rows, whole archetypes and filled holes") {
     for (const std::size_t count : {1023u, 1024u, 1025u, 3000u}) {
         World world;
         const std::vector<Entity> entities = world.create_many(count, Power{}, Lit{}, Body{});

@@ -98,7 +98,7 @@ using namespace limn;
 using namespace limn::test;
 using namespace world_stats_test;
 
-TEST_CASE("statistics: a query says what it asks for, what it visits and how often") {
+TEST_CASE("statistics: a query lists its terms, what it visits and how often") {
     World world;
     world.create_many(1500, Position{}, Velocity{});
     world.create_many(10, Position{}, Velocity{}, Frozen{});
@@ -131,7 +131,7 @@ TEST_CASE("statistics: a query says what it asks for, what it visits and how oft
     static_cast<void>(changed);
 }
 
-TEST_CASE("statistics: systems say what they recorded, sync points what they applied") {
+TEST_CASE("statistics: systems list the commands they recorded, sync points those they applied") {
     World world;
     world.create_many(25, Position{}, Velocity{});
     Schedule schedule;
@@ -185,7 +185,7 @@ TEST_CASE("statistics: rows that move leave one archetype and come to another") 
     CHECK(came == 1 + 2999 + 2000);
 }
 
-TEST_CASE("statistics: what archetypes have asked for adds up to the memory report") {
+TEST_CASE("statistics: the memory of all archetypes adds up to the memory report") {
     World world;
     world.create_many(100'000, Position{}, Velocity{});  // in ranges of its own
     world.create_many(5, Position{}, Mass{});            // in pooled blocks
@@ -203,7 +203,7 @@ TEST_CASE("statistics: what archetypes have asked for adds up to the memory repo
     CHECK(pooled <= world.memory().blocks);
 }
 
-TEST_CASE("statistics: as JSON they are JSON, whatever a system is called") {
+TEST_CASE("statistics: the JSON is valid, whatever a system is called") {
     World world;
     world.create_many(2000, Position{}, Marked{});
     world.create(Label{}, Heat{}, Selected{});
@@ -221,7 +221,7 @@ TEST_CASE("statistics: as JSON they are JSON, whatever a system is called") {
     CHECK(JsonCheck::is_json(to_json(ScheduleStats())));
 }
 
-TEST_CASE("statistics: as text they have a line for everything there is") {
+TEST_CASE("statistics: the text has a line for everything") {
     World world;
     world.create_many(2000, Position{}, Marked{});
     world.create(Label{}, Heat{});

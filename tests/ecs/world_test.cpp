@@ -16,7 +16,7 @@ using namespace limn;
 using namespace limn::test;
 
 TEST_CASE(
-    "world: an entity has what it was created with and nothing else"
+    "world: an entity has the components it was created with and no others"
     * technique("engine.render-object")) {
     World world;
     const Entity entity = world.create(Position{1, 2, 3}, Label{"one", {1}}, Marked{}, Heat{5});
@@ -64,7 +64,7 @@ TEST_CASE(
     CHECK_FALSE(world.alive(Entity{12345, 1}));
 }
 
-TEST_CASE("world: slots are used again first freed first, after a distance") {
+TEST_CASE("world: slots are reused in the order in which they were freed, after a distance") {
     World world;
     std::vector<Entity> entities = world.create_many(5000, Position{});
     for (const Entity entity : entities) {
@@ -78,13 +78,13 @@ TEST_CASE("world: slots are used again first freed first, after a distance") {
     CHECK(world.create(Position{}).index == 5000);
 }
 
-TEST_CASE("world: a slot whose generations are used up is retired, not started over") {
+TEST_CASE("world: a slot whose generations are used up is retired, not reused") {
     EntityTable table;
     EntityTableImage image;
     image.generations = {kPlaceholderBit - 1};
     table.restore(image);
     const Entity last{0, kPlaceholderBit - 1};
-    table.place(last, 0, 0);
+    table.set_location(last, 0, 0);
     table.free(last);
     CHECK(table.free_count() == 0);
     CHECK_FALSE(table.find(last));
@@ -92,7 +92,7 @@ TEST_CASE("world: a slot whose generations are used up is retired, not started o
 }
 
 TEST_CASE(
-    "world: a slot holds every archetype and row up to the limits, apart from its neighbors") {
+    "world: a slot holds every archetype and row up to the limits, independent of its neighbors") {
     constexpr std::uint32_t kArchetypes[] = {0,    1,      63,       64,
                                              1000, 65'535, 1u << 21, kMaxArchetypes - 1};
     constexpr std::uint32_t kRows[] = {0, 1, 1023, 65'536, kMaxRowsOfSlot - 1};
@@ -100,18 +100,18 @@ TEST_CASE(
     const Entity before = table.allocate();
     const Entity entity = table.allocate();
     const Entity after = table.allocate();
-    table.place(before, 3, 4);
+    table.set_location(before, 3, 4);
     CHECK_FALSE(table.find(entity));
     for (const std::uint32_t archetype : kArchetypes) {
         for (const std::uint32_t row : kRows) {
-            table.place(entity, archetype, row);
+            table.set_location(entity, archetype, row);
             REQUIRE(table.find(entity));
             CHECK(table.find(entity).archetype == archetype);
             CHECK(table.find(entity).row == row);
             CHECK_FALSE(table.find(after));
         }
     }
-    table.place(after, 5, 6);
+    table.set_location(after, 5, 6);
     CHECK(table.find(before).archetype == 3);
     CHECK(table.find(before).row == 4);
     CHECK(table.find(entity).archetype == kMaxArchetypes - 1);
@@ -254,7 +254,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("world: create_many makes neighbors with equal values") {
+TEST_CASE("world: create_many creates adjacent rows with equal values") {
     World world;
     const std::vector<Entity> entities =
         world.create_many(1500, Mass{4}, Label{"many", {}}, Heat{2}, Marked{});
@@ -270,7 +270,7 @@ TEST_CASE("world: create_many makes neighbors with equal values") {
     CHECK(world.create_many(0, Mass{}).empty());
 }
 
-TEST_CASE("world: what is created or added may be a copy of what is there, although rows move") {
+TEST_CASE("world: a created or added value may be a copy of an existing one, although rows move") {
     // Small archetypes share blocks of memory and move to larger ones as they grow: each round, the
     // value that is copied lies in the column that grows.
     World world;
@@ -318,7 +318,7 @@ TEST_CASE("world: resources are one of a kind and stay where they are") {
     CHECK(world.resource<Mass>().value == 1);
 }
 
-TEST_CASE("world: everything can be done without types") {
+TEST_CASE("world: everything works type-erased") {
     World world;
     const Entity entity = world.create();
     const ComponentId label = component_id<Label>;
@@ -445,7 +445,7 @@ TEST_CASE("world: a restored world has the same handles, rows and next handles")
     }
 }
 
-TEST_CASE("world: shrink gives back what nothing uses, and all values stay") {
+TEST_CASE("world: shrink releases unused memory, and all values stay") {
     World world;
     const std::vector<Entity> many = world.create_many(100'000, Position{1, 2, 3}, Mass{}, Heat{4});
     std::vector<Entity> few;

@@ -13,7 +13,7 @@ namespace {
 
 using test::near;
 
-/// `h` as half vector of a directional light seen from the same side: L = V = H.
+/// `h` as half vector of a directional light viewed from its own direction: L = V = H.
 PhongScene scene_with_half_vector(const dvec3& h) {
     PhongScene scene = {.lights = {{.directional = true, .at = h}}};
     scene.camera = {.eye = 1e9 * glm::normalize(h), .target = dvec3(0), .up = {0, 1, 0}};
@@ -140,7 +140,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: the axis of the worst case leaves one row of the texture"
+    "fakephong: the worst-case axis uses only one row of the texture"
     * technique("fakephong.blinn-axis")) {
     PhongScene scene = scene_with_half_vector({0.2, 1, 1});
     scene.axis = BlinnAxis::WorstCase;
@@ -164,7 +164,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: normals behind the half vector reach the rim, where the printed program fails") {
+    "fakephong: normals behind the half vector map to the rim, where the printed program fails") {
     const PhongScene scene = scene_with_half_vector({0, 0, 1});
     const SurfacePoint behind = at_origin({0.1, 0, -1});
     const Vec2r ours = blinn_coordinates(scene, scene.lights[0], behind);
@@ -225,7 +225,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: an environment map of two lights is the sum of their maps"
+    "fakephong: an environment map of two lights is the sum of both maps"
     * technique("fakephong.envmap-bake")) {
     PhongScene scene = {
         .lights = {
@@ -245,7 +245,7 @@ TEST_CASE(
     CHECK(both(0.8, 0.8) == dvec3(0));  // outside the disc
 }
 
-TEST_CASE("fakephong: bad scenes are refused in one line") {
+TEST_CASE("fakephong: invalid scenes are rejected in one line") {
     const auto message = [](const PhongScene& scene) {
         const Status status = check_scene(scene);
         return status ? std::string() : status.error().message;

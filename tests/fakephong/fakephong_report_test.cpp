@@ -68,7 +68,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: methods of samples are exact there, and the environment map nowhere"
+    "fakephong: methods with samples are exact at them, the environment map nowhere"
     * technique("fakephong.metric-analytic")) {
     const SceneResult result = evaluate_scene(sphere_scene());
     for (std::size_t i = 0; i < kTableColumns; ++i) {
@@ -119,7 +119,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: Blinn coordinates stray from their chords as those of the derived corners"
+    "fakephong: Blinn coordinates deviate from their chords as derived for the corners"
     * technique("fakephong.blinn-path")) {
     // Edges of the canonical triangle: the mean of two corners' coordinates against the midpoint's.
     const EdgePaths triangle = edge_paths(triangle_scene());
@@ -132,7 +132,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: without a turn of normals and with all far away, coordinates are straight"
+    "fakephong: with constant normals and everything far away, coordinates are straight"
     * technique("fakephong.blinn-path")) {
     PhongScene far = triangle_scene();
     far.lights = {{.directional = true, .at = {0.3, 0.2, 1}}};
@@ -144,7 +144,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: facets half as large stray a quarter as far, and quadratics an eighth"
+    "fakephong: with facets half as large, chords deviate a quarter as far, quadratics an eighth"
     * technique("fakephong.blinn-path")) {
     PhongScene scene = sphere_scene();
     scene.mesh = make_coarse_sphere(16, 16);
@@ -172,7 +172,8 @@ TEST_CASE("fakephong: a Phong map is compared by diffuse light, in which it is e
     CHECK(map->correctness < 1);
 }
 
-TEST_CASE("fakephong: stepped colors are those asked at each pixel, and on one facet cost less") {
+TEST_CASE(
+    "fakephong: stepped colors equal those evaluated at each pixel, and cost less on one facet") {
     for (const SteppedMethod& one : step_scene(triangle_scene())) {
         CAPTURE(std::string(one.method->id));
         CHECK(one.difference < 1e-6);

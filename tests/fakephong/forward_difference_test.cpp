@@ -65,7 +65,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "forward differences: steps right, left and down lead to the polynomial's own values"
+    "forward differences: steps right, left and down give the polynomial's values"
     * technique("fakephong.forward-difference")) {
     for (const std::size_t degree : {1u, 2u, 3u}) {
         CAPTURE(degree);
@@ -139,7 +139,7 @@ TEST_CASE("forward differences: over a row of 4,096 pixels a cubic drifts by les
 }
 
 TEST_CASE(
-    "forward differences: without perspective a method's image is that of each pixel asked"
+    "forward differences: without perspective a method's image equals evaluation at each pixel"
     * technique("fakephong.forward-difference")) {
     for (const PhongScene& scene : stepped_scenes()) {
         for (const char* id : {"gouraud", "quadratic", "cubic"}) {
@@ -176,7 +176,7 @@ TEST_CASE("forward differences: a pixel takes six additions per degree and no mu
 }
 
 TEST_CASE(
-    "fakephong: with w = 1, 1, 3 the middle of an edge from u = 0 to 1 on the screen is 1/4"
+    "fakephong: with w = 1, 1, 3 the center of an edge from u = 0 to 1 on the screen is 1/4"
     * technique("fakephong.texmap")) {
     // Checks a quarter wide: the color changes where u is 1/4, 1/2 and 3/4.
     PhongScene scene = {.name = "edge", .lights = {{}}};

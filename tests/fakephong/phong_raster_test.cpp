@@ -126,7 +126,7 @@ TEST_CASE(
         .triangles = {{0, 1, 2}, {0, 2, 3}}};
     scene.camera = {.eye = {0, 0, 2}, .half_size = 0.6, .size = 128};
     const PhongImage image = draw(scene, *find_method("gouraud"));
-    // v = 1/2 is the point (0, 0, -2), at the center of the image; v in the middle of the screen's
+    // v = 1/2 is the point (0, 0, -2), at the center of the image; v at the center of the screen's
     // span, from y = -1/2 to 1/6, would be at -1/6.
     const auto at = [&](int y) {
         return image.color.pixels[static_cast<std::size_t>(y * 128 + 64)].x;
@@ -147,7 +147,7 @@ TEST_CASE("fakephong: many lights add up, and each counts its lightings") {
     CHECK(correctness(scene, "quadratic-blinn") > 0.99);
 }
 
-TEST_CASE("fakephong: facets without area, behind the eye, facing away or with NaN are left out") {
+TEST_CASE("fakephong: facets without area, behind the eye, facing away or with NaN are skipped") {
     PhongScene scene = triangle_scene();
     scene.channels = Channels::Full;
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -183,7 +183,7 @@ TEST_CASE("fakephong: a facet needs an area, however small, and finite corners")
     CHECK(plain(facet.face_normal) == dvec3(0, 0, 1));
 }
 
-TEST_CASE("fakephong: of edges through pixel centers, each belongs to one side") {
+TEST_CASE("fakephong: an edge through pixel centers belongs to one side") {
     PhongScene scene = triangle_scene();
     scene.camera = {.eye = {0, 0, 1}, .half_size = 1, .size = 34};
     PhongMesh& mesh = scene.mesh;

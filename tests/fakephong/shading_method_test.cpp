@@ -40,9 +40,9 @@ double highlight(
     return method.shade(context, setup, s, t).highlight.x.value;
 }
 
-/// Share of the triangle brighter than one half, and its brightest value.
+/// Fraction of the triangle brighter than one half, and its brightest value.
 struct Spot {
-    double share = 0, peak = 0, y = 0;
+    double fraction = 0, peak = 0, y = 0;
 };
 Spot spot_of(const PhongScene& scene, const char* id) {
     const ShadingContext context = make_shading_context(scene);
@@ -59,14 +59,14 @@ Spot spot_of(const PhongScene& scene, const char* id) {
             const double t = (j + 0.25) / kSteps;
             const double value = highlight(context, method, setup, s, t);
             ++count;
-            spot.share += value > 0.5 ? 1 : 0;
+            spot.fraction += value > 0.5 ? 1 : 0;
             if (value > spot.peak) {
                 spot.peak = value;
                 spot.y = point_at(facet, s, t).position.y.value;
             }
         }
     }
-    spot.share /= count;
+    spot.fraction /= count;
     return spot;
 }
 
@@ -123,7 +123,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fakephong: colors along a shared edge depend on that edge alone"
+    "fakephong: colors along a shared edge depend only on that edge"
     * technique("fakephong.quadratic")) {
     // Two triangles on one edge, the far corners and their normals different.
     PhongScene scene = bent_triangle();
@@ -162,7 +162,7 @@ TEST_CASE(
     "fakephong: linear colors have no maximum inside a triangle" * technique("fakephong.gouraud")) {
     const Spot spot = spot_of(triangle_scene(), "gouraud");
     CHECK(spot.peak == near(0.0107).epsilon(0.01));
-    CHECK(spot.share == 0);
+    CHECK(spot.fraction == 0);
 }
 
 TEST_CASE("fakephong: highlights on the triangle have the derived peaks and sizes") {
@@ -175,16 +175,16 @@ TEST_CASE("fakephong: highlights on the triangle have the derived peaks and size
     const Spot phong = spot_of(scene, "phong");
     CHECK(phong.peak == near(1).epsilon(1e-3));
     CHECK(phong.y == near(-0.2 * 20 / 20.6).epsilon(0.05));
-    CHECK(phong.share == near(0.157).epsilon(0.01));
+    CHECK(phong.fraction == near(0.157).epsilon(0.01));
     CHECK(spot_of(scene, "gouraud-subdivided").peak == near(0.381).epsilon(0.02));
-    CHECK(spot_of(scene, "quadratic").share == 0);
-    CHECK(spot_of(scene, "envmap").share == 1);
+    CHECK(spot_of(scene, "quadratic").fraction == 0);
+    CHECK(spot_of(scene, "envmap").fraction == 1);
     CHECK(spot_of(scene, "envmap").peak == near(0.699).epsilon(0.01));
     const Spot blinn = spot_of(scene, "blinn-map");
-    CHECK(blinn.share == near(0.369).epsilon(0.01));
+    CHECK(blinn.fraction == near(0.369).epsilon(0.01));
     CHECK(blinn.y == near(-0.181).epsilon(0.05));
     const Spot smooth = spot_of(scene, "quadratic-blinn");
-    CHECK(smooth.share == near(0.253).epsilon(0.01));
+    CHECK(smooth.fraction == near(0.253).epsilon(0.01));
     CHECK(smooth.y == near(-0.170).epsilon(0.05));
 }
 
@@ -322,7 +322,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("fakephong: normals that cancel or are zero become that of the face") {
+TEST_CASE("fakephong: normals that cancel or are zero become the face normal") {
     PhongScene scene = bent_triangle();
     scene.channels = Channels::Full;
     scene.mesh.normals = {dvec3(1, 0, 0), dvec3(-1, 0, 0), dvec3(0, 0, 0)};
@@ -343,7 +343,7 @@ TEST_CASE("fakephong: normals that cancel or are zero become that of the face") 
 }
 
 TEST_CASE(
-    "fakephong: appendix A equals quadratic shading but for its 8-bit coordinates and its gate"
+    "fakephong: appendix A equals quadratic shading except for its 8-bit coordinates and its gate"
     * technique("fakephong.hw-quadratic")) {
     const PhongScene scene = bent_triangle();
     const ShadingContext context = make_shading_context(scene);

@@ -65,13 +65,13 @@ TEST_CASE(
     check_face(make_head({}), 10);
 }
 
-TEST_CASE("face folding: so does that of ICT FaceKit") {
+TEST_CASE("face folding: the head of ICT FaceKit folds there, too") {
     if (const auto scene = import_shared("ict-facekit")) {
         check_face(scene->meshes[0], 7);
     }
 }
 
-TEST_CASE("face folding: and that of MakeHuman") {
+TEST_CASE("face folding: the head of MakeHuman folds there, too") {
     if (const auto scene = import_shared("makehuman")) {
         check_face(scene->meshes[0], 6);
     }
@@ -96,7 +96,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("face folding: at half its weight an expression folds the same regions, about half") {
+TEST_CASE("face folding: at half weight an expression folds the same regions about half as much") {
     const MeshData head = make_head({});
     const oracle::FaceFolding folding(head);
     for (const oracle::FaceExpression& expression : oracle::find_face_expressions(head)) {
@@ -129,7 +129,7 @@ TEST_CASE("face folding: halves of a unit are one expression, by any names") {
     CHECK(found[4].unit == "AU1");
 }
 
-TEST_CASE("face folding: a file of a face with other names is measured as the face, or refused") {
+TEST_CASE("face folding: a face file with other names is measured the same, or rejected") {
     const test::TemporaryFolder folder;
     GltfScene scene;
     scene.name = "face";

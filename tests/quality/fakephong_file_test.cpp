@@ -58,7 +58,7 @@ MeshData triangle() {
 
 }  // namespace
 
-TEST_CASE("fakephong file: facets of a glTF without an area are counted and left out") {
+TEST_CASE("fakephong file: facets of a glTF without area are counted and skipped") {
     const TemporaryFolder folder;
     MeshData mesh = triangle();
     mesh.indices = {0, 1, 2, 0, 0, 1, 2, 2, 2};
@@ -78,7 +78,7 @@ TEST_CASE(
     CHECK(found(report, "quadratic: color correctness") == 1);
 }
 
-TEST_CASE("fakephong file: opposite and missing normals of a glTF give way to those of facets") {
+TEST_CASE("fakephong file: opposite and missing normals of a glTF are replaced by facet normals") {
     const TemporaryFolder folder;
     MeshData mesh = triangle();
     mesh.normals[1] = {0, 0, -1};

@@ -62,8 +62,8 @@ TEST_CASE("fakephong page: plots have Phong's curve and then the method's, linea
         const double height = found[0] - found[peak];
         CHECK(height > 10);
         for (std::size_t x = 0; x < wanted.size(); ++x) {
-            const auto share = static_cast<double>(wanted[x] / wanted[peak]);
-            CHECK(std::abs((found[0] - found[x]) / height - share) < 0.2 / height);
+            const auto fraction = static_cast<double>(wanted[x] / wanted[peak]);
+            CHECK(std::abs((found[0] - found[x]) / height - fraction) < 0.2 / height);
         }
         return height / static_cast<double>(wanted[peak]);
     };
@@ -71,7 +71,7 @@ TEST_CASE("fakephong page: plots have Phong's curve and then the method's, linea
     CHECK(std::abs(plotted(1, result.methods[0].image) - scale) < 0.01 * scale);
 }
 
-TEST_CASE("fakephong page: what it says of a method are its numbers") {
+TEST_CASE("fakephong page: the text on a method states its numbers") {
     SceneResult result = small_result();
     const ShadingMethod& blinn = *find_method("blinn-map");
     const std::string said = describe_method(blinn, {&result, 1});

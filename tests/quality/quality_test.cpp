@@ -81,7 +81,7 @@ TEST_CASE("quality: a bound holds up to its limit, and never for NaN") {
     CHECK(holds({"", std::nan(""), QualityBound::None, 0}));
 }
 
-TEST_CASE("quality: table, JSON and page say of every row whether it holds") {
+TEST_CASE("quality: table, JSON and page show for every row whether it holds") {
     const MeasuredQuality one = measured();
     const std::string table = quality_table({&one, 1});
     CHECK(count_of(table, "\n") == 4);
@@ -99,7 +99,7 @@ TEST_CASE("quality: table, JSON and page say of every row whether it holds") {
     CHECK(rows[2]["bound"] == "none");
 }
 
-TEST_CASE("quality: the page has effect, oracle and difference of each image within itself") {
+TEST_CASE("quality: the page embeds effect, oracle and difference of each image") {
     const MeasuredQuality one = measured();
     const Result<std::string> page = quality_html({&one, 1}, "GPU <x>");
     REQUIRE(page);
@@ -113,7 +113,7 @@ TEST_CASE("quality: the page has effect, oracle and difference of each image wit
     CHECK(page->find("<x>") == std::string::npos);
 }
 
-TEST_CASE("quality: numbers beside sections of their own are folded, unless a bound is violated") {
+TEST_CASE("quality: numbers beside other sections are collapsed, unless a bound is violated") {
     MeasuredQuality one = measured();
     one.report.html = "<h3>own</h3>\n";
     const std::string violated = quality_html({&one, 1}, "GPU").value();
@@ -167,7 +167,7 @@ TEST_CASE("quality: lights keep their bounds by every method, and no list misses
 }
 
 TEST_CASE(
-    "quality: fakephong keeps the printed figures and orders, and tells each method on the page"
+    "quality: fakephong keeps the printed figures and orders, and describes each method on the page"
     * technique("fakephong.results")) {
     const TemporaryFolder folder;
     measured_rows("fakephong", folder);
@@ -227,7 +227,7 @@ TEST_CASE("quality: fakephong measures a given model, whatever its normals and f
     CHECK(found(twice, "  without an area, left out") == 2);
 }
 
-TEST_CASE("quality: a model that cannot be shaded is refused in one line that names it") {
+TEST_CASE("quality: a model that cannot be shaded is rejected in one line that names it") {
     const TemporaryFolder folder;
     const auto refused = [&](const std::vector<std::string>& arguments) {
         std::vector<std::string> all = {"quality"};
@@ -280,7 +280,7 @@ TEST_CASE("quality: statistics and tone operators of the GPU are those of the or
     }
 }
 
-TEST_CASE("quality: motion blur comes close to the mean of the moments of an exposure") {
+TEST_CASE("quality: motion blur is close to the mean over the exposure") {
     const nlohmann::json rows = measured_rows("motion-blur");
     CHECK(rows.size() == 18);
     // For each scene, a row with the effect and one without it.
@@ -294,7 +294,8 @@ TEST_CASE("quality: depth of field obeys the law of discs and does not leak") {
     CHECK(measured_rows("dof").size() == 12 + 5 + 2 + 2 * 3);
 }
 
-TEST_CASE("quality: glow keeps the light, is round, steady and the oracle's convolution") {
+TEST_CASE(
+    "quality: glow conserves energy, is round and stable, and matches the oracle's convolution") {
     const nlohmann::json rows = measured_rows("glow");
     CHECK(rows.size() == 5 + 2 * 3 + 4 + 3 * 2);
     for (const auto& row : rows) {
@@ -316,7 +317,7 @@ TEST_CASE("quality: caustics are those of ten million photons") {
     CHECK(count_unbounded(rows) == 1);  // the coarsest grid, which bounds the others
 }
 
-TEST_CASE("quality: open water is the sum of its waves, as high and as fast as the laws say") {
+TEST_CASE("quality: open water is the sum of its waves, with the right height and speed") {
     const nlohmann::json rows = measured_rows("water");
     CHECK(rows.size() == 3 * 2 + 2 + 2 + 1 + 3);
     CHECK(count_unbounded(rows) == 0);
@@ -332,7 +333,7 @@ TEST_CASE("quality: velocity is that of rays, and none where nothing has moved")
     }
 }
 
-TEST_CASE("quality: ripples shift as geometry says and leave alone what stands before them") {
+TEST_CASE("quality: ripples shift by the law and leave the foreground unchanged") {
     CHECK(measured_rows("ripple").size() == 6 * 4 + 1);
 }
 

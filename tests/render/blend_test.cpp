@@ -15,13 +15,13 @@ Material pane(const Vec3& color, float opacity) {
 
 struct PaneScene : Scene {
     [[nodiscard]] RenderView view() const { return look({0, 0, 1}, {0, 0, 0}, 9, 9); }
-    Vec3 middle() { return rgb_at(radiance(view()), 4, 4); }
+    Vec3 center_color() { return rgb_at(radiance(view()), 4, 4); }
 };
 
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    PaneScene, "blend: panes cover each other from back to front, in any order of creation"
+    PaneScene, "blend: panes are blended back to front, in any order of creation"
                    * technique("engine.batching")) {
     const MeshId square = add(make_square());
     const MaterialId wall =
@@ -42,7 +42,7 @@ TEST_CASE_FIXTURE(
                 square, layers[i].first,
                 affine_from({0, 0, layers[i].second}, {1, 0, 0, 0}, Vec3(3)));
         }
-        const Vec3 got = middle();
+        const Vec3 got = center_color();
         for (int c = 0; c < 3; ++c) {
             CHECK(got[c] == test::near(want[c]).epsilon(2e-3));
         }
@@ -50,20 +50,20 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PaneScene, "blend: what is behind an opaque surface is hidden, nothing is written to depth") {
+    PaneScene, "blend: opaque surfaces hide panes behind them, and panes write no depth") {
     const MeshId square = add(make_square());
     place(
         square, add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
         at({0, 0, 0}));
     place(square, add(pane({1, 0, 0}, 0.5f)), at({0, 0, -0.5f}));
-    CHECK(middle() == Vec3(1));
+    CHECK(center_color() == Vec3(1));
     world.clear();
     place(square, {1}, at({0, 0, 0}));
     CHECK(aov(view(), "depth").at(4, 4, 0) == kNoDepth);
-    CHECK(middle().x == test::near(0.5f).epsilon(1e-3));
+    CHECK(center_color().x == test::near(0.5f).epsilon(1e-3));
 }
 
-TEST_CASE_FIXTURE(PaneScene, "blend: clear glass still mirrors, most where it is seen edge on") {
+TEST_CASE_FIXTURE(PaneScene, "blend: clear glass still reflects, most at grazing angles") {
     world.insert_resource(
         Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}, .visible = false});
     Material glass = {.alpha_mode = AlphaMode::Blend, .base_color = {1, 1, 1, 0}, .roughness = 0};
@@ -75,7 +75,7 @@ TEST_CASE_FIXTURE(PaneScene, "blend: clear glass still mirrors, most where it is
         rim = std::max(rim, image.at(x, 64, 0));
     }
     CHECK(rim > 0.4f);
-    // What it mirrors takes the place of what is behind: in a furnace nothing of it is to be seen.
+    // Reflection replaces the background: in a furnace the pane is invisible.
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}});
     for (const float value : radiance(look({0, 0, 1}, {0, 0, 0}, 32, 32)).pixels) {
         CHECK(value == test::near(1).epsilon(0.02));

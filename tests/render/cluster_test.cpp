@@ -21,8 +21,8 @@ class RandomLights {
     Vec3 direction() { return normalize_or(in_cube(1), {0, 1, 0}); }
 
     /// Point lights and, every third, a spot.
-    LightReach reach() {
-        LightReach light = {in_cube(25), std::exp2(3 * signed_unit())};
+    LightRange range() {
+        LightRange light = {in_cube(25), std::exp2(3 * signed_unit())};
         if (++made_ % 3 == 0) {
             light.axis = direction();
             light.cosine = std::cos(radians(45 + 44 * signed_unit()));
@@ -42,9 +42,9 @@ class RandomLights {
     int made_ = 0;
 };
 
-LightList list_of(std::vector<LightReach> reach, int directional = 0) {
+LightList list_of(std::vector<LightRange> ranges, int directional = 0) {
     LightList list;
-    list.reach = std::move(reach);
+    list.ranges = std::move(ranges);
     list.directional = directional;
     return list;
 }
@@ -69,14 +69,14 @@ TEST_CASE_FIXTURE(
     int reached = 0;
     while (tests < 100000 || reached < 10000) {
         const RenderView view = random.view();
-        std::vector<LightReach> reach;
+        std::vector<LightRange> ranges;
         for (int i = 0; i < 60; ++i) {
-            reach.push_back(random.reach());
+            ranges.push_back(random.range());
         }
-        const oracle::ClusterReadbackLists lists = build(view, list_of(reach, 2));
+        const oracle::ClusterReadbackLists lists = build(view, list_of(ranges, 2));
         for (int k = 0; k < 400; ++k) {
-            // A point that some light reaches, so that the test is not wasted on the dark.
-            const LightReach& chosen = reach[k % reach.size()];
+            // A point that some light reaches, so that few tests fall on unlit points.
+            const LightRange& chosen = ranges[k % ranges.size()];
             const Vec3 p = chosen.center + random.in_cube(chosen.radius);
             const Vec4 clip = view.clip_from_world * Vec4(p, 1);
             if (clip.w < view.near || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w) {
@@ -85,9 +85,9 @@ TEST_CASE_FIXTURE(
             const float x = (clip.x / clip.w * 0.5f + 0.5f) * static_cast<float>(view.width);
             const float y = (clip.y / clip.w * 0.5f + 0.5f) * static_cast<float>(view.height);
             const auto listed = lists.of(cell_of(lists.shape, x, y, clip.w));
-            for (std::size_t i = 0; i < reach.size(); ++i) {
+            for (std::size_t i = 0; i < ranges.size(); ++i) {
                 ++tests;
-                if (oracle::reaches(reach[i], p)) {
+                if (oracle::reaches(ranges[i], p)) {
                     ++reached;
                     REQUIRE(std::find(listed.begin(), listed.end(), i + 2) != listed.end());
                 }
@@ -98,18 +98,18 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: no list holds a light whose sphere is off the cell's box"
+    ClusterTest, "clusters: no list holds a light whose sphere misses the cell's box"
                      * technique("light.clustered")) {
     RandomLights random(11);
     for (int n = 0; n < 6; ++n) {
         const RenderView view = random.view();
-        std::vector<LightReach> reach;
+        std::vector<LightRange> ranges;
         for (int i = 0; i < 100; ++i) {
-            reach.push_back(random.reach());
-            reach.back().cosine = -1;  // the sphere around a narrow cone ends beyond the radius
+            ranges.push_back(random.range());
+            ranges.back().cosine = -1;  // the sphere around a narrow cone ends beyond the radius
         }
-        const oracle::ClusterReadbackLists lists = build(view, list_of(reach));
-        const auto allowed = oracle::brute_force_lists(view, lists.shape, reach, 4e-3);
+        const oracle::ClusterReadbackLists lists = build(view, list_of(ranges));
+        const auto allowed = oracle::brute_force_lists(view, lists.shape, ranges, 4e-3);
         int listed = 0;
         int within = 0;
         for (int cell = 0; cell < lists.shape.cells(); ++cell) {
@@ -126,16 +126,16 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: 4,096 lights, few a cell, each list in order, twice the same bits"
+    ClusterTest, "clusters: 4,096 lights, few per cell, every list in order, the same bits twice"
                      * technique("light.clustered")) {
     RandomLights random(9);
     const Affine pose = look_at({0, 0, 60}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 640, .height = 360});
-    std::vector<LightReach> reach;
+    std::vector<LightRange> ranges;
     for (int i = 0; i < 4096; ++i) {
-        reach.push_back({random.in_cube(40), 1.5f});
+        ranges.push_back({random.in_cube(40), 1.5f});
     }
-    const oracle::ClusterReadbackLists lists = build(view, list_of(reach));
+    const oracle::ClusterReadbackLists lists = build(view, list_of(ranges));
     for (int cell = 0; cell < lists.shape.cells(); ++cell) {
         const auto listed = lists.of(cell);
         REQUIRE(std::is_sorted(listed.begin(), listed.end()));
@@ -143,7 +143,7 @@ TEST_CASE_FIXTURE(
     CHECK(lists.total() > 4096);
     CHECK(lists.total() < 20 * lists.cells.size());
     CHECK(lists.total() <= lists.capacity);
-    const oracle::ClusterReadbackLists again = build(view, list_of(reach));
+    const oracle::ClusterReadbackLists again = build(view, list_of(ranges));
     CHECK(lists.cells == again.cells);
     CHECK(std::equal(
         lists.indices.begin(), lists.indices.begin() + static_cast<std::ptrdiff_t>(lists.total()),
@@ -152,17 +152,17 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ClusterTest,
-    "clusters: each list begins where the one before it ends, for any number of cells") {
+    "clusters: each list begins where the previous one ends, for any number of cells") {
     RandomLights random(3);
     for (const IVec2 size : {IVec2(1, 1), IVec2(33, 31), IVec2(700, 300), IVec2(1920, 1080)}) {
         const Affine pose = look_at({0, 0, 20}, {0, 0, 0});
         const RenderView view =
             make_render_view({}, pose, pose, {.width = size.x, .height = size.y});
-        std::vector<LightReach> reach;
+        std::vector<LightRange> ranges;
         for (int i = 0; i < 70; ++i) {
-            reach.push_back(random.reach());
+            ranges.push_back(random.range());
         }
-        const oracle::ClusterReadbackLists lists = build(view, list_of(reach));
+        const oracle::ClusterReadbackLists lists = build(view, list_of(ranges));
         layout::uint end = 0;
         for (const layout::uvec2& cell : lists.cells) {
             REQUIRE(cell.x == end);
@@ -174,31 +174,35 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ClusterTest, "clusters: a light without an end is in every cell, no light is in none") {
+    ClusterTest,
+    "clusters: an unbounded light is in every cell, without lights all lists are empty") {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 100, .height = 70});
     const oracle::ClusterReadbackLists endless = build(view, list_of({{{1e3f, 0, 0}, INFINITY}}));
     CHECK(endless.total() == endless.cells.size());
     CHECK(endless.total() == endless.capacity);
     CHECK(build(view, list_of({})).total() == 0);
-    CHECK(build(view, list_of({{{0, 0, 50}, 3}})).capacity == 0);   // behind the camera
-    CHECK(build(view, list_of({{{80, 0, 0}, 3}})).capacity == 0);   // beside the image
-    CHECK(build(view, list_of({{{0, 0, 5.5f}, 1}})).capacity > 0);  // behind, but reaches past
+    CHECK(build(view, list_of({{{0, 0, 50}, 3}})).capacity == 0);  // behind the camera
+    CHECK(build(view, list_of({{{80, 0, 0}, 3}})).capacity == 0);  // beside the image
+    CHECK(
+        build(view, list_of({{{0, 0, 5.5f}, 1}})).capacity
+        > 0);  // behind, but its range extends past
 }
 
-TEST_CASE("clusters: what would overflow the lists is left out, counted, and lost to no other") {
+TEST_CASE(
+    "clusters: lights that would overflow the lists are dropped and counted, others are kept") {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 1920, .height = 1080});
-    std::vector<LightReach> reach(1000, {{0, 0, 0}, INFINITY});
-    reach.push_back({{0, 0, 0}, 1});
+    std::vector<LightRange> ranges(1000, {{0, 0, 0}, INFINITY});
+    ranges.push_back({{0, 0, 0}, 1});
     ClusterLights clusters;
-    place_lights(view, list_of(reach), clusters);
+    cull_lights(view, list_of(ranges), clusters);
     CHECK(clusters.dropped > 0);
     CHECK(clusters.capacity <= kMaxListEntries);
     CHECK(clusters.dropped + static_cast<int>(clusters.lights.size()) == 1001);
 
     clusters.max_entries = 65536;  // the smallest GL_MAX_TEXTURE_BUFFER_SIZE that OpenGL allows
-    place_lights(view, list_of(reach), clusters);
+    cull_lights(view, list_of(ranges), clusters);
     CHECK(clusters.capacity <= 65536);
     CHECK(clusters.dropped + static_cast<int>(clusters.lights.size()) == 1001);
 }
@@ -251,7 +255,7 @@ TEST_CASE_FIXTURE(
     CHECK(worst < 4e-3);
 }
 
-TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each where it reaches") {
+TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each within its range") {
     const Material matte = {
         .shading = ShadingModel::Blinn, .base_color = {1, 1, 1, 1}, .specular = {0, 0, 0}};
     place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {60, 60, 1}));

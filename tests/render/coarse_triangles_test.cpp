@@ -53,7 +53,7 @@ TEST_CASE("triangle grid: the distance of a triangle is that of its side, edge o
     CHECK(distance_to_triangle({3, 4, 0}, a, a, a) == near(5));               // a point
 }
 
-TEST_CASE("coarse triangles: remembered levels are those of the mesh, until it changes") {
+TEST_CASE("coarse triangles: cached levels are those of the mesh, until it changes") {
     CoarseMemory memory;
     MeshData mesh = ball();
     const auto is_same = [&](const std::vector<CoarseTriangles>& found) {
@@ -72,7 +72,7 @@ TEST_CASE("coarse triangles: remembered levels are those of the mesh, until it c
     }
     mesh.positions[7] *= 1.5f;
     CHECK(is_same(memory.simplify(meshes)[1]));
-    mesh.morphs.resize(1);  // which is simplified in another way
+    mesh.morphs.resize(1);  // which is simplified by edge collapse only
     CHECK(is_same(memory.simplify(meshes)[1]));
 }
 
@@ -87,7 +87,8 @@ TEST_CASE("triangle grid: it finds the same distances as a loop over all triangl
     }
 }
 
-TEST_CASE("triangle grid: long thin triangles in all directions have few entries, and distances") {
+TEST_CASE(
+    "triangle grid: long thin triangles in all directions have few entries and correct distances") {
     std::mt19937 random(2);
     std::uniform_real_distribution<float> place(-1, 1);
     MeshData mesh;
@@ -159,7 +160,7 @@ TEST_CASE("coarse triangles: a flat plate keeps its error of 0 down to few trian
     CHECK(levels[0].error < 1e-6f);
 }
 
-TEST_CASE("coarse triangles: small meshes and those with positions that are NaN have none") {
+TEST_CASE("coarse triangles: small meshes and those with NaN positions have none") {
     CHECK(simplify_triangles(make_box({})).empty());
     CHECK(simplify_triangles(MeshData{}).empty());
     MeshData broken = ball();
@@ -167,7 +168,8 @@ TEST_CASE("coarse triangles: small meshes and those with positions that are NaN 
     CHECK(simplify_triangles(broken).empty());
 }
 
-TEST_CASE("coarse triangles: seams of texture coordinates vanish, but not where morphs may part") {
+TEST_CASE(
+    "coarse triangles: seams of texture coordinates are welded, except in meshes with morphs") {
     MeshData twice = make_plane({.size = {2, 2}, .divisions = 16});
     const auto half = static_cast<std::uint32_t>(twice.positions.size());
     const std::vector<Vec3> copies = twice.positions;
@@ -194,7 +196,7 @@ TEST_CASE("coarse triangles: seams of texture coordinates vanish, but not where 
 
 TEST_CASE_FIXTURE(
     ShadowTest,
-    "coarse triangles: a ball's shadow differs at its edge alone, by the detail and a texel") {
+    "coarse triangles: a ball's shadow differs only at its edge, by the detail and a texel") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     put(make_sphere({.radius = 0.5f, .segments = 96, .rings = 48}), {0, 1, 0});
     const Entity lamp = shine(narrow_spot(), look_at({0, 6, 0.01f}, {0, 0, 0}));
@@ -229,7 +231,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "coarse triangles: a plate that loses no shape shadows the floor close below it") {
+    ShadowTest, "coarse triangles: a plate without error shadows the floor close below it") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     put(make_plane({.size = {1, 1}, .divisions = 32}), {0, 0.2f, 0});
     const Entity lamp = shine(narrow_spot(), look_at({0, 6, 0.01f}, {0, 0, 0}));
@@ -248,7 +250,8 @@ TEST_CASE_FIXTURE(
     CHECK(other == 0);
 }
 
-TEST_CASE_FIXTURE(ShadowTest, "coarse triangles: a hollow is not shadowed by those that span it") {
+TEST_CASE_FIXTURE(
+    ShadowTest, "coarse triangles: a hollow is not shadowed by triangles that span it") {
     MeshData hollow = make_plane({.size = {4, 4}, .divisions = 64});
     for (std::size_t i = 0; i < hollow.positions.size(); ++i) {
         Vec3& p = hollow.positions[i];

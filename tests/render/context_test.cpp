@@ -61,7 +61,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "context: depth is reversed, 0 .. 1") {
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "context: a provoked error is counted, kept once and says what was wrong") {
+    test::RenderTest, "context: a provoked error is counted, kept once and describes the mistake") {
     gpu::DebugOutput& output = device().debug_output();
     const std::uint64_t before = output.error_count();
     output.set_muted(true);
@@ -76,7 +76,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "context: a second device gives the messages back when it goes") {
+    test::RenderTest,
+    "context: a second device restores the message callback when it is destroyed") {
     const std::uint64_t before = device().debug_output().error_count();
     {
         Result<std::unique_ptr<gpu::Device>> second = gpu::Device::from_current_context();
@@ -96,7 +97,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     test::RenderTest, "context: another thread's shared context sees the same buffers") {
     // The shared context is the test's own pair, as the fixture's context is not handed out.
-    std::uint32_t seen = 0;
+    std::uint32_t value_read = 0;
     std::string failure;
     std::thread worker([&] {
         Result<std::unique_ptr<gpu::Context>> first = gpu::create_headless_context();
@@ -113,7 +114,7 @@ TEST_CASE_FIXTURE(
             failure = second.error().message;
             return;
         }
-        seen = buffer.read_value<std::uint32_t>(0);
+        value_read = buffer.read_value<std::uint32_t>(0);
         second->reset();
         if (!(*first)->make_current()) {
             failure = "the first context cannot be made current again";
@@ -121,7 +122,7 @@ TEST_CASE_FIXTURE(
     });
     worker.join();
     CHECK(failure.empty());
-    CHECK(seen == 0x1234abcd);
+    CHECK(value_read == 0x1234abcd);
 }
 
 TEST_CASE_FIXTURE(
@@ -185,7 +186,7 @@ TEST_CASE_FIXTURE(
     CHECK(status.error().message.find("glow: capacity: ") == 0);
 }
 
-TEST_CASE("context: what a device has none of is a capability error" * technique("shade.profile")) {
+TEST_CASE("context: an absent feature is a capability error" * technique("shade.profile")) {
     gpu::DeviceCaps caps;
     caps.max_combined_textures = 16;
     caps.max_vertex_textures = 0;

@@ -31,7 +31,7 @@ void check_point(const Vec3& direction, int face, const Vec2& st) {
 }  // namespace
 
 TEST_CASE(
-    "cube_map: the axes are the centers of faces 0 to 5, other directions are those of OpenGL"
+    "cube_map: the axes are the centers of faces 0 to 5, other directions match OpenGL"
     * technique("env.cube-addressing")) {
     const Vec3 axes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     for (int face = 0; face < kCubeFaces; ++face) {
@@ -44,7 +44,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "cube_map: the length of a direction does not count, and every point has its direction"
+    "cube_map: the length of a direction does not matter, and every texel has a direction"
     * technique("env.cube-addressing")) {
     for (const Vec3& d : random_directions(200)) {
         const CubePoint point = cube_point(d);

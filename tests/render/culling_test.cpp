@@ -97,7 +97,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "culling: what lies behind, above or beside the camera is dropped"
+    "culling: boxes behind, above or beside the camera are culled"
     * technique("fakephong.pipeline")) {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view =
@@ -127,7 +127,7 @@ TEST_CASE(
     CHECK(visible[0] == 0);
 }
 
-TEST_CASE("culling: a transformed box holds every transformed corner, tightly if only scaled") {
+TEST_CASE("culling: a transformed box contains every transformed corner, tightly if only scaled") {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(-1, 1);
     for (int n = 0; n < 1000; ++n) {

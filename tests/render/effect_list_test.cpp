@@ -75,7 +75,7 @@ TEST_CASE_FIXTURE(Scene, "image: an effect from outside the library is one entry
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "image: the block that an effect publishes is that of all programs, for this frame") {
+    Scene, "image: a block that an effect publishes is bound for all programs of this frame") {
     const Material glowing = {
         .shading = ShadingModel::Unlit, .alpha_mode = AlphaMode::Blend, .base_color = {1, 0, 0, 1}};
     place(add(make_square()), add(glowing), at({0, 0, 0}));
@@ -94,7 +94,8 @@ TEST_CASE_FIXTURE(
     CHECK(draw(false) == clear);
 }
 
-TEST_CASE("image: a view's passes are named by its scope, so that times of views stay apart") {
+TEST_CASE(
+    "image: passes are named by the scope of their view, so that times of views are separate") {
     FrameGraph graph(shared_device());
     graph.begin_frame();
     const TextureId a = graph.create({.name = "a", .width = 4, .height = 4});

@@ -46,7 +46,7 @@ constexpr Vec3 kAround[] = {{0.2f, 0.4f, 1},   {-0.5f, 0.1f, 1},  {0.1f, -0.6f, 
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Laboratory, "fake phong: eight lights are as the laboratory has them") {
+TEST_CASE_FIXTURE(Laboratory, "fake phong: eight lights match the laboratory") {
     show(make_ball(5));
     for (int i = 0; i < 8; ++i) {
         directional_light(kAround[i]);
@@ -58,9 +58,8 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: eight lights are as the laboratory ha
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory,
-    "fake phong: eight of twelve lights have terms of their own, the rest is lit per vertex"
-        * technique("fakephong.blinn-map")) {
+    Laboratory, "fake phong: eight of twelve lights have separate terms, the others are per vertex"
+                    * technique("fakephong.blinn-map")) {
     show(make_ball(5));
     std::vector<Entity> lights;
     for (const Vec3& to_light : kAround) {
@@ -82,7 +81,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Laboratory, "fake phong: a base color map tints what is no highlight") {
+TEST_CASE_FIXTURE(Laboratory, "fake phong: a base color map tints everything but highlights") {
     world.resource<Assets>().materials[shiny.index].base_color_texture.image =
         add(ImageData{.name = "magenta", .width = 1, .height = 1, .pixels = {255, 0, 255, 255}});
     laboratory.material.color *= glm::dvec3(1, 0, 1);
@@ -92,7 +91,7 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: a base color map tints what is no hig
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: with each axis a Blinn map is as the laboratory has it"
+    Laboratory, "fake phong: with each axis a Blinn map matches the laboratory"
                     * technique("fakephong.blinn-axis")) {
     show(make_ball(5));
     point_light({0.6f, 1.5f, 3});
@@ -126,7 +125,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: diffuse light from a Blinn texture is as the laboratory has it"
+    Laboratory, "fake phong: diffuse light from a Blinn texture matches the laboratory"
                     * technique("fakephong.blinn-map")) {
     show(make_ball(5));
     point_light({0.6f, 1.5f, 3});
@@ -150,8 +149,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory,
-    "fake phong: four of seven lights have diffuse terms, vertices are lit by the rest") {
+    Laboratory, "fake phong: four of seven lights have diffuse terms, the others are per vertex") {
     show(make_ball(5));
     rendering.blinn_diffuse = true;
     std::vector<Entity> lights;
@@ -174,7 +172,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: without the perspective divide methods are as the laboratory has them"
+    Laboratory, "fake phong: without the perspective divide methods match the laboratory"
                     * technique("fakephong.texmap")) {
     show(make_spread_triangle());
     // The triangle leans away, within the image: Mesa 22.3 clips at its border with perspective.
@@ -194,7 +192,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: without the perspective divide a texture lies where the screen says"
+    Laboratory, "fake phong: without the perspective divide a texture is linear on the screen"
                     * technique("fakephong.texmap")) {
     // Along the lower edge w grows from 1 to 3 and u from 0 to 1; the left half of the texture is
     // black. In perspective that is up to a half of u, at 3/4 of the edge on the screen.
@@ -283,19 +281,19 @@ TEST_CASE_FIXTURE(
     directional_light({0.3f, 0.2f, 1});
     rendering.infinite_viewer = true;
     const RenderView centered = look({0, 0, 2}, {0, 0, 0}, 129, 129);
-    const auto middle = [&](ShadingRate rate) {
+    const auto center_color = [&](ShadingRate rate) {
         rendering.shading = rate;
         world.insert_resource(rendering);
         return rgb_at(radiance(centered), 64, 64);
     };
-    const Vec3 pixel = middle(ShadingRate::Pixel);
-    const Vec3 taylor = middle(ShadingRate::Taylor);
+    const Vec3 pixel = center_color(ShadingRate::Pixel);
+    const Vec3 taylor = center_color(ShadingRate::Taylor);
     CHECK(glm::length(taylor - pixel) < 1e-3f);
-    CHECK(glm::length(middle(ShadingRate::Vertex) - pixel) > 0.02f);
+    CHECK(glm::length(center_color(ShadingRate::Vertex) - pixel) > 0.02f);
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "fake phong: without its defects the hardware of 2002 draws what is meant"
+    Laboratory, "fake phong: without its defects the hardware of 2002 draws the intended image"
                     * technique("fakephong.hw-blinn, fakephong.hw-quadratic")) {
     show(make_ball(5));
     world.get<WorldTransform>(object).world = affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.9f));
@@ -408,8 +406,7 @@ TEST_CASE_FIXTURE(Laboratory, "fake phong: bad input leaves no NaN and no negati
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory,
-    "fake phong: no method leaves a hole, nor shows what lies a hair's breadth behind") {
+    Laboratory, "fake phong: no method leaves a hole or shows a surface just behind") {
     const MeshId ball = add(make_ball(16));
     const MeshId square = add(make_square());
     const MaterialId red = add(Material{
@@ -420,7 +417,7 @@ TEST_CASE_FIXTURE(
     }
     place(square, red, at({0, 0.3f, 0}));
     place(square, shiny, at({0, 0.3f, 3e-6f}));
-    // Walls and a floor that reach past the edges of the image and behind the eye.
+    // Walls and a floor that extend beyond the edges of the image and behind the eye.
     for (const auto& [point, target] :
          {std::pair(Vec3(0, -0.7f, 0), Vec3(0.1f, -10, 0.2f)),
           std::pair(Vec3(-1.1f, 0, 0), Vec3(-10, 0.3f, 0.1f))}) {
@@ -430,13 +427,13 @@ TEST_CASE_FIXTURE(
     }
     directional_light({0.2f, 0.4f, 1});
     const RenderView view = look({0.37f, 0.51f, 2.9f}, {0.1f, -0.05f, 0}, 323, 201);
-    const auto seen = [&](ShadingRate rate) {
+    const auto rendered = [&](ShadingRate rate) {
         world.insert_resource(Rendering{.shading = rate});
         return radiance(view);
     };
-    const gpu::FloatImage pixel = seen(ShadingRate::Pixel);
+    const gpu::FloatImage pixel = rendered(ShadingRate::Pixel);
     for (const NamedRate& named : kRates) {
-        const gpu::FloatImage image = seen(named.rate);
+        const gpu::FloatImage image = rendered(named.rate);
         int holes = 0;
         int leaks = 0;
         for (int y = 1; y + 1 < view.height; ++y) {
@@ -464,7 +461,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "highlight layers: sphere maps have one per material, as long as there is room"
+    "highlight layers: sphere maps have one per material, up to the limit"
     * technique("fakephong.blinn-texture")) {
     std::vector<Material> materials = {
         {.shading = ShadingModel::Blinn, .shininess = 80},
@@ -478,7 +475,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "highlight layers: a thousand exponents share those that there is room for"
+    "highlight layers: a thousand exponents share the available layers"
     * technique("fakephong.blinn-texture")) {
     std::vector<Material> materials;
     for (int i = 0; i < 1000; ++i) {

@@ -86,7 +86,7 @@ full_quad(float w_left, float w_right, const Vec3& left, const Vec3& right, floa
     return {at(-1, -1), at(1, -1), at(1, 1), at(-1, -1), at(1, 1), at(-1, 1)};
 }
 
-// The cube of the book: vertex numbers of its six faces. They turn clockwise, seen from outside.
+// The cube of the book: vertex numbers of its six faces. They are clockwise from outside.
 constexpr int kCubeFaceVertices[6][4] = {{0, 1, 2, 3}, {3, 2, 6, 7}, {7, 6, 5, 4},
                                          {4, 5, 1, 0}, {5, 6, 2, 1}, {7, 4, 0, 3}};
 Vec3 cube_vertex(int i) {
@@ -156,7 +156,7 @@ RenderView cube_view(const Vec3& eye) {
 // ---- shade.pipeline-model --------------------------------------------------------------------
 
 TEST_CASE_FIXTURE(
-    PairTest, "pipeline: interpolation is that of space, not of the screen"
+    PairTest, "pipeline: interpolation is linear in space, not on the screen"
                   * technique("shade.pipeline-model")) {
     draw(full_quad(1, 3, Vec3(0), Vec3(1)));
     const gpu::FloatImage image = gpu::read_floats(color);
@@ -199,7 +199,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "pipeline: a mesh without tangents goes without its normal map, and says so once"
+    Scene, "pipeline: a mesh without tangents is drawn without its normal map, and logged once"
                * technique("shade.pipeline-model")) {
     MeshData mesh = make_square();
     mesh.name = "sheet";
@@ -286,7 +286,7 @@ TEST_CASE_FIXTURE(
 // ---- shade.parameters ------------------------------------------------------------------------
 
 TEST_CASE_FIXTURE(
-    RenderTest, "parameters: programs of meshes read what meshes have, and all of it"
+    RenderTest, "parameters: programs of meshes read exactly the attributes that meshes have"
                     * technique("shade.parameters")) {
     std::set<int> read;
     for (const char* fragment : {"gbuffer.frag", "shadow_map.frag"}) {
@@ -314,7 +314,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "parameters: what does not flow from end to end is a context error"
+    RenderTest, "parameters: varyings that do not match between stages are a context error"
                     * technique("shade.parameters")) {
     gpu::ShaderFiles files;
     files.put("pass.vert", kPassVertex);

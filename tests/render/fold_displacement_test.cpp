@@ -129,7 +129,7 @@ int range_of(const std::vector<int>& ends) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FoldScene, "fold displacement: skin moves as high as folds that keep its length"
+    FoldScene, "fold displacement: skin is displaced as high as folds that keep its length"
                    * technique("wrinkle.displacement")) {
     for (const float weight : {0.25f, 0.5f, 1.0f}) {
         const float left = 1 + weight * (kLeft - 1);
@@ -240,8 +240,7 @@ TEST_CASE_FIXTURE(
     CHECK(different(radiance(front)) > 100);
 }
 
-TEST_CASE_FIXTURE(
-    FoldScene, "fold displacement: with distance it fades to nothing, without a jump") {
+TEST_CASE_FIXTURE(FoldScene, "fold displacement: it fades out with distance, without a jump") {
     const Entity entity = tube(1, 1);
     const auto highest = [&](float until) {
         world.get<WrinkleSurface>(entity).displacement_until = until;
@@ -265,7 +264,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FoldScene, "fold displacement: methods that only shade, or cover, displace nothing") {
+    FoldScene, "fold displacement: methods that only shade or cover displace nothing") {
     const auto folds = [&](const WrinkleSurface& surface) {
         const Entity entity = skin(make_seamed_tube(), surface, 1);
         const std::size_t count = read(entity).folds.size();

@@ -104,7 +104,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fold light: with all bounces a wall of skin is as bright as by radiosity, to 3 % of the light"
+    "fold light: with all bounces a wall of skin matches radiosity, to 3 % of the light"
     * technique("wrinkle.fold-light")) {
     for (const double albedo : {0.1, 0.3, 0.6}) {
         std::vector<Vec4> inputs;
@@ -129,7 +129,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fold light: in light from all around a groove is as bright as by radiosity, to 2.5 %"
+    "fold light: in ambient light a groove is as bright as by radiosity, to 2.5 %"
     * technique("wrinkle.fold-light")) {
     std::vector<Vec4> inputs;
     for (const float slope : {0.0f, 10.0f, 25.0f, 40.0f, 50.0f, 60.0f}) {
@@ -194,8 +194,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FoldLightScene,
-    "fold light: skin without folds is as without, to the bit" * technique("wrinkle.fold-light")) {
+    FoldLightScene, "fold light: skin without folds is bit-identical to skin without the effect"
+                        * technique("wrinkle.fold-light")) {
     CHECK(center_pixel(kFolds, 0) == center_pixel(kSingleSlopes, 0));
     CHECK(center_pixel(kFolds, 0) == center_pixel({.method = WrinkleMethod::None}, 0));
     turn_light(glm::normalize(Vec3{0.8f, -0.3f, 0.2f}));

@@ -106,8 +106,7 @@ TEST_CASE_FIXTURE(
         == "ba");  // one layer is not all
 }
 
-TEST_CASE_FIXTURE(
-    test::RenderTest, "frame graph: writing an imported texture is reason enough to run") {
+TEST_CASE_FIXTURE(test::RenderTest, "frame graph: a pass that writes an imported texture runs") {
     FrameGraph graph(device());
     gpu::Texture outside("outside", {.format = GL_RGBA8, .width = 4, .height = 4});
     outside.clear({1, 1, 1, 1});
@@ -126,7 +125,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "frame graph: textures whose lives do not overlap share memory") {
+    test::RenderTest, "frame graph: textures whose lifetimes do not overlap share memory") {
     FrameGraph graph(device());
     graph.begin_frame();
     // A chain a -> b -> c -> d needs two textures at a time.
@@ -144,7 +143,7 @@ TEST_CASE_FIXTURE(
         }
     }
     const TextureId other =
-        graph.create(spec("other", GL_RGBA16F));  // another format shares with nobody
+        graph.create(spec("other", GL_RGBA16F));  // another format shares no memory
     graph.add_pass("other", {}, {other}, nothing);
     graph.keep(chain[3]);
     graph.keep(other);
@@ -161,7 +160,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "frame graph: a kept texture shares with nobody, also when kept by name") {
+    test::RenderTest, "frame graph: a kept texture shares no memory, also when kept by name") {
     FrameGraph graph(device());
     const auto frame = [&] {
         graph.begin_frame();
@@ -187,8 +186,7 @@ TEST_CASE_FIXTURE(
     CHECK(graph.texture_names() == std::vector<std::string_view>{"gbuffer.normal", "b", "c"});
 }
 
-TEST_CASE_FIXTURE(
-    test::RenderTest, "frame graph: a name that is kept runs the passes that make it") {
+TEST_CASE_FIXTURE(test::RenderTest, "frame graph: passes that write a texture kept by name run") {
     FrameGraph graph(device());
     graph.keep_named("debug");
     graph.begin_frame();
@@ -199,8 +197,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest,
-    "frame graph: after the first frame nothing is made, after a resize the old is freed") {
+    test::RenderTest, "frame graph: after the first frame nothing is created, after a resize old "
+                      "textures are freed") {
     FrameGraph graph(device());
     const auto frame = [&](int size) {
         graph.begin_frame();
@@ -227,7 +225,7 @@ TEST_CASE_FIXTURE(
     CHECK(gpu::live_objects(gpu::ObjectKind::Framebuffer) == framebuffers);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "frame graph: a mistake in the declaration is named") {
+TEST_CASE_FIXTURE(test::RenderTest, "frame graph: a wrong declaration is named") {
     FrameGraph graph(device());
     const auto message = [&] {
         const Status status = graph.validate();
@@ -297,7 +295,7 @@ TEST_CASE_FIXTURE(
     CHECK(graph.stats().barriers == 1);  // for whoever reads it after the frame
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "frame graph: what compute shaders write the next pass reads") {
+TEST_CASE_FIXTURE(test::RenderTest, "frame graph: the next pass reads what compute shaders write") {
     gpu::ShaderFiles files;
     files.put("write.comp", R"(#version 450
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -365,7 +363,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "frame graph: one layer of a cube is drawn a
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "frame graph: every pass is timed on both sides, equal names together") {
+    test::RenderTest, "frame graph: every pass is timed on CPU and GPU, equal names together") {
     FrameGraph graph(device());
     double last_frame_ms = 0;
     for (int i = 0; i < 20; ++i) {

@@ -24,14 +24,14 @@ void set_opaque(ImageData& image, int x, int y) {
     image.pixels[4 * static_cast<std::size_t>(y * image.width + x) + 3] = 1;
 }
 
-/// The share of a frame that an inset leaves out.
-float share(std::uint32_t inset) {
+/// The fraction of a frame that an inset cuts off.
+float fraction(std::uint32_t inset) {
     return static_cast<float>(inset) / static_cast<float>(layout::kInsetSteps);
 }
 
 }  // namespace
 
-TEST_CASE("frame insets: nothing that a filter shows is left out, and little more stays") {
+TEST_CASE("frame insets: no visible texel is cut off, and few invisible ones are kept") {
     for (int corner = 0; corner < 40; ++corner) {
         const int left = corner % 20;
         const int top = (7 * corner) % 17;
@@ -49,10 +49,10 @@ TEST_CASE("frame insets: nothing that a filter shows is left out, and little mor
         const FrameInsets found =
             find_insets(image, kFrames, kFrames, static_cast<std::uint32_t>(frame));
         const auto fits = [](std::uint32_t inset, int transparent) {
-            const float texels = share(inset) * kFrame;
+            const float texels = fraction(inset) * kFrame;
             const float filtered = static_cast<float>(transparent) - 0.5f;
-            const bool keeps_what_is_seen = texels <= std::max(filtered, 0.0f);
-            return keeps_what_is_seen && texels >= filtered - 1;
+            const bool keeps_what_is_visible = texels <= std::max(filtered, 0.0f);
+            return keeps_what_is_visible && texels >= filtered - 1;
         };
         CHECK(fits(found.left, left));
         CHECK(fits(found.top, top));
@@ -61,17 +61,17 @@ TEST_CASE("frame insets: nothing that a filter shows is left out, and little mor
     }
 }
 
-TEST_CASE("frame insets: of a frame without anything a speck is left, of a full one all") {
+TEST_CASE("frame insets: an empty frame keeps a few texels, a full one all") {
     ImageData image = make_book();
     const FrameInsets empty = find_insets(image, kFrames, kFrames, 4);
-    CHECK(share(empty.left + empty.right) < 1);
-    CHECK(share(empty.left + empty.right) > 0.95f);
-    CHECK(share(empty.bottom + empty.top) > 0.95f);
+    CHECK(fraction(empty.left + empty.right) < 1);
+    CHECK(fraction(empty.left + empty.right) > 0.95f);
+    CHECK(fraction(empty.bottom + empty.top) > 0.95f);
     std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{255});
     CHECK(find_insets(image, kFrames, kFrames, 4) == FrameInsets{});
 }
 
-TEST_CASE("frame insets: no frame is read beyond the image, none of an image that is broken") {
+TEST_CASE("frame insets: no frame is read beyond the image, and none of an invalid image") {
     ImageData image = make_book();
     CHECK(find_insets(image, 5, 1, 0) == FrameInsets{});
     CHECK(find_insets(image, 0, 1, 0) == FrameInsets{});
@@ -82,7 +82,7 @@ TEST_CASE("frame insets: no frame is read beyond the image, none of an image tha
     CHECK(table.find(image, {1}, 64, 64).empty());
 }
 
-TEST_CASE("frame insets: each is a digit of a float, which holds them all") {
+TEST_CASE("frame insets: all four are packed as digits of one float") {
     constexpr std::uint32_t kMost = layout::kInsetSteps / 2 - 1;
     const FrameInsets all = {kMost, kMost - 1, 1, kMost};
     double rest = static_cast<double>(pack_insets(all));
@@ -93,7 +93,7 @@ TEST_CASE("frame insets: each is a digit of a float, which holds them all") {
     CHECK(rest == 0);
 }
 
-TEST_CASE("frame insets: a table finds those of an image anew only for other assets") {
+TEST_CASE("frame insets: a table recomputes the insets of an image only for other assets") {
     FrameInsetTable table;
     table.use_assets(1);
     ImageData image = make_book();

@@ -1,4 +1,5 @@
-// Furrows on entities: their images reach materials, and the views of the editor show them.
+// Furrows on entities: their images are uploaded to materials, and visualized by the views of the
+// editor.
 
 #include "content/bake/furrow_skin.h"
 #include "content/make/patterns/furrow_patterns.h"
@@ -111,7 +112,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "furrow view: two lines for each vertex, or for each edited one alone"
+    "furrow view: two lines for each vertex, or only for edited ones"
     * technique("wrinkle.furrow.view-modes")) {
     FurrowScene scene({{{0.2f, 0.1f, 0}}, {{-0.3f, 0, 0}}, {{0, 0.4f, 0}}});
     scene.world.run(update_furrow_skins);
@@ -154,7 +155,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FurrowScene, "furrow view: the height field is as bright as it is high"
+    FurrowScene, "furrow view: the brightness of the height field is its height"
                      * technique("wrinkle.furrow.view-modes")) {
     show({.mode = FurrowMode::Height});
     const gpu::ByteImage image = shot(kSize);
@@ -193,7 +194,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FurrowScene, "furrow view: of a dense mesh in a small image faces stay in sight between marks"
+    FurrowScene, "furrow view: in a small image of a dense mesh faces stay visible between marks"
                      * technique("wrinkle.furrow.view-modes")) {
     show({.mode = FurrowMode::Vectors});
     for (const int size : {512, 40, 20}) {  // the last has less than one pixel per vertex

@@ -88,8 +88,7 @@ Vec2 velocity_at(const gpu::FloatImage& image, int x, int y) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(
-    Scene, "gbuffer: normals of a ball are those of a ball, stretched or mirrored too") {
+TEST_CASE_FIXTURE(Scene, "gbuffer: normals of a ball are correct, also stretched or mirrored") {
     const MeshId ball = add(make_ball(64));
     const MaterialId gray = add(Material{});
     for (const Vec3& scale :
@@ -104,7 +103,7 @@ TEST_CASE_FIXTURE(
         const gpu::FloatImage depth = aov(view, "depth");
         const Mat3 inverse_transpose = glm::transpose(glm::inverse(Mat3(to_mat4(world_from_ball))));
         const Mat4 ball_from_world = glm::inverse(to_mat4(world_from_ball));
-        int seen = 0;
+        int front_normal = 0;
         for (int y = 0; y < 96; y += 3) {
             for (int x = 0; x < 96; x += 3) {
                 if (depth.at(x, y, 0) == kNoDepth) {
@@ -119,16 +118,16 @@ TEST_CASE_FIXTURE(
                 CHECK(glm::length(local) == test::near(1).epsilon(4e-3));
                 const Vec3 want = glm::normalize(inverse_transpose * local);
                 CHECK(glm::dot(want, rgb_at(normals, x, y)) > 0.998f);
-                ++seen;
+                ++front_normal;
             }
         }
-        CHECK(seen > 30);
+        CHECK(front_normal > 30);
     }
 }
 
 TEST_CASE_FIXTURE(
-    Scene,
-    "gbuffer: depth is reversed and gives the distance back" * technique("deferred.gbuffer")) {
+    Scene, "gbuffer: depth is reversed and converts back to the distance"
+               * technique("deferred.gbuffer")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     for (const float distance : {0.06f, 1.0f, 30.0f, 1000.0f}) {
         const RenderView view = look({0, 0, distance}, {0, 0, 0}, 9, 9);
@@ -162,7 +161,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "gbuffer: attributes come back as they were written" * technique("deferred.gbuffer")) {
+    Scene,
+    "gbuffer: attributes are read back as they were written" * technique("deferred.gbuffer")) {
     Material material = {
         .base_color = {0.8f, 0.2f, 0.05f, 1}, .metalness = 0.3f, .roughness = 0.7f};
     material.emission = {0.001f, 3.5f, 900};
@@ -187,7 +187,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "gbuffer: each field keeps its precision beside any of 15 shading models"
+    RenderTest, "gbuffer: each field keeps its precision with any of 15 shading models"
                     * technique("deferred.gbuffer")) {
     // Inputs: model; albedo, of which red is the first number and the others lie elsewhere; the
     // three factors, shifted likewise.
@@ -235,7 +235,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "gbuffer: wrinkled skin keeps its smooth normal in place of emission"
+    RenderTest, "gbuffer: wrinkled skin stores its smooth normal instead of emission"
                     * technique("wrinkle.compression.bump-blend")) {
     std::vector<Vec4> inputs;
     for (int i = 0; i <= 64; ++i) {
@@ -407,13 +407,13 @@ TEST_CASE_FIXTURE(
     const Affine mirrored = affine_from({0, 0, 0}, {1, 0, 0, 0}, {-1, 1, 1});
     CHECK(glm::distance(normal_of({218, 128, 218, 255}, mirrored, 1), Vec3(-s, 0, s)) < 0.01f);
     CHECK(glm::distance(normal_of({128, 218, 218, 255}, mirrored, 1), Vec3(0, s, s)) < 0.01f);
-    // Seen from behind, what was raised is hollow: the whole normal turns round.
+    // From behind, raised detail is hollow: the whole normal is reversed.
     const Affine behind = affine_from({0, 0, 0}, turn({0, 1, 0}, 180), {1, 1, 1});
     CHECK(glm::distance(normal_of({218, 128, 218, 255}, behind, 1), Vec3(s, 0, s)) < 0.01f);
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "gbuffer: texels are decoded to -1 .. 1 and made unit; 128 is a third of a degree off 0"
+    Scene, "gbuffer: texels are decoded to -1 .. 1 and normalized; 128 is a third of a degree off 0"
                * technique("bump.normal-encoding")) {
     const MeshId square = add(make_square());
     for (const std::array<std::uint8_t, 4>& texel : std::vector<std::array<std::uint8_t, 4>>{
@@ -508,20 +508,20 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "gbuffer: backs are seen only of double-sided materials, mirrored or not") {
+    Scene, "gbuffer: back faces are visible only with double-sided materials, mirrored or not") {
     const MeshId square = add(make_square());
     const MaterialId one = add(Material{});
     const MaterialId both = add(Material{.double_sided = true});
-    const auto seen = [&](MaterialId material, float turn_deg, float scale_x) {
+    const auto front_normal = [&](MaterialId material, float turn_deg, float scale_x) {
         world.clear();
         place(square, material, affine_from({0, 0, 0}, turn({0, 1, 0}, turn_deg), {scale_x, 1, 1}));
         return rgb_at(aov(look({0, 0, 1}, {0, 0, 0}, 9, 9), "normal"), 4, 4);
     };
     for (const float scale : {1.0f, -1.0f}) {
-        CHECK(glm::distance(seen(one, 0, scale), Vec3(0, 0, 1)) < 1e-3f);
-        CHECK(seen(one, 180, scale) == Vec3(0));
-        CHECK(glm::distance(seen(both, 0, scale), Vec3(0, 0, 1)) < 1e-3f);
-        CHECK(glm::distance(seen(both, 180, scale), Vec3(0, 0, 1)) < 1e-3f);
+        CHECK(glm::distance(front_normal(one, 0, scale), Vec3(0, 0, 1)) < 1e-3f);
+        CHECK(front_normal(one, 180, scale) == Vec3(0));
+        CHECK(glm::distance(front_normal(both, 0, scale), Vec3(0, 0, 1)) < 1e-3f);
+        CHECK(glm::distance(front_normal(both, 180, scale), Vec3(0, 0, 1)) < 1e-3f);
     }
 }
 
@@ -545,7 +545,8 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: below the cutoff a masked material is a hole"
 // --------------------------------------------------------------------------------------
 
 TEST_CASE_FIXTURE(
-    Scene, "velocity: of a moving, turning plate under a moving camera it is the projection's") {
+    Scene,
+    "velocity: for a moving, rotating plate and a moving camera it is that of the projection") {
     const MeshId square = add(make_square());
     const Affine before = affine_from({-0.2f, 0.05f, 0.1f}, turn({0, 1, 1}, 10), {1, 1, 1});
     const Affine now = affine_from({0, 0, 0}, turn({0, 1, 1}, 14), {1, 1, 1});
@@ -587,7 +588,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "velocity: it is zero in the step of the spawn and for what never moves") {
+TEST_CASE_FIXTURE(Scene, "velocity: it is zero in the step of the spawn and for static instances") {
     const MeshId square = add(make_square());
     const MaterialId gray = add(Material{});
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 9, 9);

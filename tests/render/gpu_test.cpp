@@ -61,8 +61,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: a buffer gives back what was written")
     CHECK(Buffer::of("none", std::span<const int>()).size() == 1);
 }
 
-TEST_CASE_FIXTURE(
-    test::RenderTest, "gpu: LIMN_UNDEFINED=nan shows reads of what nobody has written") {
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: LIMN_UNDEFINED=nan shows reads of uninitialized memory") {
     const char* const found = std::getenv("LIMN_UNDEFINED");
     const std::string before = found != nullptr ? found : "";
     REQUIRE(::setenv("LIMN_UNDEFINED", "nan", 1) == 0);
@@ -81,7 +80,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "gpu: what is written after a clear or a copy on the GPU stays") {
+    test::RenderTest, "gpu: data written after a clear or a copy on the GPU is kept") {
     for (int round = 0; round < 20; ++round) {
         CAPTURE(round);
         constexpr std::size_t kWords = 1 << 18;
@@ -139,7 +138,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: an object carries its label") {
     CHECK(buffer.id() != 0);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: texels come back the way they went, top row first") {
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: texels are read back as uploaded, top row first") {
     // 3 x 2 with rows that are no multiple of four bytes.
     const std::array<std::uint8_t, 18> rgb = {1,  2,  3,  4,  5,  6,  7,  8,  9,
                                               10, 11, 12, 13, 14, 15, 16, 17, 18};
@@ -154,7 +153,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: texels come back the way they went, to
     CHECK(gpu::read_floats(bytes).at(0, 1, 1) == test::near(2.0 / 255.0));
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: floats, integers and depth come back exactly") {
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: floats, integers and depth are read back exactly") {
     const std::array<float, 4> values = {-1.5f, 0.0f, 65504.0f, 0.125f};
     for (const GLenum format : {GL_R32F, GL_R16F}) {
         Texture texture("floats", {.format = format, .width = 2, .height = 2});
@@ -179,7 +178,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: floats, integers and depth come back e
     CHECK(gpu::read_floats(stencil).at(0, 0, 0) == 0.25f);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: layers, faces and levels are told apart") {
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: layers, faces and levels are separate") {
     const std::array<float, 4> one = {1, 1, 1, 1};
     const std::array<float, 4> two = {2, 2, 2, 2};
     for (const GLenum target : {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP}) {
@@ -274,8 +273,7 @@ TEST_CASE_FIXTURE(
     CHECK(gpu::read_floats(target).at(0, 0, 3) == 4.0f);
 }
 
-TEST_CASE_FIXTURE(
-    test::RenderTest, "gpu: setting what is set already calls OpenGL no second time") {
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: redundant state changes do not call OpenGL") {
     const Texture texture("bound", {});
     const Buffer buffer("bound", 256, BufferUse::GpuOnly);
     const auto set_all = [&] {
@@ -293,7 +291,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "gpu: every pipeline state reaches OpenGL and goes back to the default") {
+    test::RenderTest, "gpu: every pipeline state is applied and restored to the default") {
     // A framebuffer without stencil clamps the reference to no bits.
     const Texture target("target", {.format = GL_DEPTH32F_STENCIL8});
     const gpu::Framebuffer framebuffer("target", {}, {&target});
@@ -341,7 +339,7 @@ TEST_CASE_FIXTURE(
     CHECK(glIsEnabled(GL_POLYGON_OFFSET_FILL) == GL_FALSE);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: after an object died bindings are set again") {
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: after an object is deleted bindings are set again") {
     // OpenGL unbinds a dying name and hands it out again (Mesa 22.3 happens not to), so that what
     // is remembered may be another object.
     const Texture texture("bound", {});
@@ -359,7 +357,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: after an object died bindings are set 
     CHECK(static_cast<GLuint>(bound) == texture.id());
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: what a program expects and nobody bound is named") {
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: missing bindings of a program are named") {
     const auto library = make_library(device());
     const gpu::Pipeline copy = load(*library, "copy.frag");
     // Bindings of earlier tests are unknown after their objects died: bind nothing for sure.
@@ -377,7 +375,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: what a program expects and nobody boun
 
 TEST_CASE_FIXTURE(
     test::RenderTest,
-    "gpu: a program's interface is what its shaders say" * technique("shade.program-lifecycle")) {
+    "gpu: a program's interface matches its shaders" * technique("shade.program-lifecycle")) {
     const auto library = make_library(device());
     const gpu::Program& copy = *load(*library, "copy.frag").program;
     CHECK(copy.expect(gpu::BindingKind::UniformBlock, "Scale", 2, 16).ok());
@@ -396,7 +394,8 @@ TEST_CASE_FIXTURE(
         == "full.vert + copy.frag: uniform block Scale of 16 bytes found, expected at most 8");
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: depth test keeps what is nearer, as depth is reversed") {
+TEST_CASE_FIXTURE(
+    test::RenderTest, "gpu: the depth test keeps the nearer fragment, with reversed depth") {
     gpu::ShaderFiles files;
     files.put("at.vert", R"(#version 450
 uniform float depth;
@@ -540,7 +539,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: a query counts the samples that passed
 
 TEST_CASE_FIXTURE(
     test::RenderTest,
-    "gpu: timestamps arrive in order, and a frame too many is skipped, not waited for") {
+    "gpu: timestamps arrive in order, and surplus frames are skipped without waiting") {
     gpu::GpuTimer timer;
     CHECK(timer.take().empty());
     for (int frame = 0; frame < gpu::GpuTimer::kFrames + 2; ++frame) {

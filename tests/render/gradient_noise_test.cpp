@@ -13,10 +13,10 @@
 namespace limn::test::gradient_noise_test {
 namespace {
 
-/// Places within +-`reach` along each axis.
-std::vector<Vec3> places(int count, float reach, unsigned seed) {
+/// Points within +-`range` along each axis.
+std::vector<Vec3> random_points(int count, float range, unsigned seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<float> any(-reach, reach);
+    std::uniform_real_distribution<float> any(-range, range);
     std::vector<Vec3> all;
     for (int i = 0; i < count; ++i) {
         const float x = any(random);
@@ -29,11 +29,10 @@ std::vector<Vec3> places(int count, float reach, unsigned seed) {
 }  // namespace
 
 TEST_CASE(
-    "noise: a million samples stay within 0 and 1 and come close to both"
-    * technique("shade.noise")) {
+    "noise: a million samples stay within 0 and 1 and approach both" * technique("shade.noise")) {
     Vec3 least(1);
     Vec3 most(0);
-    for (const Vec3& p : places(400'000, 1000, 1)) {
+    for (const Vec3& p : random_points(400'000, 1000, 1)) {
         const Vec3 values = {noise(p.x), noise(Vec2(p), 3), noise(p, 4)};
         least = glm::min(least, values);
         most = glm::max(most, values);
@@ -49,7 +48,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "noise: at lattice points it is one half, of any seed and number of octaves"
+    "noise: at lattice points it is one half, for any seed and number of octaves"
     * technique("shade.noise")) {
     for (int x = -5; x <= 5; ++x) {
         for (int y = -5; y <= 5; ++y) {
@@ -62,9 +61,9 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "noise: it is continuous, over cell borders too, and other seeds are other noises"
+    "noise: it is continuous, also across cell borders, and differs between seeds"
     * technique("shade.noise")) {
-    for (const Vec3& p : places(2000, 50, 2)) {
+    for (const Vec3& p : random_points(2000, 50, 2)) {
         const Vec3 on_border = {std::floor(p.x), p.y, p.z};
         for (const Vec3& at : {p, on_border}) {
             for (const float e : {1e-2f, 1e-3f, 1e-4f}) {
@@ -77,14 +76,15 @@ TEST_CASE(
         }
     }
     int same = 0;
-    for (const Vec3& p : places(1000, 50, 3)) {
+    for (const Vec3& p : random_points(1000, 50, 3)) {
         same += std::abs(noise(p, 1) - noise(p, 2)) < 0.01f ? 1 : 0;
     }
     CHECK(same < 100);
 }
 
 TEST_CASE(
-    "noise: NaN, infinity and numbers without fraction give one half" * technique("shade.noise")) {
+    "noise: NaN, infinity and numbers without fractional bits give one half"
+    * technique("shade.noise")) {
     for (const float x : {NAN, INFINITY, -INFINITY, 1e30f, -1e10f, 0x1p23f}) {
         CHECK(noise(x) == 0.5f);
         CHECK(noise(Vec2(0.3f, x), 1, 2) == 0.5f);
@@ -94,11 +94,11 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "noise: CPU and GPU agree to 1e-5, and each with itself to the bit"
+    RenderTest, "noise: CPU and GPU agree to 1e-5, and each is repeatable to the bit"
                     * technique("shade.noise, shade.stdlib")) {
     std::vector<Vec4> inputs;
-    for (const float reach : {3.0f, 1000.0f, 80'000.0f}) {
-        for (const Vec3& p : places(1500, reach, 4)) {
+    for (const float range : {3.0f, 1000.0f, 80'000.0f}) {
+        for (const Vec3& p : random_points(1500, range, 4)) {
             inputs.emplace_back(p, static_cast<float>(inputs.size() % 5 + 1));
         }
     }

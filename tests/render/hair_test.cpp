@@ -202,7 +202,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     RenderTest,
-    "hair lobes: black strands reflect at their surface alone" * technique("hair.shading")) {
+    "hair lobes: black strands reflect only at their surface" * technique("hair.shading")) {
     std::vector<Vec4> inputs;
     for (int i = 0; i < 100; ++i) {
         const auto x = static_cast<float>(i);
@@ -220,7 +220,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: they are those of a fiber summed over its width, to a fifth"
+    RenderTest, "hair lobes: they match a fiber integrated over its width, within a fifth"
                     * technique("hair.shading")) {
     for (const Vec3& color : {Vec3(1), Vec3(0.6f, 0.3f, 0.1f), Vec3(0.05f, 0.03f, 0.02f)}) {
         for (const float across : {0.2f, 0.3f, 0.6f}) {
@@ -258,7 +258,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "hair lobes: light through a strand of a dense body has come through two more"
+    RenderTest, "hair lobes: light through a strand of a dense body has passed two more"
                     * technique("hair.shading")) {
     constexpr Vec3 kBrown = {0.12f, 0.06f, 0.03f};
     for (const float to_viewer : {0.0f, 0.7f}) {
@@ -276,7 +276,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "gbuffer: hair keeps the direction of its strands, and emits nothing") {
+    RenderTest, "gbuffer: hair stores the direction of its strands, and emits nothing") {
     std::vector<Vec4> inputs = {{0, 0, 0, 0}};
     for (int i = 0; i < 50; ++i) {
         const auto x = static_cast<float>(i);
@@ -319,7 +319,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hair: a lit square has the light of those strands that light reaches past others"
+    "hair: a lit square has the light of the strands that are not occluded by others"
     * technique("hair.shading")) {
     constexpr float kDensity = 0.6f;
     const Material hair = hair_of({0.6f, 0.3f, 0.1f}, 0.3f, 0.3f, kDensity, radians(3.0f));

@@ -57,7 +57,7 @@ MeshData make_cube(bool shared_corners) {
     return mesh;
 }
 
-/// Largest distance between vertices that began at the same place.
+/// Largest distance between vertices that were at the same position.
 float widest_gap(const MeshData& mesh, const std::vector<Vec3>& moved) {
     float widest = 0;
     for (std::size_t i = 0; i < moved.size(); ++i) {
@@ -102,7 +102,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "inflate: moved by 0 every bit of a position stays" * technique("shade.inflate")) {
+    RenderTest,
+    "inflate: a distance of 0 keeps every bit of a position" * technique("shade.inflate")) {
     MeshData ball = make_ball(24);
     ball.normals[7] = {0, 0, 0};
     CHECK(inflate_vertices(ball, 0) == ball.positions);
@@ -110,8 +111,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "inflate: a cube's faces part by f sqrt 2, with mean normals they stay together"
-                    * technique("shade.inflate")) {
+    RenderTest,
+    "inflate: a cube's faces separate by f sqrt 2, with averaged normals they stay together"
+        * technique("shade.inflate")) {
     const MeshData split = make_cube(false);
     REQUIRE(split.positions.size() == 24);
     for (const float f : {0.1f, 0.5f, -0.2f}) {
@@ -151,13 +153,13 @@ TEST_CASE_FIXTURE(InflateScene, "inflate: a ball of 1 inflated by 0.2 looks like
     }
 }
 
-TEST_CASE_FIXTURE(InflateScene, "inflate: gaps are seen through") {
+TEST_CASE_FIXTURE(InflateScene, "inflate: the background is visible through gaps") {
     const auto holes = [&](bool shared_corners) {
         world.clear();
         const Entity cube = place(add(make_cube(shared_corners)), add(kMatte), at({0, 0, 0}));
         world.add(cube, Inflate{.distance = 0.3f});
-        // Along a diagonal the corner in front is in the middle: the three faces have left it. The
-        // corner behind is hidden by none of them, either.
+        // Along a diagonal the front corner is at the center: the three faces have separated from
+        // it. The corner behind is hidden by none of them, either.
         const gpu::FloatImage image = radiance(look({2.4f, 2.4f, 2.4f}, {0, 0, 0}, 65, 65));
         return image.at(32, 32, 0) == 0;
     };
@@ -165,7 +167,8 @@ TEST_CASE_FIXTURE(InflateScene, "inflate: gaps are seen through") {
     CHECK_FALSE(holes(true));
 }
 
-TEST_CASE_FIXTURE(InflateScene, "inflate: what grows into the image is drawn, what is NaN is not") {
+TEST_CASE_FIXTURE(
+    InflateScene, "inflate: a mesh that grows into the image is drawn, a NaN distance is not") {
     const Entity entity = ball(1, nullptr);
     world.get<WorldTransform>(entity).world = at({4.2f, 0, 0});
     world.get<PreviousWorldTransform>(entity).world = at({4.2f, 0, 0});
@@ -179,8 +182,8 @@ TEST_CASE_FIXTURE(InflateScene, "inflate: what grows into the image is drawn, wh
 }
 
 TEST_CASE_FIXTURE(
-    InflateScene, "inflate: the shadow is that of what is drawn, and grows with it"
-                      * technique("shade.inflate")) {
+    InflateScene,
+    "inflate: the shadow matches the drawn mesh, and grows with it" * technique("shade.inflate")) {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0, 0, 0}});
     MeshData floor = make_square();
     place(add(std::move(floor)), white, affine_from({0, 0, -3}, {1, 0, 0, 0}, {5, 5, 1}));
@@ -208,7 +211,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    InflateScene, "inflate: a light of shadow volumes gets a map, and says why once") {
+    InflateScene, "inflate: a light with shadow volumes gets a shadow map instead, logged once") {
     ball(1, nullptr);
     const Entity swollen = ball(0.5f, nullptr);
     world.add(swollen, Inflate{});

@@ -61,7 +61,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    CrowdScene, "instancing: together or each by itself, the image is the same"
+    CrowdScene, "instancing: drawn together or separately, the image is the same"
                     * technique("engine.batching, shade.batching")) {
     // shade.batching: one state, then meshes and images of their own, then a state per object,
     // since images of different sizes are in different texture arrays.
@@ -96,7 +96,7 @@ TEST_CASE_FIXTURE(
     CHECK(largest_difference(gpu::read_floats(*apart.radiance), expected) == 0);
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: what is not seen is not drawn") {
+TEST_CASE_FIXTURE(CrowdScene, "instancing: invisible instances are not drawn") {
     const MeshId ball = add(make_ball(4));
     const MaterialId gray = add(Material{});
     crowd(100, ball, gray);
@@ -109,9 +109,9 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: what is not seen is not drawn") {
 }
 
 TEST_CASE_FIXTURE(
-    CrowdScene, "instancing: every instance has its own place and material"
+    CrowdScene, "instancing: every instance has its own transform and material"
                     * technique("engine.material-bind, engine.multi-material")) {
-    // A board of squares, each with the color of its place.
+    // A board of squares, each with the color of its cell.
     const MeshId square = add(make_square());
     constexpr int kCells = 40;
     for (int i = 0; i < kCells * kCells; ++i) {
@@ -133,7 +133,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    CrowdScene, "instancing: materials of one draw look as each in a draw of its own"
+    CrowdScene, "instancing: materials in one draw look the same as in separate draws"
                     * technique("engine.multi-material")) {
     constexpr int kMaterials = 9;
     const MeshId ball = add(make_ball(4));
@@ -195,7 +195,7 @@ TEST_CASE_FIXTURE(
     CHECK(one.pixels == four.pixels);
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: broken instances are not drawn and break nothing") {
+TEST_CASE_FIXTURE(CrowdScene, "instancing: invalid instances are not drawn and do no harm") {
     const MeshId ball = add(make_ball(4));
     const MaterialId gray = add(Material{});
     place(ball, gray, at({NAN, 0, 0}));

@@ -20,7 +20,7 @@ Affine moved_to(float x) {
 
 }  // namespace
 
-TEST_CASE("step jumps: a camera that jumps is shown on the side of its time, at rest, with a cut "
+TEST_CASE("step jumps: a camera that jumps is shown before or after its jump, at rest, with a cut "
           "only in the frame that crosses it") {
     World world;
     const Entity camera =
@@ -56,7 +56,7 @@ TEST_CASE("step jumps: a camera that jumps is shown on the side of its time, at 
 }
 
 TEST_CASE(
-    "step jumps: an entity is shown on the side of its time, whenever motion is measured from") {
+    "step jumps: an entity is shown before or after its jump, whatever the start of the motion") {
     World world;
     const Entity box = world.create();
     const Entity other = world.create();
@@ -76,7 +76,7 @@ TEST_CASE(
     CHECK(world_at(&jumps, other, now, nullptr, {0.5f, 0.5f}).row[0].w == 2);
 }
 
-TEST_CASE("step jumps: of a skin and of morph weights only what jumps is held") {
+TEST_CASE("step jumps: only the joints and morph weights that jump are held") {
     const SkinData skin{.name = "", .joints = {1, 0}, .joint_from_mesh = {Affine{}, Affine{}}};
     Pose pose;
     pose.joints = {moved_to(1), moved_to(2)};

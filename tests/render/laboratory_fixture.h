@@ -132,7 +132,7 @@ class Laboratory : public Scene {
     }
 };
 
-/// One large triangle whose normals spread; its centroid is the middle of its box.
+/// One large triangle whose normals spread; its centroid is the center of its box.
 inline MeshData make_spread_triangle() {
     MeshData mesh;
     mesh.positions = {{-1.5f, 0, 0}, {0, -1.5f, 0}, {1.5f, 1.5f, 0}};

@@ -29,7 +29,7 @@ float srgb(float linear) {
 
 class Methods : public Scene {
   public:
-    Entity ground;  ///< the floor of place_objects()
+    Entity ground;  ///< the floor of add_objects()
 
     void use(LightMethod method) { world.insert_resource(Rendering{method}); }
 
@@ -57,7 +57,7 @@ class Methods : public Scene {
     }
 
     /// A room of unlike things: a floor, balls of all shading models, a leaf with holes.
-    void place_objects() {
+    void add_objects() {
         const MeshId square = add(make_square());
         const MeshId ball = add(make_ball(12));
         const MaterialId stone =
@@ -121,7 +121,7 @@ TEST_CASE_FIXTURE(
     Methods, "light methods: all five make the same image"
                  * technique("deferred.light-volume, engine.depth-first, engine.light-loops, "
                              "light.structure-object-major")) {
-    place_objects();
+    add_objects();
     light(40);
     // From aside, from within the lights, with a light before the near plane.
     for (const RenderView& view : {from_aside(), look({0.2f, -1, 1}, {0, 3, 1}, kWidth, kHeight)}) {
@@ -151,7 +151,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     Methods, "light methods: images of single lights add up to that of all"
                  * technique("light.structure-light-major")) {
-    place_objects();
+    add_objects();
     const RenderView view = from_aside();
     world.resource<Environment>().intensity = 0;
     const Entity lamps[] = {
@@ -180,7 +180,7 @@ TEST_CASE_FIXTURE(
         for (int i = 0; i < 3; ++i) {
             switch_on(i);
             const gpu::FloatImage one = picture(method, view);
-            int unlit = 0;  // emissive pixels that this light does not reach
+            int unlit = 0;  // emissive pixels outside the range of this light
             for (std::size_t p = 0; p < sum.size(); p += static_cast<std::size_t>(all.channels)) {
                 unlit += dark.pixels[p] > 0 && one.pixels[p] == dark.pixels[p] ? 1 : 0;
             }
@@ -209,7 +209,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     Methods, "light methods: shadows and projected images are the same in all five"
                  * technique("light.structure-object-major")) {
-    place_objects();
+    add_objects();
     ImageData stripes;
     stripes.width = 8;
     stripes.height = 8;
@@ -243,8 +243,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods,
-    "light methods: surfaces in one place are lit once" * technique("engine.light-loops")) {
+    Methods, "light methods: coincident surfaces are lit once" * technique("engine.light-loops")) {
     // Two floors, and more lights than a stencil has numbers.
     floor();
     place(
@@ -265,8 +264,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "light methods: broken lights are left out, odd ones draw the same in all") {
-    place_objects();
+    Methods, "light methods: invalid lights are skipped, unusual ones look the same in all") {
+    add_objects();
     light(6);
     const RenderView view = from_aside();
     const gpu::FloatImage good = picture(LightMethod::Clustered, view);
@@ -280,7 +279,7 @@ TEST_CASE_FIXTURE(
         CAPTURE(static_cast<int>(method));
         CHECK(largest_difference(good, picture(method, view)) < 2e-3f);
     }
-    // Endless, everywhere at once, in a ball, with its cones the wrong way round or none.
+    // Unbounded, without a position, inside a ball, with swapped cones or none.
     shine(PointLight{.intensity = 0.1f, .radius = -3}, at(up));
     shine(PointLight{.intensity = 0.1f, .radius = 1e30f}, at(up));
     shine(PointLight{.intensity = 0.1f, .radius = 2}, at({-5, 0, 1}));
@@ -301,7 +300,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "light methods: where a light is shadowed the others alone light"
+    Methods, "light methods: where a light is shadowed only the others light"
                  * technique("light.structure-light-major")) {
     floor();
     place(add(make_ball(12)), add(Material{}), affine_from({0, 0, 1}, {1, 0, 0, 0}, Vec3(0.5f)));
@@ -317,7 +316,7 @@ TEST_CASE_FIXTURE(
         const gpu::FloatImage both = picture(method, view);
         world.get<PointLight>(above).enabled = false;
         const gpu::FloatImage one = picture(method, view);
-        // Under the ball, in the middle of its shadow; and beside it.
+        // Under the ball, at the center of its shadow; and beside it.
         const Vec3 shadowed = rgb_at(both, 32, 36);
         CHECK(glm::distance(shadowed, rgb_at(one, 32, 36)) < 1e-5f);
         CHECK(rgb_at(both, 60, 50).x > 1.5f * rgb_at(one, 60, 50).x);
@@ -327,7 +326,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     Methods, "light methods: object-major draws each object once, whatever the lights"
                  * technique("engine.light-loops, light.structure-object-major")) {
-    place_objects();
+    add_objects();
     const RenderView view = from_aside();
     light(3);
     const int few = draws(LightMethod::ObjectMajor, view);
@@ -347,7 +346,7 @@ TEST_CASE_FIXTURE(
     const RenderView view = look({0, 0, 12}, {0, 0, 0}, kWidth, kHeight);
     const int none = draws(LightMethod::LightMajor, view);
     const Entity lamp = shine(PointLight{.radius = 2}, at({0, 0, 2.5f}));
-    CHECK(draws(LightMethod::LightMajor, view) == none + 1);  // reaches the middle one alone
+    CHECK(draws(LightMethod::LightMajor, view) == none + 1);  // only the center one is in its range
     world.get<PointLight>(lamp).radius = 4;                   // and its neighbors
     CHECK(draw(view).statistics.lit_objects == 3);
     world.get<PointLight>(lamp).radius = 0;  // all
@@ -409,8 +408,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "light volumes: nothing is lit where nothing is; a camera inside sees as from outside"
-                 * technique("deferred.light-volume, light.volume-stencil")) {
+    Methods,
+    "light volumes: the background is not lit; a camera inside sees the same as from outside"
+        * technique("deferred.light-volume, light.volume-stencil")) {
     const RenderView empty = look({0, 0, 10}, {0, 0, 0}, 64, 64);
     shine(PointLight{.radius = 5}, at({0, 0, 2}));
     const gpu::FloatImage nothing = picture(LightMethod::Volumes, empty);
@@ -427,7 +427,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "depth first: overlapping squares are lit once a pixel, in any order"
+    Methods, "depth first: overlapping squares are lit once per pixel, in any order"
                  * technique("engine.depth-first, shade.z-prepass")) {
     const MeshId square = add(make_square());
     const MaterialId plain = add(Material{});
@@ -453,8 +453,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "depth first: lighting leaves the depth as it was" * technique("shade.z-prepass")) {
-    place_objects();
+    Methods, "depth first: lighting does not change the depth" * technique("shade.z-prepass")) {
+    add_objects();
     light(12);
     const RenderView view = from_aside();
     use(LightMethod::Clustered);
@@ -466,7 +466,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "light methods: holes, mirrored and turned surfaces are the same in all"
+    Methods, "light methods: holes, mirrored and back-facing surfaces are the same in all"
                  * technique("engine.depth-first, shade.z-prepass")) {
     ImageData image;
     image.width = 8;
@@ -481,7 +481,7 @@ TEST_CASE_FIXTURE(
     leaf.alpha_mode = AlphaMode::Mask;
     leaf.double_sided = true;
     place(add(make_square()), add(leaf), affine_from({0, 0, 0.5f}, {1, 0, 0, 0}, {-1, 1, 1}));
-    place_objects();
+    add_objects();
     light(12);
     const RenderView view = from_aside();
     const gpu::FloatImage clustered = picture(LightMethod::Clustered, view);
@@ -492,7 +492,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "visibility sets: a light's objects are those whose boxes meet its sphere, in order"
+    "visibility sets: a light's objects are those whose boxes intersect its sphere, in order"
     * technique("engine.visibility-sets")) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> unit(-1, 1);
@@ -507,7 +507,7 @@ TEST_CASE(
         boxes.push_back({c - h, c + h});
     }
     for (int n = 0; n < 50; ++n) {
-        const LightReach light = {
+        const LightRange light = {
             20.0f * Vec3(unit(random), unit(random), unit(random)), 4 + 3 * unit(random)};
         std::vector<std::uint32_t> found;
         append_objects_of_light(light, blocks, 1500, found);
@@ -523,9 +523,9 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "visibility sets: a light lights of what is seen what it reaches, and nothing else"
+    Methods, "visibility sets: a light is drawn for exactly the visible objects within its range"
                  * technique("engine.visibility-sets")) {
-    // A row of balls 4 m apart; the camera sees the middle ones.
+    // A row of balls 4 m apart; the ones in the center are in view.
     const MeshId ball = add(make_ball(6));
     const MaterialId plain = add(Material{});
     constexpr int kBalls = 21;
@@ -541,28 +541,28 @@ TEST_CASE_FIXTURE(
             world.get<PointLight>(lamp).radius = radius;
             world.get<WorldTransform>(lamp).world = at({x, 0, 0});
             // V, the light's objects and I, by hand: the pyramid's sides are 26.67 m away at the
-            // balls' middles, in a plane of slope 16 / 9, and the balls' boxes reach 1 m farther.
-            int seen = 0;
+            // balls' centers, in a plane of slope 16 / 9, and the balls' boxes extend 1 m farther.
+            int visible_count = 0;
             int lit = 0;
-            const bool light_seen = (x - 15 * 16 / 9.0f) / std::hypot(1.0f, 16 / 9.0f) < radius;
+            const bool light_visible = (x - 15 * 16 / 9.0f) / std::hypot(1.0f, 16 / 9.0f) < radius;
             for (int i = 0; i < kBalls; ++i) {
                 const bool visible = std::abs(x_of(i)) - 1 < 28.4f;
                 const float gap = std::max(std::abs(x_of(i) - x) - 1, 0.0f);
-                seen += visible ? 1 : 0;
-                lit += visible && light_seen && gap <= radius ? 1 : 0;
+                visible_count += visible ? 1 : 0;
+                lit += visible && light_visible && gap <= radius ? 1 : 0;
             }
             const FrameStatistics found = draw(view).statistics;
             CAPTURE(radius);
             CAPTURE(x);
-            CHECK(found.visible_instances == seen);
+            CHECK(found.visible_instances == visible_count);
             CHECK(found.lit_objects == lit);
         }
     }
 }
 
 TEST_CASE_FIXTURE(
-    Methods, "visibility sets: what is not seen itself still casts its shadow"
-                 * technique("engine.visibility-sets")) {
+    Methods,
+    "visibility sets: invisible objects still cast shadows" * technique("engine.visibility-sets")) {
     floor();
     const RenderView view = look({0, 0, 3}, {0, 0, 0}, 32, 32);
     const Entity lamp = shine(PointLight{.intensity = 30, .radius = 30}, at({12, 0, 4}));
@@ -576,7 +576,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "visibility sets: objects' lists of lights say the same as lights' lists of objects"
+    "visibility sets: the objects' lists of lights match the lights' lists of objects"
     * technique("engine.visibility-sets")) {
     const LightObjects found = {
         .lights = {2, 3, 7}, .begin = {0, 3, 3, 5}, .objects = {0, 2, 4, 2, 3}};
@@ -590,7 +590,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("visibility sets: draws of lights take neighbors of equal mesh together and no others") {
+TEST_CASE(
+    "visibility sets: draws of a light merge consecutive instances of equal mesh and no others") {
     // Two runs: meshes of 3 and 2 instances, then one of 4.
     const DrawCommand commands[] = {{6, 3, 0, 0, 0}, {9, 2, 6, 0, 3}, {12, 4, 15, 0, 5}};
     InstanceList list;

@@ -43,7 +43,7 @@ oracle::ClassicMaterial as_oracle(const Material& m) {
         .shininess = m.shininess};
 }
 
-/// A plane of side 2 in z = 0, seen from (0, 0, 1): pixel (x, y) of an n x n image shows this
+/// A plane of side 2 in z = 0, viewed from (0, 0, 1): pixel (x, y) of an n x n image shows this
 /// point.
 Vec3 plane_point(int x, int y, int n) {
     const auto to_plane = [n](int i) {
@@ -74,7 +74,7 @@ double deviation(const gpu::FloatImage& image, Reference&& reference) {
 
 struct PlaneScene : Scene {
     explicit PlaneScene(const Material& material = matte({1, 1, 1})) {
-        place(add(make_square()), add(material), at({0, 0, 0}));
+        position(add(make_square()), add(material), at({0, 0, 0}));
     }
     [[nodiscard]] RenderView view() const { return look({0, 0, 1}, {0, 0, 0}, kSide, kSide); }
     gpu::FloatImage picture() { return radiance(view()); }
@@ -109,10 +109,10 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "light: the smooth fall-off has the values of engine.light-falloff"
+    "light: the smooth falloff has the values of engine.light-falloff"
     * technique("char.skin-shade, engine.light-falloff")) {
-    const auto value = [](float m, double share) {
-        return oracle::attenuation(smooth(m), 8, 8 * share);
+    const auto value = [](float m, double fraction) {
+        return oracle::attenuation(smooth(m), 8, 8 * fraction);
     };
     CHECK(value(1, 0) == test::near(1));
     CHECK(value(1, 0.5) == test::near(0.75));
@@ -130,7 +130,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "light: no fall-off ever rises with the distance, and each ends at the radius"
+    "light: no falloff increases with distance, and each ends at the radius"
     * technique("light.attenuation")) {
     for (const Attenuation& a :
          {Attenuation{}, polynomial(1, 0.7f, 1.8f), smooth(3),
@@ -172,7 +172,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("light: lit gates specular where the light has set" * technique("light.lit")) {
+TEST_CASE(
+    "light: lit has no specular term where the light is below the horizon"
+    * technique("light.lit")) {
     CHECK(oracle::lit(0.5, 0.8, 2).diffuse == 0.5);
     CHECK(oracle::lit(0.5, 0.8, 2).specular == test::near(0.64));
     CHECK(oracle::lit(-0.1, 0.8, 2).diffuse == 0);
@@ -242,8 +244,7 @@ TEST_CASE(
     CHECK(phong(60, 60) == 0);
 }
 
-TEST_CASE(
-    "light: what a surface makes of light names no type of light" * technique("light.interface")) {
+TEST_CASE("light: reflection does not depend on the type of light" * technique("light.interface")) {
     std::vector<std::string> files = {"lib/reflector.glsl"};
     for (const ShadingModelRow& row : kShadingModels) {
         files.push_back(std::string("shade_") + row.name + ".glsl");
@@ -264,7 +265,7 @@ TEST_CASE(
 TEST_CASE(
     "light: a matte plane under a point light is the closed form to 1e-3"
     * technique("light.point")) {
-    // albedo / pi * I cos / d^2, the light 0.8 m above the middle.
+    // albedo / pi * I cos / d^2, the light 0.8 m above the center.
     PlaneScene scene(matte({0.8f, 0.5f, 0.2f}));
     scene.shine(
         PointLight{.color = {1, 0.5f, 0.25f}, .intensity = 7, .radius = 0}, at({0.0f, 0.0f, 0.8f}));
@@ -284,7 +285,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "light: every fall-off on the GPU equals the oracle"
+    "light: every falloff on the GPU equals the oracle"
     * technique("engine.light-falloff, light.attenuation")) {
     for (const Attenuation& a :
          {Attenuation{}, polynomial(1, 0.7f, 1.8f), polynomial(0, 1, 0), smooth(1), smooth(2.5f),
@@ -322,17 +323,17 @@ TEST_CASE(
             .inner_angle = radians(15),
             .outer_angle = radians(35),
             .profile = profile};
-        const Vec3 place = {0.4f, 0.3f, 0.9f};
+        const Vec3 position = {0.4f, 0.3f, 0.9f};
         const Vec3 target = {-0.1f, 0.1f, 0};
-        scene.shine(light, look_at(place, target));
-        const DVec3 axis = glm::normalize(DVec3(target) - DVec3(place));
+        scene.shine(light, look_at(position, target));
+        const DVec3 axis = glm::normalize(DVec3(target) - DVec3(position));
         CAPTURE(static_cast<int>(profile));
         CHECK(
             deviation(
                 scene.picture(),
                 [&](const Vec3& p) {
                     const oracle::Arriving one =
-                        oracle::arrive(light, DVec3(place), axis, DVec3(p), kUp);
+                        oracle::arrive(light, DVec3(position), axis, DVec3(p), kUp);
                     return oracle::blinn(
                         as_oracle(matte({1, 1, 1})), DVec3(0), {&one, 1}, kUp,
                         glm::normalize(kEye - DVec3(p)));
@@ -430,12 +431,12 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("light: a light behind a shiny plane adds nothing, seen however flat") {
+TEST_CASE("light: a light behind a shiny plane adds nothing, at any grazing angle") {
     for (const ShadingModel model : {ShadingModel::Phong, ShadingModel::Blinn, ShadingModel::Pbr}) {
         Scene scene;
         const Material shiny = {
             .shading = model, .roughness = 0.3f, .specular = {1, 1, 1}, .shininess = 2};
-        scene.place(scene.add(make_square()), scene.add(shiny), at({0, 0, 0}));
+        scene.position(scene.add(make_square()), scene.add(shiny), at({0, 0, 0}));
         scene.shine(PointLight{.intensity = 100}, at({0, 0.8f, -0.1f}));
         for (const float value : scene.radiance(scene.look({0, -1.5f, 0.3f}, {0, 0, 0})).pixels) {
             CHECK((value == 0 || value == 1));  // nothing, or alpha
@@ -504,7 +505,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "light: off and on again restores every bit; off leaves the other light's image"
+    "light: off and on again restores every bit; off leaves the image of the other light"
     * technique("engine.light-object, light.unified")) {
     PlaneScene scene;
     const Entity one = scene.shine(PointLight{}, at({0.3f, 0.1f, 0.6f}));
@@ -524,7 +525,7 @@ TEST_CASE(
     CHECK(largest_difference(scene.picture(), PlaneScene().picture()) == 0);
 }
 
-TEST_CASE("light: without lights only the surroundings light" * technique("light.multi")) {
+TEST_CASE("light: without lights only the environment lights" * technique("light.multi")) {
     PlaneScene scene(matte({0.5f, 0.5f, 0.5f}));
     CHECK(scene.picture().at(5, 5, 0) == 0);
     scene.world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0.4f, 0.6f, 0.8f}});
@@ -555,14 +556,14 @@ TEST_CASE(
 TEST_CASE("light: moving light and plane together changes nothing" * technique("light.point")) {
     const auto picture = [](const Vec3& offset) {
         Scene scene;
-        scene.place(scene.add(make_square()), scene.add(matte({1, 1, 1})), at(offset));
+        scene.position(scene.add(make_square()), scene.add(matte({1, 1, 1})), at(offset));
         scene.shine(PointLight{}, at(offset + Vec3(0.3f, 0.1f, 0.6f)));
         return scene.radiance(scene.look(offset + Vec3(0, 0, 1), offset, kSide, kSide));
     };
     CHECK(largest_difference(picture({0, 0, 0}), picture({8, -4, 16})) <= 2e-2f);
     // One h aside of a light h above the plane the cosine is 0.7071.
     Scene scene;
-    scene.place(scene.add(make_square()), scene.add(matte({1, 1, 1})), at({0, 0, 0}));
+    scene.position(scene.add(make_square()), scene.add(matte({1, 1, 1})), at({0, 0, 0}));
     scene.shine(
         PointLight{.intensity = kPi, .radius = 0, .attenuation = {.falloff = Falloff::None}},
         at({-0.5f, 0, 0.5f}));
@@ -608,7 +609,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "light: a pulse leads the color to another one, no farther than all the way"
+    "light: a pulse blends the color toward another one, not beyond it"
     * technique("engine.periodic")) {
     PlaneScene scene;
     scene.world.insert_resource(FrameTime{.time = 0});
@@ -626,7 +627,7 @@ TEST_CASE(
     CHECK(scene.picture().at(9, 9, 2) == test::near(red).epsilon(1e-3));
 }
 
-TEST_CASE("light: broken lights are left out" * technique("light.directional")) {
+TEST_CASE("light: invalid lights are skipped" * technique("light.directional")) {
     PlaneScene scene;
     const gpu::FloatImage dark = scene.picture();
     scene.shine(PointLight{.color = {NAN, 1, 1}}, at({0, 0, 1}));
@@ -638,7 +639,7 @@ TEST_CASE("light: broken lights are left out" * technique("light.directional")) 
     scene.shine(SpotLight{.outer_angle = NAN}, at({0, 0, 1}));
     CHECK(scene.draw(scene.view()).statistics.lights == 0);
     CHECK(largest_difference(scene.picture(), dark) == 0);
-    // The cones the wrong way round make a hard edge; a negative radius never ends.
+    // Swapped cones make a hard edge; a negative radius is unbounded.
     scene.shine(
         SpotLight{.radius = -1, .inner_angle = radians(60), .outer_angle = radians(20)},
         look_at({0, 0, 1}, {0, 0, 0}));
@@ -648,8 +649,7 @@ TEST_CASE("light: broken lights are left out" * technique("light.directional")) 
 }
 
 TEST_CASE(
-    "light: a light in the plane itself adds nothing and breaks nothing"
-    * technique("light.point")) {
+    "light: a light in the plane itself adds nothing and does no harm" * technique("light.point")) {
     PlaneScene scene;
     scene.shine(PointLight{}, at(plane_point(7, 9, kSide)));
     for (const float value : scene.picture().pixels) {

@@ -84,11 +84,11 @@ std::vector<double> shade_in_view(Moved& m, std::span<const Vertex> vertices) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Scene, "lighting space: object, world and view give what is drawn, by as many products"
+    Scene, "lighting space: object, world and view space give the drawn image, by as many products"
                * technique("shade.lighting-space")) {
-    // A square, turned and moved; the pixel in the middle shows its middle.
+    // A square, rotated and moved; the center pixel shows its center.
     const Quat turn = glm::angleAxis(0.6f, glm::normalize(Vec3(1, 2, 0.5f)));
-    const Vec3 place_ws = {0.4f, -0.3f, 0.2f};
+    const Vec3 center_ws = {0.4f, -0.3f, 0.2f};
     const MaterialId material = add(Material{
         .shading = ShadingModel::Blinn,
         .base_color = {0.6f, 0.6f, 0.6f, 1},
@@ -96,18 +96,18 @@ TEST_CASE_FIXTURE(
         .shininess = 20});
     place(
         add(make_square()), material,
-        affine_from(place_ws, {turn.w, turn.x, turn.y, turn.z}, {1, 1, 1}));
+        affine_from(center_ws, {turn.w, turn.x, turn.y, turn.z}, {1, 1, 1}));
     const Vec3 lamp = {1.2f, 0.8f, 2.2f};
     shine(
         PointLight{.intensity = kPi, .radius = 1000, .attenuation = {.falloff = Falloff::None}},
         at(lamp));
     const Vec3 eye = {0.9f, 0.4f, 2};
-    const RenderView view = look(eye, place_ws, 65, 65);
+    const RenderView view = look(eye, center_ws, 65, 65);
 
     Moved moved;
     moved.world_from_object =
-        glm::translate(DMat4(1.0), DVec3(place_ws)) * glm::mat4_cast(glm::dquat(turn));
-    moved.view_from_world = glm::lookAt(DVec3(eye), DVec3(place_ws), DVec3(0, 1, 0));
+        glm::translate(DMat4(1.0), DVec3(center_ws)) * glm::mat4_cast(glm::dquat(turn));
+    moved.view_from_world = glm::lookAt(DVec3(eye), DVec3(center_ws), DVec3(0, 1, 0));
     moved.light = lamp;
     moved.camera = eye;
     const Vertex vertices[] = {
@@ -130,7 +130,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "lighting space: where a plane is stretched its normal goes by the inverse transpose"
+    Scene, "lighting space: normals of a stretched plane use the inverse transpose"
                * technique("shade.lighting-space")) {
     // The plane x + y = 0, its normal (1, 1, 0) / sqrt 2, twice as long along x.
     MeshData plane = make_square();
@@ -147,12 +147,12 @@ TEST_CASE_FIXTURE(
         affine_from({0, 0, 0}, {1, 0, 0, 0}, {2, 1, 1}));
     const gpu::FloatImage normal = aov(look({1, 2, 0}, {0, 0, 0}), "normal");
     CHECK(glm::distance(rgb_at(normal, 32, 32), Vec3(0.4472f, 0.8944f, 0)) < 1e-3f);
-    // The matrix itself would turn it the wrong way.
+    // The matrix itself would rotate it in the wrong direction.
     CHECK(glm::distance(glm::normalize(Vec3(2 * r, r, 0)), Vec3(0.8944f, 0.4472f, 0)) < 1e-4f);
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "lighting space: distances to lights are meters, however an object is scaled"
+    Scene, "lighting space: distances to lights are in meters, however an object is scaled"
                * technique("shade.lighting-space")) {
     // Polynomial (1, 0.7, 1.8) at 2 m: 0.1042 of the light; at 1 m, as an object of scale 2 would
     // have it, 0.2857.

@@ -10,7 +10,7 @@ namespace limn::test::material_blocks_test {
 namespace {
 
 /// Texel of a block of a kind, counted from the front of the vector.
-std::size_t place_of(const Vec4& blocks, std::uint32_t kind) {
+std::size_t block_offset(const Vec4& blocks, std::uint32_t kind) {
     const auto offsets =
         static_cast<std::uint32_t>(blocks[1 + static_cast<int>(kind / layout::kBlocksPerFloat)]);
     const std::uint32_t offset =
@@ -19,7 +19,7 @@ std::size_t place_of(const Vec4& blocks, std::uint32_t kind) {
     return static_cast<std::size_t>(blocks.x) + offset;
 }
 
-/// Red on the left, green on the right; or the other way round.
+/// Red on the left, green on the right; or reversed.
 ImageData halves(bool red_first = true) {
     ImageData image = {
         .name = "halves", .width = 2, .height = 1, .pixels = {255, 0, 0, 255, 0, 255, 0, 255}};
@@ -51,7 +51,7 @@ class Row : public Scene {
     }
     void put(const Material& material, std::size_t i) {
         const Vec3 p = {2.5f * static_cast<float>(i) - 6.25f, 0, 0};
-        place(square_, add(material), at(p));
+        offsets(square_, add(material), at(p));
     }
     gpu::FloatImage picture() { return radiance(look({0, 0, 6}, {0, 0, 0}, 192, 64)); }
 
@@ -62,26 +62,26 @@ class Row : public Scene {
 
 }  // namespace
 
-TEST_CASE("material blocks: a material has those that it needs, one after the other") {
+TEST_CASE("material blocks: a material has the blocks that it needs, one after another") {
     std::vector<Vec4> blocks(7);  // of others
     CHECK(append_blocks(Material{}, blocks).x == 7);
     CHECK(blocks.size() == 7);
 
     const Material phong = {.shading = ShadingModel::Phong, .specular = {1, 2, 3}, .shininess = 40};
-    const Vec4 place = append_blocks(phong, blocks);
+    const Vec4 offsets = append_blocks(phong, blocks);
     REQUIRE(blocks.size() == 8);
-    CHECK(blocks[place_of(place, layout::kClassicBlock)] == Vec4(1, 2, 3, 40));
+    CHECK(blocks[block_offset(offsets, layout::kClassicBlock)] == Vec4(1, 2, 3, 40));
 
     Material skin = {.shading = ShadingModel::Skin, .skin_color = {4, 5, 6}, .wide_rim = true};
     skin.normal_texture = {.image = {0}, .offset = {0.25f, 0.5f}};
     const Vec4 all = append_blocks(skin, blocks);
     REQUIRE(blocks.size() == 8 + 2 + 1 + 1);
-    CHECK(blocks[place_of(all, layout::kUvBlock) + 1] == Vec4(0.25f, 0.5f, 0, 0));
-    CHECK(blocks[place_of(all, layout::kClassicBlock)].w == 50);
-    CHECK(blocks[place_of(all, layout::kSkinBlock)] == Vec4(4, 5, 6, 1));
+    CHECK(blocks[block_offset(all, layout::kUvBlock) + 1] == Vec4(0.25f, 0.5f, 0, 0));
+    CHECK(blocks[block_offset(all, layout::kClassicBlock)].w == 50);
+    CHECK(blocks[block_offset(all, layout::kSkinBlock)] == Vec4(4, 5, 6, 1));
 }
 
-TEST_CASE("material blocks: beside materials with others, each looks as when alone") {
+TEST_CASE("material blocks: next to materials with other blocks, each looks the same as alone") {
     Row all;
     const std::vector<Material> kinds = all.kinds();
     for (std::size_t i = 0; i < kinds.size(); ++i) {
@@ -93,20 +93,20 @@ TEST_CASE("material blocks: beside materials with others, each looks as when alo
         Row alone;
         alone.put(kinds[i], i);
         const gpu::FloatImage one = alone.picture();
-        int seen = 0;
+        int compared = 0;
         for (std::size_t k = 0; k < one.pixels.size(); k += 4) {
             if (one.pixels[k + 3] > 0) {
                 for (std::size_t c = k; c < k + 3; ++c) {
                     CHECK(one.pixels[c] == test::near(together.pixels[c]).epsilon(1e-4));
                 }
-                ++seen;
+                ++compared;
             }
         }
-        CHECK(seen > 50);
+        CHECK(compared > 50);
     }
 }
 
-TEST_CASE("material blocks: what is in a block does not depend on those before it") {
+TEST_CASE("material blocks: the contents of a block do not depend on previous ones") {
     Row with_uv;
     Material soft = with_uv.kinds()[4];
     with_uv.put(soft, 4);

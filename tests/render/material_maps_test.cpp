@@ -52,7 +52,7 @@ TEST_CASE("material maps: twelve maps in three arrays need three texture units")
     CHECK(units.unit(5) == 2);
 }
 
-TEST_CASE("material maps: a unit is one array, one sampler and one way to decode") {
+TEST_CASE("material maps: a unit is one array, one sampler and one decoding") {
     MapBindings bindings;
     CHECK(bindings.add({.array = 1}) == 0u);
     CHECK(bindings.add({.array = 1, .sampler = 1}) == 1u);
@@ -106,7 +106,8 @@ TEST_CASE_FIXTURE(RenderTest, "image pool: an array has as many layers as a reco
     CHECK(pool.find({last}).layer == 2);
 }
 
-TEST_CASE_FIXTURE(Scene, "material maps: materials that differ in their images are drawn at once") {
+TEST_CASE_FIXTURE(
+    Scene, "material maps: materials that differ only in their images are drawn together") {
     const std::array<std::array<std::uint8_t, 3>, 3> colors = {
         {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}};
     const MeshId square = add(make_square());

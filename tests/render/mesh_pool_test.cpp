@@ -50,7 +50,7 @@ TEST_CASE_FIXTURE(RenderTest, "mesh pool: an edited mesh is uploaded again, othe
         CHECK(pool.meshes()[i].base_vertex == before[i].base_vertex);
         CHECK(read_stream<Vec3>(pool, VertexStream::Position, i) == meshes[i].positions);
     }
-    // One that grew goes where there is room, and its old place is free.
+    // A mesh that grew moves to a larger range, and its old one is free.
     meshes[0] = make_quads(5);
     meshes[0].version = 1;
     pool.update(meshes);
@@ -60,7 +60,7 @@ TEST_CASE_FIXTURE(RenderTest, "mesh pool: an edited mesh is uploaded again, othe
     CHECK(read_stream<Vec3>(pool, VertexStream::Position, 2) == meshes[2].positions);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "mesh pool: a thousand edits and frees take no further memory") {
+TEST_CASE_FIXTURE(RenderTest, "mesh pool: a thousand edits and frees take no additional memory") {
     Assets assets;
     MeshPool pool;
     for (int i = 0; i < 1000; ++i) {
@@ -99,7 +99,8 @@ TEST_CASE_FIXTURE(RenderTest, "mesh pool: growing keeps every stream") {
         == std::vector<Color>(80000, Color{0x3c00, 0x3c00, 0x3c00, 0x3c00}));
 }
 
-TEST_CASE_FIXTURE(RenderTest, "mesh pool: streams exist when a mesh has them, with what stood in") {
+TEST_CASE_FIXTURE(
+    RenderTest, "mesh pool: streams exist once a mesh has them, filled with the stand-in values") {
     std::vector<MeshData> meshes = {make_quads(1)};
     MeshPool pool;
     pool.update(meshes);

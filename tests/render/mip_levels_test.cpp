@@ -54,7 +54,7 @@ double sampled(const gpu::FloatImage& image, const gpu::FloatImage& smaller, int
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    RenderTest, "mip levels: computed, each is the one above at centers of its texels") {
+    RenderTest, "mip levels: each computed level is the finer one sampled at its texel centers") {
     for (const auto& [format, rounding] :
          {std::pair(GL_RGBA32F, 1e-5), std::pair(GL_RG32F, 1e-5), std::pair(GL_RGBA16F, 1e-3)}) {
         for (const IVec2& size : {IVec2(64, 32), IVec2(37, 21), IVec2(1, 9), IVec2(3, 1)}) {
@@ -78,8 +78,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    RenderTest, "mip levels: of sides that are powers of two each has the same mean") {
+TEST_CASE_FIXTURE(RenderTest, "mip levels: with power-of-two sides all levels have the same mean") {
     for (const gpu::Profile profile : kProfiles) {
         const gpu::Texture texture = uneven_texture(profile, GL_RGBA32F, {64, 16});
         for (int c = 0; c < 3; ++c) {

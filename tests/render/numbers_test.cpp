@@ -34,7 +34,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "numbers: NaN and infinity are detected, wha
     }
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "numbers: NaN and infinite motion becomes none") {
+TEST_CASE_FIXTURE(test::RenderTest, "numbers: NaN and infinite motion becomes zero") {
     const float nan = Limits::quiet_NaN();
     const float inf = Limits::infinity();
     const std::vector<Vec4> moved = test::evaluate_shader(

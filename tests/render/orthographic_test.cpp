@@ -66,7 +66,7 @@ TEST_CASE_FIXTURE(Scene, "orthographic: a square is as large and as bright at ev
 }
 
 TEST_CASE_FIXTURE(Scene, "orthographic: parallel edges stay parallel") {
-    // A floor of 1 x 20 m, seen from above at an angle.
+    // A floor of 1 x 20 m, viewed from above at an angle.
     place(
         add(make_square()), add(flat_white()),
         affine_from(
@@ -78,7 +78,7 @@ TEST_CASE_FIXTURE(Scene, "orthographic: parallel edges stay parallel") {
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "orthographic: light and shadow lie on a floor as in perspective") {
+TEST_CASE_FIXTURE(Scene, "orthographic: light and shadow on a floor match perspective") {
     const MeshId square = add(make_square());
     const MaterialId white = add(chalk());
     place(square, white, affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(3)));
@@ -111,7 +111,7 @@ TEST_CASE_FIXTURE(Scene, "orthographic: light and shadow lie on a floor as in pe
     world.destroy(lamp);
 }
 
-TEST_CASE("orthographic: what a moving camera passes moves by as many pixels everywhere") {
+TEST_CASE("orthographic: under a moving camera everything moves by the same number of pixels") {
     const RenderView view = orthographic(at({0.1f, 0, 5}), at({0, 0, 5}), 4);
     for (const float z : {4.0f, 0.0f, -5.0f}) {
         const Vec3 position = {0.3f, -0.7f, z};

@@ -743,7 +743,7 @@ TEST_CASE(
     LightList list;
     add_particle_lights(world, 0.05f, list);
     REQUIRE(list.records.size() == 9);  // the first was not there yet
-    REQUIRE(list.reach.size() == 9);
+    REQUIRE(list.ranges.size() == 9);
     CHECK(list.points == 9);
     for (int i = 1; i < 10; ++i) {
         const layout::LightRecord& record = list.records[static_cast<std::size_t>(i - 1)];

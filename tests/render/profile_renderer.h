@@ -8,7 +8,7 @@
 
 namespace limn::test {
 
-/// A renderer with the choices of a profile, whatever the device; beside the shared one.
+/// A renderer with the choices of a profile, whatever the device; separate from the shared one.
 class ProfileRenderer {
   public:
     explicit ProfileRenderer(gpu::Profile profile, const RenderSettings& settings = {});

@@ -39,7 +39,7 @@ struct WallScene : ShadowTest {
                 .outer_angle = radians(50.0f)},
             at({0, 0, 2}));
     }
-    /// Light at a point of the wall, seen from before it.
+    /// Light at a point of the wall, viewed from in front of it.
     Vec3 at_wall(const gpu::FloatImage& image, const Vec2& p) const {
         const auto pixel = [](float x) { return static_cast<int>((x / 3 * 0.5f + 0.5f) * 96); };
         return rgb_at(image, pixel(p.x), pixel(-p.y));
@@ -81,7 +81,7 @@ TEST_CASE_FIXTURE(
     const Vec3 red = at_wall(image, {-0.5f * half, 0.5f * half});
     CHECK(red.x > 0.5f);
     CHECK(red.y == test::near(0).scale(1));
-    // Seen from before the wall, the lamp's right is ours.
+    // Viewed from in front of the wall, the lamp's right is ours.
     const Vec3 green = at_wall(image, {0.5f * half, 0.5f * half});
     CHECK(green.y > 0.5f);
     CHECK(green.z == test::near(0).scale(1));
@@ -98,7 +98,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "projector: a point behind it gets nothing, and one on its axis the middle of the image"
+    "projector: a point behind it gets nothing, one on its axis the center of the image"
     * technique("shadow.projective-matrix")) {
     const Affine pose = look_at({1, 2, 3}, {1, 0, 3});
     const auto record = make_projector_record({}, LightKind::Spot, pose, 0, 0);
@@ -113,8 +113,8 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: what stands before the wall keeps the image from it"
-                   * technique("shadow.projector")) {
+    WallScene,
+    "projector: objects in front of the wall shadow the image" * technique("shadow.projector")) {
     world.add(lamp, Projector{.image = add(four_colors()), .width = radians(60.0f)});
     world.add(lamp, Shadow{.resolution = 256});
     const gpu::FloatImage open = wall();
@@ -127,8 +127,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene,
-    "projector: a film goes from frame to frame with the time" * technique("shadow.projector")) {
+    WallScene, "projector: an animation advances from frame to frame with time"
+                   * technique("shadow.projector")) {
     world.add(
         lamp, Projector{
                   .image = add(four_colors()),
@@ -170,7 +170,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: its image is the same in whatever order surfaces and lights meet") {
+    WallScene, "projector: its image does not depend on the order of surfaces and lights") {
     world.add(lamp, Projector{.image = add(four_colors()), .width = radians(40.0f)});
     const gpu::FloatImage clustered = wall();
     CHECK(at_wall(clustered, {-0.3f, 0.3f}).x > 0.5f);
@@ -183,7 +183,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: a sun throws its image along its light, as wide everywhere") {
+    WallScene, "projector: a sun projects its image along its light, equally wide everywhere") {
     world.destroy(lamp);
     const Entity sun = shine(DirectionalLight{.illuminance = 5}, at({0, 0, 2}));
     world.add(sun, Projector{.image = add(four_colors()), .width = 2});
@@ -194,8 +194,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene,
-    "projector: without an image, or with numbers that make no sense, the light is finite") {
+    WallScene, "projector: without an image, or with invalid numbers, the light is finite") {
     const gpu::FloatImage plain = wall();
     world.add(lamp, Projector{});
     CHECK(largest_difference(plain, wall()) == 0);

@@ -12,7 +12,7 @@
 
 namespace limn::test::render_frame_test {
 
-TEST_CASE_FIXTURE(Scene, "render frame: an empty world is a black image of the asked size") {
+TEST_CASE_FIXTURE(Scene, "render frame: an empty world is a black image of the requested size") {
     for (const IVec2& size : {IVec2(1, 1), IVec2(3, 200), IVec2(257, 65)}) {
         const FrameOutput out = draw(look({0, 0, 1}, {0, 0, 0}, size.x, size.y));
         const gpu::FloatImage image = gpu::read_floats(*out.radiance);
@@ -34,7 +34,7 @@ TEST_CASE("render frame: a world without any resource is drawn, too") {
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "render frame: AOVs come by name, in their order, unknown ones are left out") {
+    Scene, "render frame: AOVs are returned by name, in order, unknown ones are left out") {
     const FrameOutput out =
         draw(look({0, 0, 1}, {0, 0, 0}, 8, 8), {.aovs = {"velocity", "nonsense", "depth"}});
     REQUIRE(out.aovs.size() == 2);
@@ -50,7 +50,7 @@ TEST_CASE_FIXTURE(
     CHECK(aov_channels("nonsense") == 0);
 }
 
-TEST_CASE_FIXTURE(Scene, "render frame: velocity costs nothing unless it is asked for") {
+TEST_CASE_FIXTURE(Scene, "render frame: velocity costs nothing unless requested") {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
     static_cast<void>(draw(view));
@@ -59,7 +59,7 @@ TEST_CASE_FIXTURE(Scene, "render frame: velocity costs nothing unless it is aske
     CHECK(frame_graph(shared_renderer()).find("gbuffer.velocity").valid());
 }
 
-TEST_CASE("render frame: another world's assets are noticed, even where the old ones were") {
+TEST_CASE("render frame: another world's assets are detected, even at the same address") {
     // Worlds of the same shape one after the other: everything lies at the same addresses.
     for (const Vec3& color : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
         Scene scene;
@@ -92,7 +92,7 @@ TEST_CASE_FIXTURE(
     CHECK(gpu::deletion_count() == deaths);
 }
 
-TEST_CASE_FIXTURE(Scene, "render frame: what is added to the assets later is drawn") {
+TEST_CASE_FIXTURE(Scene, "render frame: assets that are added later are drawn") {
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
     place(
         add(make_square()), add(Material{.shading = ShadingModel::Unlit}),
@@ -108,8 +108,7 @@ TEST_CASE_FIXTURE(Scene, "render frame: what is added to the assets later is dra
     CHECK(rgb_at(radiance(view), 0, 0) == before);  // what was there before is still right
 }
 
-TEST_CASE_FIXTURE(
-    Scene, "render frame: accumulated samples smooth an edge into the share it covers") {
+TEST_CASE_FIXTURE(Scene, "render frame: accumulated samples smooth an edge to its coverage") {
     // The square covers the left 37.5 % of the column of pixels 16 .. 23: pixel 19 is half covered.
     const Material white = {.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}};
     place(add(make_square()), add(white), at({-1 + (19.5f / 16 - 1), 0, 0}));
@@ -139,7 +138,7 @@ TEST_CASE_FIXTURE(
     CHECK(first.pixels == second.pixels);
 }
 
-TEST_CASE("render view: sample positions fill the pixel evenly, one sample is its middle") {
+TEST_CASE("render view: sample positions fill the pixel evenly, one sample is its center") {
     CHECK(sample_jitter(0, 1) == Vec2(0));
     for (const int count : {16, 64, 256}) {
         Vec2 sum = {0, 0};
@@ -179,7 +178,7 @@ TEST_CASE("render view: cameras are found by name, else the first active one") {
     CHECK(!find_camera(world, "none"));
 }
 
-TEST_CASE("render view: a scaled or sheared camera sees what a rigid one does") {
+TEST_CASE("render view: a scaled or sheared camera has the view of a rigid one") {
     const Affine pose = look_at({1, 2, 3}, {0, 0, 0});
     const Affine scaled = pose * affine_from({0, 0, 0}, {1, 0, 0, 0}, {3, 0.5f, 2});
     const RenderView a = make_render_view({}, pose, pose);
@@ -190,7 +189,7 @@ TEST_CASE("render view: a scaled or sheared camera sees what a rigid one does") 
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "render frame: through a pinhole, in no time, any number of samples is the image"
+    Scene, "render frame: with a pinhole and no motion, any number of samples gives the same image"
                * technique("post.distributed-sampling")) {
     place(add(make_ball(12)), add(Material{}), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.7f)));
     shine(PointLight{.intensity = 7}, at({1, 1, 1}));

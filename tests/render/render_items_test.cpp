@@ -111,7 +111,7 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: every mesh instance once, with its b
     CHECK(block.caster_hashes[0] != block.caster_hashes[6]);  // elsewhere
 }
 
-TEST_CASE_FIXTURE(ItemsTest, "render items: the state of a draw survives its key") {
+TEST_CASE_FIXTURE(ItemsTest, "render items: a draw key preserves the draw state") {
     for (int bits = 0; bits < 16; ++bits) {
         const DrawState state = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
                                  (bits & 8) != 0, 0x0abcdef1,      5,
@@ -167,7 +167,7 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: other materials or meshes are read a
 }
 
 TEST_CASE_FIXTURE(
-    ItemsTest, "render items: what moves is read at every alpha, what rests is kept") {
+    ItemsTest, "render items: moving items are read at every alpha, items at rest are kept") {
     for (const float alpha : {0.25f, 0.5f, 1.0f}) {
         update(world, alpha);
         CHECK(items.block(3).box(1).min.y == test::near(2 * alpha - 2).scale(1));

@@ -19,7 +19,7 @@ std::uint32_t read_back(const RingSlice& slice) {
     return value;
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "ring buffer: what the CPU writes the GPU reads") {
+TEST_CASE_FIXTURE(test::RenderTest, "ring buffer: the GPU reads what the CPU writes") {
     RingBuffer ring(device().caps(), "ring", 4096);
     ring.begin_frame();
     const std::array<std::uint32_t, 3> numbers = {7, 8, 9};
@@ -48,7 +48,7 @@ TEST_CASE_FIXTURE(
     ring.end_frame();
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "ring buffer: many frames go around without growing") {
+TEST_CASE_FIXTURE(test::RenderTest, "ring buffer: many frames wrap around without growing") {
     RingBuffer ring(device().caps(), "ring", 16 * 1024);
     const GLuint buffer = [&] {
         ring.begin_frame();
@@ -105,7 +105,8 @@ TEST_CASE_FIXTURE(
     CHECK(ring.growths() == growths);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "ring buffer: outgrown buffers die when their frame is done") {
+TEST_CASE_FIXTURE(
+    test::RenderTest, "ring buffer: outgrown buffers are deleted when their frame is done") {
     const auto buffers = gpu::live_objects(gpu::ObjectKind::Buffer);
     {
         RingBuffer ring(device().caps(), "ring", 256);

@@ -33,7 +33,7 @@ MeshData subdivide(const MeshData& mesh) {
 
 TEST_CASE_FIXTURE(
     Laboratory,
-    "shading rates: a triangle is as the laboratory draws it, to within 1/255"
+    "shading rates: a triangle matches the laboratory, to within 1/255"
         * technique("fakephong.blinn-map, fakephong.cubic, fakephong.envmap, fakephong.gouraud, "
                     "fakephong.gouraud-subdivided, fakephong.hw-blinn, fakephong.hw-quadratic, "
                     "fakephong.normal-interp-variants, fakephong.phong, fakephong.phong-map, "
@@ -45,7 +45,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     Laboratory,
-    "shading rates: a coarse ball under three lights is as the laboratory has it"
+    "shading rates: a coarse ball under three lights matches the laboratory"
         * technique("fakephong.blinn-map, fakephong.cubic, fakephong.envmap, fakephong.gouraud, "
                     "fakephong.gouraud-subdivided, fakephong.hw-blinn, fakephong.hw-quadratic, "
                     "fakephong.normal-interp-variants, fakephong.phong, fakephong.phong-map, "
@@ -72,7 +72,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Laboratory, "shading rates: normals that cancel at a midpoint give way to that of the face"
+    Laboratory, "shading rates: normals that cancel at a midpoint are replaced by the face normal"
                     * technique("fakephong.quadratic")) {
     MeshData mesh = make_square();
     mesh.normals = {{1, 0, 0}, {-1, 0, 0}, {0, 0.6f, 0.8f}, {0, 0, 1}};

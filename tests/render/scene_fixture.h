@@ -17,7 +17,7 @@ namespace limn::test {
 
 // A world small enough to be computed by hand, and the renderer that draws it.
 
-/// One renderer for all tests of the program, beside the shared device.
+/// One renderer for all tests of the program, on the shared device.
 Renderer& shared_renderer();
 
 /// A square of side 2 in the plane z = 0, facing +z; u runs along x, v down.
@@ -43,7 +43,7 @@ class Scene : public RenderTest {
         return world.create(light, WorldTransform{now});
     }
 
-    /// Seen from `eye`; the square of side 2 in z = 0 fills the image from (0, 0, 1).
+    /// A view from `eye`; the square of side 2 in z = 0 fills the image from (0, 0, 1).
     [[nodiscard]] RenderView
     look(const Vec3& eye, const Vec3& target, int width = 64, int height = 64) const;
 

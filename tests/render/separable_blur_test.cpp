@@ -132,7 +132,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "separable blur: a uniform image stays so, at its edges too"
+    RenderTest, "separable blur: a uniform image stays uniform, also at its edges"
                     * technique("post.separable-blur")) {
     LightImage even = oracle::make_black_image(5, 3);
     for (glm::dvec3& pixel : even.pixels) {

@@ -58,13 +58,13 @@ TEST_CASE("shader: an include is pasted once, with the lines of its file") {
     REQUIRE(source.ok());
     CHECK(source->files == std::vector<std::string>{"a.frag", "lib/b.glsl", "lib/c.glsl"});
     CHECK(source->text == "#version 450\nin b\nin c\nafter c\nmain\n");
-    REQUIRE(source->places.size() == 5);
-    CHECK(source->places[2].file == 2);
-    CHECK(source->places[2].line == 1);
-    CHECK(source->places[3].file == 1);
-    CHECK(source->places[3].line == 3);
-    CHECK(source->places[4].file == 0);
-    CHECK(source->places[4].line == 4);
+    REQUIRE(source->lines.size() == 5);
+    CHECK(source->lines[2].file == 2);
+    CHECK(source->lines[2].line == 1);
+    CHECK(source->lines[3].file == 1);
+    CHECK(source->lines[3].line == 3);
+    CHECK(source->lines[4].file == 0);
+    CHECK(source->lines[4].line == 4);
 }
 
 TEST_CASE("shader: definitions stand after the version and keep the line numbers") {
@@ -73,10 +73,10 @@ TEST_CASE("shader: definitions stand after the version and keep the line numbers
     const auto source = gpu::assemble_shader(files, "a.frag", {{"SAMPLES", "4"}, {"FAST"}});
     REQUIRE(source.ok());
     CHECK(source->text == "#version 450\n#define SAMPLES 4\n#define FAST 1\nline 3\n");
-    CHECK(source->places.back().line == 3);
+    CHECK(source->lines.back().line == 3);
 }
 
-TEST_CASE("shader: what stands for C++ in a shared layout is left out") {
+TEST_CASE("shader: the C++ part of a shared layout is removed") {
     ShaderFiles files;
     files.put("a.frag", "#version 450\n#include \"x_gpu.h\"\nend\n");
     files.put(
@@ -87,7 +87,7 @@ TEST_CASE("shader: what stands for C++ in a shared layout is left out") {
     const auto source = gpu::assemble_shader(files, "a.frag");
     REQUIRE_MESSAGE(source.ok(), message_of(source));
     CHECK(source->text == "#version 450\nglsl\nstruct\nglsl too\n#if X\nkept\n#endif\nlast\nend\n");
-    CHECK(source->places[2].line == 10);
+    CHECK(source->lines[2].line == 10);
 }
 
 TEST_CASE("shader: a bad include is one line that begins with file and line") {
@@ -139,9 +139,9 @@ TEST_CASE("shader: a shader that is missing, empty or without a version is an er
         == 0);
 }
 
-TEST_CASE("shader: compilers' places become files and lines") {
+TEST_CASE("shader: compilers' locations become files and lines") {
     const gpu::ShaderSource source = {
-        .text = "", .files = {"a.frag", "lib/b.glsl"}, .places = {{0, 1}, {1, 12}, {0, 7}}};
+        .text = "", .files = {"a.frag", "lib/b.glsl"}, .lines = {{0, 1}, {1, 12}, {0, 7}}};
     const auto named = [&](std::string_view log) { return gpu::name_files_in_log(log, source); };
     CHECK(named("0:2(5): error: `x' undeclared\n") == "lib/b.glsl:12: error: `x' undeclared");
     CHECK(named("0(3) : error C1008: undefined") == "a.frag:7: error C1008: undefined");
@@ -199,7 +199,7 @@ void main() { c = texture(a[0], vec2(0)) + texture(a[1], vec2(0)) + texture(a[2]
         != std::string::npos);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "shader: two resources at one binding are refused") {
+TEST_CASE_FIXTURE(test::RenderTest, "shader: two resources at one binding are rejected") {
     const auto message_for = [](const std::string& declarations, const std::string& sum) {
         return compile_error(with_fragment(
             "#version 450\n" + declarations

@@ -70,7 +70,7 @@ float srgb_decoded(float c) {
 
 TEST_CASE_FIXTURE(
     ComparisonScene,
-    "shading comparison: each side of the divider is the image of its method alone") {
+    "shading comparison: each side of the divider is the image of its own method") {
     struct Pair {
         ShadingRate left, right;
     };
@@ -99,7 +99,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ComparisonScene,
-    "shading comparison: methods with and without a geometry shader leave each other no holes") {
+    "shading comparison: methods with and without a geometry shader leave no holes") {
     place(add(make_ball(40)), MaterialId{0}, at({1.3f, -0.4f, -0.7f}));
     view = look({0.7f, 0.6f, 2.1f}, {0.3f, 0, 0}, 320, 240);
     struct Pair {

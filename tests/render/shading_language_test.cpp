@@ -10,7 +10,7 @@
 namespace limn::test::shading_language_test {
 
 TEST_CASE_FIXTURE(
-    RenderTest, "vector_ops: matrices of the CPU move points as they do on the GPU"
+    RenderTest, "vector_ops: matrices of the CPU transform points the same as on the GPU"
                     * technique("shade.vector-ops")) {
     const Vec3 position = {3, -1, 2};
     const Vec3 axis = glm::normalize(Vec3(1, -2, 0.5f));

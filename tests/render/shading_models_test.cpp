@@ -54,7 +54,7 @@ const std::vector<std::optional<ShadingModel>> kAllModels = [] {
     return models;
 }();
 
-/// Balls in a row under a lamp, one for each model, with something to mirror; the first is seen
+/// Balls in a row under a lamp, one for each model, with something to reflect; the first is visible
 /// around pixel 118, the others 12 pixels apart. A gap for each nullopt.
 class Balls : public Scene {
   public:
@@ -106,7 +106,7 @@ TEST_CASE("shading models: every row has its file, and every file its row") {
     CHECK(rows == files);
 }
 
-TEST_CASE("shading models: a program has those of the level's materials, and no others") {
+TEST_CASE("shading models: a program has the models of the level's materials, and no others") {
     CHECK(definitions_of({ShadingModel::Pbr}).empty());
     CHECK(
         definitions_of({ShadingModel::Pbr, ShadingModel::Unlit})
@@ -117,7 +117,7 @@ TEST_CASE("shading models: a program has those of the level's materials, and no 
 }
 
 TEST_CASE(
-    "shading models: those with the same lobe are lit together, all others apart"
+    "shading models: models with the same lobe are lit together, others separately"
     * technique("deferred.light-pass")) {
     ShadingModelSet all = 0;
     ShadingModelSet lobes = 0;
@@ -135,7 +135,7 @@ TEST_CASE(
         lobes_of(1u << stored_number(ShadingModel::Unlit)) == 1u << lobe_number(ShadingModel::Pbr));
 }
 
-TEST_CASE("shading models: each is the same lit deferred, forward or one by one") {
+TEST_CASE("shading models: each looks the same lit deferred, forward or light by light") {
     Balls balls(kAllModels);
     const gpu::FloatImage clustered = balls.picture(LightMethod::Clustered);
     for (const LightMethod method :
@@ -152,7 +152,7 @@ TEST_CASE("shading models: each is the same lit deferred, forward or one by one"
     }
 }
 
-TEST_CASE("shading models: another value of a field changes just the models that read it") {
+TEST_CASE("shading models: another value of a field changes only the models that read it") {
     Balls balls(kAllModels);
     auto& assets = balls.world.resource<Assets>();
     const std::vector<Material> materials = assets.materials;
@@ -215,7 +215,7 @@ TEST_CASE("shading models: no two look alike") {
     CHECK(looks.size() == std::size(kShadingModels));
 }
 
-TEST_CASE("shading models: none changes the others") {
+TEST_CASE("shading models: no model affects the others") {
     const gpu::FloatImage all = Balls(kAllModels).picture(LightMethod::Clustered);
     for (std::size_t i = 0; i < kAllModels.size(); ++i) {
         CAPTURE(kShadingModels[i].name);

@@ -77,8 +77,9 @@ Vec3 largest(const gpu::FloatImage& image) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ShadingRates, "gouraud: the middle of a large quad shows kd / 3 where a pixel shows kd + ks"
-                      * technique("light.gouraud, light.phong-pixel")) {
+    ShadingRates,
+    "gouraud: the center of a large quad shows kd / 3 where per-pixel shading shows kd + ks"
+        * technique("light.gouraud, light.phong-pixel")) {
     place(add(make_square()), shiny, at({0, 0, 0}));
     lamp({0, 0, 0.5f});
     const gpu::FloatImage vertex = picture(ShadingRate::Vertex, above());
@@ -92,7 +93,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ShadingRates,
-    "gouraud: finer quads come ever nearer to lighting every pixel" * technique("light.gouraud")) {
+    "gouraud: finer quads converge to per-pixel lighting" * technique("light.gouraud")) {
     lamp({0, 0, 0.5f});
     lamp({0.6f, 0.5f, 0.4f});
     std::vector<MeshId> grids;
@@ -177,9 +178,9 @@ TEST_CASE_FIXTURE(
         .specular = {0, 0, 0}});
     place(add(std::move(roof)), matte, at({0, 0, 0}));
     shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 0}, {0, 0, -1}));
-    const float middle = rgb_at(picture(ShadingRate::Pixel, above()), 32, 32).x;
+    const float center = rgb_at(picture(ShadingRate::Pixel, above()), 32, 32).x;
     const float straight = 0.9f;
-    CHECK(middle == test::near(straight).epsilon(0.002));
+    CHECK(center == test::near(straight).epsilon(0.002));
     // Gouraud's is the mean of the corners, whose cosine is 0.866.
     CHECK(
         rgb_at(picture(ShadingRate::Vertex, above()), 32, 32).x
@@ -206,8 +207,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadingRates, "infinite viewer: lamp and eye a thousand scenes away are infinitely far"
-                      * technique("light.infinite-approx")) {
+    ShadingRates,
+    "infinite viewer: lamp and eye a thousand scene sizes away count as infinitely far"
+        * technique("light.infinite-approx")) {
     place(add(make_square()), shiny, at({0, 0, 0}));
     const Vec3 toward = glm::normalize(Vec3(0.15f, 0.1f, 1));
     float last = 1;

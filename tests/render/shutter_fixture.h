@@ -11,12 +11,12 @@ namespace limn::test {
 class Shutter : public Scene {
   public:
     static constexpr int kSize = 64;
-    static constexpr float kPerMeter = 32;  ///< pixels in the plane z = 0, seen from (0, 0, 1)
+    static constexpr float kPerMeter = 32;  ///< pixels in the plane z = 0, viewed from (0, 0, 1)
 
     MaterialId unlit(const Vec3& color) {
         return add(Material{.shading = ShadingModel::Unlit, .base_color = {color, 1}});
     }
-    /// From `begin` to `end` [px] across the image, and moving by `way` [px] in an image's time.
+    /// From `begin` to `end` [px] across the image, and moving by `way` [px] per frame.
     Entity bar(MaterialId material, float begin, float end, float way, float z = 0) {
         const float center = (0.5f * (begin + end) - 0.5f * kSize) / kPerMeter;
         const float half = 0.5f * (end - begin) / kPerMeter;

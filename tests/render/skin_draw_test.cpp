@@ -134,7 +134,8 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: a deformed mesh inflates along its de
     CHECK(different(got, thin) > 200);
 }
 
-TEST_CASE_FIXTURE(SkinPicture, "skin_draw: the shadow follows the pose, and waits while it rests") {
+TEST_CASE_FIXTURE(
+    SkinPicture, "skin_draw: the shadow follows the pose, and is kept while it rests") {
     const Entity entity = snake(0.4f, white);
     radiance(view);
     const FrameOutput still = draw(view);
@@ -162,7 +163,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: a mesh outside the image casts its sh
 }
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: a mesh that its pose moves out of the image is not computed") {
+    SkinPicture, "skin_draw: a mesh that is moved out of the image by its pose is not computed") {
     world.remove<Shadow>(light);
     const Entity entity = snake(0.4f, white);
     CHECK(draw(view).statistics.visible_instances == 2);
@@ -193,7 +194,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: a hundred poses of one mesh are one d
     CHECK(got.draws == 2);  // the wall, the hundred
 }
 
-TEST_CASE_FIXTURE(SkinPicture, "skin_draw: without a character it is the mesh at rest") {
+TEST_CASE_FIXTURE(SkinPicture, "skin_draw: without a character the mesh is drawn at rest") {
     const Entity entity = snake(0.6f, white);
     const gpu::FloatImage bent_picture = radiance(view);
     world.get<Deformed>(entity).character = {};
@@ -208,7 +209,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: without a character it is the mesh at
 }
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: a light of shadow volumes gets a map, and says why once") {
+    SkinPicture, "skin_draw: a light with shadow volumes gets a shadow map instead, logged once") {
     snake(0.4f, white);
     world.add(wall, NoShadow{});  // which is no closed mesh, either
     world.get<Shadow>(light).method = ShadowMethod::Map;
@@ -226,7 +227,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: a probe captures the shape, and the image does not compute it again") {
+    SkinPicture,
+    "skin_draw: a probe captures the shape, and the main view does not compute it again") {
     const Entity entity = snake(0.4f, white);
     const Entity probe =
         world.create(EnvProbe{.resolution = 16}, WorldTransform{at({0, 0.5f, 1.0f})});

@@ -67,7 +67,7 @@ float axis_distance(const Vec3& p) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: vertices are those of double precision within 1e-4 of the box"
+    SkinTest, "skin_gpu: vertices match double precision within 1e-4 of the box"
                   * technique("char.skin-gpu")) {
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         for (const int joints : {2, 11, 300}) {  // 300: more than a byte counts
@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: the kernels of the CPU give the same") {
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: the CPU kernels give the same vertices") {
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         const Entity entity = snake(skinning, 11, 6, 2);
         const oracle::SkinReadbackVertices got = read(entity);
@@ -160,7 +160,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: one joint of weight 1 carries a vertex, and joints without weight nothing"
+    SkinTest, "skin_gpu: a joint of weight 1 moves a vertex rigidly, joints without weight do not"
                   * technique("char.skin-bone-offset")) {
     MeshData tube = make_tube(4, 8, 1);
     tube.skin.first.push_back(0);
@@ -289,8 +289,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: 300 morph targets add up as in double pre
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: a morph target moves its vertices and not a bit of the others, then "
-              "joints turn all") {
+    SkinTest, "skin_gpu: a morph target moves only its vertices, then joints rotate all") {
     Random random(8, 0, 0, 0);
     Bend bend = make_bend({1, 0, 0}, 0.8f, 1.0f);
     add_morphs(bend.mesh, 1, 2, 0.1f, random);
@@ -315,7 +314,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     SkinTest,
-    "skin_gpu: positions before are those that the last frame had" * technique("char.skin-gpu")) {
+    "skin_gpu: previous positions are those of the last frame" * technique("char.skin-gpu")) {
     const Entity entity = snake(Skinning::Linear, 11, 4, 9);
     Random random(9, 1, 0, 0);
     std::vector<Vec3> last = read(entity).positions;
@@ -334,7 +333,7 @@ TEST_CASE_FIXTURE(
     CHECK(spawned.before == spawned.positions);
 }
 
-TEST_CASE_FIXTURE(SkinTest, "skin_gpu: between two steps joints are componentwise between") {
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: between two steps joints are interpolated componentwise") {
     const Entity entity = snake(Skinning::Linear, 5, 4, 10);
     const oracle::SkinReadbackVertices ends = read(entity, 1, 0);
     const oracle::SkinReadbackVertices between = read(entity, 0.25f, -0.5f);
@@ -394,7 +393,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: only what is drawn and changed is computed, once for all views") {
+    SkinTest, "skin_gpu: only drawn and changed meshes are computed, once for all views") {
     const Entity first = snake(Skinning::Linear, 5, 4, 12);
     const Entity second = snake(Skinning::DualQuaternion, 5, 4, 13);
     world.get<Pose>(first).previous = world.get<Pose>(first).joints;
@@ -418,7 +417,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: a thousand instances are one dispatch, and each is itself"
+    SkinTest, "skin_gpu: a thousand instances are one dispatch, each with its own pose"
                   * technique("char.skin-gpu")) {
     Random random(14, 0, 0, 0);
     MeshData tube = make_tube(8, 6, 1);
@@ -548,7 +547,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: a mesh that cannot be deformed stays at rest, and one line says why") {
+    SkinTest, "skin_gpu: a mesh that cannot be deformed stays at rest, logged in one line") {
     const auto complaint = [&](Entity entity) {
         const std::vector<std::string> messages = messages_of([&] {
             for (int frame = 0; frame < 2; ++frame) {

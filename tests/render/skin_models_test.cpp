@@ -90,7 +90,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin tone: densities meet the albedo of each skin type within a fifth"
+    "skin tone: densities match the albedo of each skin type within a fifth"
     * technique("skin.melanin-blood")) {
     const Vec3 types[] = {
         {0.55f, 0.34f, 0.26f},
@@ -136,7 +136,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin blinn: the preset of the hand, viewed and lit head on, has the printed color"
+    "skin blinn: the hand preset, viewed and lit along the normal, has the printed color"
     * technique("skin.blinn")) {
     CHECK(
         off(shaded(pigmented(Pigments::Plane, 0.2f, 0.5f), {0, 0, 1}), DVec3(0.972, 0.748, 0.510))
@@ -144,7 +144,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin blinn: a light below the horizon leaves the light from around"
+    "skin blinn: with a light below the horizon only ambient light is left"
     * technique("skin.blinn")) {
     CHECK(
         off(shaded(pigmented(Pigments::Plane, 0.2f, 0.5f), glm::normalize(Vec3(1, 0, -0.2f))),
@@ -207,7 +207,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "skin brdf: head on, the first set adds 0.399492 to its base color"
+    "skin brdf: along the normal, the first set adds 0.399492 to its base color"
     * technique("skin.brdf-lafortune")) {
     const Vec3 color = shaded(measured_skin(kSets[0]), {0, 0, 1});
     const DVec3 expected = 0.3 * kSets[0].diffuse + 0.7 * (kSets[0].diffuse + 0.399492);
@@ -215,8 +215,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin brdf: any direction of light gives what the oracle says"
-    * technique("skin.brdf-lafortune")) {
+    "skin brdf: every light direction matches the oracle" * technique("skin.brdf-lafortune")) {
     for (const LobeSet& set : kSets) {
         for (const DVec3 to_light : {DVec3(0.3, 0.2, 0.9), DVec3(0.8, 0, 0.3), DVec3(1, 0, -0.3)}) {
             const DVec3 u = glm::normalize(to_light);
@@ -231,7 +230,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin brdf: without lobes it is Lambert's, by the base color"
+    "skin brdf: without lobes it is Lambertian, with the base color"
     * technique("skin.brdf-lafortune")) {
     Material bare = measured_skin(kSets[0]);
     bare.lobes.clear();

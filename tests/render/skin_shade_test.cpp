@@ -49,7 +49,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("skin shade: of a black rim it is Blinn, to the bit" * technique("char.skin-shade")) {
+TEST_CASE("skin shade: with a black rim it is Blinn, to the bit" * technique("char.skin-shade")) {
     const auto picture = [](ShadingModel model) {
         Face face;
         face.skin.shading = model;

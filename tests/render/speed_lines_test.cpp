@@ -26,7 +26,7 @@ lines_of(const Vec3& step, float seconds, const SpeedLines& settings = kLines) {
 }  // namespace
 
 TEST_CASE(
-    "speed lines: there are none below the least speed, and none without motion"
+    "speed lines: there are none below the minimum speed, and none without motion"
     * technique("post.speed-lines")) {
     CHECK(lines_of({0.19f, 0, 0}, 0.1f).empty());
     CHECK_FALSE(lines_of({0.21f, 0, 0}, 0.1f).empty());
@@ -39,7 +39,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "speed lines: each goes straight back along the motion, as far as it goes in their time"
+    "speed lines: each points straight back along the motion, by the distance moved in their time"
     * technique("post.speed-lines")) {
     const Vec3 velocity = Vec3(0.5f, -0.2f, 0.3f) / 0.1f;
     const std::vector<SpeedLine> lines = lines_of(0.1f * velocity, 0.1f);
@@ -66,7 +66,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("speed lines: there are no more than asked for, nor than the mesh has points") {
+TEST_CASE("speed lines: there are no more than requested, nor than the mesh has points") {
     SpeedLines few = kLines;
     few.count = 10;
     CHECK(lines_of({0.5f, 0, 0}, 0.1f, few).size() <= 10);
@@ -77,7 +77,7 @@ TEST_CASE("speed lines: there are no more than asked for, nor than the mesh has 
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "speed lines: they trail in the image, behind what stands before them"
+    Scene, "speed lines: they trail in the image, occluded by nearer surfaces"
                * technique("post.speed-lines")) {
     world.insert_resource(FrameTime{.step = 0.1f});
     const MaterialId black =

@@ -145,7 +145,7 @@ RenderView turned(const Vec3& eye, float roll) {
 }  // namespace
 
 TEST_CASE(
-    "diffusion profile: every channel's rings hold all of its light, from the inside out"
+    "diffusion profile: the rings of every channel hold all of its light, from the inside out"
     * technique("skin.diffusion")) {
     for (const Vec3& d : {Vec3(0.98f, 0.39f, 0.19f), Vec3(1, 1, 1), Vec3(1, 0, 0.5f)}) {
         for (const DiffusionDensity& density : {kDensityNear, kDensityFar, kDensityFarther}) {
@@ -199,7 +199,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "subsurface: light spreads over an edge as the profile says, at any distance and tilt"
+    "subsurface: light spreads across an edge as the profile says, at any distance and tilt"
     * technique("skin.diffusion")) {
     LitPlane scene(wax());
     scene.darken(-30, 0);
@@ -316,7 +316,7 @@ int dispatches(ProfileRenderer& renderer, const Scene& scene, const RenderView& 
 }  // namespace
 
 TEST_CASE(
-    "subsurface: what a GPU computes is what a software OpenGL draws"
+    "subsurface: a GPU computes the same as a software OpenGL draws"
     * technique("skin.diffusion")) {
     const WaxBalls scene;
     const RenderView view = scene.full_view();
@@ -406,7 +406,7 @@ TEST_CASE(
     const MaterialId skin = scene.add(wax());
     scene.place(square, skin, affine_from({0, 0, -1}, {1, 0, 0, 0}, Vec3(4)));
     scene.place(square, skin, at({1, 0, 0}));
-    // Reaches the plate in front, not the wall.
+    // Its range includes the plate in front, not the wall.
     scene.shine(PointLight{.intensity = 4, .radius = 0.7f}, at({0.2f, 0, 0.4f}));
     for (const gpu::Profile profile : kProfiles) {
         const gpu::FloatImage image =
@@ -477,7 +477,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "subsurface: nothing passes a body far thicker than its mean free path, or without one"
+    "subsurface: no light passes a body far thicker than its mean free path, or without one"
     * technique("skin.transmission")) {
     const DirectionalLight sun = {.illuminance = 3};
     const Affine from = look_at({0, 0, 0}, {0, 0, 1});

@@ -70,7 +70,7 @@ struct SurfaceTest : SkinScene {
 
 TEST_CASE_FIXTURE(
     SurfaceTest,
-    "surface_gpu: a mesh on patches is where it is on the CPU" * technique("face.bids-rebuild")) {
+    "surface_gpu: a mesh on patches matches the CPU" * technique("face.bids-rebuild")) {
     make(SurfaceMethod::Patches);
     step({0.5f, 0.1f, 0.4f});
     step({0.9f, 0.5f, -0.3f});
@@ -106,8 +106,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SurfaceTest, "surface_gpu: a mesh that goes with faces is where it is on the CPU"
-                     * technique("face.soffd")) {
+    SurfaceTest, "surface_gpu: a mesh bound to faces matches the CPU" * technique("face.soffd")) {
     make(SurfaceMethod::Faces);
     step({0.5f, 0.1f, 0.4f});
     step({0.9f, 0.5f, -0.3f});

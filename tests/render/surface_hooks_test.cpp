@@ -88,8 +88,7 @@ TEST_CASE("surface hooks: each bit of wrinkles is a definition of its own") {
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest,
-    "surface hooks: relief fits in: it moves coordinates, bends normals, marks samples") {
+    RenderTest, "surface hooks: relief can shift coordinates, bend normals and mark samples") {
     static constexpr HookPoint kPoints[] = {
         HookPoint::Uv, HookPoint::Color, HookPoint::Normal, HookPoint::Sample};
     static constexpr SurfaceHook kRelief = {
@@ -106,7 +105,7 @@ TEST_CASE_FIXTURE(
 void relief_uv(inout vec4 uv) {
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
     vec3 to_camera = view.ray_forward.xyz;
-    float height = texture(material_maps[BASE_COLOR_MAP], map_place(kBaseColorSlot)).a;
+    float height = texture(material_maps[BASE_COLOR_MAP], map_texcoord(kBaseColorSlot)).a;
     uv.xy += height * vec2(dot(to_camera, tangent_ws.xyz), dot(to_camera, bitangent));
 }
 void relief_color(inout vec4 color) { color.a = 1.0; }

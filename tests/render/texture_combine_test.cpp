@@ -79,14 +79,14 @@ TEST_CASE_FIXTURE(
     world.create(combine);
     // After three seconds one has moved by 6 texels along u, the other by 3 along v.
     for (const int seconds : {0, 3}) {
-        const gpu::FloatImage seen = at_time(seconds);
+        const gpu::FloatImage rendered = at_time(seconds);
         float worst = 0;
         for (int y = 0; y < kSide; ++y) {
             for (int x = 0; x < kSide; ++x) {
                 const Vec3 both = water_color(x + 2 * seconds, y) + water_color(x, y + seconds);
                 const float open = x < 5 ? 0 : x < 10 ? 0.5f : 1;
                 const Vec3 expected = both * open + kBars * (1 - open);
-                worst = std::max(worst, glm::distance(texel_at(seen, x, y), expected));
+                worst = std::max(worst, glm::distance(texel_at(rendered, x, y), expected));
             }
         }
         CAPTURE(seconds);
@@ -95,13 +95,13 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grating,
-    "texture combine: by half, the sum of two is no more than one" * technique("tex.combine")) {
+    Grating, "texture combine: at half gain, the sum of two is no more than one"
+                 * technique("tex.combine")) {
     combine.gain = 0.5f;
     world.create(combine);
-    const gpu::FloatImage seen = at_time(0);
+    const gpu::FloatImage rendered = at_time(0);
     for (int x = 10; x < kSide; ++x) {
-        CHECK(glm::distance(texel_at(seen, x, 4), water_color(x, 4)) < 0.01f);
+        CHECK(glm::distance(texel_at(rendered, x, 4), water_color(x, 4)) < 0.01f);
     }
 }
 
@@ -116,24 +116,24 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grating, "texture combine: a time looks the same however many images come before"
+    Grating, "texture combine: a time looks the same however many frames precede it"
                  * technique("tex.combine")) {
     combine.speed = {0.37f, 0.21f};
     world.create(combine);
     for (int i = 0; i < 8; ++i) {
         at_time(i / 60.0);
     }
-    const gpu::FloatImage seen = at_time(8 / 60.0);
+    const gpu::FloatImage rendered = at_time(8 / 60.0);
     for (int i = 0; i < 4; ++i) {
         at_time(2 * i / 60.0);
     }
-    CHECK(at_time(8 / 60.0).pixels == seen.pixels);
+    CHECK(at_time(8 / 60.0).pixels == rendered.pixels);
     // And between two steps.
-    CHECK(largest_difference(at_time(8.5 / 60.0, 0.5f), seen) < 1e-4f);
+    CHECK(largest_difference(at_time(8.5 / 60.0, 0.5f), rendered) < 1e-4f);
 }
 
 TEST_CASE_FIXTURE(
-    Grating, "texture combine: without an image, or into what it reads, nothing is drawn"
+    Grating, "texture combine: without an image, or if it reads its own target, nothing is drawn"
                  * technique("tex.combine")) {
     const Entity bad = world.create(combine);
     for (const int missing : {0, 1, 2, 3}) {
@@ -143,8 +143,8 @@ TEST_CASE_FIXTURE(
         if (missing == 3) {
             broken.target = broken.water;
         }
-        const gpu::FloatImage seen = at_time(0);
-        CHECK(texel_at(seen, 3, 3) == Vec3(0));
+        const gpu::FloatImage rendered = at_time(0);
+        CHECK(texel_at(rendered, 3, 3) == Vec3(0));
     }
 }
 

@@ -63,18 +63,18 @@ class Shaded : public Scene {
         material.base_color_texture.nearest = true;
         place(add(make_square()), add(material), at({0, 0, 0}));
     }
-    /// What is seen of every texel, `zoom` pixels wide.
+    /// The rendered color of every texel, `zoom` pixels wide.
     std::vector<Vec3> texels(const Quat& rotation = {1, 0, 0, 0}, int zoom = 4) {
         if (world.alive(easel)) {
             world.destroy(easel);
         }
         easel = world.create(shade, WorldTransform{affine_from({0, 0, 0}, rotation, Vec3(2.5f))});
-        const gpu::FloatImage seen =
+        const gpu::FloatImage rendered =
             radiance(look({0, 0, 1}, {0, 0, 0}, zoom * kSide, zoom * kSide));
         std::vector<Vec3> found;
         for (int y = 0; y < kSide; ++y) {
             for (int x = 0; x < kSide; ++x) {
-                found.push_back(rgb_at(seen, zoom * x + zoom / 2, zoom * y + zoom / 2));
+                found.push_back(rgb_at(rendered, zoom * x + zoom / 2, zoom * y + zoom / 2));
             }
         }
         return found;
@@ -106,7 +106,7 @@ std::vector<Vec3> expected_texels(const TextureShade& shade, Normal&& normal) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Shaded, "texture shade: every texel is lit as a pixel there would be"
+    Shaded, "texture shade: every texel is lit like a pixel there"
                 * technique("wrinkle.furrow.texture-space-shading")) {
     CHECK(largest_difference_of(texels(), expected_texels(shade, normal_of)) < 0.01f);
     shade.to_light = {0.9f, 0, -0.2f};  // below the horizon of most
@@ -121,7 +121,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Shaded, "texture shade: normals turn with the entity, light and view do not"
+    Shaded, "texture shade: normals rotate with the entity, light and view do not"
                 * technique("wrinkle.furrow.texture-space-shading")) {
     const Quat turn = glm::angleAxis(0.5f, glm::normalize(Vec3(0.2f, 1, 0.1f)));
     const auto turned = [&](int x, int y) { return turn * normal_of(x, y); };
@@ -155,7 +155,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Shaded, "texture shade: without an image, or into what it reads, nothing is drawn") {
+    Shaded, "texture shade: without an image, or if it reads its own target, nothing is drawn") {
     const TextureShade good = shade;
     for (const int missing : {0, 1, 2}) {
         shade = good;

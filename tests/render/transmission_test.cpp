@@ -36,7 +36,7 @@ struct GlassScene : Scene {
     MeshId square;
 };
 
-/// Share of what is transmitted where glass of index 1.5 is seen head on.
+/// Fraction transmitted by glass of index 1.5 at normal incidence.
 constexpr float kLetIn = 0.96f;
 
 /// Pixels of a row, from the left, whose mean is what the row has: where an edge is.
@@ -52,16 +52,15 @@ float edge_of(const gpu::FloatImage& image, int row, float white) {
 int width_of_edge(const gpu::FloatImage& image, int row, float white) {
     int count = 0;
     for (int x = 0; x < image.width; ++x) {
-        const float share = image.at(x, row, 0) / white;
-        count += share > 0.1f && share < 0.9f ? 1 : 0;
+        const float fraction = image.at(x, row, 0) / white;
+        count += fraction > 0.1f && fraction < 0.9f ? 1 : 0;
     }
     return count;
 }
 
 }  // namespace
 
-TEST_CASE_FIXTURE(
-    GlassScene, "transmission: in a furnace clear glass is not to be seen, rough or not") {
+TEST_CASE_FIXTURE(GlassScene, "transmission: in a furnace clear glass is invisible, rough or not") {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}});
     const MeshId ball = add(make_ball(64));
     for (const float roughness : {0.0f, 0.3f, 0.7f}) {
@@ -77,7 +76,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     GlassScene,
-    "transmission: what is behind is seen where the ray leaves that Snell's law bends") {
+    "transmission: the background appears where the ray refracted by Snell's law exits") {
     constexpr float kThickness = 0.5f;
     constexpr float kWall = -0.6f;
     constexpr int kSize = 128;
@@ -91,7 +90,7 @@ TEST_CASE_FIXTURE(
         add_edge(kWall, -0.4f);
         add_pane(slab, kScale);
         const gpu::FloatImage image = radiance(view);
-        int want = -1;  // the last pixel of the middle row that shows the white part
+        int want = -1;  // the last pixel of the center row that shows the white part
         for (int x = 0; x < kSize; ++x) {
             const float u = (static_cast<float>(x) + 0.5f) / kSize * 2 - 1;
             const Vec3 ray = glm::normalize(
@@ -116,7 +115,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    GlassScene, "transmission: a wall within a medium is seen where the bent ray meets it") {
+    GlassScene, "transmission: a wall within a medium appears where the refracted ray hits it") {
     constexpr double kWall = -0.3;  // as an iris beneath its cornea
     constexpr double kEdge = 0.1;
     constexpr int kSize = 128;
@@ -130,7 +129,7 @@ TEST_CASE_FIXTURE(
         add_edge(static_cast<float>(kWall), static_cast<float>(kEdge));
         add_pane(slab, kScale);
         const gpu::FloatImage image = radiance(view);
-        int want = -1;  // the last pixel of the middle row that shows the white part
+        int want = -1;  // the last pixel of the center row that shows the white part
         int straight = -1;
         for (int x = 0; x < kSize; ++x) {
             const float u = (static_cast<float>(x) + 0.5f) / kSize * 2 - 1;
@@ -170,7 +169,8 @@ TEST_CASE_FIXTURE(GlassScene, "transmission: a thin sheet moves nothing and tint
 }
 
 TEST_CASE_FIXTURE(
-    GlassScene, "transmission: twice the depth squares what is left, and scale is depth") {
+    GlassScene,
+    "transmission: twice the depth squares the transmittance, and scale counts as depth") {
     add_edge(-3, 5);
     const auto seen = [&](float thickness, float scale) {
         Material amber = glass(thickness);
@@ -188,7 +188,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    GlassScene, "transmission: a map of the thickness is a factor of it, texel by texel") {
+    GlassScene, "transmission: a thickness map is a factor of the thickness, texel by texel") {
     add_edge(-3, 5);
     Material amber = glass(4);
     amber.attenuation_color = {0.5f, 0.8f, 1};
@@ -211,7 +211,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    GlassScene, "transmission: rough glass blurs more what is farther, and keeps its mean") {
+    GlassScene, "transmission: rough glass blurs distant surfaces more, and keeps the mean") {
     int before = 0;
     for (const float distance : {0.1f, 0.5f, 2.0f}) {
         world.clear();
@@ -226,7 +226,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(GlassScene, "transmission: what is in front of glass is not seen in it") {
+TEST_CASE_FIXTURE(GlassScene, "transmission: surfaces in front of glass do not appear in it") {
     add_edge(-1, 3);
     const RenderView view = look({1.5f, 0, 1.5f}, {0, 0, 0});
     const auto add_bar = [&] {  // which the slab would show displaced
@@ -252,7 +252,7 @@ TEST_CASE_FIXTURE(GlassScene, "transmission: what is in front of glass is not se
     CHECK(darkened <= 1);  // beside its edge
 }
 
-TEST_CASE_FIXTURE(GlassScene, "transmission: of a ball with two sides the near one is seen") {
+TEST_CASE_FIXTURE(GlassScene, "transmission: the near side of a double-sided ball is drawn") {
     add_edge(-3, 0.2f);
     const MeshId ball = add(make_ball());
     Material one = glass(1);

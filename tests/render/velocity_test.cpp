@@ -117,14 +117,14 @@ struct VelocityScene : SkinScene {
     const MaterialId gray = add(Material{.double_sided = true});
 };
 
-Affine turned(const Vec3& place, const Vec3& axis, float angle, const Vec3& scale = Vec3(1)) {
-    return affine_from(place, rotation_about(axis, angle), scale);
+Affine turned(const Vec3& position, const Vec3& axis, float angle, const Vec3& scale = Vec3(1)) {
+    return affine_from(position, rotation_about(axis, angle), scale);
 }
 
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    VelocityScene, "velocity: rigid bodies, the sky and the camera move as rays say") {
+    VelocityScene, "velocity: rigid bodies, the sky and the camera match ray casting") {
     moving(
         add(make_ball(16)), turned({-0.3f, 0.5f, 0}, {0, 1, 1}, 0.2f, {0.3f, 0.4f, 0.3f}),
         turned({-0.1f, 0.45f, 0.2f}, {0, 1, 1}, 0.6f, {0.3f, 0.4f, 0.35f}));
@@ -134,12 +134,13 @@ TEST_CASE_FIXTURE(
     check_agreement(moving_camera());
 }
 
-TEST_CASE_FIXTURE(VelocityScene, "velocity: skinned meshes move as rays say, as linear blends") {
+TEST_CASE_FIXTURE(VelocityScene, "velocity: skinned meshes match ray casting, as linear blends") {
     snake(Skinning::Linear, 1);
     check_agreement(moving_camera());
 }
 
-TEST_CASE_FIXTURE(VelocityScene, "velocity: skinned meshes move as rays say, as dual quaternions") {
+TEST_CASE_FIXTURE(
+    VelocityScene, "velocity: skinned meshes match ray casting, as dual quaternions") {
     const Entity entity = snake(Skinning::DualQuaternion, 2);
     world.get<PreviousWorldTransform>(entity).world = at({0.1f, 0, 0.05f});
     // Mixed matrices are no rotations: the oracle's columns are made perpendicular after the mix,
@@ -147,7 +148,7 @@ TEST_CASE_FIXTURE(VelocityScene, "velocity: skinned meshes move as rays say, as 
     check_agreement(moving_camera());
 }
 
-TEST_CASE_FIXTURE(VelocityScene, "velocity: morphing meshes move as rays say") {
+TEST_CASE_FIXTURE(VelocityScene, "velocity: morphing meshes match ray casting") {
     Random random(3, 0, 0, 0);
     MeshData ball = make_ball(10);
     for (Vec3& p : ball.positions) {
@@ -163,15 +164,15 @@ TEST_CASE_FIXTURE(VelocityScene, "velocity: morphing meshes move as rays say") {
     check_agreement(moving_camera());
 }
 
-TEST_CASE_FIXTURE(VelocityScene, "velocity: of many instances of one mesh each has its own") {
+TEST_CASE_FIXTURE(VelocityScene, "velocity: each of many instances of one mesh has its own") {
     Random random(4, 0, 0, 0);
     const MeshId ball = add(make_ball(6));
     for (int i = 0; i < 12; ++i) {
-        const Vec3 place = {
+        const Vec3 position = {
             random.uniform(-0.8f, 0.8f), random.uniform(-0.2f, 1.2f), random.uniform(-0.5f, 0.2f)};
         const Affine before =
-            turned(place + 0.2f * random.direction(), random.direction(), 0.5f, Vec3(0.2f));
-        moving(ball, before, turned(place, random.direction(), 0.3f, Vec3(0.2f)));
+            turned(position + 0.2f * random.direction(), random.direction(), 0.5f, Vec3(0.2f));
+        moving(ball, before, turned(position, random.direction(), 0.3f, Vec3(0.2f)));
     }
     check_agreement(moving_camera());
 }
@@ -184,7 +185,7 @@ TEST_CASE_FIXTURE(VelocityScene, "velocity: jitter is no motion") {
     oracle::CameraMotion still = moving_camera();
     still.previous = still.current;
     world.clear();
-    place(add(make_ball(8)), gray, at({0, 0.5f, 0}));
+    position(add(make_ball(8)), gray, at({0, 0.5f, 0}));
     CHECK(fastest(view_of(still, {0.45f, -0.4f})) == 0);
 }
 
@@ -199,7 +200,7 @@ TEST_CASE_FIXTURE(VelocityScene, "velocity: all light methods and the half image
 }
 
 TEST_CASE_FIXTURE(
-    VelocityScene, "velocity: what spawns, and what teleports, has none in its first frame") {
+    VelocityScene, "velocity: spawned and teleported instances have none in their first frame") {
     Schedule schedule = make_world_schedule();
     const MeshId ball = add(make_ball(8));
     const Entity entity = world.create(
@@ -251,16 +252,15 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    VelocityScene, "velocity: a camera that jumps shows no motion, one that hurries does") {
-    place(add(make_ball(8)), gray, at({0, 0.5f, 0}));
+TEST_CASE_FIXTURE(VelocityScene, "velocity: a camera that jumps shows no motion, a fast one does") {
+    position(add(make_ball(8)), gray, at({0, 0.5f, 0}));
     oracle::CameraMotion motion = moving_camera();
     CHECK(fastest(view_of(motion)) > 2);
     motion.previous = look_at({0, 0.5f, 11.7f}, {0, 0.5f, 0});
     CHECK(fastest(view_of(motion)) == 0);
     motion.previous = look_at({0, 0.5f, 1.6f}, {1.6f, 0.5f, 1.0f});  // 70 degrees
     CHECK(fastest(view_of(motion)) == 0);
-    // Nor is what is shown anywhere between the two places.
+    // Nor is it drawn anywhere between the two positions.
     const RenderView between = make_render_view(
         motion.camera, motion.current, motion.previous, {.width = 9, .height = 9, .alpha = 0.5f});
     CHECK(between.world_from_camera.row[0] == motion.current.row[0]);
@@ -268,7 +268,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     VelocityScene,
-    "velocity: what jumps within a step is drawn on one side or the other and shows no motion") {
+    "velocity: a jump within a step is drawn on one side or the other and shows no motion") {
     const auto small_at = [](float x) {
         return affine_from({x, 0.5f, 0}, Quat(1, 0, 0, 0), Vec3(0.2f));
     };
@@ -293,7 +293,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VelocityScene, "velocity: the sky moves as the camera turns, and not as it walks") {
+    VelocityScene, "velocity: the sky moves when the camera rotates, not when it translates") {
     oracle::CameraMotion motion = moving_camera();
     motion.previous = look_at({0, 0.5f, 1.6f}, {0.1f, 0.42f, 0});
     const Agreement turning = agreement(motion);
@@ -306,7 +306,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VelocityScene, "velocity: whatever happens, every number is one and within bounds") {
+    VelocityScene, "velocity: every value is finite and within bounds, whatever the input") {
     const Entity body = moving(add(make_square()), at({0, 0.5f, 0}), at({0, 0.5f, 0}));
     const Entity character = snake(Skinning::Linear, 8);
     const RenderView view = view_of(moving_camera());
@@ -331,7 +331,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VelocityScene, "velocity: through a blended surface it is that of what is behind") {
+    VelocityScene, "velocity: through a blended surface it is that of the opaque surface behind") {
     const MeshId square = add(make_square());
     moving(square, at({0.1f, 0.5f, -0.5f}), at({0, 0.5f, -0.5f}));
     oracle::CameraMotion motion = moving_camera();

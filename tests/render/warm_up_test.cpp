@@ -56,14 +56,14 @@ struct SideViewEffect {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(WarmScene, "warm-up: no light needs a program that depends on who sees it") {
+TEST_CASE_FIXTURE(WarmScene, "warm-up: no light needs a program that depends on the camera") {
     shine(PointLight{.radius = 2}, at({0, 0, 1}));
     CHECK(missing_from(kAway[0], kAway[1]) == 0);
     shine(SpotLight{.radius = 2}, at({0, 0, 1}));
     CHECK(missing_from(kAway[0], kAway[1]) == 0);
 }
 
-TEST_CASE_FIXTURE(WarmScene, "warm-up: no shadow needs a program that depends on who sees it") {
+TEST_CASE_FIXTURE(WarmScene, "warm-up: no shadow needs a program that depends on the camera") {
     for (const ShadowMethod method :
          {ShadowMethod::Map, ShadowMethod::Perspective, ShadowMethod::Volume,
           ShadowMethod::Hybrid}) {
@@ -97,7 +97,7 @@ TEST_CASE_FIXTURE(WarmScene, "warm-up: a camera may dive, and a planar reflectio
     }
 }
 
-TEST_CASE_FIXTURE(WarmScene, "warm-up: what is compiled later is counted") {
+TEST_CASE_FIXTURE(WarmScene, "warm-up: programs compiled later are counted") {
     const RenderView view = look({0, 0, 3}, {0, 0, 0});
     const int needed = warm_up(renderer(), world, view);
     CHECK(render_frame(renderer(), world, view).statistics.compiled == 0);
@@ -112,7 +112,7 @@ TEST_CASE_FIXTURE(WarmScene, "warm-up: what is compiled later is counted") {
     CHECK(second.programs == first.programs);
 }
 
-TEST_CASE_FIXTURE(Scene, "warm-up: an effect adds views of its own, and begins anew after it") {
+TEST_CASE_FIXTURE(Scene, "warm-up: an effect adds views, and is reset afterwards") {
     const std::span<const EffectEntry> standard = standard_image();
     std::vector<EffectEntry> image(standard.begin(), standard.end());
     image.push_back(effect<SideViewEffect>(kMainViews));
@@ -130,7 +130,7 @@ TEST_CASE_FIXTURE(Scene, "warm-up: an effect adds views of its own, and begins a
     CHECK(SideViewEffect::draws == 1);
 }
 
-TEST_CASE("warm-up: a light that its pulse turns black for a moment stays in the list") {
+TEST_CASE("warm-up: a light that is momentarily black by its pulse stays in the list") {
     World world;
     world.insert_resource(FrameTime{.time = 1.5 * std::numbers::pi});
     const Entity lamp = world.create(

@@ -61,7 +61,7 @@ float largest_difference(const gpu::FloatImage& a, const gpu::FloatImage& b, int
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ColumnScene, "wrinkle comparison: each column is the image of its method alone"
+    ColumnScene, "wrinkle comparison: each column is the image of its own method"
                      * technique("wrinkle.comparison")) {
     const gpu::FloatImage all = columns({.methods = kAll});
     const int width = kWide / static_cast<int>(kAll.size());
@@ -79,8 +79,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ColumnScene, "wrinkle comparison: hidden, of no method or of another map it changes nothing"
-                     * technique("wrinkle.comparison")) {
+    ColumnScene,
+    "wrinkle comparison: hidden, without a method or with another map it changes nothing"
+        * technique("wrinkle.comparison")) {
     const gpu::FloatImage bump = by(WrinkleMethod::Bump);
     CHECK(columns({.shown = false, .methods = kAll}).pixels == bump.pixels);
     CHECK(columns({.methods = {}}).pixels == bump.pixels);

@@ -58,7 +58,7 @@ float largest_distance(const std::vector<float>& a, const std::vector<float>& b)
 
 TEST_CASE_FIXTURE(
     WrinkleLightScene,
-    "wrinkle light: blended light is that of both normals, weighted by the intensity"
+    "wrinkle light: blended light is the light of both normals, weighted by the intensity"
         * technique("wrinkle.compression.bump-blend")) {
     material.specular = {0.3f, 0.3f, 0.3f};
     for (const ShadingModel model : {ShadingModel::Pbr, ShadingModel::Blinn, ShadingModel::Skin}) {
@@ -112,7 +112,7 @@ TEST_CASE_FIXTURE(
     "wrinkle light: light behind the smooth skin lights no slope of its wrinkles"
         * technique("wrinkle.compression.lighting, wrinkle.compression.tangent-frame")) {
     WrinkleSurface bump = in_full(WrinkleMethod::Bump);
-    // The slope faces up and to the viewer: light from above the plane's edge reaches it.
+    // The slope faces up and to the viewer: light from above the plane's edge falls on it.
     turn_light(glm::normalize(Vec3{0, 1, -0.05f}));
     const Vec3 to_slope = glm::normalize(Vec3(0, -map_slope().y, 1));
     REQUIRE(glm::dot(to_slope, Vec3{0, 1, -0.05f}) > 0.1f);

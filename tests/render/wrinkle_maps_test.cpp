@@ -218,14 +218,14 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "skin pipeline: measured weights draw what the animator's would, pixel for pixel"
+    WrinkledFace, "skin pipeline: measured weights draw the same as the animator's, pixel for pixel"
                       * technique("skin.pipeline")) {
     const gpu::FloatImage animated = rendered(kGrimace);
     const gpu::FloatImage rest = rendered({});
     world.add(face, WrinkleResponse{.share = 1});
     world.add(face, MeasuredWrinkles{.weights = kGrimace, .started = true});
     CHECK(rendered({.lips = 1}).pixels == animated.pixels);
-    // With a `share` of 0 the skin is as at rest: wrinkles are left to the surface.
+    // With a `share` of 0 the skin is drawn as at rest: wrinkles are left to the surface.
     world.get<WrinkleResponse>(face).share = 0;
     CHECK(rendered({.lips = 1}).pixels == rest.pixels);
     // Half of it is half of the influence.
@@ -257,7 +257,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: regions that overlap act as one in full at most"
+    WrinkledFace, "wrinkle maps: overlapping regions act at most as one with full weight"
                       * technique("wrinkle.maps.influence")) {
     // First masks are s and 1 - s: together 1 everywhere, with the lips' 0.5 beyond.
     const gpu::FloatImage one = rendered({.left_brow = 1, .right_brow = 1});
@@ -281,8 +281,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: a compressed map in full covers the stretched one, slopes add up"
-                      * technique("wrinkle.maps.composite")) {
+    WrinkledFace,
+    "wrinkle maps: a compressed map at full weight covers the stretched one, slopes add up"
+        * technique("wrinkle.maps.composite")) {
     // The cheeks' masks are below 1: only brows act in full.
     WrinkleWeights both = {.left_brow = 1, .right_brow = 1, .left_cheek = -1};
     const WrinkleWeights compressed = {.left_brow = 1, .right_brow = 1};
@@ -292,15 +293,16 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: without second masks the lower regions are silent"
+    WrinkledFace, "wrinkle maps: without second masks the lower regions have no effect"
                       * technique("wrinkle.maps.masks")) {
     world.get<WrinkleMaps>(face).second_masks = {};
     CHECK(rendered({.lips = 0.4f, .left_cheek = 1}).pixels == rendered({.lips = 0.4f}).pixels);
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: without an image, or into what they read, nothing is drawn"
-                      * technique("wrinkle.maps.texture-set")) {
+    WrinkledFace,
+    "wrinkle maps: without an image, or if they read their own target, nothing is drawn"
+        * technique("wrinkle.maps.texture-set")) {
     const WrinkleMaps good = maps;
     ImageId WrinkleMaps::*const needed[] = {
         &WrinkleMaps::base, &WrinkleMaps::stretched, &WrinkleMaps::compressed,
@@ -319,8 +321,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkledFace, "wrinkle maps: an image of another aspect ratio is refused, of another size not"
-                      * technique("wrinkle.maps.texture-set")) {
+    WrinkledFace,
+    "wrinkle maps: an image of another aspect ratio is rejected, of another size accepted"
+        * technique("wrinkle.maps.texture-set")) {
     const WrinkleMaps good = maps;
     const auto flat = [&](int width, int height) {
         const auto texels = static_cast<std::size_t>(width * height);

@@ -24,7 +24,7 @@ float drawn_factor(const gpu::FloatImage& normal) {
 
 TEST_CASE_FIXTURE(
     WrinkleScene,
-    "wrinkle pass: strengths are those of the CPU"
+    "wrinkle pass: strengths match the CPU"
         * technique("face.strain, wrinkle.compression.factor, wrinkle.compression.intensity, "
                     "wrinkle.natural-width, wrinkle.smoothing")) {
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
@@ -92,8 +92,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene,
-    "wrinkle pass: skin that folds at rest is as if compressed so" * technique("wrinkle.resting")) {
+    WrinkleScene, "wrinkle pass: skin that folds at rest counts as compressed by as much"
+                      * technique("wrinkle.resting")) {
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
     REQUIRE(readback);
     const auto strength = [&](const WrinkleSurface& surface, float shortening, float age) {
@@ -127,7 +127,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     WrinkleScene,
-    "wrinkle pass: strains in the tangent frame are those of the CPU" * technique("face.strain")) {
+    "wrinkle pass: strains in the tangent frame match the CPU" * technique("face.strain")) {
     Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
     REQUIRE(readback);
     Random random(6, 0, 0, 0);
@@ -234,7 +234,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     WrinkleScene,
-    "wrinkle pass: at rest, stretched, or without a method skin is as without"
+    "wrinkle pass: at rest, stretched, or without a method skin has no wrinkles"
         * technique("face.wrinkle-options, wrinkle.compression.alpha-shading, "
                     "wrinkle.compression.integration, wrinkle.compression.interp-bump")) {
     shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0}));
@@ -358,8 +358,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WrinkleScene, "wrinkle overlap: one layer is as without a second one, and two halves as a whole"
-                      * technique("wrinkle.compression.overlap")) {
+    WrinkleScene,
+    "wrinkle overlap: one layer is as without a second one, and two halves equal a whole"
+        * technique("wrinkle.compression.overlap")) {
     // Only across the first layer's wrinkles: the second one stays flat.
     material.wrinkle_texture.image = add(layered_map());
     const auto drawn = [&](const WrinkleSurface& surface) {

@@ -63,7 +63,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    TierScene, "wrinkle tiers: with distance bump becomes alpha, and then nothing"
+    TierScene, "wrinkle tiers: with distance bump becomes alpha, then fades out"
                    * technique("wrinkle.compression.fallback")) {
     // The square is at 1 m.
     WrinkleSurface surface = {.method = WrinkleMethod::Bump};
@@ -96,7 +96,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    TierScene, "wrinkle frame: slopes turn and flip with the tangent, which is made perpendicular"
+    TierScene, "wrinkle frame: slopes rotate and flip with the tangent, which is orthogonalized"
                    * technique("wrinkle.compression.tangent-frame")) {
     // Up the map the skin rises towards -y of texture space: the normal leans to the bitangent.
     const Vec3 upright = normal_with({1, 0, 0, 1});

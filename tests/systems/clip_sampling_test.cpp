@@ -46,12 +46,12 @@ Quat any_rotation(Random& random) {
 }  // namespace
 
 TEST_CASE(
-    "clip: keys are found before, between, at and after their times, and for no time"
+    "clip: keys are found before, between, at and after their times, and for NaN"
     * technique("anim.key-lookup")) {
     const std::vector<float> times = {0, 1, 4};
     const auto is_at = [&](float t, std::size_t first, float u) {
-        const KeyPlace place = find_keys(times, t);
-        return place.first == first && place.u == u;
+        const KeyInterval interval = find_keys(times, t);
+        return interval.first == first && interval.u == u;
     };
     CHECK(is_at(2.5f, 1, 0.5f));
     CHECK(is_at(0, 0, 0));
@@ -70,15 +70,15 @@ TEST_CASE(
     }
     for (int i = 0; i < 10'000; ++i) {
         const float t = random.uniform(-1.0f, now + 1);
-        const KeyPlace place = find_keys(many, t);
-        CHECK(place.u >= 0);
-        CHECK(place.u <= 1);
-        CHECK((t < many[0] || many[place.first] <= t));
-        CHECK((t >= many.back() || t < many[place.first + 1]));
+        const KeyInterval interval = find_keys(many, t);
+        CHECK(interval.u >= 0);
+        CHECK(interval.u <= 1);
+        CHECK((t < many[0] || many[interval.first] <= t));
+        CHECK((t >= many.back() || t < many[interval.first + 1]));
     }
 }
 
-TEST_CASE("clip: time begins anew after the end, or stays there" * technique("char.pose-eval")) {
+TEST_CASE("clip: time wraps around at the end, or stays there" * technique("char.pose-eval")) {
     CHECK(clip_time(2, 5, true) == 1);
     CHECK(clip_time(2, -0.5f, true) == 1.5f);
     CHECK(clip_time(2, 5, false) == 2);
@@ -90,7 +90,7 @@ TEST_CASE("clip: time begins anew after the end, or stays there" * technique("ch
 }
 
 TEST_CASE(
-    "clip: at a key the pose is the key, between keys it turns with constant speed"
+    "clip: at a key the pose is the key, between keys it rotates at constant speed"
     * technique("char.pose-eval")) {
     const ClipData clip = make_turn({0, 1, 3}, {0, 90, 100}, 1);
     REQUIRE(check_clip(clip, 2, 0).ok());
@@ -110,7 +110,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "clip: samples taken 30 times a second are shown 100 times, none lost and none rushed"
+    "clip: samples at 30 Hz are shown at 100 Hz, none lost and at even speed"
     * technique("anim.mocap-keys")) {
     std::vector<float> times;
     std::vector<float> angles;
@@ -150,7 +150,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "clip: the sign of a key does not matter, and all joints turn as each alone would"
+    "clip: the sign of a key does not matter, and joints rotate independently"
     * technique("anim.mocap-keys, char.pose-eval")) {
     Random random(5, 0, 0, 0);
     for (const std::size_t count : {1u, 2u, 7u, 8u, 23u, 64u, 65u, 200u}) {
@@ -182,8 +182,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "clip: vectors of the machine and plain C++ give the same bits" * technique("char.pose-eval")) {
+TEST_CASE("clip: SIMD and plain C++ give the same bits" * technique("char.pose-eval")) {
     Random random(6, 0, 0, 0);
     std::vector<Quat> from;
     std::vector<Quat> to;
@@ -206,7 +205,7 @@ TEST_CASE(
         CHECK(std::memcmp(wide.data(), plain.data(), wide.size() * sizeof(Quat)) == 0);
         for (std::size_t i = 0; i < plain.size(); ++i) {
             CHECK(glm::length(plain[i]) == test::near(1).epsilon(5e-7));
-            if (i % 5 != 2) {  // half a turn may go either way
+            if (i % 5 != 2) {  // half a turn may go in either direction
                 CHECK(apart(plain[i], slerp(from[i], to[i], u)) < 2e-6f);
             }
         }
@@ -269,7 +268,7 @@ TEST_CASE("clip: steps hold, lines are straight, cubics keep their slopes") {
 }
 
 TEST_CASE(
-    "clip: straight lines meet their keys exactly, read alike from both ends, and break there"
+    "clip: straight segments hit their keys exactly, are symmetric, and have corners there"
     * technique("anim.lerp")) {
     const auto line = [](const std::vector<float>& keys) {
         ClipSheet sheet;
@@ -319,7 +318,8 @@ TEST_CASE("clip: a cubic rotation passes through its keys with length 1") {
     CHECK(glm::length(sampled(clip, make_chain(2), 0.4f).rotations[1]) == test::near(1));
 }
 
-TEST_CASE("clip: no clip rests, one key holds" * technique("char.clip-layout")) {
+TEST_CASE(
+    "clip: without a clip the pose rests, a single key holds" * technique("char.clip-layout")) {
     const SkeletonData skeleton = make_chain(3);
     const LocalPose rest = sampled({}, skeleton, 1);
     CHECK(rest.rotations == skeleton.rest.rotations);
@@ -363,7 +363,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "joints: turning one moves its descendants and no other, and no bone changes length"
+    "joints: rotating one moves its descendants and no others, and no bone changes length"
     * technique("char.local-global")) {
     SkeletonData skeleton = make_chain(9);
     skeleton.parents = {-1, 0, 1, 2, 1, 4, 0, 6, 7};

@@ -19,14 +19,14 @@ Quat about_z(float angle) {
 }
 
 Quat rotation_at(const TimedRotations& turns, float time) {
-    const KeyPlace place = find_keys(turns.times, time);
+    const KeyInterval place = find_keys(turns.times, time);
     return slerp_along(turns.rotations[place.first], turns.rotations[place.first + 1], place.u);
 }
 
 }  // namespace
 
 TEST_CASE(
-    "even turns: keys at 0, 10, 40 and 90 degrees are reached after 1, 4 and 9 seconds"
+    "even turns: keys at 0, 10, 40 and 90 degrees are at 0, 1, 4 and 9 seconds"
     * technique("anim.constant-angular-velocity")) {
     const std::vector<Quat> keys = {about_z(0), about_z(10), -about_z(40), about_z(90)};
     const TimedRotations turns = make_constant_speed(keys, 9);
@@ -64,7 +64,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "even turns: whole images sum to what there is, shared as fairly as can be"
+    "even turns: whole frames sum to the total, distributed as evenly as possible"
     * technique("anim.constant-angular-velocity")) {
     const std::vector<Quat> keys = {about_z(0), about_z(10), about_z(40), about_z(90)};
     CHECK(distribute_frames(keys, 9) == std::vector<int>{1, 3, 5});
@@ -79,7 +79,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "even turns: keys that turn nothing are left out, a single one stays, none are none"
+    "even turns: keys without rotation are dropped, a single one stays, none give none"
     * technique("anim.constant-angular-velocity")) {
     const TimedRotations turns =
         make_constant_speed(std::vector<Quat>{about_z(5), about_z(5), -about_z(5), about_z(65)}, 2);

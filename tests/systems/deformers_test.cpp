@@ -107,7 +107,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "muscle: it pulls to the bone, most at full, and by nothing there or at its range"
+    "muscle: it pulls to the bone, most at full, not at all there or at its range"
     * technique("face.waters-muscle")) {
     const auto pull = [](float distance) {
         const Vec3 p(0, distance, 0);
@@ -163,7 +163,7 @@ TEST_CASE(
             glm::distance(
                 through(with(ring), ring.center + 0.999f * out), ring.center + 0.999f * out)
             < 2e-5f);
-        // Half way out the share is a half: k f = 0.25 of the way.
+        // Halfway out the weight is a half: k f = 0.25 of the distance.
         const Vec3 moved = through(with(ring), ring.center + 0.5f * out);
         CHECK(glm::distance(moved, ring.center + 0.375f * out) < 1e-6f);
     }
@@ -176,7 +176,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lattice: points at rest change nothing, and points moved as one move all that is inside"
+    "lattice: points at rest change nothing, points moved together move all that is inside"
     * technique("face.ffd")) {
     const Lattice rest = make_lattice([](const Vec3&, int, int, int) { return Vec3(0); });
     const Vec3 by(0.3f, -0.7f, 0.2f);
@@ -192,8 +192,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lattice: an affine map of its points is the same map of what is inside"
-    * technique("face.ffd")) {
+    "lattice: an affine map of its points is the same map of the inside" * technique("face.ffd")) {
     const Mat3 turn(Vec3(0.9f, 0.1f, 0), Vec3(-0.3f, 1.1f, 0.2f), Vec3(0, 0.4f, 0.7f));
     const Vec3 shift(0.1f, 0.2f, -0.3f);
     const Lattice lattice =
@@ -212,8 +211,8 @@ TEST_CASE(
     const Lattice inner = make_lattice([&](const Vec3&, int i, int j, int k) {
         return i == 1 && j == 2 && k == 1 ? by : Vec3(0);
     });
-    const Vec3 middle = inside(inner, 0.5f, 0.5f, 0.5f);
-    CHECK(glm::distance(through(with(inner), middle) - middle, 0.052734375f * by) < 1e-6f);
+    const Vec3 center = inside(inner, 0.5f, 0.5f, 0.5f);
+    CHECK(glm::distance(through(with(inner), center) - center, 0.052734375f * by) < 1e-6f);
     const Lattice corner = make_lattice([&](const Vec3&, int i, int j, int k) {
         return i == 0 && j == 0 && k == 0 ? by : Vec3(0);
     });
@@ -242,7 +241,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "tug: without offset nothing changes to the bit, and its point moves by the whole offset"
+    "tug: without offset no bit changes, and its point moves by the whole offset"
     * technique("face.pull")) {
     const Tug tug{.at = {0.1f, -0.2f, 0.3f}, .offset = {0.02f, 0.01f, -0.005f}, .radius = 0.07f};
     CHECK(pack_deformers({.tugs = {{.at = tug.at, .radius = tug.radius}}}).empty());
@@ -256,15 +255,17 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "tug: every point moves as double precision says, with no edge at the border"
+    "tug: every point matches double precision, without an edge at the border"
     * technique("face.pull")) {
     using glm::dvec3;
     const Tug tug{.at = {0.1f, -0.2f, 0.3f}, .offset = {0.02f, 0.01f, -0.005f}, .radius = 0.07f};
     Random random(1, 2, 3, 5);
     for (int i = 0; i < 5000; ++i) {
         const Vec3 p = tug.at + tug.radius * random.uniform() * random.direction();
-        const double share = glm::distance(dvec3(p), dvec3(tug.at)) / double{tug.radius};
-        const dvec3 wanted = dvec3(p) + std::pow(1 - share * share, 3) * dvec3(tug.offset);
+        const double distance_fraction =
+            glm::distance(dvec3(p), dvec3(tug.at)) / double{tug.radius};
+        const dvec3 wanted =
+            dvec3(p) + std::pow(1 - distance_fraction * distance_fraction, 3) * dvec3(tug.offset);
         CHECK(glm::distance(dvec3(through({.tugs = {tug}}, p)), wanted) < 1e-7);
     }
     // (1 - x^2)^3 is 8 (1 - x)^3 near the border: a thousandth of the radius inside it, 8e-9.
@@ -306,7 +307,7 @@ TEST_CASE("deformers: normals are perpendicular to the deformed surface" * techn
     CHECK(deform_normal({}, Vec3(1), normal) == normal);
 }
 
-TEST_CASE("deformers: no vertex moves farther than the bound, which is not idle") {
+TEST_CASE("deformers: no vertex moves farther than the bound, which is tight") {
     Deformers deformers = with(make_lattice([](const Vec3&, int i, int j, int k) {
         return (i + j + k) % 2 == 0 ? Vec3(0.3f, 0, 0) : Vec3(0, 0.1f, 0.1f);
     }));
@@ -332,7 +333,7 @@ TEST_CASE("deformers: no vertex moves farther than the bound, which is not idle"
 }
 
 TEST_CASE(
-    "deformers: vectors of the machine and plain C++ give the same bits"
+    "deformers: SIMD and plain C++ give the same bits"
     * technique("face.ffd, face.pull, face.waters-muscle")) {
     Deformers deformers = with(make_lattice([](const Vec3&, int i, int j, int k) {
         return (i + j + k) % 2 == 0 ? Vec3(0.03f, 0, 0) : Vec3(0);
@@ -404,8 +405,7 @@ TEST_CASE("deformers: controls without extent or with numbers that are not finit
     }
 }
 
-TEST_CASE(
-    "deformers: a mesh gets its state, deforms by itself, and velocities know the last step") {
+TEST_CASE("deformers: a mesh gets its state, deforms by itself, and has velocities") {
     World world;
     const Entity alone = world.create(MeshInstance{}, with(kMuscleUp));
     const Entity other = world.create();

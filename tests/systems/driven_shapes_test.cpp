@@ -56,7 +56,7 @@ struct Face {
 
 }  // namespace
 
-TEST_CASE("driven shapes: an in-between is a tent, 0 at both ends and whole at its peak") {
+TEST_CASE("driven shapes: an in-between is a tent, 0 at both ends and 1 at its peak") {
     for (const float peak : {0.25f, 0.5f, 0.8f}) {
         const ShapeDriver driver = {0, peak};
         const auto at = [&](float weight) {
@@ -87,7 +87,7 @@ TEST_CASE("driven shapes: a weight that is missing or NaN drives nothing") {
     CHECK(driven_weight(drivers, std::vector<float>{1, 0, kNaN}) == 0);
 }
 
-TEST_CASE("driven shapes: each step a mesh bends the way of its drivers, whatever was set") {
+TEST_CASE("driven shapes: each step a mesh follows its drivers, whatever was set") {
     Face face(MorphWeights{{0.5f, 0, 9, 9}, {}});
     CHECK(face.point() == Vec3(0.5f, 0, 1));  // the in-between to the bit
     face.weights() = {1, 0.5f, 9, 9};

@@ -121,7 +121,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("fft: columns of every size are transformed each by itself") {
+TEST_CASE("fft: columns of every size are transformed independently") {
     for (const std::size_t size : kSizes) {
         CAPTURE(size);
         const Planes from = noise(kFftColumns * size);
@@ -141,8 +141,7 @@ TEST_CASE("fft: columns of every size are transformed each by itself") {
     }
 }
 
-TEST_CASE(
-    "fft: there and back again is size times what it was" * technique("water.fft-synthesis")) {
+TEST_CASE("fft: forward and inverse give size times the input" * technique("water.fft-synthesis")) {
     for (const std::size_t size : kSizes) {
         CAPTURE(size);
         const Planes from = noise(kFftColumns * size);
@@ -170,8 +169,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "fft: one wave alone at number 0 is the same everywhere, to the bit"
-    * technique("water.fft-synthesis")) {
+    "fft: a single wave with number 0 is constant, to the bit" * technique("water.fft-synthesis")) {
     for (const std::size_t size : {16, 32, 64}) {
         Planes spectrum(size * size);
         spectrum.re[0] = 1.7f;
@@ -206,7 +204,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("fft: vectors of any width give the bits of one lane") {
+TEST_CASE("fft: SIMD of any width gives the bits of one lane") {
     for (const std::size_t size : kSizes) {
         CAPTURE(size);
         const Planes from = noise(kFftColumns * size);
@@ -216,7 +214,7 @@ TEST_CASE("fft: vectors of any width give the bits of one lane") {
     }
 }
 
-TEST_CASE("fft: columns may be transformed where they are, within something wider") {
+TEST_CASE("fft: columns can be transformed in place, within a wider array") {
     constexpr std::size_t kSize = 64;
     constexpr std::size_t kPitch = 50;
     const Planes from = noise(kFftColumns * kSize);
@@ -240,7 +238,7 @@ TEST_CASE("fft: columns may be transformed where they are, within something wide
     }
 }
 
-TEST_CASE("fft: a block turned about its diagonal has columns for rows") {
+TEST_CASE("fft: a transposed block has columns for rows") {
     constexpr std::size_t kRows = 12;
     const Planes from = noise(kFftColumns * kRows);
     std::vector<float> to(kFftColumns * 20);

@@ -31,14 +31,14 @@ TEST_CASE("fly_camera: keys move it along the view, at its speed") {
     CHECK(glm::length(diagonal.position) == test::near(1.0f));  // not faster askew
 }
 
-TEST_CASE("fly_camera: up is up, however the camera is tilted") {
+TEST_CASE("fly_camera: up is world up, however the camera is tilted") {
     Transform camera = {.rotation = glm::angleAxis(-1.0f, Vec3(1, 0, 0))};
     step_fly_camera(camera, kFly, {.move = {0, 1, 0}}, 1);
     CHECK(glm::length(camera.position - Vec3(0, 2, 0)) < 1e-6f);
 }
 
-TEST_CASE("fly_camera: the mouse to the right turns right, down tilts down, and the horizon stays "
-          "level") {
+TEST_CASE("fly_camera: moving the mouse right rotates right, down tilts down, and the horizon "
+          "stays level") {
     Transform camera;
     step_fly_camera(camera, kFly, {.look = {50, 0}}, 1);
     CHECK(glm::length(forward(camera) - Vec3(std::sin(0.5f), 0, -std::cos(0.5f))) < 1e-6f);
@@ -56,7 +56,7 @@ TEST_CASE("fly_camera: the mouse to the right turns right, down tilts down, and 
     CHECK(glm::length(camera.rotation) == test::near(1.0f));
 }
 
-TEST_CASE("fly_camera: it looks nearly straight up, never over the top, and can come back") {
+TEST_CASE("fly_camera: it can look nearly straight up, never beyond, and can return") {
     Transform camera;
     for (int i = 0; i < 400; ++i) {
         step_fly_camera(camera, kFly, {.look = {0, -3}}, 1);

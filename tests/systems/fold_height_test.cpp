@@ -92,13 +92,13 @@ float highest(const std::vector<Vec2>& heights) {
 }  // namespace
 
 TEST_CASE(
-    "fold height: folds of a sine are as high as its integral says, to 3 %"
+    "fold height: folds of a sine have the height of its integral, to 3 %"
     * technique("wrinkle.displacement")) {
     const MeshData sheet = make_sheet(96);  // 12 edges a fold
     CHECK(worst_height(sheet, fold_heights(sheet, sine_map(), {}, false)) <= 0.03f * kHigh);
 }
 
-TEST_CASE("fold height: twice the size of the sheet, folds are twice as high") {
+TEST_CASE("fold height: on a sheet of twice the size folds are twice as high") {
     MeshData large = make_sheet(96);
     for (Vec3& p : large.positions) {
         p *= 2.0f;
@@ -152,7 +152,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("fold height: edges of a quarter of a fold show it, of half a fold nothing at all") {
+TEST_CASE("fold height: edges of a quarter of a fold resolve it, of half a fold do not") {
     const auto sheet = [](int edges_per_fold) {
         return make_sheet(static_cast<int>(std::lround(kSide / kWave)) * edges_per_fold);
     };
@@ -178,7 +178,7 @@ TEST_CASE("fold height: at a hard edge nothing moves, where it is smooth it does
     CHECK(heights.back().x == 0);
 }
 
-TEST_CASE("fold height: two layers have heights of their own") {
+TEST_CASE("fold height: two layers have separate heights") {
     ImageData map = sine_map();
     for (std::size_t i = 0; i < map.pixels.size(); i += 4) {
         map.pixels[i + 2] = 128;

@@ -8,7 +8,7 @@
 namespace limn::mesh_level_test {
 
 TEST_CASE(
-    "mesh_levels: they grow with size on screen, and do not flicker"
+    "mesh_levels: they increase with size on screen, and do not flicker"
     * technique("anim.bezier-patch-lod, engine.lod-mesh")) {
     int last = 0;
     for (float pixels = 1; pixels < 4096; pixels *= 1.05f) {
@@ -25,7 +25,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "mesh_levels: an entity has a finer mesh near the camera, at any size of it"
+    "mesh_levels: an entity has a finer mesh near the camera, at any scale"
     * technique("anim.bezier-patch-lod, engine.lod-mesh")) {
     World world;
     const std::vector<MeshId> meshes = {{4}, {5}, {6}, {7}};

@@ -66,7 +66,7 @@ TEST_CASE("orbit_camera: ours is the book's with y up" * technique("engine.camer
 }
 
 TEST_CASE(
-    "orbit_camera: its distance is what was asked for, whatever the target's pose and scale"
+    "orbit_camera: its distance is the requested one, whatever the target's pose and scale"
     * technique("engine.camera-orbit")) {
     const Affine target =
         affine_from({1, -2, 3}, glm::normalize(Quat(0.4f, 0.1f, -0.7f, 0.2f)), {2, 0.1f, 7});
@@ -90,7 +90,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "camera_lag: the way does not depend on the frame rate, and never overshoots"
+    "camera_lag: the path does not depend on the frame rate, and never overshoots"
     * technique("engine.camera-lag")) {
     const Vec3 start = {1, -4, 2};
     const Vec3 wanted = {0, 3, 7};
@@ -107,7 +107,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "camera_lag: the code as printed moves a sixtieth of the gap where it says rigid"
+    "camera_lag: the printed code moves a sixtieth of the distance where it claims to be rigid"
     * technique("engine.camera-lag")) {
     CHECK(near(lag_position_legacy({0, 0, 0}, {60, 0, 0}, 1, 1.0f / 60.0f), {1, 0, 0}));
     CHECK(lag_position_legacy({0, 0, 0}, {1, 0, 0}, 1, 3).x > 1);  // overshoots
@@ -143,7 +143,7 @@ TEST_CASE(
     CHECK(glm::determinant(look_at_frame({1, 2, 3}, {0, 0, 0})) == test::near(1.0f));
 }
 
-TEST_CASE("orbit_camera: the target is in the middle of the image, where the lens points") {
+TEST_CASE("orbit_camera: the target is in the center of the image, where the lens points") {
     Scene scene(
         {.target = {},
          .offset = {0, 1, 0},
@@ -163,7 +163,7 @@ TEST_CASE("orbit_camera: the target is in the middle of the image, where the len
 }
 
 TEST_CASE(
-    "orbit_camera: a target that is moved before a step is in the middle, after it not"
+    "orbit_camera: a target that is moved before a step is centered, after it not"
     * technique("engine.main-loop")) {
     Scene scene({.target = {}, .azimuth = 0, .elevation = 0, .distance = 5, .follow = 1});
     scene.step();
@@ -204,7 +204,7 @@ TEST_CASE(
     CHECK(scene.world.get<PreviousWorldTransform>(scene.camera).world.row[0].w == test::near(-50));
 }
 
-TEST_CASE("orbit_camera: it stays where it is when its target is gone") {
+TEST_CASE("orbit_camera: it does not move if its target is destroyed") {
     Scene scene({.target = {}, .distance = 5});
     scene.step();
     const Vec3 before = scene.position();
@@ -213,7 +213,7 @@ TEST_CASE("orbit_camera: it stays where it is when its target is gone") {
     CHECK(scene.position() == before);
 }
 
-TEST_CASE("orbit_camera: mouse and wheel turn and zoom the active camera only") {
+TEST_CASE("orbit_camera: mouse and wheel rotate and zoom only the active camera") {
     Scene scene({.target = {}, .azimuth = 0, .elevation = 0, .distance = 5, .follow = 1});
     scene.world.resource<Input>() = {.look = {-100, 20}, .zoom = 1};
     scene.step();

@@ -38,8 +38,7 @@ struct Follow {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(
-    Follow, "path system: a follower goes at its speed, +z ahead, and round and round") {
+TEST_CASE_FIXTURE(Follow, "path system: a follower moves at its speed, +z ahead, lap after lap") {
     const Entity entity = add({.path = {0}, .speed = 6});
     start();
     CHECK(world.get<WorldTransform>(entity).world.row[2].w == 0);
@@ -85,7 +84,7 @@ TEST_CASE_FIXTURE(Follow, "path system: an open path ends, backward as well") {
     CHECK((world.get<Transform>(there).rotation * Vec3(0, 1, 0)).y < 0.8f);
 }
 
-TEST_CASE_FIXTURE(Follow, "path system: a path that does not exist leaves its follower in place") {
+TEST_CASE_FIXTURE(Follow, "path system: a follower of a missing path does not move") {
     const Entity entity = add({.path = {7}, .speed = 5});
     const Entity none = add({.speed = 5});
     world.get<Transform>(entity).position = {1, 2, 3};

@@ -115,7 +115,7 @@ TEST_CASE("clip player: loops, holds at both ends and never leaves the clip") {
     CHECK(step_clip_time(ClipPlayer{.clip = {}, .time = 1}, 0.0f, 0.1f) == 0.0f);  // a single key
 }
 
-TEST_CASE("pose system: a character shows its clip at the moment of its player") {
+TEST_CASE("pose system: a character shows its clip at the time of its player") {
     Stage stage;
     const Entity character =
         stage.world.create(Transform{}, Skeleton{{0}}, ClipPlayer{.clip = {0}});
@@ -127,10 +127,11 @@ TEST_CASE("pose system: a character shows its clip at the moment of its player")
     // Joint 1, at (0, 1, 0), has turned a quarter to the left; two more hang on it.
     CHECK(glm::distance(tip(stage.pose(character).joints), Vec3(-2, 1, 0)) < 1e-5f);
     stage.step(6);
-    CHECK(stage.world.get<const ClipPlayer>(character).time == 0.0f);  // begun anew
+    CHECK(stage.world.get<const ClipPlayer>(character).time == 0.0f);  // wrapped around
 }
 
-TEST_CASE("pose system: previous is what the joints were a step ago, and now in the first step") {
+TEST_CASE(
+    "pose system: previous joints are those of the last step, in the first step the current ones") {
     Stage stage;
     const Entity early = stage.world.create(
         Transform{}, Skeleton{{0}}, ClipPlayer{.clip = {1}}, MorphWeights{{0.5f, 0}, {}});
@@ -157,7 +158,7 @@ TEST_CASE("pose system: previous is what the joints were a step ago, and now in 
     CHECK(morph.weights[1] > 0.25f);
 }
 
-TEST_CASE("pose system: a teleport of a character, or of what carries it, leaves no velocity") {
+TEST_CASE("pose system: a teleport of a character, or of an ancestor, gives no velocity") {
     Stage stage;
     const Entity cart = stage.world.create(Transform{});
     const Entity rider = stage.world.create(
@@ -175,7 +176,7 @@ TEST_CASE("pose system: a teleport of a character, or of what carries it, leaves
     }
 }
 
-TEST_CASE("pose system: what is attached to a joint is sheared like a child of entities with the "
+TEST_CASE("pose system: an entity attached to a joint is sheared like a child of entities with the "
           "same transforms") {
     const Quat turned = rotation_about({0, 0, 1}, radians(45));
     Assets assets;
@@ -285,7 +286,7 @@ ClipData make_fade(
 }  // namespace
 
 TEST_CASE(
-    "morph player: curves count times the weight of their animation, tiny ones not at all"
+    "morph player: curves are scaled by the weight of their animation, tiny weights are ignored"
     * technique("char.morph-anim")) {
     std::vector<float> weights = {0, 0, 1};
     const ClipData fade = make_fade({0, 1}, {0, 1}, {0.5f, 0.00005f, 0.5f, 0.00005f});
@@ -300,7 +301,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "morph player: animations of different regions are the sum of each alone, step by step"
+    "morph player: animations of different regions add up, step by step"
     * technique("char.morph-anim")) {
     Stage stage;
     Assets& assets = stage.world.resource<Assets>();
@@ -338,7 +339,7 @@ TEST_CASE(
     CHECK(stage.world.get<const MorphPlayer>(both).animations[1].time > 0.06f);
 }
 
-TEST_CASE("pose system: what is attached to a joint stands where the joint is, in the same step") {
+TEST_CASE("pose system: an entity attached to a joint follows it in the same step") {
     Stage stage;
     const Entity character = stage.world.create(
         Transform{.position = {10, 0, 0}}, Skeleton{{0}}, ClipPlayer{.clip = {0}});
@@ -355,7 +356,7 @@ TEST_CASE("pose system: what is attached to a joint stands where the joint is, i
     CHECK(stage.world.get<const Transform>(lost).position == Vec3(1, 2, 3));
 }
 
-TEST_CASE("pose system: a step allocates nothing once every character has had one") {
+TEST_CASE("pose system: steps after a character's first allocate nothing") {
     const int before = thread_count();
     set_thread_count(1);
     Stage stage;
@@ -398,7 +399,7 @@ TEST_CASE("pose system: a crowd has the same bits on any number of threads") {
     set_thread_count(before);
 }
 
-TEST_CASE("pose system: a world put back from a snapshot goes on bit by bit as it would have") {
+TEST_CASE("pose system: a world restored from a snapshot continues with the same bits") {
     register_all_components();
     Stage stage;
     for (int i = 0; i < 20; ++i) {

@@ -32,8 +32,7 @@ float degrees_at(const RotationTrack& track, double time) {
 
 }  // namespace
 
-TEST_CASE(
-    "rotation_track: by any method it is at its keys when they are due" * technique("anim.slerp")) {
+TEST_CASE("rotation_track: every method is at its keys at their times" * technique("anim.slerp")) {
     for (const RotationMethod method :
          {RotationMethod::Slerp, RotationMethod::Nlerp, RotationMethod::Squad,
           RotationMethod::Euler}) {
@@ -49,7 +48,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation_track: slerp has an even speed between keys, nlerp lags, squad has no corner"
+    "rotation_track: slerp has constant speed between keys, nlerp lags, squad has no corner"
     * technique("anim.quat-lerp, anim.squad")) {
     const RotationTrack turn = {.keys = {{0, yaw(0)}, {1, yaw(160)}}};
     CHECK(degrees_at(turn, 0.25) == test::near(40).epsilon(1e-5));
@@ -73,7 +72,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation_track: at an even speed keys are due where the turn has come to"
+    "rotation_track: at constant speed the times of keys follow the angles"
     * technique("anim.constant-angular-velocity")) {
     const RotationTrack track = uneven_track(RotationMethod::Slerp, RotationTiming::EvenSpeed);
     for (const double time : {0.0, 0.5, 1.0, 1.7, 2.4, 3.0}) {
@@ -82,9 +81,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation_track: Euler angles go their own way, which is no great arc"
-    * technique("anim.euler")) {
-    // From a yaw of 90 degrees to a pitch of 90: in the middle 45 and 45 degrees.
+    "rotation_track: Euler angles take a path that is no great arc" * technique("anim.euler")) {
+    // From a yaw of 90 degrees to a pitch of 90: halfway 45 and 45 degrees.
     RotationTrack track = {
         .keys = {{0, yaw(90)}, {1, glm::angleAxis(radians(90.0f), Vec3(1, 0, 0))}},
         .method = RotationMethod::Euler};
@@ -97,7 +95,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "rotation_track: the sign of a key does not matter, the shorter way is taken"
+    "rotation_track: the sign of a key does not matter, the shorter arc is taken"
     * technique("anim.shortest-arc")) {
     RotationTrack track = {.keys = {{0, yaw(0)}, {1, -yaw(90)}, {2, yaw(200)}}};
     CHECK(degrees_at(track, 0.5) == test::near(45).epsilon(1e-5));

@@ -66,7 +66,7 @@ ScriptEvent event_at(double time, ScriptAction action) {
 
 }  // namespace
 
-TEST_CASE("script: an event happens once, in the step that begins at its time") {
+TEST_CASE("script: an event is executed once, in the step that begins at its time") {
     ScriptEvent event;
     event.time = 0.5;
     std::vector<std::uint64_t> due;
@@ -78,7 +78,7 @@ TEST_CASE("script: an event happens once, in the step that begins at its time") 
     CHECK(due == std::vector<std::uint64_t>{30});
 }
 
-TEST_CASE("script: a repeated event keeps its distance and ends after its times") {
+TEST_CASE("script: a repeated event keeps its interval and ends after its count") {
     ScriptEvent event;
     event.time = 0.1;
     event.every = 0.05;
@@ -146,7 +146,7 @@ TEST_CASE("script: set replaces strings, lists and resources") {
     CHECK(world.resource<Exposure>().curve == ToneCurve::Linear);
 }
 
-TEST_CASE("script: an impulse adds within the range, and turns rotations further") {
+TEST_CASE("script: an impulse adds within the range, and rotates rotations further") {
     World world;
     const Quat quarter = glm::angleAxis(radians(90.0f), Vec3(0, 1, 0));
     const Entity entity = world.create(
@@ -187,7 +187,7 @@ TEST_CASE("script: an impulse steps through enumerations, around both ends, and 
     CHECK(world.get<const PointLight>(lamp).enabled);
 }
 
-TEST_CASE("script: spawned prefabs are whole and new each time; destroy takes what is below") {
+TEST_CASE("script: spawned prefabs are complete and new each time; destroy includes descendants") {
     World world;
     Prefab prefab;
     prefab.entities.resize(2);
@@ -239,7 +239,7 @@ TEST_CASE("script: a key that is held over many frames of a window is pressed on
 }
 
 TEST_CASE(
-    "script: an event of a key comes once for each press, or release, however long it is held") {
+    "script: a key event is executed once per press or release, however long the key is held") {
     World world;
     const Entity pressed = world.create(Transform{});
     const Entity released = world.create(Transform{});
@@ -265,7 +265,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("lifetime: an entity goes with its descendants when its time is up, others stay") {
+TEST_CASE(
+    "lifetime: an entity is destroyed with its descendants when its time is up, others stay") {
     World world;
     const Entity short_lived = world.create(Lifetime{0.09f});
     const Entity child = world.create(Parent{short_lived}, Lifetime{0.09f});
@@ -280,7 +281,7 @@ TEST_CASE("lifetime: an entity goes with its descendants when its time is up, ot
     CHECK(world.alive(long_lived));
 }
 
-TEST_CASE("script: what is aimed at an entity that is gone does nothing") {
+TEST_CASE("script: actions on a destroyed entity do nothing") {
     World world;
     const Entity entity = world.create(Spin{});
     world.insert_resource(
@@ -292,7 +293,7 @@ TEST_CASE("script: what is aimed at an entity that is gone does nothing") {
     run_events(empty);  // without a list or a time
 }
 
-TEST_CASE("script: a camera follows its path and its target, and rests when told to") {
+TEST_CASE("script: a camera follows its path and its target, and stops if asked to") {
     World world;
     CameraPath path;
     path.keys.resize(2);
@@ -317,7 +318,7 @@ TEST_CASE("script: a camera follows its path and its target, and rests when told
     CHECK(std::isfinite(world.get<const Transform>(camera).rotation.w));
 }
 
-TEST_CASE("script: what an event moves jumps; what it only sets in motion does not") {
+TEST_CASE("script: an entity moved by an event jumps; one that is only set in motion does not") {
     const auto marks = [](auto&& component, EventAction action, std::string_view field) {
         World world;
         const Entity entity = world.create(Transform{}, component);

@@ -35,7 +35,7 @@ double length_at(const ShoalingState& state, int i, int j) {
 }  // namespace
 
 TEST_CASE(
-    "shoaling: waves are as long as the depth says, shorter over the shoal, of one period"
+    "shoaling: wavelength follows depth, shorter over the shoal, with the same period"
     * technique("water.shallow-refraction")) {
     World world;
     const Entity tank = world.create(Transform{}, kTank);
@@ -63,7 +63,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shoaling: behind the shoal crests bend toward its axis, alike on both sides"
+    "shoaling: behind the shoal crests bend toward its axis, symmetrically"
     * technique("water.shallow-refraction")) {
     World world;
     const Entity tank = world.create(Transform{}, kTank);
@@ -80,7 +80,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shoaling: a mesh takes heights and normals of its entity, and is uploaded again"
+    "shoaling: a mesh gets heights and normals of its entity, and is uploaded again"
     * technique("water.noise-surface")) {
     World world;
     MeshData mesh;

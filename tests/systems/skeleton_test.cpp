@@ -39,7 +39,7 @@ std::string skin_error(Break&& break_it) {
 
 }  // namespace
 
-TEST_CASE("skeleton: cycles, second roots and children before parents are refused") {
+TEST_CASE("skeleton: cycles, second roots and children before parents are rejected") {
     CHECK(skeleton_error([](SkeletonData&) {}) == "");
     CHECK(skeleton_error([](SkeletonData& s) { s = {}; }) == "skeleton : no joints");
     CHECK(
@@ -67,7 +67,8 @@ TEST_CASE("skeleton: cycles, second roots and children before parents are refuse
 }
 
 TEST_CASE(
-    "skeleton: a clip with unsorted keys, wrong lengths or strangers is refused with its place"
+    "skeleton: a clip with unsorted keys, wrong lengths or unknown joints is rejected with its "
+    "location"
     * technique("char.clip-layout")) {
     CHECK(clip_error([](ClipSheet&) {}) == "");
     CHECK(clip_error([](ClipSheet& s) { s.times = {}; }) == "clip turn, sheet 0: no keys");
@@ -116,7 +117,7 @@ TEST_CASE(
         == "clip turn, sheet 0: a rotation of length 0");
 }
 
-TEST_CASE("skeleton: a skin with a flat matrix or a joint that is not there is refused") {
+TEST_CASE("skeleton: a skin with a singular matrix or a missing joint is rejected") {
     CHECK(skin_error([](SkinData&) {}) == "");
     CHECK(
         skin_error([](SkinData& s) { s.joints = {0}; })

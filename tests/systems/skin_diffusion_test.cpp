@@ -103,7 +103,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin diffusion: the sum over the area is kept, and no value leaves the range"
+    "skin diffusion: the integral over the area is kept, and no value leaves the range"
     * technique("wrinkle.smoothing")) {
     const Sheet sheet = make_sheet(9, 0.6f);
     Random random(7, 0, 0, 0);
@@ -200,7 +200,7 @@ TEST_CASE("skin diffusion: fine meshes hardly change" * technique("wrinkle.smoot
 }
 
 TEST_CASE(
-    "skin diffusion: a seam does not stop it, skin that takes no part does"
+    "skin diffusion: a seam does not stop it, excluded skin does"
     * technique("wrinkle.smoothing")) {
     Sheet sheet = make_sheet(6);
     const SkinDiffusion whole = diffusion_of(sheet, 1.5f);

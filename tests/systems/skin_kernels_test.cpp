@@ -158,7 +158,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin: a motion of the root moves all vertices as one body") {
+TEST_CASE("skin: a motion of the root moves all vertices rigidly") {
     Puppet puppet = make_puppet(12, 300, 6);
     LocalPose pose = puppet.skeleton.rest;
     const Affine motion = affine_from({1, 2, 3}, rotation_about({1, -2, 0.5f}, 1.2f), Vec3(1));
@@ -245,7 +245,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin: a vertex between two joints is the mean of where either would take it"
+    "skin: a vertex between two joints is the mean of both joints' results"
     * technique("char.skin-defects")) {
     Puppet puppet = make_tube({1, 0, 0}, 70, 0.5f);
     puppet.linear();
@@ -282,7 +282,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin: where opposite turns cancel a normal, the strongest joint turns it"
+    "skin: where opposite rotations cancel a normal, the strongest joint rotates it"
     * technique("char.skin-cpu")) {
     Puppet puppet = make_tube({0, 1, 0}, 180, 0.5f);
     puppet.palette[1].row[0] = {-1, 0, 0, 0};  // half a turn to the last bit
@@ -337,7 +337,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin: positions by themselves have the bits that they have with normals and tangents") {
+TEST_CASE("skin: positions alone have the same bits as with normals and tangents") {
     for (const std::size_t count : {15, 203}) {
         Puppet puppet = make_puppet(30, count, 5);
         for (std::uint32_t v = 0; v < 10; ++v) {
@@ -380,7 +380,7 @@ Puppet make_regular_puppet(std::size_t count, std::size_t run, std::size_t verti
     return puppet;
 }
 
-/// By vectors and without, both ways to blend.
+/// By SIMD and scalar, with both blending methods.
 void check_same_bits(Puppet& puppet) {
     MeshData plain = puppet.mesh;
     const std::size_t count = plain.positions.size();
@@ -397,7 +397,8 @@ void check_same_bits(Puppet& puppet) {
     CHECK(same_bits(plain.tangents, puppet.moved.tangents));
 }
 
-TEST_CASE("skin: neighbors on the same joints, on as many, or on any give the bits of each alone") {
+TEST_CASE("skin: batches with common joints, equally many or any joints have the bits of single "
+          "vertices") {
     // Every kind of vectors that this machine has.
     const std::int64_t targets = hwy::SupportedTargets();
     for (std::int64_t left = targets; left != 0; left &= left - 1) {
@@ -420,8 +421,7 @@ TEST_CASE("skin: neighbors on the same joints, on as many, or on any give the bi
     hwy::GetChosenTarget().DeInit();
 }
 
-TEST_CASE(
-    "skin: motions and normals that cancel, in the midst of others, are those of each alone") {
+TEST_CASE("skin: motions and normals that cancel within a batch are those of single vertices") {
     for (const std::size_t run : {1, 1000}) {
         Puppet puppet = make_regular_puppet(2, run, 64);
         for (std::size_t i = 0; i < 24; i += 2) {  // half a turn apart, and opposite
@@ -440,7 +440,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin: opposite motions leave the first, however small its weight") {
+TEST_CASE("skin: opposite motions give the first, however small its weight") {
     for (const std::size_t run : {1, 1000}) {
         Puppet puppet = make_regular_puppet(3, run, 64);
         for (std::size_t i = 0; i < 24; ++i) {
@@ -491,7 +491,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin: morph targets are linear, add up in any order and leave the others alone"
+    "skin: morph targets are linear, add up in any order and do not move other vertices"
     * technique("char.morph-target")) {
     MeshData mesh;
     for (int i = 0; i < 6; ++i) {
@@ -520,7 +520,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "skin: a shape that was morphed before it is skinned turns with its joint"
+    "skin: a shape that is morphed before skinning rotates with its joint"
     * technique("char.morph-target")) {
     Puppet puppet = make_tube({0, 1, 0}, 90, 1);
     puppet.mesh.morphs.push_back({"bump", "", {0}, {{1, 0, 0}}, {}, {}});
@@ -545,7 +545,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("skin: weights that sum to a half pull a vertex halfway to the origin") {
+TEST_CASE("skin: weights that sum to a half move a vertex halfway to the origin") {
     // Which is why what is loaded is scaled to a sum of 1.
     Puppet puppet = make_puppet(5, 60, 3);
     puppet.pose(random_pose(puppet.skeleton, 0.7f));

@@ -104,7 +104,7 @@ constexpr PullableSkin kFree = {.radius = 0.03f, .reach = 100};
 }  // namespace
 
 TEST_CASE(
-    "skin pull: a spring is the closed form, in one step or in many of any length"
+    "skin pull: a spring matches the closed form, in one step or many of any length"
     * technique("face.pull")) {
     const SpringState start = {{0.02f, -0.01f, 0.005f}, {0.3f, 0, -0.2f}};
     const Vec3 goal(0.001f, 0.002f, 0);
@@ -263,7 +263,7 @@ TEST_CASE("skin pull: other deformers of the character follow it, and those of o
     CHECK(scene.world.get<DeformerState>(stranger).now.empty());
 }
 
-TEST_CASE("skin pull: of more pulls than a mesh may have the oldest end, and NaN pulls nothing") {
+TEST_CASE("skin pull: beyond the maximum of a mesh the oldest pulls end, and NaN pulls nothing") {
     PullScene scene({.rate = 0.1f});  // slow: all are there at once
     for (std::size_t i = 0; i < kMaxSkinPulls + 3; ++i) {
         const float x = 0.004f * static_cast<float>(i) - 0.02f;
@@ -286,8 +286,7 @@ TEST_CASE("skin pull: of more pulls than a mesh may have the oldest end, and NaN
 }
 
 TEST_CASE(
-    "skin pull: skin wrinkles where it is pushed together, and nowhere else"
-    * technique("face.pull")) {
+    "skin pull: skin wrinkles where it is compressed, and nowhere else" * technique("face.pull")) {
     constexpr double kRadius = 0.04;
     constexpr double kPull = 0.012;
     const MeshData mesh = make_skin(160, 0.05f);

@@ -11,7 +11,7 @@
 
 namespace limn::spin_system_test {
 
-TEST_CASE("spin: a turn of 2 pi in 60 steps comes back to where it began") {
+TEST_CASE("spin: a turn of 2 pi in 60 steps returns to its start") {
     World world;
     world.insert_resource(FrameTime{.step = 1.0f / 60.0f});
     const Quat start = glm::normalize(Quat(1, 0.2f, 0.3f, -0.1f));
@@ -25,7 +25,8 @@ TEST_CASE("spin: a turn of 2 pi in 60 steps comes back to where it began") {
         == test::near(1.0f).epsilon(1e-6));
 }
 
-TEST_CASE("spin: it turns by speed times step about its own axis, however long the axis is") {
+TEST_CASE(
+    "spin: it rotates by speed times step about its own axis, whatever the length of the axis") {
     World world;
     world.insert_resource(FrameTime{.step = 0.5f});
     const Quat start = glm::angleAxis(0.7f, glm::normalize(Vec3(1, 1, 0)));
@@ -36,7 +37,7 @@ TEST_CASE("spin: it turns by speed times step about its own axis, however long t
     CHECK(glm::dot(world.get<Transform>(e).rotation, expected) == test::near(1.0f).epsilon(1e-6));
 }
 
-TEST_CASE("spin: nothing turns about an axis of length 0 or in a step of length 0") {
+TEST_CASE("spin: nothing rotates about an axis of length 0 or in a step of length 0") {
     World world;
     world.insert_resource(FrameTime{.step = 0.5f});
     const Entity none = world.create(Transform{}, Spin{.axis = {0, 0, 0}, .speed = 3});
@@ -64,7 +65,7 @@ TEST_CASE("spin: the rotation stays unit through 100,000 steps") {
     }
 }
 
-TEST_CASE("spin: the kernel with vectors gives the bits of the plain one, whatever the count") {
+TEST_CASE("spin: the SIMD kernel gives the bits of the scalar one, whatever the count") {
     Random random(1, 0, name_hash("spin"), 0);
     for (std::size_t count = 1; count < 70; ++count) {
         std::vector<Spin> spin(count);

@@ -118,8 +118,8 @@ TEST_CASE("clip jumps: two keys at nearly the same time are a jump, a fast motio
     CHECK(slide_jump(fast, {0.99f, 1.01f}) == kNoJump);
 }
 
-TEST_CASE("step jumps: joints that jump, what hangs on them and their attachments have no "
-          "velocity; what was before is kept until the time of the jump") {
+TEST_CASE("step jumps: joints that jump, their descendants and attachments have no velocity; the "
+          "state before is kept until the time of the jump") {
     JumpStage stage(0.25f);
     stage.add_clip(make_slide(Interpolation::Linear, {0, 0.875f}, {0, 7}));
     const Entity walker = stage.world.create(Transform{}, Skeleton{{0}}, ClipPlayer{{0}});
@@ -132,7 +132,7 @@ TEST_CASE("step jumps: joints that jump, what hangs on them and their attachment
     CHECK(pose.previous[1].row[0].w == test::near(4));  // it moves
     CHECK(pose.jumps.empty());
     CHECK(stage.jump(tip) == nullptr);
-    stage.run(1);  // the loop ends in the middle of this step
+    stage.run(1);  // the loop ends halfway through this step
     REQUIRE(pose.jumps.size() == 2);
     CHECK(pose.jumps[0].index == 1);
     CHECK(pose.jumps[0].at == test::near(0.5));
@@ -190,7 +190,7 @@ TEST_CASE("step jumps: morph weights jump with the loop of each of their clips")
     }
 }
 
-TEST_CASE("step jumps: a pose that is set anew has no velocity, where its entity keeps its own") {
+TEST_CASE("step jumps: a pose that is replaced has no velocity, while its entity keeps its own") {
     JumpStage stage(0.25f);
     stage.add_clip(make_slide(Interpolation::Linear, {0, 10}, {0, 10}));
     const Entity walker = stage.world.create(Transform{}, Sway{}, Skeleton{{0}}, ClipPlayer{{0}});

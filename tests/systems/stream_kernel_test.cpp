@@ -15,12 +15,12 @@
 #include <vector>
 
 // One kernel, many elements that know nothing of each other (shade.stream-kernel): neither the
-// order nor the grouping in which they are done can be seen in the result.
+// order nor the grouping of the work affects the result.
 
 namespace limn::stream_kernel_test {
 namespace {
 
-/// What sways, turns and is placed in the world.
+/// Entities that sway and rotate, with world matrices.
 struct Elements {
     std::vector<Sway> sway;
     std::vector<Spin> spin;
@@ -76,7 +76,7 @@ constexpr std::size_t kCount = 3001;
 }  // namespace
 
 TEST_CASE(
-    "stream_kernel: in pieces of any size, forward or backward, the bits are the same"
+    "stream_kernel: in chunks of any size, forward or backward, the bits are the same"
     * technique("shade.stream-kernel")) {
     Elements whole = make_elements(kCount);
     step(whole, 0, kCount);
@@ -134,13 +134,13 @@ TEST_CASE(
         Schedule schedule;
         schedule.add<update_transforms>();
         schedule.run(world);
-        std::vector<WorldTransform> placed;
+        std::vector<WorldTransform> matrices;
         std::as_const(world).query<const WorldTransform>().each(
-            [&](const WorldTransform& at) { placed.push_back(at); });
+            [&](const WorldTransform& at) { matrices.push_back(at); });
         if (one.empty()) {
-            one = placed;
+            one = matrices;
         }
-        CHECK(same_bits(placed, one));
+        CHECK(same_bits(matrices, one));
     }
     CHECK(one.size() == 20'000);
     set_thread_count(threads);

@@ -29,11 +29,11 @@ MeshData make_sheet(int n) {
     mesh.name = "sheet";
     for (int z = 0; z <= n; ++z) {
         for (int x = 0; x <= n; ++x) {
-            const Vec2 share = Vec2(x, z) / static_cast<float>(n);
-            mesh.positions.emplace_back(2 * share.x - 1, 0, 2 * share.y - 1);
+            const Vec2 uv = Vec2(x, z) / static_cast<float>(n);
+            mesh.positions.emplace_back(2 * uv.x - 1, 0, 2 * uv.y - 1);
             mesh.normals.emplace_back(0, 1, 0);
             mesh.tangents.emplace_back(1, 0, 0, 1);
-            mesh.uvs.push_back(share);
+            mesh.uvs.push_back(uv);
         }
     }
     const auto at = [n](int x, int z) { return static_cast<std::uint32_t>(z * (n + 1) + x); };
@@ -99,7 +99,8 @@ const Affine kTurn =
 }  // namespace
 
 TEST_CASE(
-    "surface faces: a face weighs 1 at it, a half at 1, less beyond the more it is local"
+    "surface faces: the weight of a face is 1 at it, a half at distance 1, and falls faster with "
+    "locality"
     * technique("face.soffd")) {
     for (const float locality : {1.0f, 2.0f, 4.0f, 8.0f}) {
         CHECK(face_weight(0, locality) == 1.0f);
@@ -117,7 +118,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "surface faces: weights sum to 1, of the nearest faces, as many as asked for"
+    "surface faces: weights of the requested number of nearest faces sum to 1"
     * technique("face.soffd")) {
     const Follower follower(4.0f, 5);
     const SkinWeights& weights = follower.weights;
@@ -153,7 +154,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "surface faces: points go by s with a surface that grows by s, away from it as well"
+    "surface faces: points scale by s with a surface that scales by s, also away from it"
     * technique("face.soffd")) {
     const Follower follower;
     for (const float s : {0.5f, 2.0f}) {
@@ -170,7 +171,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "surface faces: what one moved vertex moves shrinks as influences get more local"
+    "surface faces: the region moved by one vertex shrinks as influences get more local"
     * technique("face.soffd")) {
     float last = 10.0f;
     for (const float locality : {1.0f, 2.0f, 4.0f, 8.0f}) {
@@ -214,7 +215,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "surface faces: of two surfaces that touch, each carries what faces its way"
+    "surface faces: of two touching surfaces, each moves the points that face the same direction"
     * technique("face.soffd")) {
     // Two lips: one that faces up, and one above it, almost in touch, that faces down.
     MeshData lips = make_sheet(4);
@@ -306,8 +307,7 @@ struct BoundWorld {
 }  // namespace
 
 TEST_CASE(
-    "surface binding: a mesh follows its surface, and velocities know the last step"
-    * technique("face.soffd")) {
+    "surface binding: a mesh follows its surface, and has velocities" * technique("face.soffd")) {
     BoundWorld bound;
     bound.step();
     const std::vector<Vec3> rest = bound.world.resource<Assets>().meshes[0].positions;
@@ -371,7 +371,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "surface binding: equal bindings share a mesh, and changed settings replace it"
+    "surface binding: equal bindings uv a mesh, and changed settings replace it"
     * technique("face.soffd-skin")) {
     BoundWorld bound;
     const Entity second = bound.world.create(
@@ -404,7 +404,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "surface binding: what cannot be bound is named once, and stays as it is"
+    "surface binding: a mesh that cannot be bound is logged once, and stays unchanged"
     * technique("face.soffd-skin")) {
     BoundWorld bound;
     const auto complaint = [&](Entity surface) {
@@ -436,7 +436,7 @@ TEST_CASE(
     CHECK(bound.world.get<MeshInstance>(bound.sheet).mesh != MeshId{0});
 }
 
-TEST_CASE("surface binding: without it, or without its surface, the mesh is its own again") {
+TEST_CASE("surface binding: without it, or without its surface, the original mesh is restored") {
     BoundWorld bound;
     bound.step();
     Assets& assets = bound.world.resource<Assets>();

@@ -124,7 +124,7 @@ struct Take {
 }  // namespace
 
 TEST_CASE(
-    "markers: the mesh passes through each marker, in a frame and half way to the next"
+    "markers: the mesh passes through each marker, in a frame and halfway to the next"
     * technique("face.mocap-drive")) {
     Take take;
     const std::vector<Vec3> start = take.shape_at(0);
@@ -143,7 +143,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "markers: what is between them moves as well, without a jump from vertex to vertex"
+    "markers: points between them move as well, without a jump between vertices"
     * technique("face.mocap-drive")) {
     Take take;
     const std::vector<Vec3> rest = take.shape_at(0);

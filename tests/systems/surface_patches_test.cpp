@@ -257,7 +257,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "patches: no sample of the whole surface is nearer than where a vertex is bound"
+    "patches: a vertex is bound to the nearest point of the whole surface"
     * technique("face.bids-project")) {
     const Surface surface = make_bumpy();
     const Skin skin = skin_over(surface);
@@ -378,7 +378,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "patches: what is too far from the surface or beside it is not bound"
+    "patches: vertices too far from the surface or beside it are not bound"
     * technique("face.bids-project")) {
     const Surface surface = make_bumpy();
     Skin skin;
@@ -415,7 +415,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "patches: of two surfaces that touch, each carries what faces its way"
+    "patches: of two touching surfaces, each moves the points that face the same direction"
     * technique("face.bids-project")) {
     Surface lips = make_bumpy();
     const std::size_t lower = lips.faces();
@@ -447,7 +447,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "patches: with a chart, what touches in space goes with its own side, whatever faces it"
+    "patches: with a chart, touching points follow their own side, whatever they face"
     * technique("face.bids-project")) {
     // A sheet and a copy of it that nearly touches and faces the same way: beside it in the chart.
     Surface lips = make_bumpy();
@@ -484,7 +484,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "patches: SIMD, patch by patch, moves vertices as one by one"
+    "patches: SIMD, patch by patch, moves vertices the same as one by one"
     * technique("face.bids-rebuild")) {
     const Surface surface = make_bumpy();
     Skin skin = skin_over(surface);
@@ -545,7 +545,7 @@ TEST_CASE("patches: no vertex moves farther than the bound" * technique("face.bi
 }
 
 TEST_CASE(
-    "patches: seams are closed, and triangulations that are no surface are refused"
+    "patches: seams are closed, and triangulations that are no surface are rejected"
     * technique("face.bids-surface")) {
     Surface surface = make_bumpy(2);
     // The same with a vertex of its own for each corner.
@@ -590,7 +590,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "patches: markers that meet, cross or leave numbers behind give finite vertices"
+    "patches: markers that coincide, cross or are not finite give finite vertices"
     * technique("face.bids-surface")) {
     const Surface surface = make_bumpy();
     const Skin skin = skin_over(surface);

@@ -49,7 +49,7 @@ TEST_CASE("sway: each axis is center + amplitude sin(frequency t + phase)") {
     }
 }
 
-TEST_CASE("sway: it is where it was one period ago, also after a day") {
+TEST_CASE("sway: it repeats after one period, also after a day") {
     World world;
     FrameTime& time = world.insert_resource(FrameTime{.time = 86400.0});
     const Entity e =
@@ -71,7 +71,7 @@ TEST_CASE("sway: only the position changes") {
     CHECK(world.get<Transform>(e).scale == start.scale);
 }
 
-TEST_CASE("sway: the kernel with vectors gives the bits of the plain one, whatever the count") {
+TEST_CASE("sway: the SIMD kernel gives the bits of the scalar one, whatever the count") {
     Random random(1, 0, name_hash("sway"), 0);
     for (std::size_t count = 1; count < 70; ++count) {
         std::vector<Sway> sway(count);

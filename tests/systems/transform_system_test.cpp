@@ -85,7 +85,7 @@ TEST_CASE("transform: a root's matrix is its own, and it has no velocity in its 
 }
 
 TEST_CASE(
-    "transform: the previous matrix is one step old, and catches up when things come to rest") {
+    "transform: the previous matrix is one step old, and catches up when an entity comes to rest") {
     World world;
     Schedule schedule = make_schedule();
     const Entity e = world.create(at(0, 0, 0));
@@ -103,7 +103,7 @@ TEST_CASE(
     CHECK(previous_of(world, e).row[0].w == 3);
 }
 
-TEST_CASE("transform: nothing is written for things at rest") {
+TEST_CASE("transform: nothing is written for entities at rest") {
     World world;
     Schedule schedule = make_schedule();
     world.create_many(3000, at(1, 0, 0));
@@ -118,7 +118,7 @@ TEST_CASE("transform: nothing is written for things at rest") {
     CHECK(written_past(world, since) == 0);
 }
 
-TEST_CASE("transform: one that moves costs its chunk, and no more") {
+TEST_CASE("transform: a moving entity costs its chunk, and no more") {
     World world;
     Schedule schedule = make_schedule();
     const std::vector<Entity> all = world.create_many(5000, at(1, 0, 0));
@@ -162,7 +162,7 @@ TEST_CASE(
     CHECK(same(previous_of(world, chain.back()), world_of(world, chain.back())));
 }
 
-TEST_CASE("transform: a moving child leaves its parent alone") {
+TEST_CASE("transform: a moving child does not affect its parent") {
     World world;
     Schedule schedule = make_schedule();
     const Entity parent = world.create(at(1, 0, 0));
@@ -237,7 +237,7 @@ TEST_CASE("transform: a child comes to rest while its neighbor in memory moves")
     CHECK(previous_of(world, on_b).row[0].w == 0);
 }
 
-TEST_CASE("transform: after a teleport there is no velocity, for what hangs on it neither") {
+TEST_CASE("transform: after a teleport there is no velocity, also for descendants") {
     World world;
     Schedule schedule = make_schedule();
     const Entity parent = world.create(at(0, 0, 0));
@@ -263,8 +263,7 @@ TEST_CASE("transform: after a teleport there is no velocity, for what hangs on i
     CHECK(world_of(world, child).row[0].w == 101);
 }
 
-TEST_CASE(
-    "transform: the kernel with vectors gives the bits of the plain one, whatever the count") {
+TEST_CASE("transform: the SIMD kernel gives the bits of the scalar one, whatever the count") {
     Random random(1, 0, name_hash("transforms"), 0);
     for (std::size_t count = 1; count < 70; ++count) {
         std::vector<Transform> local(count);
@@ -305,8 +304,8 @@ TEST_CASE("transform: a copy of a prefab has no velocity in its first step") {
         same(world.get<PreviousWorldTransform>(copy).world, world.get<WorldTransform>(copy).world));
 }
 
-TEST_CASE("transform: a random forest is what plain recursion says, through moves, births, deaths "
-          "and teleports") {
+TEST_CASE("transform: a random forest matches plain recursion, through moves, creation, "
+          "destruction and teleports") {
     World world;
     Schedule schedule = make_schedule();
     Random random(7, 0, name_hash("forest"), 0);

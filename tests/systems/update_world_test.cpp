@@ -66,7 +66,7 @@ TEST_CASE(
     CHECK(world.resource<FrameTime>().time == test::near(10.0).epsilon(1e-7));
 }
 
-TEST_CASE("update_world: in steps of no time nothing moves" * technique("engine.object-step")) {
+TEST_CASE("update_world: in steps of length 0 nothing moves" * technique("engine.object-step")) {
     const auto largest_motion = [](float step) {
         World world;
         world.insert_resource(FrameTime{.step = step});
@@ -97,7 +97,7 @@ TEST_CASE("update_world: in steps of no time nothing moves" * technique("engine.
 }
 
 TEST_CASE(
-    "update_world: what turns evenly is as far after one step as after two of half its length"
+    "update_world: even rotation is the same after one step as after two of half its length"
     * technique("engine.animate")) {
     const auto turned = [](float step, int steps) {
         World world;
@@ -116,7 +116,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "update_world: what was spawned is where it belongs after one step"
+    "update_world: a spawned entity has its matrix after one step"
     * technique("engine.object-step")) {
     World world;
     Schedule schedule = make_world_schedule();
@@ -128,7 +128,7 @@ TEST_CASE(
     CHECK(world.has<PreviousWorldTransform>(child));
 }
 
-TEST_CASE("update_world: a started world is in place before its first step, which makes no jump") {
+TEST_CASE("update_world: a started world is complete before its first step, which makes no jump") {
     World world;
     const Entity box = world.create(Transform{.position = {1, 2, 3}}, Sway{.center = {5, 0, 0}});
     start_world(world);
@@ -150,7 +150,7 @@ TEST_CASE("update_world: the same start gives the same worlds, from run to run a
     set_thread_count(before);
 }
 
-TEST_CASE("update_world: a world put back from a snapshot goes on as it would have") {
+TEST_CASE("update_world: a world restored from a snapshot continues the same") {
     register_all_components();
     register_component<Parent>();
     World world;

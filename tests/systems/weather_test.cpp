@@ -64,7 +64,7 @@ double rms(const std::vector<float>& values) {
 
 }  // namespace
 
-TEST_CASE("weather: a level without it keeps its own wind and rain") {
+TEST_CASE("weather: a level without weather keeps its own wind and rain") {
     Bay bay(false);
     bay.run(10, {1, 1, 1});
     CHECK(bay.world.get<Ocean>(bay.sea).wind_speed == 5);
@@ -90,7 +90,7 @@ TEST_CASE("weather: oceans have its wind, pools its rain, the lens its drops") {
     CHECK(bay.world.resource<LensRain>().amount > 0.1f);
 }
 
-TEST_CASE("weather: keys bring it no farther than storm and calm") {
+TEST_CASE("weather: keys change it only between calm and storm") {
     Weather weather;
     for (int i = 0; i < 2000; ++i) {
         weather = adjust_weather(weather, {1, 1, 1}, 1.0f / 60);
@@ -105,7 +105,7 @@ TEST_CASE("weather: keys bring it no farther than storm and calm") {
     CHECK(weather.rain == 0);
 }
 
-TEST_CASE("weather: as the wind turns and grows the sea follows without a jump") {
+TEST_CASE("weather: as the wind turns and increases the sea follows without a jump") {
     Bay bay;
     bay.run(30);
     const auto largest_step = [&bay](int steps, const Vec3& turn) {

@@ -96,7 +96,7 @@ std::vector<std::vector<WrinkleRest>> all_rests(const Sheet& sheet) {
 }  // namespace
 
 TEST_CASE(
-    "wrinkle batch: eight faces at a time have the intensities of each by itself"
+    "wrinkle batch: eight faces at a time have the intensities of single faces"
     * technique("wrinkle.compression.integration, wrinkle.natural-width")) {
     const Sheet sheet = make_sheet();
     REQUIRE(sheet.positions.size() % 4 != 0);
@@ -121,8 +121,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "wrinkle batch: which faces are measured together, and on how many threads, changes no bit") {
+TEST_CASE("wrinkle batch: the grouping of faces and the number of threads change no bit") {
     const Sheet sheet = make_sheet();
     const std::vector<WrinkleRest> rests = {
         make_wrinkle_rest(sheet.positions, sheet.indices, sheet.across)};

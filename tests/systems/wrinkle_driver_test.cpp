@@ -67,7 +67,7 @@ std::vector<WrinkleRest> chord_rests(const Sheet& sheet, const Vec3& across) {
 }  // namespace
 
 TEST_CASE(
-    "wrinkle driver: edges react to a shear that leaves the chord as it is"
+    "wrinkle driver: edges react to a shear that does not change the chord"
     * technique("wrinkle.compression.prior-models")) {
     const Sheet sheet = make_sheet();
     const Positions sheared = mapped(sheet.positions, [](Vec3 p) {
@@ -91,7 +91,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle driver: strain finds the direction of least stretch, whichever it is"
+    "wrinkle driver: strain finds the direction of least stretch, whatever it is"
     * technique("face.strain")) {
     const Sheet sheet = make_sheet();
     const std::vector<WrinkleRest> rests = strain_rests(sheet);

@@ -47,7 +47,7 @@ float skew_ratio(const Map& map) {
 }
 
 /// The longest chord of a triangle in a direction, as the source measures it: from the vertex that
-/// is the middle one across the direction to a point a Vj + (1 - a) Vk of the edge before it.
+/// is the one between, across the direction to a point a Vj + (1 - a) Vk of the previous edge.
 struct Chord {
     int apex = 0;
     int j = 0;
@@ -230,7 +230,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle measure: weighted by angles, the subdivision of a fan does not matter"
+    "wrinkle measure: with angle weights, the subdivision of a fan does not matter"
     * technique("wrinkle.compression.vertex-weight")) {
     // Four right angles about a point, the last one compressed to a half.
     Fan four{
@@ -295,7 +295,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle measure: vertices that a seam repeats get the mean of both its sides"
+    "wrinkle measure: vertices duplicated at a seam get the mean of both sides"
     * technique("wrinkle.compression.vertex-weight")) {
     // Two triangles with the edge x = 1 twice; the right one is compressed.
     const Positions p = {{0, -1, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 0}, {2, 1, 0}, {1, 1, 0}};

@@ -101,7 +101,7 @@ Vec3 scaled(const Vec3& p, float x, float y) {
 }
 
 TEST_CASE(
-    "wrinkle response: at rest, stretched or moved as one piece, weights are zero"
+    "wrinkle response: at rest, stretched or moved rigidly, weights are zero"
     * technique("skin.pipeline")) {
     Face face({.smoothing = 0});
     const WrinkleWeights none = {};
@@ -111,7 +111,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle response: a fifth shorter across the wrinkles is 0.712663, along them less that"
+    "wrinkle response: a fifth shorter across the wrinkles gives 0.712663, along them its negative"
     * technique("skin.pipeline")) {
     Face face;
     const WrinkleWeights across = face.weights([](const Vec3& p) { return scaled(p, 1, 0.8f); });

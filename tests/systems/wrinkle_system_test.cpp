@@ -38,7 +38,7 @@ constexpr MeshInstance kInstance = {.mesh = {0}, .material = {0}};
 }  // namespace
 
 TEST_CASE(
-    "wrinkle system: a mask is the sum of the regions, and the stronger gives the direction") {
+    "wrinkle system: a mask is the sum of the regions, and the strongest gives the direction") {
     const Assets assets = two_regions();
     const WrinkleState all = make_wrinkle_state({}, kInstance, assets);
     CHECK(all.mask == std::vector<float>{1, 1, 1, 0.6f});
@@ -50,7 +50,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle system: what folds at rest is the largest of the regions, by their weights"
+    "wrinkle system: folding at rest is the largest of the regions, by their weights"
     * technique("wrinkle.resting")) {
     const Assets assets = two_regions();
     const WrinkleSurface surface = {
@@ -121,7 +121,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("wrinkle system: two layers have a rest and a mask each, along the folds if turned") {
+TEST_CASE("wrinkle system: two layers have a rest and a mask each, along the folds if rotated") {
     const Assets assets = two_regions();
     const WrinkleState two =
         make_wrinkle_state({.regions = {"brow"}, .second_regions = {"cheek"}}, kInstance, assets);
@@ -135,7 +135,7 @@ TEST_CASE("wrinkle system: two layers have a rest and a mask each, along the fol
               .second_mask.empty());
 }
 
-TEST_CASE("wrinkle system: each driver measures what it is named after") {
+TEST_CASE("wrinkle system: each driver measures the quantity in its name") {
     Assets assets = two_regions();
     const auto state = [&](WrinkleDriver driver) {
         return make_wrinkle_state({.driver = driver, .radius = 1}, kInstance, assets);

@@ -36,7 +36,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "wrinkle track: between keys each region moves by itself, straight or smoothly"
+    "wrinkle track: between keys each region is interpolated separately, linearly or smoothly"
     * technique("wrinkle.maps.animation")) {
     WrinkleTrack track = kTrack;
     const WrinkleWeights straight = wrinkle_weights_at(track, 1.5);

@@ -128,7 +128,7 @@ Result<SampledCurves> move_mouth(const SpeechTrack& track, const SpeakOptions& o
     }
     const SpeechLibrary library = LIMN_TRY(load_speech_library(options.fragments));
     const std::vector<SpeechUnit> units = generate_units(library.recordings);
-    const Result<std::vector<PlacedUnit>> selected =
+    const Result<std::vector<SelectedUnit>> selected =
         select_units(track, units, library.recordings, kJoinCost);
     if (!selected) {
         return fail("{}: {}", options.fragments, selected.error().message);

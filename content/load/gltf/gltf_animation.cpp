@@ -60,8 +60,8 @@ bool are_all_finite(std::span<const float> values) {
     return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
 }
 
-/// Of keys at the same time the first counts up to it, and the last from it on: the first moves to
-/// the float before. Where there is none after the previous key, it goes.
+/// Of several keys at the same time, the first holds up to it and the last from it on: the first
+/// moves to the preceding float, or is dropped if that is not after the previous key.
 void part_equal_times(const std::vector<float>& times, ChannelGroup& group) {
     for (std::size_t i = 0; i < times.size(); ++i) {
         std::size_t last = i;
@@ -79,7 +79,7 @@ void part_equal_times(const std::vector<float>& times, ChannelGroup& group) {
     }
 }
 
-/// `values` of the keys that `group` has; each is a block of `size` numbers.
+/// The blocks of `size` numbers in `values` that belong to the keys of `group`.
 std::vector<float>
 choose_keys(const std::vector<float>& values, const ChannelGroup& group, std::size_t size) {
     std::vector<float> chosen;
@@ -91,7 +91,7 @@ choose_keys(const std::vector<float>& values, const ChannelGroup& group, std::si
     return chosen;
 }
 
-/// How many keys were made anew, and what the first was.
+/// The number of replaced keys, and the first one's value.
 struct MendedKeys {
     std::size_t count = 0;
     std::size_t key = 0;
@@ -109,7 +109,7 @@ std::size_t width_of(Path path) {
     return path == Path::Weights ? 1 : path == Path::Rotation ? 4 : 3;
 }
 
-/// Finite, and a rotation has a length.
+/// Whether the key is finite and, for a rotation, has a length.
 bool is_good_key(std::span<const float> value, Path path) {
     float length2 = 0;
     for (const float x : value) {
@@ -119,7 +119,7 @@ bool is_good_key(std::span<const float> value, Path path) {
            && (path != Path::Rotation || length2 > 1e-12f);
 }
 
-/// Of the keys of one joint or weight: part(key, row) are its numbers.
+/// Replaces bad keys of one joint or weight: part(key, row) are its numbers.
 template <typename Part>
 Status
 mend_keys_of(std::size_t keys, std::size_t rows, Path path, const Part& part, MendedKeys& mended) {
@@ -153,7 +153,7 @@ mend_keys_of(std::size_t keys, std::size_t rows, Path path, const Part& part, Me
 }
 
 /// Replaces values that are not finite, and rotations without length, by those of the previous key,
-/// at the start by those of the next. Fails where a channel has no other.
+/// at the start by those of the next. Fails if a channel has no good key.
 Result<MendedKeys> mend_keys(Channel& channel, std::size_t rows) {
     const std::size_t width = width_of(channel.path);
     const std::size_t size = rows * channel.count * width;  // of a key
@@ -231,7 +231,7 @@ class AnimationBuilder {
     }
 
   private:
-    [[nodiscard]] std::string skin_place(std::size_t skin) const {
+    [[nodiscard]] std::string where_skin(std::size_t skin) const {
         return fmt::format("{}: skins[{}]", document_.file, skin);
     }
 
@@ -313,8 +313,8 @@ class AnimationBuilder {
             scene_.joints[static_cast<std::size_t>(scene_node(node))]);
     }
 
-    /// Adds the skins in use, in order of first use, and updates the indices of the nodes. Without
-    /// its skin a mesh stands where its node is.
+    /// Adds the skins in use, in order of first use, and updates the indices of the nodes. A mesh
+    /// without its skin is placed by its node.
     void add_skins() {
         std::map<std::int32_t, std::int32_t> numbers;
         for (const auto& [index, owner] : document_.skinned_nodes) {
@@ -339,19 +339,19 @@ class AnimationBuilder {
         for (const int joint : source.joints) {
             if (scene_node(joint) < 0) {
                 return fail(
-                    "{}.joints: found node {}, which is not in the scene", skin_place(index),
+                    "{}.joints: found node {}, which is not in the scene", where_skin(index),
                     joint);
             }
             skin.joints.push_back(joint_of(joint));
         }
         skin.joint_from_mesh.resize(skin.joints.size());
         if (source.inverseBindMatrices >= 0) {
-            const std::string place = skin_place(index) + ".inverseBindMatrices";
+            const std::string where = where_skin(index) + ".inverseBindMatrices";
             const std::vector<float> values =
-                LIMN_TRY(read_floats(document_, source.inverseBindMatrices, 16, place));
+                LIMN_TRY(read_floats(document_, source.inverseBindMatrices, 16, where));
             if (values.size() < 16 * skin.joints.size()) {
                 return fail(
-                    "{}: found {} matrices, expected one for each of {} joints", place,
+                    "{}: found {} matrices, expected one for each of {} joints", where,
                     values.size() / 16, skin.joints.size());
             }
             for (std::size_t i = 0; i < skin.joints.size(); ++i) {
@@ -363,7 +363,7 @@ class AnimationBuilder {
             }
         }
         if (Status status = check_skin(skin, scene_.skeleton.joints.size()); !status) {
-            return fail("{}: {}", skin_place(index), status.error().message);
+            return fail("{}: {}", where_skin(index), status.error().message);
         }
         scene_.skins.push_back(std::move(skin));
         return Done{};
@@ -375,7 +375,7 @@ class AnimationBuilder {
                 continue;
             }
             part_ = fmt::format("animations[{}]", i);
-            place_ = fmt::format("{}: {}", document_.file, part_);
+            where_ = fmt::format("{}: {}", document_.file, part_);
             groups_.clear();
             moved_.clear();
             const bool is_whole = read_channels(animations_[i]);
@@ -394,7 +394,7 @@ class AnimationBuilder {
                     check_clip(clip, scene_.skeleton.joints.size(), scene_.morph_weights.size());
                 !status) {
                 warn_of_loss(
-                    document_, {fmt::format("{}: {}", place_, status.error().message)},
+                    document_, {fmt::format("{}: {}", where_, status.error().message)},
                     "it is left out");
                 continue;
             }
@@ -414,7 +414,7 @@ class AnimationBuilder {
                 is_whole = false;
                 warn_of_loss(
                     document_,
-                    {fmt::format("{}.channels[{}]: {}", place_, i, read.error().message)},
+                    {fmt::format("{}.channels[{}]: {}", where_, i, read.error().message)},
                     "the channel is left out");
             }
         }
@@ -441,7 +441,7 @@ class AnimationBuilder {
         const GltfMorphs& morphs = item_at(document_.node_morphs, channel.target_node);
         if (path == std::end(kPaths) || (is_weights && morphs.count == 0)) {
             document_.warnings.push_back(fmt::format(
-                "{}.channels[{}].target.path: {} is ignored", place_, index, in_quotes(name)));
+                "{}.channels[{}].target.path: {} is ignored", where_, index, in_quotes(name)));
             return Done{};
         }
         if (const std::string* const reason =
@@ -464,24 +464,24 @@ class AnimationBuilder {
     }
 
     /// The times of a group that has none yet.
-    Status read_times(std::int32_t input, const std::string& place, ChannelGroup& group) {
-        const std::vector<float> times = LIMN_TRY(read_floats(document_, input, 1, place));
+    Status read_times(std::int32_t input, const std::string& where, ChannelGroup& group) {
+        const std::vector<float> times = LIMN_TRY(read_floats(document_, input, 1, where));
         if (times.empty()) {
-            return fail("{}: accessors[{}]: found no keys, expected at least one", place, input);
+            return fail("{}: accessors[{}]: found no keys, expected at least one", where, input);
         }
         bool has_equal = false;
         for (std::size_t i = 1; i < times.size(); ++i) {
             if (times[i] < times[i - 1]) {
                 return fail(
                     "{}: accessors[{}]: found {} after {} at key {}, expected increasing times",
-                    place, input, times[i], times[i - 1], i);
+                    where, input, times[i], times[i - 1], i);
             }
             if (times[i] == times[i - 1] && !has_equal) {
                 has_equal = true;
                 document_.warnings.push_back(fmt::format(
                     "{}.{}: accessors[{}]: found {} again at key {}, expected increasing times; "
                     "from then on the later key counts",
-                    place_, place, input, times[i], i));
+                    where_, where, input, times[i], i));
             }
         }
         group.count = times.size();
@@ -491,7 +491,7 @@ class AnimationBuilder {
 
     /// Reads the sampler's output into `channel` and adds that to the group with its times.
     Status read_sampler(
-        const tinygltf::AnimationSampler& sampler, const std::string& place, Channel channel) {
+        const tinygltf::AnimationSampler& sampler, const std::string& where, Channel channel) {
         const std::string& word = sampler.interpolation;
         const Interpolation interpolation = word == "STEP"          ? Interpolation::Step
                                             : word == "CUBICSPLINE" ? Interpolation::Cubic
@@ -500,12 +500,12 @@ class AnimationBuilder {
         if (!groups_.contains(key)) {
             ChannelGroup made;
             made.interpolation = interpolation;
-            LIMN_TRY(read_times(sampler.input, place + ".input", made));
+            LIMN_TRY(read_times(sampler.input, where + ".input", made));
             groups_.emplace(key, std::move(made));
         }
         ChannelGroup& group = groups_[key];
         const std::size_t width = width_of(channel.path);
-        const std::string output = place + ".output";
+        const std::string output = where + ".output";
         const std::vector<float> values =
             LIMN_TRY(read_any_floats(document_, sampler.output, static_cast<int>(width), output));
         const std::size_t rows = rows_per_key(group);
@@ -528,7 +528,7 @@ class AnimationBuilder {
             document_.warnings.push_back(fmt::format(
                 "{}.{}: accessors[{}]: found {} in key {}, expected {}; {} such keys are as the "
                 "keys before them",
-                place_, output, sampler.output, mended->value, group.keys[mended->key],
+                where_, output, sampler.output, mended->value, group.keys[mended->key],
                 channel.path == Path::Rotation ? "a rotation" : "finite numbers", mended->count));
         }
         moved_.insert({channel.path, channel.subject});
@@ -575,7 +575,7 @@ class AnimationBuilder {
     GltfScene& scene_;
     const std::vector<tinygltf::Animation>& animations_;
     std::string part_;                                ///< the animation being read
-    std::string place_;                               ///< likewise, with the file
+    std::string where_;                               ///< likewise, with the file
     std::set<std::pair<Path, std::uint16_t>> moved_;  ///< what it animates so far
     /// By input accessor and interpolation.
     std::map<std::pair<std::int32_t, Interpolation>, ChannelGroup> groups_;

@@ -43,7 +43,7 @@ void join_buffers(tinygltf::Model& model) {
     model.buffers[0].uri.clear();
 }
 
-/// Puts images from files into the buffer, those that are there.
+/// Copies images from existing files into the buffer.
 void join_images(GltfDocument& document) {
     for (std::size_t i = 0; i < document.images.size(); ++i) {
         const std::optional<std::string>& uri = document.images[i].uri;
@@ -76,9 +76,9 @@ JsonValue& member_at(JsonValue& object, std::string_view key) {
     return object.members.back().value;
 }
 
-/// The document written by tinygltf, with all that the clip does not touch as it is in the file's
-/// JSON `source`: tinygltf would lose extensions of accessors and buffer views, 64 bit integers and
-/// empty values in extras, and members that it does not know.
+/// The document written by tinygltf, with everything that the clip does not change copied from the
+/// file's JSON `source`: tinygltf would lose extensions of accessors and buffer views, 64 bit
+/// integers and empty values in extras, and members that it does not know.
 Result<std::vector<std::byte>> pack_all(const GltfDocument& document, const JsonValue& source) {
     const std::vector<std::byte> bytes = LIMN_TRY(pack_model(document.model, document.file));
     const GltfChunks chunks = LIMN_TRY(split_gltf(bytes, document.file));

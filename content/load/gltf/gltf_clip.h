@@ -11,8 +11,8 @@
 
 namespace limn {
 
-// Adds an animation to a glTF file without touching anything else in it: meshes, images, lights and
-// extensions stay as they are, whether this engine reads them or not.
+// Adds an animation to a glTF file without changing anything else in it: meshes, images, lights and
+// extensions are kept, whether this engine reads them or not.
 
 /// A morph target.
 struct GltfShape {
@@ -26,7 +26,7 @@ struct GltfFaceNode {
     std::vector<GltfShape> shapes;
 };
 
-/// What an animated face needs to know of a file.
+/// The parts of a file that an animated face needs.
 struct GltfFace {
     std::vector<GltfFaceNode> nodes;
     /// Node that turns the head: one named "head", or else the root of a file without skins that

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kInfluences = 4;  ///< influences per vertex of one set
 constexpr double kMaxDeviation = 1e-3;  ///< of a sum of weights from 1
-/// What a weight of 0 may become by rounding.
+/// Lower bound of weights of 0 after rounding.
 constexpr float kMinWeight = -1e-3f;
 constexpr std::string_view kRegion = "_REGION_";
 constexpr std::string_view kAcross = "_ACROSS_";
@@ -32,21 +32,21 @@ using Influence = std::pair<std::uint16_t, double>;
 
 /// One JOINTS_n with its WEIGHTS_n.
 struct InfluenceSet {
-    std::string joints_place;
-    std::string weights_place;
+    std::string joints_where;
+    std::string weights_where;
     std::vector<float> joints;
     std::vector<float> weights;
 };
 
-/// Of finite numbers or any.
+/// Reads an attribute; `is_finite`: fails on numbers that are not finite.
 Result<std::vector<float>> read_attribute(
     GltfDocument& document, const GltfVertices& vertices, int accessor, int width,
-    const std::string& place, bool is_finite = true) {
+    const std::string& where, bool is_finite = true) {
     const auto read = is_finite ? read_floats : read_any_floats;
-    std::vector<float> values = LIMN_TRY(read(document, accessor, width, place));
+    std::vector<float> values = LIMN_TRY(read(document, accessor, width, where));
     if (values.size() != vertices.count * static_cast<std::size_t>(width)) {
         return fail(
-            "{}: found {} elements, expected as many as POSITION has, {}", place,
+            "{}: found {} elements, expected as many as POSITION has, {}", where,
             values.size() / static_cast<std::size_t>(width), vertices.count);
     }
     return values;
@@ -65,23 +65,23 @@ read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
         }
         if (joints == attributes.end() || weights == attributes.end()) {
             return fail(
-                "{}.attributes: found {} alone, expected {} and {}", vertices.place,
+                "{}.attributes: found {} alone, expected {} and {}", vertices.where,
                 names[joints == attributes.end() ? 1 : 0], names[0], names[1]);
         }
         InfluenceSet set;
-        set.joints_place = fmt::format("{}.attributes.{}", vertices.place, names[0]);
-        set.weights_place = fmt::format("{}.attributes.{}", vertices.place, names[1]);
+        set.joints_where = fmt::format("{}.attributes.{}", vertices.where, names[0]);
+        set.weights_where = fmt::format("{}.attributes.{}", vertices.where, names[1]);
         const int type = item_at(document.model.accessors, joints->second).componentType;
         if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
             && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
             return fail(
                 "{}: accessors[{}].componentType: found {}, expected 5121 or 5123",
-                set.joints_place, joints->second, type);
+                set.joints_where, joints->second, type);
         }
         set.joints = LIMN_TRY(
-            read_attribute(document, vertices, joints->second, kInfluences, set.joints_place));
+            read_attribute(document, vertices, joints->second, kInfluences, set.joints_where));
         set.weights = LIMN_TRY(read_attribute(
-            document, vertices, weights->second, kInfluences, set.weights_place, false));
+            document, vertices, weights->second, kInfluences, set.weights_where, false));
         sets.push_back(std::move(set));
     }
 }
@@ -104,27 +104,27 @@ void append_influences(SkinWeights& skin, std::vector<Influence>& influences, do
     std::sort(influences.begin(), influences.end());
     const std::size_t begin = skin.joints.size();
     for (const auto& [joint, weight] : influences) {
-        const auto share = static_cast<float>(weight / sum);
-        if (share == 0.0f) {  // negligible next to the others
+        const auto normalized = static_cast<float>(weight / sum);
+        if (normalized == 0.0f) {  // negligible next to the others
             continue;
         }
         if (skin.joints.size() > begin && skin.joints.back() == joint) {
-            skin.weights.back() += share;
+            skin.weights.back() += normalized;
         } else {
             skin.joints.push_back(joint);
-            skin.weights.push_back(share);
+            skin.weights.push_back(normalized);
         }
     }
 }
 
-/// Influences that cannot be: how many, and what the first is.
+/// Invalid influences: how many, and the first.
 struct BadInfluences {
     std::size_t count = 0;
     std::string first;
 
-    void add(const std::string& place, const std::string& found, std::uint32_t vertex) {
+    void add(const std::string& where, const std::string& found, std::uint32_t vertex) {
         if (count++ == 0) {
-            first = fmt::format("{}: found {} in element {}", place, found, vertex);
+            first = fmt::format("{}: found {} in element {}", where, found, vertex);
         }
     }
 };
@@ -139,7 +139,7 @@ void gather_influences(
              ++i) {
             const float weight = set.weights[i];
             if (weight < kMinWeight || !std::isfinite(weight)) {
-                bad.add(set.weights_place, fmt::format("the weight {}", weight), vertex);
+                bad.add(set.weights_where, fmt::format("the weight {}", weight), vertex);
                 continue;
             }
             // A tiny weight would vanish, and its sum with it, in the division below.
@@ -148,7 +148,7 @@ void gather_influences(
             }
             if (set.joints[i] >= static_cast<float>(joints)) {
                 bad.add(
-                    set.joints_place,
+                    set.joints_where,
                     fmt::format("joint {} of a skin of {}", set.joints[i], joints), vertex);
                 continue;
             }
@@ -170,7 +170,7 @@ Vec3 vector_at(const std::vector<float>& values, std::size_t element) {
                : Vec3(values[3 * element], values[3 * element + 1], values[3 * element + 2]);
 }
 
-/// Unit vectors to the bit as they are.
+/// Normalizes; unit vectors are unchanged to the bit.
 Vec3 unit_or_zero(const Vec3& direction) {
     const float length = glm::length(direction);
     return std::abs(length - 1.0f) < 1e-6f ? direction : normalize_or(direction, Vec3(0));
@@ -205,10 +205,10 @@ MorphTarget keep_displaced(const Differences& all, std::span<const std::uint32_t
     return target;
 }
 
-/// Sets differences of used vertices that no position can have to 0, with a warning.
+/// Sets differences of used vertices that are larger than any position to 0, with a warning.
 void drop_large(
     GltfDocument& document, const GltfVertices& vertices, std::vector<float>& values,
-    const std::string& place) {
+    const std::string& where) {
     std::size_t count = 0;
     for (const std::uint32_t vertex : vertices.used) {
         const std::span<float> numbers = std::span(values).subspan(3 * std::size_t{vertex}, 3);
@@ -219,7 +219,7 @@ void drop_large(
         }
         if (count++ == 0) {
             document.warnings.push_back(fmt::format(
-                "{}: found {} in element {}, expected at most {}; such elements do not move", place,
+                "{}: found {} in element {}, expected at most {}; such elements do not move", where,
                 *bad, vertex, kLargestOffset));
         }
         std::ranges::fill(numbers, 0.0f);
@@ -228,14 +228,14 @@ void drop_large(
 
 Differences read_differences(
     GltfDocument& document, const GltfVertices& vertices, const std::map<std::string, int>& source,
-    const std::string& place) {
+    const std::string& where) {
     Differences all;
     for (const auto& [name, accessor] : source) {
         std::vector<float>* const target = name == "POSITION"  ? &all.positions
                                            : name == "NORMAL"  ? &all.normals
                                            : name == "TANGENT" ? &all.tangents
                                                                : nullptr;
-        const std::string here = fmt::format("{}.{}", place, name);
+        const std::string here = fmt::format("{}.{}", where, name);
         if (target == nullptr) {
             document.warnings.push_back(here + " is ignored");
             continue;
@@ -246,7 +246,7 @@ Differences read_differences(
             warn_of_loss(document, values.error(), "it is left out");
             continue;
         }
-        if (target != &all.normals) {  // which build_mesh makes anew
+        if (target != &all.normals) {  // which build_mesh recomputes
             drop_large(document, vertices, *values, here);
         }
         *target = *std::move(values);
@@ -254,25 +254,25 @@ Differences read_differences(
     return all;
 }
 
-/// One driver of a target of `targets`; `place` is that of `source`.
+/// One driver of a target of `targets`; `where` is that of `source`.
 Result<ShapeDriver> read_driver(
     const JsonValue& source, std::span<const MorphTarget> targets, const JsonValue& driven,
-    const std::string& place) {
+    const std::string& where) {
     const JsonValue& name = source["target"];
     const auto target = std::ranges::find(targets, name.text, &MorphTarget::name);
     if (name.kind != JsonKind::String || target == targets.end()) {
         return fail(
-            "{}.target: found {}, expected the name of a morph target", place, describe(name));
+            "{}.target: found {}, expected the name of a morph target", where, describe(name));
     }
     if (driven.find(target->name) != nullptr) {
         return fail(
-            "{}.target: found {}, expected a morph target without drivers", place, describe(name));
+            "{}.target: found {}, expected a morph target without drivers", where, describe(name));
     }
     const JsonValue* const peak = source.find("peak");
     if (peak != nullptr
         && (peak->kind != JsonKind::Number || !(peak->number > 0 && peak->number <= 1))) {
         return fail(
-            "{}.peak: found {}, expected a number above 0 and at most 1", place, describe(*peak));
+            "{}.peak: found {}, expected a number above 0 and at most 1", where, describe(*peak));
     }
     return ShapeDriver{
         static_cast<std::uint16_t>(target - targets.begin()),
@@ -280,17 +280,17 @@ Result<ShapeDriver> read_driver(
 }
 
 Status read_drivers(
-    const JsonValue& drivers, const std::string& place, std::vector<MorphTarget>& targets) {
+    const JsonValue& drivers, const std::string& where, std::vector<MorphTarget>& targets) {
     for (const JsonMember& member : drivers.members) {
         const auto driven = std::ranges::find(targets, member.key, &MorphTarget::name);
         if (driven == targets.end()) {
             return fail(
-                "{}: found {}, expected names of morph targets", place, in_quotes(member.key));
+                "{}: found {}, expected names of morph targets", where, in_quotes(member.key));
         }
         for (std::size_t i = 0; i < member.value.items.size(); ++i) {
             driven->drivers.push_back(LIMN_TRY(read_driver(
                 member.value.items[i], targets, drivers,
-                fmt::format("{}.{}[{}]", place, member.key, i))));
+                fmt::format("{}.{}[{}]", where, member.key, i))));
         }
     }
     return Done{};
@@ -326,7 +326,7 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
         append_influences(skin, influences, sum);
     }
     skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
-    const std::string& place = sets[0].weights_place;
+    const std::string& where = sets[0].weights_where;
     if (bad.count > 0) {
         document.warnings.push_back(
             fmt::format("{}; {} such influences are left out", bad.first, bad.count));
@@ -335,12 +335,12 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
         document.warnings.push_back(fmt::format(
             "{}: the weights of {} vertices do not sum to 1 and were scaled; of element {} the "
             "sum is {:.4g}",
-            place, off.count, off.vertex, off.sum));
+            where, off.count, off.vertex, off.sum));
     }
     if (loose.count > 0) {
         document.warnings.push_back(fmt::format(
             "{}: {} vertices have no weight and follow the first joint; the first is element {}",
-            place, loose.count, loose.vertex));
+            where, loose.count, loose.vertex));
     }
     return skin;
 }
@@ -353,12 +353,12 @@ read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const J
     for (const std::map<std::string, int>& source : vertices.primitive.targets) {
         const std::size_t i = targets.size();
         const Differences all = read_differences(
-            document, vertices, source, fmt::format("{}.targets[{}]", vertices.place, i));
+            document, vertices, source, fmt::format("{}.targets[{}]", vertices.where, i));
         targets.push_back(keep_displaced(all, vertices.used));
         targets.back().name = i < names.size() ? names[i].text : fmt::format("target {}", i);
         targets.back().action_unit = i < units.size() ? units[i].text : "";
     }
-    const std::string mesh = vertices.place.substr(0, vertices.place.find(".primitives"));
+    const std::string mesh = vertices.where.substr(0, vertices.where.find(".primitives"));
     LIMN_TRY(read_drivers(extras["targetDrivers"], mesh + ".extras.targetDrivers", targets));
     return targets;
 }
@@ -368,7 +368,7 @@ read_regions(GltfDocument& document, const GltfVertices& vertices) {
     std::vector<VertexRegion> regions;
     const std::map<std::string, int>& attributes = vertices.primitive.attributes;
     for (const auto& [attribute, accessor] : attributes) {
-        const std::string here = fmt::format("{}.attributes.{}", vertices.place, attribute);
+        const std::string here = fmt::format("{}.attributes.{}", vertices.where, attribute);
         if (attribute.starts_with(kAcross)
             && !attributes.contains(std::string(kRegion) + attribute.substr(kAcross.size()))) {
             document.warnings.push_back(here + " is ignored: there is no region of that name");
@@ -390,7 +390,7 @@ read_regions(GltfDocument& document, const GltfVertices& vertices) {
         if (const auto across = attributes.find(other); across != attributes.end()) {
             const std::vector<float> values = LIMN_TRY(read_attribute(
                 document, vertices, across->second, 3,
-                fmt::format("{}.attributes.{}", vertices.place, other)));
+                fmt::format("{}.attributes.{}", vertices.where, other)));
             for (const std::uint32_t vertex : vertices.used) {
                 region.across.push_back(unit_or_zero(vector_at(values, vertex)));
             }

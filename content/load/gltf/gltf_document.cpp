@@ -89,7 +89,7 @@ struct Strip {
 /// Fails unless `count` elements of `element_size` bytes fit into the view from `offset` on.
 Result<Strip> find_strip(
     const GltfDocument& document, std::int32_t index, std::uint64_t offset, std::uint64_t count,
-    std::uint64_t element_size, bool strided, const std::string& place) {
+    std::uint64_t element_size, bool strided, const std::string& where) {
     const std::span<const std::byte> bytes = LIMN_TRY(view_bytes(document, index));
     const std::uint64_t given = item_at(document.model.bufferViews, index).byteStride;
     const std::uint64_t stride = strided && given != 0 ? given : element_size;
@@ -97,10 +97,10 @@ Result<Strip> find_strip(
         return fail(
             "{}: found a stride of {} in bufferViews[{}], expected at least the {} bytes of an "
             "element",
-            place, stride, index, element_size);
+            where, stride, index, element_size);
     }
     if (bytes.empty()) {
-        return fail("{}: found bufferViews[{}] in a buffer without data", place, index);
+        return fail("{}: found bufferViews[{}] in a buffer without data", where, index);
     }
     // count < 2^32, stride <= 252 and offset < 2^53: no overflow.
     const std::uint64_t end = offset + (count - 1) * stride + element_size;
@@ -108,7 +108,7 @@ Result<Strip> find_strip(
         return fail(
             "{}: found {} elements that end at byte {}, expected to stay within the {} of "
             "bufferViews[{}]",
-            place, count, end, bytes.size(), index);
+            where, count, end, bytes.size(), index);
     }
     return Strip{bytes.data() + offset, stride};
 }
@@ -122,31 +122,31 @@ struct Elements {
 };
 
 Status find_replacements(
-    const GltfDocument& document, const tinygltf::Accessor& accessor, const std::string& place,
+    const GltfDocument& document, const tinygltf::Accessor& accessor, const std::string& where,
     Elements& elements) {
     const auto& indices = accessor.sparse.indices;
     const auto& values = accessor.sparse.values;
     const auto count = static_cast<std::uint64_t>(accessor.sparse.count);
     if (count > accessor.count) {
-        return fail("{}.sparse.count: found {}, expected at most {}", place, count, accessor.count);
+        return fail("{}.sparse.count: found {}, expected at most {}", where, count, accessor.count);
     }
     const Strip strip = LIMN_TRY(find_strip(
         document, indices.bufferView, static_cast<std::uint64_t>(indices.byteOffset), count,
-        size_of_component(indices.componentType), false, place + ".sparse.indices"));
+        size_of_component(indices.componentType), false, where + ".sparse.indices"));
     elements.replacements = LIMN_TRY(find_strip(
         document, values.bufferView, static_cast<std::uint64_t>(values.byteOffset), count,
-        elements.size, false, place + ".sparse.values"));
+        elements.size, false, where + ".sparse.values"));
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint32_t element =
             load_index(strip.first + i * strip.stride, indices.componentType);
         if (element >= accessor.count) {
             return fail(
-                "{}.sparse.indices: found {} at {}, expected an index below {}", place, element, i,
+                "{}.sparse.indices: found {} at {}, expected an index below {}", where, element, i,
                 accessor.count);
         }
         if (!elements.replaced.empty() && element <= elements.replaced.back()) {
             return fail(
-                "{}.sparse.indices: found {} after {} at {}, expected increasing indices", place,
+                "{}.sparse.indices: found {} after {} at {}, expected increasing indices", where,
                 element, elements.replaced.back(), i);
         }
         elements.replaced.push_back(element);
@@ -155,7 +155,7 @@ Status find_replacements(
 }
 
 Result<Elements> find_elements(
-    const GltfDocument& document, const tinygltf::Accessor& accessor, const std::string& place) {
+    const GltfDocument& document, const tinygltf::Accessor& accessor, const std::string& where) {
     Elements elements;
     elements.size = size_of_component(accessor.componentType)
                     * static_cast<std::uint64_t>(count_components(accessor));
@@ -165,14 +165,14 @@ Result<Elements> find_elements(
     if (accessor.bufferView >= 0) {
         elements.base = LIMN_TRY(find_strip(
             document, accessor.bufferView, accessor.byteOffset, accessor.count, elements.size, true,
-            place));
+            where));
     } else if (accessor.count > kMaxZeros) {
         return fail(
-            "{}.count: found {} elements without a bufferView, expected at most {}", place,
+            "{}.count: found {} elements without a bufferView, expected at most {}", where,
             accessor.count, kMaxZeros);
     }
     if (accessor.sparse.isSparse && accessor.sparse.count > 0) {
-        LIMN_TRY(find_replacements(document, accessor, place, elements));
+        LIMN_TRY(find_replacements(document, accessor, where, elements));
     }
     return elements;
 }
@@ -189,10 +189,10 @@ void visit_elements(const Elements& elements, std::uint64_t count, Store&& store
 }
 
 /// Takes `values` from the remaining limit of the file.
-Status take_values(GltfDocument& document, std::uint64_t values, const std::string& place) {
+Status take_values(GltfDocument& document, std::uint64_t values, const std::string& where) {
     if (values > document.values_left) {
         return fail(
-            "{}: found {} more values, expected at most {} in the whole file", place, values,
+            "{}: found {} more values, expected at most {} in the whole file", where, values,
             document.limits.max_values);
     }
     document.values_left -= values;
@@ -231,9 +231,9 @@ Result<std::span<const std::byte>> view_bytes(const GltfDocument& document, std:
 }
 
 Result<std::vector<float>> read_any_floats(
-    GltfDocument& document, std::int32_t index, int components, const std::string& place) {
+    GltfDocument& document, std::int32_t index, int components, const std::string& where) {
     const tinygltf::Accessor& accessor = item_at(document.model.accessors, index);
-    const std::string here = fmt::format("{}: accessors[{}]", place, index);
+    const std::string here = fmt::format("{}: accessors[{}]", where, index);
     if (const int found = count_components(accessor); found != components) {
         return fail(
             "{}.type: found {} components per element, expected {}", here, found, components);
@@ -253,22 +253,22 @@ Result<std::vector<float>> read_any_floats(
 }
 
 Result<std::vector<float>>
-read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& place) {
-    std::vector<float> values = LIMN_TRY(read_any_floats(document, index, components, place));
+read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& where) {
+    std::vector<float> values = LIMN_TRY(read_any_floats(document, index, components, where));
     const auto bad =
         std::ranges::find_if(values, [](float value) { return !std::isfinite(value); });
     if (bad != values.end()) {
         return fail(
             "{}: accessors[{}]: found NaN or infinity in element {}, expected finite numbers",
-            place, index, (bad - values.begin()) / components);
+            where, index, (bad - values.begin()) / components);
     }
     return values;
 }
 
 Result<std::vector<std::uint32_t>>
-read_indices(GltfDocument& document, std::int32_t index, const std::string& place) {
+read_indices(GltfDocument& document, std::int32_t index, const std::string& where) {
     const tinygltf::Accessor& accessor = item_at(document.model.accessors, index);
-    const std::string here = fmt::format("{}: accessors[{}]", place, index);
+    const std::string here = fmt::format("{}: accessors[{}]", where, index);
     if (count_components(accessor) != 1 || !is_index_type(accessor.componentType)) {
         return fail(
             "{}: found {} components of type {} per element, expected one of type 5121, 5123 or "

@@ -23,7 +23,7 @@ namespace limn {
 // tinygltf parses the file (gltf_file.h) after check_gltf_schema has validated its JSON, so that
 // the readers use the types and indices of `model` unchecked. A missing index is -1.
 
-/// Where the bytes of an image are; images are loaded when a material uses them.
+/// Location of the bytes of an image; images are loaded when a material uses them.
 struct GltfImage {
     std::optional<std::string> uri;
     std::int32_t view = -1;
@@ -44,7 +44,7 @@ struct GltfDocument {
     std::vector<GltfImage> images;  ///< indexed as in the file
     std::vector<std::vector<std::byte>> decoded_views;  ///< bytes of those that were compressed
     std::uint64_t values_left = 0;                      ///< remaining of limits.max_values
-    /// "accessors[3]" and other items that are left out, and why: stand-ins are in their place.
+    /// "accessors[3]" and other items that are left out, and why: stand-ins replace them.
     std::map<std::string, std::string> bad_parts;
     /// Scene node of each file node, or -1; set by build_nodes.
     std::vector<std::int32_t> scene_nodes;
@@ -61,9 +61,9 @@ inline void warn_of_loss(GltfDocument& document, const Error& error, std::string
 
 /// Validates the JSON of a file: every property that is read has the right type and range, and
 /// every index refers to an existing item. Unknown properties are ignored, as the specification
-/// requires. What is bad is taken out of the JSON, with a warning: "file: nodes[3].camera: found
-/// the number 7, expected an index below 2; it is left out". Fails where a part that is drawn needs
-/// it. Integers that are spelled as 1e3 or 7.0 become 1000 and 7, the only spelling of tinygltf.
+/// requires. Bad parts are removed from the JSON, with a warning: "file: nodes[3].camera: found the
+/// number 7, expected an index below 2; it is left out". Fails if a part that is drawn needs one.
+/// Integers that are spelled as 1e3 or 7.0 become 1000 and 7, the only spelling of tinygltf.
 [[nodiscard]] Status check_gltf_schema(GltfDocument& document);
 
 /// Why item `index` of `array` ("meshes") is left out, or nullptr.
@@ -124,15 +124,15 @@ view_bytes(const GltfDocument& document, std::int32_t view);
 /// All elements of accessor `index`, tightly packed; integers become floats, normalized ones 0 .. 1
 /// or -1 .. 1. Fails unless elements have `components` components.
 [[nodiscard]] Result<std::vector<float>> read_any_floats(
-    GltfDocument& document, std::int32_t index, int components, const std::string& place);
+    GltfDocument& document, std::int32_t index, int components, const std::string& where);
 
 /// The same, all finite.
 [[nodiscard]] Result<std::vector<float>>
-read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& place);
+read_floats(GltfDocument& document, std::int32_t index, int components, const std::string& where);
 
 /// The elements of accessor `index`, which must be unsigned integer scalars.
 [[nodiscard]] Result<std::vector<std::uint32_t>>
-read_indices(GltfDocument& document, std::int32_t index, const std::string& place);
+read_indices(GltfDocument& document, std::int32_t index, const std::string& where);
 
 // ---- readers ------------------------------------------------------------------------------------
 
@@ -149,17 +149,17 @@ choose_variant(GltfDocument& document, const std::string& name, GltfScene& scene
 /// Primitive `primitive` of mesh `mesh` as triangles, points and lines as well, with normals,
 /// tangents, bounds, skin weights for `joints` > 0 joints, and morph targets; unused vertices are
 /// dropped. Empty when there is nothing to draw (no positions, no area); then a warning is added to
-/// the document, as for attributes other than POSITION that are bad: they count as missing. What
-/// has a position that is not finite is left out; normals and tangents that are not, or are 0, are
-/// made anew; other numbers that are not finite get a default. Fails on indices and positions out
-/// of range.
+/// the document, as for attributes other than POSITION that are bad: they count as missing.
+/// Triangles, lines and points with positions that are not finite are left out; normals and
+/// tangents that are not finite, or 0, are recomputed; other numbers that are not finite get a
+/// default. Fails on indices and positions out of range.
 [[nodiscard]] Result<std::optional<MeshData>>
 build_mesh(GltfDocument& document, std::size_t mesh, std::size_t primitive, std::size_t joints);
 
 /// A primitive and its vertices in use, as element indices into its accessors.
 struct GltfVertices {
     const tinygltf::Primitive& primitive;
-    std::string place;  ///< "file: meshes[2].primitives[0]"
+    std::string where;  ///< "file: meshes[2].primitives[0]"
     std::size_t count;  ///< elements of each attribute
     std::span<const std::uint32_t> used;
 };
@@ -174,8 +174,8 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
 
 /// The morph targets of the primitive with the vertices that they move. Their names and action
 /// units are the lists targetNames and actionUnits of `extras`, which may be shorter or missing;
-/// targetDrivers has {"target": name, "peak": weight} of those that follow others, by name. Fails
-/// where a driver is unknown or has drivers itself, and on a peak that is not above 0 and at
+/// targetDrivers has, by name, {"target": name, "peak": weight} for targets that follow others.
+/// Fails where a driver is unknown or has drivers itself, and on a peak that is not above 0 and at
 /// most 1. Normals may be NaN or infinite; positions and tangents that are become 0.
 [[nodiscard]] Result<std::vector<MorphTarget>>
 read_morph_targets(GltfDocument& document, const GltfVertices& vertices, const JsonValue& extras);
@@ -191,8 +191,8 @@ using GltfParts = std::vector<std::vector<GltfPart>>;
 
 /// Fills `scene.nodes` with the nodes of the file's scene, parents first, with their cameras and
 /// lights, and `scene.morph_weights`. Fails when the graph has a cycle, a node with two parents or
-/// is too deep, and where a node needs a part that is bad. A root that is a child of another, or
-/// there twice, comes once, with a warning.
+/// is too deep, and where a node needs a part that is bad. A root that is a child of another root,
+/// or listed twice, is added once, with a warning.
 ///
 /// A skinned mesh is placed by its joints alone, so it gets its own root node after the others.
 [[nodiscard]] Status build_nodes(GltfDocument& document, const GltfParts& parts, GltfScene& scene);
@@ -206,7 +206,8 @@ using GltfParts = std::vector<std::vector<GltfPart>>;
 /// paths, weights of a node without morph targets, channels with the wrong number of values, with
 /// decreasing times or of a property that another has, and skins with a joint that is not in the
 /// scene or a singular matrix. Of keys at the same time, the later counts from then on; a key that
-/// is not finite, or a rotation of length 0, is as the key before it. Fails on too many joints.
+/// is not finite, or a rotation of length 0, gets the value of the previous key. Fails on too many
+/// joints.
 [[nodiscard]] Status build_animations(GltfDocument& document, GltfScene& scene);
 
 /// Fills the components of the nodes of `scene` from extras.limn of the file's nodes, which may

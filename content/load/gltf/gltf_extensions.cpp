@@ -29,7 +29,8 @@ constexpr std::string_view kReadExtensions[] = {
     "KHR_texture_transform",
 };
 
-/// Prefixes of extensions without which everything is still where it should be.
+/// Prefixes of extensions that only affect looks: without them every part is still in the right
+/// position.
 constexpr std::string_view kOptionalExtensions[] = {
     "KHR_materials_", "ADOBE_materials_", "EXT_materials_",          "MSFT_packing_",
     "KHR_lights_",    "EXT_lights_",      "EXT_structural_metadata", "EXT_mesh_features",
@@ -37,7 +38,7 @@ constexpr std::string_view kOptionalExtensions[] = {
     "MSFT_lod",       "MSFT_physics",     "KHR_interactivity",       "VRM",
 };
 
-/// What makes a file of an extension readable. gltf-transform is a free command-line tool.
+/// How to convert a file that requires an extension. gltf-transform is a free command-line tool.
 constexpr std::pair<std::string_view, std::string_view> kExtensionHints[] = {
     {"KHR_draco_mesh_compression", "decompress with `gltf-transform copy in.glb out.glb`"},
     {"KHR_meshopt_compression", "decompress with `gltf-transform copy in.glb out.glb`"},

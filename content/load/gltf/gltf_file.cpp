@@ -16,16 +16,16 @@
 #include <sstream>
 #include <utility>
 
-// What stands in the way in tinygltf 2.7, and what is done about it before and after it runs:
+// Limitations of tinygltf 2.7, and the workarounds before and after it runs:
 //
 // - It ignores values of a wrong type, names no position, and recurses as deep as the JSON is
 //   nested: parse_json and check_gltf_schema come first.
-// - It takes + in a URI for a space, knows seven media types of data: URIs, skips what is not
-//   base64, wants buffers of exactly byteLength, and decodes images that nothing uses: each URI is
-//   replaced by the number of its buffer, whose bytes we have, and images are taken out.
-// - A buffer without data, bad items and indices without a buffer view end the whole file, also
-//   where nothing reads them; channels without a node vanish. They get stand-ins.
-// - Its errors are those of everything so far, fatal or not: the last line is the cause.
+// - It reads + in a URI as a space, knows seven media types of data: URIs, skips characters that
+//   are not base64, requires buffers of exactly byteLength, and decodes unused images: each URI is
+//   replaced by the number of its buffer, whose bytes we have, and images are removed.
+// - A buffer without data, bad items and indices without a buffer view fail the whole file, even if
+//   nothing reads them; channels without a node are lost. They get stand-ins.
+// - It accumulates errors, fatal or not: the last line is the cause.
 
 namespace limn {
 
@@ -136,8 +136,8 @@ std::optional<JsonValue> take_member(JsonValue& object, std::string_view key) {
     return value;
 }
 
-/// Files written on Windows have backslashes for slashes, also as %5C.
-std::string read_slashes(GltfDocument& document, std::string uri, const std::string& place) {
+/// Files written on Windows may have backslashes instead of slashes, also as %5C.
+std::string read_slashes(GltfDocument& document, std::string uri, const std::string& where) {
     if (uri.starts_with("data:")) {
         return uri;
     }
@@ -149,12 +149,12 @@ std::string read_slashes(GltfDocument& document, std::string uri, const std::str
     }
     if (slashes != uri) {
         document.warnings.push_back(fmt::format(
-            "{}: found {}, expected no backslash; it is read as a slash", place, in_quotes(uri)));
+            "{}: found {}, expected no backslash; it is read as a slash", where, in_quotes(uri)));
     }
     return slashes;
 }
 
-/// What tinygltf asks for through its callbacks.
+/// The buffers that tinygltf reads through its callbacks.
 using BufferBytes = std::vector<std::vector<std::byte>>;
 
 /// Fetches the bytes of all buffers, and replaces their URIs by their numbers.
@@ -162,39 +162,39 @@ Result<BufferBytes> take_buffers(GltfDocument& document, const GltfChunks& chunk
     BufferBytes all;
     std::uint64_t total = 0;
     for (JsonValue& buffer : items_of(document.json, "buffers")) {
-        const std::string place = fmt::format("{}: buffers[{}]", document.file, all.size());
+        const std::string where = fmt::format("{}: buffers[{}]", document.file, all.size());
         const auto length = static_cast<std::uint64_t>(buffer["byteLength"].number);
         const std::optional<JsonValue> uri = take_member(buffer, "uri");
         set_member(buffer, "uri", json_of(std::to_string(all.size())));
         std::vector<std::byte>& bytes = all.emplace_back();
         if (uri) {
             bytes = LIMN_TRY(fetch_uri(
-                read_slashes(document, uri->text, place + ".uri"), document.folder, place + ".uri",
+                read_slashes(document, uri->text, where + ".uri"), document.folder, where + ".uri",
                 document.limits.max_bytes));
         } else if (all.size() == 1 && chunks.has_binary) {
             bytes.assign(chunks.binary.begin(), chunks.binary.end());
         } else {
-            // An extension that Limn does not have may tell where the data are.
+            // An extension that Limn does not support may provide the data.
             if (!buffer["extensions"]["EXT_meshopt_compression"]["fallback"].truth) {
-                document.warnings.push_back(place + ": it has no data");
+                document.warnings.push_back(where + ": it has no data");
             }
             set_member(buffer, "byteLength", json_of(std::uint64_t{1}));
             continue;
         }
-        if (length == 0) {  // of which tinygltf makes an error
+        if (length == 0) {  // tinygltf rejects it
             bytes.clear();
             set_member(buffer, "byteLength", json_of(std::uint64_t{1}));
         }
         if (length > bytes.size()) {
             return fail(
-                "{}.byteLength: found {}, expected at most the {} bytes available", place, length,
+                "{}.byteLength: found {}, expected at most the {} bytes available", where, length,
                 bytes.size());
         }
         bytes.resize(length);
         total += length;
         if (total > document.limits.max_bytes) {
             return fail(
-                "{}: found {} bytes in buffers, expected at most {}", place, total,
+                "{}: found {} bytes in buffers, expected at most {}", where, total,
                 document.limits.max_bytes);
         }
     }
@@ -273,7 +273,7 @@ const std::vector<std::byte>* find_buffer(const std::string& path, void* buffers
     return is_number && number < all.size() ? &all[number] : nullptr;
 }
 
-/// Callbacks that know the buffers and no file.
+/// Callbacks that provide the buffers and no files.
 tinygltf::FsCallbacks make_callbacks(BufferBytes& buffers) {
     tinygltf::FsCallbacks callbacks{};
     callbacks.user_data = &buffers;
@@ -333,7 +333,7 @@ Status load_model(GltfDocument& document, BufferBytes buffers) {
     return Done{};
 }
 
-/// Marks the views that are out of their buffers.
+/// Marks the views that exceed their buffers.
 void check_views(GltfDocument& document) {
     const std::vector<tinygltf::BufferView>& views = document.model.bufferViews;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -356,7 +356,7 @@ void check_views(GltfDocument& document) {
     }
 }
 
-/// The sizes of a GLB have 32 bits.
+/// Sizes in a GLB have 32 bits.
 Status check_glb_size(std::size_t size, const std::string& name) {
     constexpr std::size_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();
     if (size > kMaxBytes) {
@@ -494,7 +494,7 @@ Result<std::vector<std::byte>> pack_model(const tinygltf::Model& model, const st
         return fail("{}: cannot be written as glTF: {}", name, exception.what());
     }
     const std::string_view text = stream.view();
-    LIMN_TRY(check_glb_size(text.size(), name));  // tinygltf does not look
+    LIMN_TRY(check_glb_size(text.size(), name));  // tinygltf does not check
     const auto bytes = std::as_bytes(std::span(text));
     return std::vector<std::byte>(bytes.begin(), bytes.end());
 }

@@ -12,9 +12,9 @@
 
 namespace limn {
 
-// glTF files are parsed and written by tinygltf. It is lenient where we want a message, and strict
-// where files in use are not: all that stands in the way is worked around in gltf_file.cpp, and
-// listed there.
+// glTF files are parsed and written by tinygltf. It is lenient where we want a message, and
+// stricter than existing files: its limitations are worked around in gltf_file.cpp, and listed
+// there.
 
 /// The chunks of a GLB, or a .gltf as JSON only; views into the file's bytes.
 struct GltfChunks {
@@ -42,7 +42,7 @@ int append_accessor(
     tinygltf::Model& model, int type, int component, std::size_t count,
     std::span<const std::byte> values);
 
-/// Sets the smallest and largest value of increasing times, as glTF wants.
+/// Sets the smallest and largest value of increasing times, as glTF requires.
 int append_times(tinygltf::Model& model, std::span<const float> times);
 
 void append_channel(

@@ -16,7 +16,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kDielectric = 0.04f;  // reflectance head on
+constexpr float kDielectric = 0.04f;  // reflectance at normal incidence
 
 constexpr TextureSlot Material::*kGltfSlots[] = {
     &Material::base_color_texture, &Material::metal_rough_texture, &Material::normal_texture,
@@ -26,7 +26,8 @@ float perceived_brightness(const Vec3& color) {
     return std::sqrt(glm::dot(Vec3(0.299f, 0.587f, 0.114f), color * color));
 }
 
-/// The metalness whose mix of dielectric and metal reflects as much: a root of a quadratic.
+/// The metalness for which the mix of dielectric and metal has the same reflectance: a root of a
+/// quadratic.
 float solve_metalness(float diffuse, float specular, float rest) {
     if (specular < kDielectric) {
         return 0;
@@ -45,7 +46,8 @@ const ImageData* image_of(const GltfScene& scene, const TextureSlot& slot) {
     return slot.image.index < scene.images.size() ? &scene.images[slot.image.index] : nullptr;
 }
 
-/// Linear color and alpha of an 8 bit image at a texel of one of `width` x `height`; white of none.
+/// Linear color and alpha of an 8 bit image at a texel of one of `width` x `height`; white without
+/// an image.
 struct TexelReader {
     const ImageData* image = nullptr;
     int width = 1;
@@ -108,7 +110,7 @@ class GlossyConverter {
     }
 
   private:
-    /// Two images, and what they were made of.
+    /// Two converted images, and their sources.
     struct Made {
         GlossyMaterial glossy;
         Vec3 diffuse_factor;

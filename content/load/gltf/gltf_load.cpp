@@ -48,8 +48,8 @@ Result<std::vector<GltfPart>> build_parts(
     return parts;
 }
 
-/// Builds all meshes; drops the default material unless something uses it. A mesh that is bad
-/// counts where a node of the scene has it.
+/// Builds all meshes; drops the default material unless something uses it. A bad mesh matters only
+/// if a node of the scene uses it.
 GltfParts build_meshes(GltfDocument& document, GltfScene& scene) {
     const std::vector<std::size_t> joints = common_joints(document);
     bool uses_default = false;

@@ -17,22 +17,21 @@ namespace limn {
 // line: "file: meshes[2].primitives[0].attributes.POSITION: found X, expected Y".
 //
 // Supported: nodes, meshes of all index types as triangles, strips and fans, vertex colors, two uv
-// sets, normalized and sparse accessors, metal-rough materials, textures, samplers, perspective
-// and orthographic cameras, KHR_lights_punctual, KHR_materials_emissive_strength,
-// KHR_materials_unlit, KHR_materials_transmission without its texture, KHR_materials_ior and
-// KHR_materials_volume of what transmits, KHR_materials_variants,
-// KHR_materials_pbrSpecularGlossiness (gltf_glossiness.h), KHR_mesh_quantization,
-// KHR_texture_transform, EXT_mesh_gpu_instancing, EXT_meshopt_compression, EXT_texture_webp, points
-// and lines (gltf_strokes.h), skeletons, skins with any number of joints per vertex, morph targets
-// with their action units, named regions of vertices (surface.h), animation clips, and our
-// components in extras.limn of a node. Ignored with a warning: lights of unknown type, bytes after
-// a GLB, textures in unsupported image formats, morph targets of texture coordinates and colors,
-// other extensions unless they are required.
+// sets, normalized and sparse accessors, metal-rough materials, textures, samplers, perspective and
+// orthographic cameras, KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
+// KHR_materials_transmission without its texture, KHR_materials_ior and KHR_materials_volume of
+// transmissive materials, KHR_materials_variants, KHR_materials_pbrSpecularGlossiness
+// (gltf_glossiness.h), KHR_mesh_quantization, KHR_texture_transform, EXT_mesh_gpu_instancing,
+// EXT_meshopt_compression, EXT_texture_webp, points and lines (gltf_strokes.h), skeletons, skins
+// with any number of joints per vertex, morph targets with their action units, named regions of
+// vertices (surface.h), animation clips, and our components in extras.limn of a node. Ignored with
+// a warning: lights of unknown type, bytes after a GLB, textures in unsupported image formats,
+// morph targets of texture coordinates and colors, other extensions unless they are required.
 //
 // A bad part costs that part and a warning (load_warnings.h): an image its textures, a channel its
-// movement, a skin or an attribute itself; factors are clamped; bad normals and tangents are made
-// anew. What nothing that is drawn needs may be bad. Refused: what is no glTF, buffers that are not
-// there or too short, positions and indices out of range, node graphs with cycles.
+// movement, a skin or an attribute itself; factors are clamped; bad normals and tangents are
+// recomputed. Parts that nothing drawn needs may be bad. Rejected: files that are not glTF, buffers
+// that are missing or too short, positions and indices out of range, node graphs with cycles.
 //
 // Missing normals are generated with a crease angle of 50 degrees, not flat as the specification
 // demands: models without normals are mostly organic scans and low-poly animals, which look better

@@ -41,7 +41,7 @@ Wrap to_wrap(std::int32_t mode) {
     }
 }
 
-/// In whichever format is offered, WebP first; -1 where there is none.
+/// The image of a texture in any supported format, WebP first; -1 if there is none.
 int image_of(const tinygltf::Texture& texture) {
     const tinygltf::Value& webp =
         member_of(extension_of(texture.extensions, "EXT_texture_webp"), "source");
@@ -71,7 +71,7 @@ class MaterialBuilder {
     Material build(std::size_t index) {
         const tinygltf::Material& source = document_.model.materials[index];
         const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-        place_ = fmt::format("{}: materials[{}]", document_.file, index);
+        where_ = fmt::format("{}: materials[{}]", document_.file, index);
 
         Material material;
         material.name = source.name;
@@ -115,12 +115,12 @@ class MaterialBuilder {
     [[nodiscard]] const std::vector<GlossyMaterial>& glossy() const { return glossy_; }
 
   private:
-    /// Written before there was KHR_materials_emissive_strength.
+    /// Some files predate KHR_materials_emissive_strength.
     void warn_of_bright(const std::vector<double>& factor) {
         const auto largest = std::ranges::max_element(factor);
         if (largest != factor.end() && *largest > 1 + 1e-5) {
             document_.warnings.push_back(fmt::format(
-                "{}.emissiveFactor: found {:.6g}, expected at most 1; it is used as it is", place_,
+                "{}.emissiveFactor: found {:.6g}, expected at most 1; it is used as it is", where_,
                 *largest));
         }
     }
@@ -196,7 +196,7 @@ class MaterialBuilder {
     }
 
     void warn(const std::string& what) {
-        document_.warnings.push_back(fmt::format("{}: {}", place_, what));
+        document_.warnings.push_back(fmt::format("{}: {}", where_, what));
     }
 
     std::uint32_t use_image(std::size_t source, bool srgb) {
@@ -209,7 +209,7 @@ class MaterialBuilder {
     }
 
     GltfDocument& document_;
-    std::string place_;
+    std::string where_;
     std::vector<UsedImage> used_;
     std::vector<GlossyMaterial> glossy_;
     std::vector<std::uint32_t> number_;  ///< index into used_ of image i as data, as color
@@ -218,25 +218,25 @@ class MaterialBuilder {
 Result<ImageData>
 load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits& limits) {
     const GltfImage& source = document.images[used.source];
-    std::string place = fmt::format("{}: images[{}]", document.file, used.source);
+    std::string where = fmt::format("{}: images[{}]", document.file, used.source);
     if (source.uri.has_value() == (source.view >= 0)) {
         return fail(
-            "{}: found {} uri and bufferView, expected one of them", place,
+            "{}: found {} uri and bufferView, expected one of them", where,
             source.uri ? "both" : "neither");
     }
     std::vector<std::byte> fetched;
     std::span<const std::byte> bytes;
     if (source.uri) {
         fetched = LIMN_TRY(
-            fetch_uri(*source.uri, document.folder, place + ".uri", document.limits.max_bytes));
+            fetch_uri(*source.uri, document.folder, where + ".uri", document.limits.max_bytes));
         bytes = fetched;
         if (!source.uri->starts_with("data:")) {
-            place += " (" + source.uri->substr(0, 200) + ")";
+            where += " (" + source.uri->substr(0, 200) + ")";
         }
     } else {
         bytes = LIMN_TRY(view_bytes(document, source.view));
     }
-    ImageData image = LIMN_TRY(decode_image(bytes, place, used.srgb, limits));
+    ImageData image = LIMN_TRY(decode_image(bytes, where, used.srgb, limits));
     const std::string& name = document.model.images[used.source].name;
     image.name = !name.empty() ? name
                  : source.uri  ? source.uri->substr(0, 200)

@@ -47,7 +47,7 @@ class MeshBuilder {
     MeshBuilder(GltfDocument& document, std::size_t mesh, std::size_t primitive, std::size_t joints)
         : document_(document), mesh_(mesh),
           source_(document.model.meshes[mesh].primitives[primitive]), joints_(joints),
-          place_(fmt::format("{}: meshes[{}].primitives[{}]", document.file, mesh, primitive)) {
+          where_(fmt::format("{}: meshes[{}].primitives[{}]", document.file, mesh, primitive)) {
         const tinygltf::Mesh& all = document.model.meshes[mesh];
         result_.name = all.name;
         if (all.primitives.size() > 1 && !result_.name.empty()) {
@@ -71,8 +71,8 @@ class MeshBuilder {
         }
         LIMN_TRY(read_triangles());
         if (!strokes()) {
-            read("NORMAL", result_.normals, Vec3(0), "made anew");
-            read("TANGENT", result_.tangents, Vec4(0), "made anew");
+            read("NORMAL", result_.normals, Vec3(0), "recomputed");
+            read("TANGENT", result_.tangents, Vec4(0), "recomputed");
         }
         read("TEXCOORD_0", result_.uvs, Vec2(0), "0");
         read("TEXCOORD_1", result_.uvs1, Vec2(0), "0");
@@ -92,21 +92,22 @@ class MeshBuilder {
         return found != source_.attributes.end() ? found->second : -1;
     }
 
-    /// Whether anything is stored; all zeros otherwise, as where an extension has the data.
+    /// Whether data is stored; otherwise all elements are zero, for example because an extension
+    /// has the data.
     [[nodiscard]] bool has_data(int accessor) const {
         const tinygltf::Accessor& source = item_at(document_.model.accessors, accessor);
         return source.bufferView >= 0 || source.sparse.isSparse;
     }
 
     Result<std::optional<MeshData>> skip(std::string_view why) {
-        document_.warnings.push_back(fmt::format("{} is ignored: {}", place_, why));
+        document_.warnings.push_back(fmt::format("{} is ignored: {}", where_, why));
         return std::optional<MeshData>();
     }
 
     Status read_positions() {
-        const std::string place = place_ + ".attributes.POSITION";
+        const std::string where = where_ + ".attributes.POSITION";
         const std::vector<float> values =
-            LIMN_TRY(read_any_floats(document_, find_attribute("POSITION"), 3, place));
+            LIMN_TRY(read_any_floats(document_, find_attribute("POSITION"), 3, where));
         positions_.resize(values.size() / 3);
         std::memcpy(positions_.data(), values.data(), values.size() * sizeof(float));
         return Done{};
@@ -114,7 +115,7 @@ class MeshBuilder {
 
     /// Fails where a position that is used is out of range; warns of those that are not finite.
     Status check_used(const std::vector<std::uint32_t>& list) {
-        const std::string place = place_ + ".attributes.POSITION";
+        const std::string where = where_ + ".attributes.POSITION";
         std::size_t count = 0;
         for (const std::uint32_t index : list) {
             const Vec3& position = positions_[index];
@@ -122,14 +123,14 @@ class MeshBuilder {
                 std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
             if (is_finite(position) && largest > kLargestPosition) {
                 return fail(
-                    "{}: found {} in element {}, expected at most {}", place, largest, index,
+                    "{}: found {} in element {}, expected at most {}", where, largest, index,
                     kLargestPosition);
             }
             if (!is_finite(position) && count++ == 0) {
                 document_.warnings.push_back(fmt::format(
                     "{}: found ({}, {}, {}) in element {}, expected finite numbers; what uses such "
                     "elements is left out",
-                    place, position.x, position.y, position.z, index));
+                    where, position.x, position.y, position.z, index));
             }
         }
         return Done{};
@@ -139,9 +140,9 @@ class MeshBuilder {
     /// of points and lines the normals, too.
     Status read_triangles() {
         std::vector<std::uint32_t> list;
-        const std::string place = place_ + ".indices";
+        const std::string where = where_ + ".indices";
         if (source_.indices >= 0) {
-            list = LIMN_TRY(read_indices(document_, source_.indices, place));
+            list = LIMN_TRY(read_indices(document_, source_.indices, where));
         } else {
             list.resize(positions_.size());
             std::iota(list.begin(), list.end(), 0u);
@@ -149,13 +150,13 @@ class MeshBuilder {
         for (std::size_t i = 0; i < list.size(); ++i) {
             if (list[i] >= positions_.size()) {
                 return fail(
-                    "{}: found {} at {}, expected an index below the {} vertices", place, list[i],
+                    "{}: found {} at {}, expected an index below the {} vertices", where, list[i],
                     i, positions_.size());
             }
         }
         if (source_.mode == TINYGLTF_MODE_TRIANGLES && list.size() % 3 != 0) {
             document_.warnings.push_back(fmt::format(
-                "{}: found {} indices, expected a multiple of 3; the last are left out", place,
+                "{}: found {} indices, expected a multiple of 3; the last are left out", where,
                 list.size()));
             list.resize(list.size() / 3 * 3);
         }
@@ -191,14 +192,14 @@ class MeshBuilder {
         return kept;
     }
 
-    /// Points and lines, which have no triangles of their own.
+    /// Whether the primitive is points or lines, which have no triangles.
     [[nodiscard]] bool strokes() const { return source_.mode < TINYGLTF_MODE_TRIANGLES; }
 
     void stroke(const std::vector<std::uint32_t>& list) {
         Strokes made = make_strokes(positions_, list, source_.mode);
         if (made.found > kMaxStrokes) {
             document_.warnings.push_back(fmt::format(
-                "{}: {} of its {} {} are drawn", place_, kMaxStrokes, made.found,
+                "{}: {} of its {} {} are drawn", where_, kMaxStrokes, made.found,
                 source_.mode == kGltfPoints ? "points" : "lines"));
         }
         used_ = std::move(made.sources);
@@ -228,8 +229,8 @@ class MeshBuilder {
         if (accessor < 0) {
             return;
         }
-        const std::string place = fmt::format("{}.attributes.{}", place_, name);
-        Result<std::vector<T>> all = read_all<T>(accessor, place);
+        const std::string where = fmt::format("{}.attributes.{}", where_, name);
+        Result<std::vector<T>> all = read_all<T>(accessor, where);
         if (!all) {
             warn_of_loss(document_, all.error(), "it is left out");
             return;
@@ -244,7 +245,7 @@ class MeshBuilder {
             if (!is_good) {
                 if (count++ == 0) {
                     document_.warnings.push_back(fmt::format(
-                        "{}: found {} in element {}, expected {}; such elements are {}", place,
+                        "{}: found {} in element {}, expected {}; such elements are {}", where,
                         is_finite(target[i]) ? "a vector of length 0" : "NaN or infinity", used_[i],
                         is_finite(target[i]) ? "1" : "finite numbers", cost));
                 }
@@ -254,14 +255,14 @@ class MeshBuilder {
     }
 
     template <typename T>
-    Result<std::vector<T>> read_all(int accessor, const std::string& place) {
+    Result<std::vector<T>> read_all(int accessor, const std::string& where) {
         const int width = static_cast<int>(T::length());
         const std::vector<float> values =
-            LIMN_TRY(read_any_floats(document_, accessor, width, place));
+            LIMN_TRY(read_any_floats(document_, accessor, width, where));
         std::vector<T> all(values.size() / static_cast<std::size_t>(width));
         if (all.size() != positions_.size()) {
             return fail(
-                "{}: found {} elements, expected as many as POSITION has, {}", place, all.size(),
+                "{}: found {} elements, expected as many as POSITION has, {}", where, all.size(),
                 positions_.size());
         }
         std::memcpy(all.data(), values.data(), values.size() * sizeof(float));
@@ -287,7 +288,7 @@ class MeshBuilder {
     }
 
     Status read_deformations() {
-        const GltfVertices vertices{source_, place_, positions_.size(), used_};
+        const GltfVertices vertices{source_, where_, positions_.size(), used_};
         if (joints_ > 0) {
             Result<SkinWeights> skin = read_skin_weights(document_, vertices, joints_);
             if (skin) {
@@ -319,15 +320,15 @@ class MeshBuilder {
                 const auto at = static_cast<std::size_t>(bad - morph.normals.begin());
                 document_.warnings.push_back(fmt::format(
                     "{}.targets[{}].NORMAL: found NaN or infinity in element {}, expected finite "
-                    "numbers; its normals are made anew",
-                    place_, i, used_[morph.vertices[at]]));
+                    "numbers; its normals are recomputed",
+                    where_, i, used_[morph.vertices[at]]));
                 morph.normals.clear();
                 lost_morph_normals_.push_back(i);
             }
         }
     }
 
-    /// Of the targets that lost theirs, and of no others.
+    /// Recomputes normals only for targets that lost theirs.
     void remake_morph_normals() {
         std::vector<std::size_t> without;
         for (std::size_t i = 0; i < result_.morphs.size(); ++i) {
@@ -344,7 +345,7 @@ class MeshBuilder {
         }
     }
 
-    /// Normals of length 0 get those of their triangles, by area.
+    /// Normals of length 0 are replaced by the area-weighted normals of their triangles.
     void remake_normals() {
         if (std::ranges::all_of(result_.normals, has_direction)) {
             return;
@@ -428,7 +429,7 @@ class MeshBuilder {
     std::size_t mesh_;
     const tinygltf::Primitive& source_;
     std::size_t joints_;  ///< of its skin
-    std::string place_;
+    std::string where_;
     std::vector<Vec3> positions_;      ///< all of the accessor
     std::vector<std::uint32_t> used_;  ///< the vertex of the file of each vertex of the result
     std::vector<std::size_t> lost_morph_normals_;  ///< numbers of targets

@@ -25,7 +25,7 @@ std::size_t meshopt_size(const JsonValue& value) {
 }
 
 Result<MeshoptView>
-read_meshopt_view(const GltfDocument& document, const JsonValue& source, const std::string& place) {
+read_meshopt_view(const GltfDocument& document, const JsonValue& source, const std::string& where) {
     MeshoptView view;
     const std::vector<unsigned char>& buffer =
         document.model.buffers[meshopt_size(source["buffer"])].data;
@@ -33,7 +33,7 @@ read_meshopt_view(const GltfDocument& document, const JsonValue& source, const s
     const std::size_t length = meshopt_size(source["byteLength"]);
     if (offset > buffer.size() || length > buffer.size() - offset) {
         return fail(
-            "{}: found {} bytes from byte {}, expected to stay within the {} of buffers[{}]", place,
+            "{}: found {} bytes from byte {}, expected to stay within the {} of buffers[{}]", where,
             length, offset, buffer.size(), source["buffer"].number);
     }
     view.stream = std::as_bytes(std::span(buffer)).subspan(offset, length);
@@ -45,8 +45,8 @@ read_meshopt_view(const GltfDocument& document, const JsonValue& source, const s
     return view;
 }
 
-/// What the decoder takes for granted.
-Status check_meshopt_view(const MeshoptView& view, const std::string& place) {
+/// Preconditions of the decoder.
+Status check_meshopt_view(const MeshoptView& view, const std::string& where) {
     const bool attributes = view.mode == "ATTRIBUTES";
     const bool stride_fits = attributes              ? view.stride % 4 == 0
                              : view.filter != "NONE" ? false
@@ -58,7 +58,7 @@ Status check_meshopt_view(const MeshoptView& view, const std::string& place) {
     if (!stride_fits || !filter_fits || !count_fits) {
         return fail(
             "{}: found {} elements of {} bytes with the filter {}, expected what the mode {} has",
-            place, view.count, view.stride, view.filter, view.mode);
+            where, view.count, view.stride, view.filter, view.mode);
     }
     return Done{};
 }
@@ -96,21 +96,21 @@ Status decode_meshopt_views(GltfDocument& document) {
         if (source == nullptr) {
             continue;
         }
-        const std::string place =
+        const std::string where =
             fmt::format("{}: bufferViews[{}].extensions.{}", document.file, i, kMeshopt);
-        const MeshoptView view = LIMN_TRY(read_meshopt_view(document, *source, place));
-        LIMN_TRY(check_meshopt_view(view, place));
+        const MeshoptView view = LIMN_TRY(read_meshopt_view(document, *source, where));
+        LIMN_TRY(check_meshopt_view(view, where));
         total += view.count * view.stride;  // at most 2^32 times 256
         if (total > document.limits.max_bytes) {
             return fail(
-                "{}: found {} bytes in buffer views, expected at most {}", place, total,
+                "{}: found {} bytes in buffer views, expected at most {}", where, total,
                 document.limits.max_bytes);
         }
         std::vector<std::byte>& decoded = document.decoded_views[i];
         decoded.resize(view.count * view.stride);
         if (!decode_meshopt_stream(view, decoded)) {
             return fail(
-                "{}: found a broken stream of {} bytes, expected {} elements of {} bytes", place,
+                "{}: found a broken stream of {} bytes, expected {} elements of {} bytes", where,
                 view.stream.size(), view.count, view.stride);
         }
     }

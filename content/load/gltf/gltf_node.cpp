@@ -84,7 +84,7 @@ class NodeBuilder {
     }
 
   private:
-    [[nodiscard]] std::string place(std::size_t node) const {
+    [[nodiscard]] std::string where(std::size_t node) const {
         return fmt::format("{}: nodes[{}]", document_.file, node);
     }
 
@@ -95,12 +95,12 @@ class NodeBuilder {
                 std::uint32_t& parent = parent_[static_cast<std::size_t>(child)];
                 if (parent == i) {
                     document_.warnings.push_back(fmt::format(
-                        "{}.children: found node {} twice, expected it once", place(i), child));
+                        "{}.children: found node {} twice, expected it once", where(i), child));
                 } else if (parent != kNone) {
                     return fail(
                         "{}.children: found node {}, which is a child of nodes[{}] already, "
                         "expected one parent",
-                        place(i), child, parent);
+                        where(i), child, parent);
                 }
                 parent = i;
             }
@@ -122,7 +122,7 @@ class NodeBuilder {
             const auto cycle = std::find(reached.begin(), reached.end(), false);
             return fail(
                 "{}.children: found a node that is its own ancestor, expected a tree",
-                place(static_cast<std::size_t>(cycle - reached.begin())));
+                where(static_cast<std::size_t>(cycle - reached.begin())));
         }
         if (scenes.empty()) {
             order_ = std::move(all);
@@ -141,7 +141,7 @@ class NodeBuilder {
                 document_.warnings.push_back(fmt::format(
                     "{}: scenes[{}].nodes: found node {}, which {}, expected each root once",
                     document_.file, scene, index,
-                    reached[index] ? "is there already" : "has a parent"));
+                    reached[index] ? "is listed already" : "has a parent"));
             }
             if (!reached[index] && !is_below_root(index, is_root)) {
                 LIMN_TRY(visit(index, reached, order_));
@@ -161,7 +161,7 @@ class NodeBuilder {
         return false;
     }
 
-    /// Fails for what the file has badly: it is needed here.
+    /// Fails if a bad part of the file is needed here.
     [[nodiscard]] Status check_part(std::string_view array, std::size_t index) const {
         const std::string* const reason = find_bad_part(document_, array, index);
         return reason != nullptr ? fail("{}: {}", document_.file, *reason) : Status(Done{});
@@ -180,7 +180,7 @@ class NodeBuilder {
             open.pop_back();
             if (now.depth > document_.limits.max_depth) {
                 return fail(
-                    "{}: found a hierarchy deeper than {} nodes", place(now.node),
+                    "{}: found a hierarchy deeper than {} nodes", where(now.node),
                     document_.limits.max_depth);
             }
             if (reached[now.node]) {
@@ -223,7 +223,7 @@ class NodeBuilder {
         return Done{};
     }
 
-    /// Those of the mesh of node `index`; none where it is drawn once.
+    /// The instances of the mesh of node `index`; none if it is drawn once.
     Result<std::vector<Transform>> read_instances(std::uint32_t index) {
         const tinygltf::Value& attributes =
             member_of(extension_of(nodes_[index].extensions, kInstancing), "attributes");
@@ -234,7 +234,7 @@ class NodeBuilder {
                 continue;
             }
             const std::string here =
-                fmt::format("{}.extensions.{}.attributes.{}", place(index), kInstancing, name);
+                fmt::format("{}.extensions.{}.attributes.{}", where(index), kInstancing, name);
             const std::vector<float> values = LIMN_TRY(
                 read_floats(document_, attributes.Get(name).GetNumberAsInt(), width, here));
             const std::size_t count = values.size() / static_cast<std::size_t>(width);
@@ -251,7 +251,7 @@ class NodeBuilder {
         }
         if (instances.size() > kMaxInstances - instance_count_) {
             document_.warnings.push_back(fmt::format(
-                "{}.extensions.{}: {} of its {} instances are drawn", place(index), kInstancing,
+                "{}.extensions.{}: {} of its {} instances are drawn", where(index), kInstancing,
                 kMaxInstances - instance_count_, instances.size()));
             instances.resize(kMaxInstances - instance_count_);
         }
@@ -296,7 +296,7 @@ class NodeBuilder {
             if (std::ranges::any_of(rest, [](double x) { return std::abs(x) > kMatrixRounding; })) {
                 return fail(
                     "{}.matrix: found {}, {}, {}, {} as its last row, expected 0, 0, 0, 1",
-                    place(index), m[3], m[7], m[11], m[15]);
+                    where(index), m[3], m[7], m[11], m[15]);
             }
             Mat4 matrix;
             for (int i = 0; i < 16; ++i) {
@@ -305,7 +305,7 @@ class NodeBuilder {
             bool sheared = false;
             transform = decompose(matrix, sheared);
             if (sheared) {
-                document_.warnings.push_back(place(index) + ".matrix: its shear is ignored");
+                document_.warnings.push_back(where(index) + ".matrix: its shear is ignored");
             }
         } else {
             transform.position = vector_of(source.translation, Vec3(0));
@@ -327,7 +327,7 @@ class NodeBuilder {
         if (length < 1e-6) {
             document_.warnings.push_back(fmt::format(
                 "{}.rotation: found a quaternion of length {}, expected 1; it is left out",
-                place(index), length));
+                where(index), length));
             return kIdentity;
         }
         return {
@@ -356,7 +356,7 @@ class NodeBuilder {
                 * within("orthographic.ymag", camera.orthographic.ymag, kSmallestMag, kLargestMag);
             node.camera.near = std::max(static_cast<float>(camera.orthographic.znear), 1e-4f);
         } else {
-            // Wider or narrower than a level may have it: nothing else would be seen.
+            // Clamped to the range that a level may use.
             node.camera.fov_y =
                 within("perspective.yfov", camera.perspective.yfov, kSmallestFov, kLargestFov);
             node.camera.near = static_cast<float>(camera.perspective.znear);
@@ -440,7 +440,7 @@ class NodeBuilder {
         std::vector<float>& weights = scene_.morph_weights;
         if (weights.size() + count > kMaxMorphs) {
             return fail(
-                "{}: found more than {} morph targets in all nodes", place(index), kMaxMorphs);
+                "{}: found more than {} morph targets in all nodes", where(index), kMaxMorphs);
         }
         const bool own = !source.weights.empty();
         const std::vector<double>& values =
@@ -448,7 +448,7 @@ class NodeBuilder {
         if (!values.empty() && values.size() != count) {
             document_.warnings.push_back(fmt::format(
                 "{}.weights: found {}, expected one for each of {} targets; missing ones are 0",
-                own ? place(index) : fmt::format("{}: meshes[{}]", document_.file, mesh),
+                own ? where(index) : fmt::format("{}: meshes[{}]", document_.file, mesh),
                 values.size(), count));
         }
         node.first_morph = static_cast<std::int32_t>(weights.size());

@@ -37,14 +37,14 @@ Bounds transform_bounds(const Affine& matrix, const Bounds& box) {
         return result;
     }
     // The extent along an axis is the sum over the three half extents (Arvo 1990).
-    const Vec3 middle = transform_point(matrix, center(box));
+    const Vec3 box_center = transform_point(matrix, center(box));
     const Vec3 half = half_extent(box);
     Vec3 extent;
     for (int i = 0; i < 3; ++i) {
         extent[i] = glm::dot(glm::abs(Vec3(matrix.row[i])), half);
     }
-    grow(result, middle - extent);
-    grow(result, middle + extent);
+    grow(result, box_center - extent);
+    grow(result, box_center + extent);
     return result;
 }
 

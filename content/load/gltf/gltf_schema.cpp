@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLargestNumber = 1e9;    // no length, angle or intensity is larger
 constexpr double kLargestSize = 9e15;     // integers that a double holds exactly
-constexpr double kFactorRounding = 1e-5;  // by which a factor may be out of range unnoticed
+constexpr double kFactorRounding = 1e-5;  // a factor may be out of range by this without a warning
 
 // "path: member kind; member kind ..." for the members that are read. A path is of objects: "a.b"
 // is a member, "a[]" every item of an array. A member may be absent unless it ends with "!"; "*" is
@@ -108,8 +108,8 @@ constexpr std::string_view kTextureSchema =
     R"(: index! index textures; texCoord size 0 255
 .extensions.KHR_texture_transform: offset vec2; rotation number; scale vec2; texCoord size 0 255)";
 
-/// Items that may be bad, and what tinygltf gets instead. One that something needs makes that bad,
-/// up to the scene, which is then refused.
+/// Items that may be bad, and their stand-ins for tinygltf. An item that needs a bad one is bad,
+/// too, up to the scene, which is then rejected.
 constexpr std::pair<std::string_view, std::string_view> kItems[] = {
     {"bufferViews[]", R"({"buffer": 0, "byteLength": 1})"},
     {"accessors[]", R"({"componentType": 5126, "count": 1, "type": "SCALAR"})"},
@@ -161,7 +161,7 @@ constexpr std::string_view kMembers[] = {
     "buffers[].extensions.",
 };
 
-/// What a light or a camera must have by its type.
+/// Required members of a light or a camera, by its type.
 constexpr std::pair<std::string_view, std::string_view> kMembersOfTypes[] = {
     {"cameras", "perspective"},
     {"cameras", "orthographic"},
@@ -271,7 +271,7 @@ class SchemaChecker {
         return Done{};
     }
 
-    /// Lights and cameras without the member of their type.
+    /// Checks that lights and cameras have the member of their type.
     Status check_types() {
         for (const auto& [array, type] : kMembersOfTypes) {
             JsonValue* const found = value_at(document_.json, array);
@@ -290,7 +290,7 @@ class SchemaChecker {
     }
 
   private:
-    /// A part that is lost, which is one of the steps to a value; nullptr if none is.
+    /// The step to a value at which a part is lost; nullptr if none is.
     using Lost = Result<const SchemaStep*>;
 
     /// Recurses once for each step of the rule's path, so never deeply.
@@ -382,7 +382,7 @@ class SchemaChecker {
         return reason != nullptr ? lose_silently(*reason, at) : Lost(nullptr);
     }
 
-    /// Silently what is out of range by rounding.
+    /// Clamps without a warning if the value is out of range only by rounding.
     void clamp(JsonValue& value, const SchemaStep* at) {
         const bool is_array = value.kind == JsonKind::Array;
         for (JsonValue& number : is_array ? std::span(value.items) : std::span(&value, 1)) {
@@ -402,7 +402,7 @@ class SchemaChecker {
         }
     }
 
-    /// The part that the value costs, with a warning; fails where that is the whole file.
+    /// The part that is lost because of the value, with a warning; fails if that is the whole file.
     Lost lose(std::string_view found, std::string_view expected, const SchemaStep* at) {
         const std::string path = path_of(at);
         const std::string reason = fmt::format(

@@ -10,10 +10,10 @@
 namespace limn {
 
 // Points and lines of a glTF file as triangles, since the renderer draws nothing else: a point is
-// an octahedron, a line a three-sided prism, shaded as if round. Their radius is a share of the
-// size of the whole, as files have none: a line in the distance is thinner than a pixel.
+// an octahedron, a line a three-sided prism, shaded as if round. Their radius is a fraction of the
+// size of the whole, since files specify none: a distant line is thinner than a pixel.
 
-/// Modes of a primitive that are no triangles.
+/// Primitive modes other than triangles.
 inline constexpr std::int32_t kGltfPoints = 0;
 inline constexpr std::int32_t kGltfLines = 1;
 inline constexpr std::int32_t kGltfLineLoop = 2;
@@ -31,8 +31,8 @@ struct Strokes {
     std::size_t found = 0;               ///< points or lines, of which at most kMaxStrokes are made
 };
 
-/// The points or lines that `list` names in `positions`, evenly thinned out to kMaxStrokes. A line
-/// without length makes nothing, and neither does a position that is not finite.
+/// The points or lines that `list` names in `positions`, evenly thinned out to kMaxStrokes. Lines
+/// without length and positions that are not finite are skipped.
 [[nodiscard]] Strokes make_strokes(
     std::span<const Vec3> positions, std::span<const std::uint32_t> list, std::int32_t mode);
 

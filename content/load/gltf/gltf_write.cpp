@@ -51,7 +51,7 @@ std::vector<double> numbers_of(const T& vector) {
     return numbers;
 }
 
-/// What follows other targets, by name; see read_morph_targets.
+/// Targets that follow other targets, by name; see read_morph_targets.
 tinygltf::Value::Object drivers_of(const std::vector<MorphTarget>& targets) {
     tinygltf::Value::Object all;
     for (const MorphTarget& target : targets) {
@@ -270,7 +270,7 @@ class GlbWriter {
         return target;
     }
 
-    /// As many sets of four as the vertex with most influences needs.
+    /// Adds as many sets of four as the vertex with the most influences needs.
     void add_influences(tinygltf::Primitive& primitive, const SkinWeights& skin) {
         if (skin.empty()) {
             return;
@@ -340,9 +340,9 @@ class GlbWriter {
             std::string_view name = node.name;
             if (node.skin >= 0 && name.ends_with(kEnding)) {
                 name.remove_suffix(kEnding.size());
-                const auto place = bare.find(name);
-                if (place != bare.end()) {
-                    skinned_[place->second] = i;
+                const auto found = bare.find(name);
+                if (found != bare.end()) {
+                    skinned_[found->second] = i;
                     merged_.insert(i);
                 }
             }

@@ -1,9 +1,8 @@
 // The quad of a billboard that turns about an axis (engine.billboard, engine.billboard-composite).
 // Techniques: engine.billboard, engine.billboard-composite
 
-// Toward its right: perpendicular to the unit vector `axis` and to `to_camera`, so that the quad faces the camera as far
-// as the axis lets it. Where the camera is on the axis, nothing tells a direction: then `otherwise`, the camera's own
-// right, which is the last angle for a camera that came there upright.
+// Right vector: perpendicular to the unit vector `axis` and to `to_camera`, so that the quad faces the camera as far as
+// the axis allows. Undefined if the camera is on the axis: then `otherwise`, the camera's right vector.
 vec3 billboard_right(vec3 axis, vec3 to_camera, vec3 otherwise) {
     vec3 right = cross(axis, to_camera);
     if (dot(right, right) < 1e-8 * dot(to_camera, to_camera)) {

@@ -1,12 +1,12 @@
-// The response of Blinn, Phong and Skin to one light. They share it, since a software OpenGL would evaluate the power
-// of each of them for every pixel. Reflector::own: x = shininess, yzw = added to n.l.
+// The response of Blinn, Phong and Skin to one light. They share this code, since a software OpenGL would evaluate the
+// power of each model for every pixel. Reflector::own: x = shininess, yzw = added to n.l.
 // Techniques: fakephong.illum-blinn, fakephong.illum-phong, fakephong.vectors, skin.blinn,
 //     wrinkle.compression.lighting
 
 #include "lib/brdf.glsl"
 #include "lib/material_record.glsl"
 
-// Nothing is added to n.l, and no surroundings are mirrored.
+// Nothing is added to n.l, and the environment is not mirrored.
 void prepare_classic(inout Reflector r, SurfaceSample s) {
     vec4 specular = block_texel(s.material, kClassicBlock, 0);
     r.diffuse = s.albedo;

@@ -4,7 +4,7 @@
 
 const uvec3 kBlockSize = uvec3(kBlockColumns, kBlockRows, kBlockSlices);
 const float kMaxDistance = 1e12;  // [m]; end of the last slice, which is unbounded
-const float kSlack = 1e-3;     // cells are widened by this share, as log2 and exp2 differ in the last bits
+const float kSlack = 1e-3;     // relative enlargement of cells, as log2 and exp2 differ in the last bits
 
 uvec3 cell_counts() {
     return uvec3(view.grid_cells.xyz);
@@ -19,8 +19,8 @@ uvec3 block_position(uint block) {
     return uvec3(block % n.x, block / n.x % n.y, block / (n.x * n.y));
 }
 
-// Number of light records. Not a uniform: zink (Mesa 22.3 on lavapipe) compiles in the value of a uniform that alone
-// bounds a loop of a compute shader, and runs the old code after the value changes.
+// Number of light records. Not a uniform: if a uniform is the only bound of a loop in a compute shader, zink (Mesa 22.3
+// on lavapipe) compiles its value into the code and keeps that code after the value changes.
 uint light_count_of(samplerBuffer cluster_lights) {
     return uint(textureSize(cluster_lights)) / kClusterLightTexels;
 }
@@ -30,8 +30,8 @@ uint word_count(uint lights) {
     return (lights + 31u) / 32u;
 }
 
-// Whether a light's box of cells (ClusterLights::boxes) meets the cells first .. last.
-bool boxes_meet(uvec2 box, uvec3 first, uvec3 last) {
+// Whether a light's box of cells (ClusterLights::boxes) intersects the cells first .. last.
+bool boxes_intersect(uvec2 box, uvec3 first, uvec3 last) {
     uvec3 low = uvec3(box.x & 255u, box.x >> 16 & 255u, box.y & 255u);
     uvec3 high = uvec3(box.x >> 8 & 255u, box.x >> 24, box.y >> 8 & 255u);
     return low.x <= last.x && high.x >= first.x && low.y <= last.y && high.y >= first.y && low.z <= last.z
@@ -74,6 +74,6 @@ bool cone_outside(vec3 apex, vec3 axis, float cosine, vec3 center, float radius)
     float along = dot(v, axis);
     float across = sqrt(max(dot(v, v) - along * along, 0.0));
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    float reach = radius * (1.0 + kSlack);
-    return cosine > -1.0 && (cosine * across - along * sine > reach || (cosine > 0.0 && along < -reach));
+    float enlarged = radius * (1.0 + kSlack);
+    return cosine > -1.0 && (cosine * across - along * sine > enlarged || (cosine > 0.0 && along < -enlarged));
 }

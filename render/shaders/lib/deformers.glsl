@@ -12,7 +12,7 @@ const int kLatticeTexels = 69;
 const int kTugTexels = 2;
 const float kHalfPi = 1.57079632679;
 
-// Pulls of muscles, which add, and the most distant point that they pull to.
+// Sum of the pulls of muscles, and the largest distance to a point that they pull toward.
 struct Pull {
     vec3 sum;
     float farthest;
@@ -33,8 +33,8 @@ float arc_cosine(float x) {
 
 void add_muscle(int record, vec3 p, inout Pull pull) {
     vec4 strength = texelFetch(controls, record);        // kind, contraction * length, angle
-    vec4 attachment = texelFetch(controls, record + 1);  // and distance of the strongest pull
-    vec4 axis = texelFetch(controls, record + 2);        // and reach
+    vec4 attachment = texelFetch(controls, record + 1);  // w: distance of the strongest pull
+    vec4 axis = texelFetch(controls, record + 2);        // w: radius
     vec3 to_attachment = attachment.xyz - p;
     float distance = length(to_attachment);
     if (!(distance > 0.0) || distance >= axis.w) {
@@ -48,8 +48,8 @@ void add_muscle(int record, vec3 p, inout Pull pull) {
     float beyond = max((distance - attachment.w) / (axis.w - attachment.w), 0.0);
     float rise = sin(kHalfPi * min(distance / attachment.w, 1.0));
     float fall = cos(kHalfPi * beyond) * cos(kHalfPi * off_axis);
-    float share = rise * fall * fall;
-    pull.sum += (strength.y * share / distance) * to_attachment;
+    float strength_here = rise * fall * fall;
+    pull.sum += (strength.y * strength_here / distance) * to_attachment;
     pull.farthest = max(pull.farthest, distance);
 }
 
@@ -61,13 +61,13 @@ void add_sphincter(int record, vec3 p, inout Pull pull) {
         dot(texelFetch(controls, record + 2).xyz, to_center),
         dot(texelFetch(controls, record + 3).xyz, to_center),
         dot(depth.xyz, to_center));
-    float share = 1.0 - length(q);
-    if (share <= 0.0) {
+    float strength_here = 1.0 - length(q);
+    if (strength_here <= 0.0) {
         return;
     }
     vec3 deep = depth.w * depth.xyz;
     vec3 inward = to_center - dot(to_center, deep) * deep;
-    pull.sum += contraction * share * inward;
+    pull.sum += contraction * strength_here * inward;
     pull.farthest = max(pull.farthest, length(inward));
 }
 
@@ -102,13 +102,13 @@ vec3 through_lattice(int record, vec3 p) {
 
 vec3 through_tug(int record, vec3 p) {
     vec3 offset = texelFetch(controls, record).yzw;
-    vec4 at = texelFetch(controls, record + 1);  // and 1 / radius^2
+    vec4 at = texelFetch(controls, record + 1);  // w: 1 / radius^2
     vec3 from = p - at.xyz;
     float left = 1.0 - at.w * dot(from, from);
     return left > 0.0 ? p + left * left * left * offset : p;
 }
 
-// Where the list of controls at `first` takes a point.
+// Deforms a point by the list of controls at `first`.
 vec3 deform_point(int first, vec3 p) {
     int count = int(texelFetch(controls, first).x);
     int record = first + 1;
@@ -140,8 +140,8 @@ vec3 deform_point(int first, vec3 p) {
     return p;
 }
 
-// How a short vector at `p` is carried along, by central differences.
+// Deforms a short vector at `p`, by central differences.
 vec3 deform_vector(int first, vec3 p, vec3 unit) {
-    float reach = texelFetch(controls, first).y;
-    return (deform_point(first, p + reach * unit) - deform_point(first, p - reach * unit)) / (2.0 * reach);
+    float offset = texelFetch(controls, first).y;
+    return (deform_point(first, p + offset * unit) - deform_point(first, p - offset * unit)) / (2.0 * offset);
 }

@@ -1,4 +1,4 @@
-// Diffuse light that leaves a surface around the point where it entered (render/light/subsurface_pass.h).
+// Diffuse light that exits a surface around the point where it entered (render/light/subsurface_pass.h).
 // Techniques: skin.diffusion
 
 #include "lib/diffusion.glsl"
@@ -7,19 +7,19 @@
 #include "lib/view.glsl"
 #include "material_subsurface_gpu.h"
 
-layout(binding = kScatteredUnit) uniform sampler2D scattered;  // light before the albedo, alpha 1 where it spreads; with mip levels
+layout(binding = kScatteredUnit) uniform sampler2D scattered;  // without albedo; alpha 1 where light scatters; has mips
 
 layout(binding = kDistancesUnit) uniform sampler2D distances;  // along the view axis, and their squares; with mip levels
 
 const vec2 kGoldenTurn = vec2(-0.73736888, 0.67549029);  // cosine and sine of the golden angle
 const float kFewWithin = 24.0;   // radius of the last ring [px] below which few rings differ by less than 1 % of an edge
-const float kFewestWithin = 12.0;  // the same of the fewest
-const float kMinFacing = 0.15;   // cosine between plane and viewer; planes seen more edge-on are turned
-const float kBlob = 0.9;         // side of a sample by the square root of its area; by trial, for least error
-const vec2 kSlack = vec2(1.0, 0.6);  // pixels, and parts of a sample, over which the plane's own slope counts as flat
-const float kRounding = 4e-4;        // of distances, by their squares in single precision
+const float kFewestWithin = 12.0;  // the same for the fewest
+const float kMinFacing = 0.15;   // cosine between plane and viewer; planes that are more edge-on are tilted
+const float kBlob = 0.9;         // side of a sample relative to the square root of its area; tuned for least error
+const vec2 kSlack = vec2(1.0, 0.6);  // pixels, and fractions of a sample, within which the plane's own slope is ignored
+const float kRounding = 4e-4;        // relative rounding error of distances, from their squares in single precision
 
-// What leaves the surface at a pixel (gl_FragCoord.xy), whose texel of `scattered` is `here`.
+// Light that exits at a pixel (gl_FragCoord.xy), whose texel of `scattered` is `here`.
 vec3 diffused_light(vec2 frag_coord, vec4 here) {
     ivec2 pixel = ivec2(frag_coord);
     SurfaceSample s = stored_surface(pixel);
@@ -27,7 +27,7 @@ vec3 diffused_light(vec2 frag_coord, vec4 here) {
     vec3 point = view.camera_ws.xyz + view_ray(frag_coord) * distance_here;
     vec3 to_camera = to_viewer(point);
 
-    // The plane, and how it is seen: clip coordinates x, y, w.
+    // The plane, and its projection: clip coordinates x, y, w.
     float facing = dot(s.normal_ws, to_camera);
     vec3 normal = normalize(s.normal_ws + max(kMinFacing - facing, 0.0) * to_camera);
     facing = max(dot(normal, to_camera), kMinFacing);
@@ -57,12 +57,12 @@ vec3 diffused_light(vec2 frag_coord, vec4 here) {
     for (int i = 0; i < count; ++i) {
         vec4 next = texelFetch(materials, begin + min(i + 1, count - 1));
         float outer = i + 1 < count ? 0.5 * (ring.x + next.x) : 2.0 * ring.x - inner;
-        vec2 place = turn * ring.x;
-        vec3 clip = clip_point + place.x * clip_right + place.y * clip_up;
+        vec2 offset = turn * ring.x;
+        vec3 clip = clip_point + offset.x * clip_right + offset.y * clip_up;
         vec2 uv = clip.xy / max(clip.z, 1e-6) * 0.5 + 0.5;
         bool inside = all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)));
 
-        // A square of this side [px]; narrower than a pixel, by filtering over its part of one.
+        // A square of this side [px]; if it is smaller than a pixel, bilinear filtering is narrowed accordingly.
         vec2 at = uv * view.size.xy;
         float side = sqrt((outer * outer - inner * inner) * area_to_pixels);
         vec2 corner = floor(at - 0.5);
@@ -72,7 +72,7 @@ vec3 diffused_light(vec2 frag_coord, vec4 here) {
         level = few ? floor(level + 0.5) : level;  // between two levels a software OpenGL samples both
         vec4 light = textureLod(scattered, where, level);
 
-        // What is farther from the plane counts as farther away: by the root mean square over the sample.
+        // Samples off the plane count as farther away, by the root mean square distance from it.
         vec2 moments = textureLod(distances, where, level).xy;
         float apart = sqrt(max(moments.y - clip.z * (2.0 * moments.x - clip.z), 0.0));
         apart = max(apart - slope * dot(kSlack, vec2(1.0, max(side, 1.0))) - kRounding * distance_here, 0.0);

@@ -1,5 +1,5 @@
-// What geometry shaders share that prepare something once per triangle for its pixels. They define outputs and main(),
-// which calls put_corner() before each EmitVertex().
+// Shared by geometry shaders that prepare data once per triangle for its pixels. They define outputs and main(), which
+// calls put_corner() before each EmitVertex().
 // Techniques: fakephong.barycentric
 #include "lib/material_record.glsl"
 

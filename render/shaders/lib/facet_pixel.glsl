@@ -7,8 +7,8 @@ layout(location = 0) INTERPOLATED in vec2 st;
 
 layout(location = 0) out vec4 radiance;
 
-// The basis of quadratics through the values at corners and midpoints, around the triangle: a corner's is a (2 a - 1)
-// in barycentric coordinates, a midpoint's 4 a b.
+// The basis of quadratics through the values at corners and midpoints, around the triangle: a (2 a - 1) for corners, in
+// barycentric coordinates, 4 a b for midpoints.
 float[6] quadratic_basis(vec2 at) {
     float a = 1.0 - at.x - at.y;
     float b = at.x;
@@ -18,7 +18,7 @@ float[6] quadratic_basis(vec2 at) {
 }
 
 // Columns: diffuse light, still to be multiplied by the base color map, and specular light. A polynomial may
-// undershoot: no light is negative.
+// undershoot, so negative light is clamped.
 vec4 facet_radiance(mat2x3 light) {
     vec3 reflected = max(light[0] * base_color_texel().rgb + light[1], 0.0);
     return vec4(storable(reflected + surface_emission()), 1.0);

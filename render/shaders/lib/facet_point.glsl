@@ -9,7 +9,7 @@
 const vec2 kSixPoints[6] = vec2[](
     vec2(0.0, 0.0), vec2(0.5, 0.0), vec2(1.0, 0.0), vec2(0.5, 0.5), vec2(0.0, 1.0), vec2(0.0, 0.5));
 
-// Unit; stands in for normals that cancel.
+// Unit; used instead of vertex normals that cancel.
 vec3 face_normal_ws() {
     vec3 n = cross(corner_ws[1] - corner_ws[0], corner_ws[2] - corner_ws[0]);
     return n * ((corner_instance[0].y & 1u) != 0u ? -1.0 : 1.0) * inversesqrt(max(dot(n, n), 1e-30));

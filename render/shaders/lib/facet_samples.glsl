@@ -5,7 +5,7 @@
 
 layout(location = 9) flat out vec3 sampled[2 * FACET_SAMPLES];  // diffuse, specular of each point
 
-// Where the points are, in (s, t): corners and midpoints; or corners, thirds of edges, centroid.
+// Positions of the points in (s, t): corners and midpoints; or corners, thirds of edges, centroid.
 #if FACET_SAMPLES == 6
 const vec2 kPoints[6] = kSixPoints;
 #else

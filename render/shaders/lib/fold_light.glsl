@@ -6,9 +6,9 @@
 // "Practical Real-Time Strategies for Accurate Indirect Occlusion", 2016.
 // Techniques: wrinkle.fold-light
 
-// Mean cosines of a light at a wall and at the opposite one. Light that passes the mouth of the groove falls on both
-// together: a wall that receives less than it faces the light is in the shadow of the other. `n_l`: of the wall, `m_l`:
-// of the mouth, the skin without folds.
+// Mean cosines of a light at a wall and at the opposite one. All light through the mouth of the groove falls on the two
+// walls: a wall that receives less than its cosine is partly shadowed by the other. `n_l`: of the wall, `m_l`: of the
+// mouth, the skin without folds.
 vec2 wall_cosines(float open, float n_l, float m_l) {
     float both = max(2.0 * open * m_l, 0.0);
     float own = clamp(n_l, 0.0, both);
@@ -21,7 +21,7 @@ vec3 wall_light(float open, vec3 albedo, vec3 own, float other) {
     return (own + bounced * other) / (1.0 - bounced * bounced);
 }
 
-// The same for ambient light that is 1 on skin without folds.
+// The same for ambient light of 1 on skin without folds.
 vec3 wall_light_around(float open, vec3 albedo) {
     return open / (1.0 - albedo * (1.0 - open));
 }

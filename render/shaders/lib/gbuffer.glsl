@@ -7,10 +7,10 @@
 //     z   occlusion 8, roughness 10, metalness 7, shading model 5,  high bits of albedo b 2
 //     w   emission, shared exponent       9 + 9 + 9 + 5
 //
-// For Unlit, albedo is the mirrored share and its color is in emission. Wrinkled skin that needs its smooth normal when
-// lit (SMOOTH_NORMALS) emits nothing: w is
+// For Unlit, albedo is the mirrored fraction and its color is in emission. Wrinkled skin that needs its smooth normal
+// when lit (SMOOTH_NORMALS) emits nothing: w is
 //
-//     w   smooth normal, octahedral 11 + 11,  share of the wrinkles 9, 0: folds that light bounces in,  fades 1
+//     w   smooth normal, octahedral 11 + 11,  weight of the wrinkles 9, 0: folds that light bounces in,  fades 1
 //
 // and the shading model has its highest bit set. Hair emits nothing: w is
 //
@@ -48,9 +48,9 @@ struct SurfaceSample {
     uint model;       // kModel*
 #ifdef SMOOTH_NORMALS
     vec3 smooth_normal_ws;  // unit, of skin without its wrinkles
-    float raised;           // how much of the light is that of normal_ws, the rest that of smooth_normal_ws
-    bool bounces;           // light does, within the folds, whose normal is normal_ws; raised is 1
-    bool fades;             // light that grazes smooth_normal_ws
+    float raised;           // weight of lighting by normal_ws; the rest is by smooth_normal_ws
+    bool bounces;           // light bounces within the folds, whose normal is normal_ws; raised is 1
+    bool fades;             // light at grazing angles to smooth_normal_ws fades
     bool smooth_is_stored;  // otherwise raised is 1
 #endif
 #ifdef STRANDS
@@ -60,7 +60,7 @@ struct SurfaceSample {
 
 const uint kSmoothNormalBit = 16u;  // of the stored shading model
 
-// Sets what only wrinkled skin and hair have otherwise.
+// Clears the members that only wrinkled skin and hair use.
 void set_plain(inout SurfaceSample s) {
 #ifdef SMOOTH_NORMALS
     s.smooth_normal_ws = s.normal_ws;
@@ -74,7 +74,7 @@ void set_plain(inout SurfaceSample s) {
 #endif
 }
 
-// Splits the color of an unlit surface into emission and mirrored share.
+// Splits the color of an unlit surface into emission and mirrored fraction.
 void split_unlit(inout SurfaceSample s) {
     if (s.model == kModelUnlit) {
         s.emission += (1.0 - s.metalness) * s.albedo;

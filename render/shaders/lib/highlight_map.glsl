@@ -1,5 +1,5 @@
-// Where light is read in textures over the unit disc, whose address is 0.5 + 0.5 (x, y). Definition:
-//   WORST_AXIS  axes along the projected normal itself, with which all of v is 0, in place of HighlightBlock::blinn_axis
+// Coordinates in textures over the unit disc, whose texture coordinates are 0.5 + 0.5 (x, y). Definition:
+//   WORST_AXIS  axes along the projected normal itself, for which v is always 0, instead of HighlightBlock::blinn_axis
 // Techniques: fakephong.blinn-axis, fakephong.hw-blinn
 
 #include "lib/view.glsl"
@@ -12,8 +12,8 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
     return squared > 1e-12 ? v * inversesqrt(squared) : otherwise;
 }
 
-// Unit, in the plane orthogonal to unit `normal`; the camera's right in it where the global vector is parallel to the
-// normal (fakephong.blinn-axis).
+// Unit axis in the plane orthogonal to unit `normal`; the projection of the camera's right vector if the global vector
+// is parallel to the normal (fakephong.blinn-axis).
 vec3 plane_axis(vec3 normal, vec3 projected) {
 #ifdef WORST_AXIS
     vec3 global = projected;
@@ -25,8 +25,8 @@ vec3 plane_axis(vec3 normal, vec3 projected) {
     return unit_or(global - dot(global, normal) * normal, other);
 }
 
-// Of unit `v` in the plane orthogonal to unit `normal`, so that 1 - x^2 - y^2 = (v.normal)^2; on the rim, whose texels
-// are 0, where v points away.
+// Coordinates of unit `v` in the plane orthogonal to unit `normal`, so that 1 - x^2 - y^2 = (v.normal)^2; on the rim,
+// whose texels are 0, if v points away.
 vec2 plane_coordinates(vec3 v, vec3 normal) {
     float cosine = dot(v, normal);
     vec3 projected = v - cosine * normal;
@@ -35,13 +35,13 @@ vec2 plane_coordinates(vec3 v, vec3 normal) {
     return vec2(dot(axis, projected), dot(cross(normal, axis), projected));
 }
 
-// Blinn map: the normal seen along H (fakephong.blinn-map); on the rim where L = -V.
+// Blinn map: the normal projected along H (fakephong.blinn-map); on the rim if L = -V.
 vec2 blinn_coordinates(vec3 normal, vec3 to_light, vec3 to_camera) {
     vec3 h = unit_or(to_light + to_camera, vec3(0.0));
     return h == vec3(0.0) ? vec2(1.0, 0.0) : plane_coordinates(normal, h);
 }
 
-// The same as the vertex program of appendix B has it, as far as its defects are defined (fakephong.hw-blinn):
+// The same as in the vertex program of appendix B, with those of its defects that are defined (fakephong.hw-blinn):
 //   HW_AXIS   the axis is not normalized
 //   HW_UP     it is the world's up
 //   HW_BACKS  N.H < 0 is not handled
@@ -66,12 +66,12 @@ vec2 hardware_blinn_coordinates(vec3 normal, vec3 to_light, vec3 to_camera) {
     return vec2(dot(axis, projected), dot(cross(h, axis), projected));
 }
 
-// Sphere map: the view direction mirrored at the normal, in the camera's axes (fakephong.envmap). No light takes part.
-// In the center where the mirrored direction points straight away from the camera.
+// Sphere map: the reflected view direction in the camera's axes (fakephong.envmap), independent of lights. At the
+// center if that direction points straight away from the camera.
 vec2 sphere_map_coordinates(vec3 normal, vec3 to_camera) {
     vec3 w = 2.0 * dot(normal, to_camera) * normal - to_camera;
-    vec3 seen = vec3(
+    vec3 reflected = vec3(
         dot(w, normalize(view.ray_right.xyz)), dot(w, normalize(view.ray_up.xyz)), -dot(w, view.ray_forward.xyz));
-    float m2 = seen.x * seen.x + seen.y * seen.y + (seen.z + 1.0) * (seen.z + 1.0);
-    return m2 > 1e-10 ? seen.xy * inversesqrt(m2) : vec2(0.0);
+    float m2 = reflected.x * reflected.x + reflected.y * reflected.y + (reflected.z + 1.0) * (reflected.z + 1.0);
+    return m2 > 1e-10 ? reflected.xy * inversesqrt(m2) : vec2(0.0);
 }

@@ -1,5 +1,5 @@
 // How fragment shaders interpolate what varies on a triangle (fakephong.texmap). Definition:
-//   SCREEN_LINEAR  linear on the screen, as forward differences have it; otherwise linear on the triangle
+//   SCREEN_LINEAR  linear in screen space, like forward differences; otherwise perspective correct
 // Techniques: fakephong.texmap
 
 #ifdef SCREEN_LINEAR

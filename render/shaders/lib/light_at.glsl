@@ -1,5 +1,5 @@
 // Light of a single point of a mesh, for the shading rates that interpolate colors. Color and emission maps apply per
-// pixel, that of roughness and metalness only by its mean, the others not at all. Include after lib/lighting.glsl and
+// pixel, the roughness and metalness map only by its mean, others not at all. Include after lib/lighting.glsl and
 // lib/material_maps.glsl; definitions of those, and DOUBLE_SIDED: normals are turned towards the viewer.
 
 const float kLastLevel = 16.0;  // or the last one
@@ -41,7 +41,7 @@ SurfaceSample point_surface(MeshPoint p) {
     return s;
 }
 
-// Where a point of a mesh is seen [px].
+// Position of a point of a mesh on the screen [px].
 vec2 point_pixel(MeshPoint p) {
     vec4 clip = view.clip_from_world * vec4(p.position_ws, 1.0);
     return (clip.xy / clip.w * 0.5 + 0.5) * view.size.xy;

@@ -127,12 +127,12 @@ vec3 lamp_through_water(WaterMedium medium, vec3 offset) {
 }
 
 Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium medium) {
-    vec4 place = texelFetch(lights, index * int(kLightTexels));
+    vec4 position = texelFetch(lights, index * int(kLightTexels));
     vec4 color = texelFetch(lights, index * int(kLightTexels) + 1);
     vec4 polynomial = texelFetch(lights, index * int(kLightTexels) + 2);
-    vec3 offset = place.xyz - position_ws;
+    vec3 offset = position.xyz - position_ws;
     float d2 = dot(offset, offset);
-    float fade = distance_attenuation(d2, place.w, polynomial.xyz, color.w);
+    float fade = distance_attenuation(d2, position.w, polynomial.xyz, color.w);
     vec3 to_light = d2 > 1e-12 ? offset * inversesqrt(d2) : normal;
 #ifdef SPOT_LIGHTS
     vec4 axis = texelFetch(lights, index * int(kLightTexels) + 3);
@@ -143,11 +143,11 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium me
 }
 
 #if (defined(SHADE_SUBSURFACE) || defined(SHADE_HAIR)) && defined(SHADOWS) && defined(SHADOW_MAPS)
-// Adds the light of a lamp with a shadow, and what has passed through a body:
-//   skin  the diffuse light that has entered behind it: by the profile, over the distance from where the light's shadow
-//         map is hit, with the normal there taken to be the opposite one (Jimenez et al., "Real-Time Realistic Skin
+// Adds the light of a lamp with a shadow, and light transmitted through a body:
+//   skin  the diffuse light that has entered at the back: by the profile, over the distance from the surface in the
+//         light's shadow map, whose normal is assumed to be the opposite one (Jimenez et al., "Real-Time Realistic Skin
 //         Translucency", 2010)
-//   hair  what strands of the same body have in their shadow
+//   hair  light that passes strands of the same body
 void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
     vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
     float thickness = shadow_thickness(shadow, position_ws, light.to_light);
@@ -156,8 +156,8 @@ void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, ve
 #endif
     add_light(sum, r, light);
 #ifdef SHADE_SUBSURFACE
-    vec3 share = transmitted_share(thickness, r.diffusion);
-    sum.diffuse += light.unshadowed * share * max(-dot(body_normal(r), light.to_light), 0.0);
+    vec3 transmitted = transmitted_fraction(thickness, r.diffusion);
+    sum.diffuse += light.unshadowed * transmitted * max(-dot(body_normal(r), light.to_light), 0.0);
 #endif
 }
 #else
@@ -274,14 +274,14 @@ SurfaceSample smooth_skin(SurfaceSample s) {
     return s;
 }
 
-// Light of wrinkled skin as far as it is raised, the rest of smooth skin (wrinkle.compression.bump-blend).
+// Blends the light of wrinkled and smooth skin, by SurfaceSample::raised (wrinkle.compression.bump-blend).
 Reflected blend_skin(SurfaceSample s, Reflected wrinkled, Reflected smooth_light) {
     return Reflected(
         mix(smooth_light.diffuse, wrinkled.diffuse, s.raised), mix(smooth_light.specular, wrinkled.specular, s.raised));
 }
 #endif
 
-// Of lights and surroundings, by the normal of `s` alone.
+// Light of lights and the environment, by the normal of `s` only.
 Reflected reflect_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -301,7 +301,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list)
     return light;
 }
 
-// The surroundings' part of reflect_all().
+// The environment's part of reflect_all().
 Reflected reflect_around(SurfaceSample s, vec3 position_ws) {
     Reflected light = reflect_surroundings(make_reflector(s, to_viewer(position_ws)), s, position_ws);
 #ifdef BLENDED_SKIN

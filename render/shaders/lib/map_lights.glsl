@@ -1,9 +1,9 @@
 // The coordinates of each light of a vertex. Include after lib/map_vertex.glsl and a definition of
 //     vec2 map_coordinates(LitPoint p, vec3 to_light)
 // Definitions:
-//   MAP_DIFFUSE     the texture holds diffuse light in place of highlights, which there are none of
-//   BLINN_DIFFUSE   diffuse light, too, is read in a texture: the normal on the plane orthogonal to L
-//   HW_FIRST_LIGHT  no lights but the first
+//   MAP_DIFFUSE     the texture holds diffuse light; there are no highlights
+//   BLINN_DIFFUSE   diffuse light is also read from a texture: the normal projected on the plane orthogonal to L
+//   HW_FIRST_LIGHT  only the first light
 // Techniques: fakephong.blinn-map
 void main() {
     LitPoint p = put_vertex();

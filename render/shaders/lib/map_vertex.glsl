@@ -1,4 +1,4 @@
-// What vertex shaders share that light vertices and read a part of the light from a texture per pixel. The file that
+// Shared by vertex shaders that light vertices, while pixels read a part of the light from a texture. The file that
 // includes it defines main(), or map_coordinates() and includes lib/map_lights.glsl.
 #define UNMASKED  // shadow masks are in screen space
 #include "lib/mesh_vertex.glsl"
@@ -21,14 +21,14 @@ layout(location = 6) flat out float highlight_layer;
 layout(location = 7) flat out vec4 map_layers;
 #endif
 layout(location = 8) out vec3 map_at[SINGLE_LIGHTS];       // in the unit disc; z: N.L
-layout(location = 16) out vec3 map_factor[SINGLE_LIGHTS];  // of what is read there
+layout(location = 16) out vec3 map_factor[SINGLE_LIGHTS];  // of the value read there
 #ifdef BLINN_DIFFUSE
 layout(location = 12) out vec2 diffuse_at[SINGLE_LIGHTS];
 layout(location = 20) out vec3 diffuse_factor[SINGLE_LIGHTS];
 #endif
 invariant gl_Position;  // the depth must equal that of depth_first.frag
 
-// All but the light; the point to be lit.
+// Writes all outputs except light; returns the point to be lit.
 LitPoint put_vertex() {
     vec3 position_ws = vertex_ws();
     gl_Position = view.clip_from_world * vec4(position_ws, 1.0);

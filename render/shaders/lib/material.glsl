@@ -10,8 +10,8 @@
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
 //   LIT_AT_VERTICES  no normals, only colors; hooks do nothing
 //   STRANDS        of hair, which lies along v
-//   FINE_NORMALS   normals vary within a pixel; defined here or by the file of a hook
-// What single effects add is called where hook_*() stands (render/material/surface_hooks.h).
+//   FINE_NORMALS   normals vary within a pixel; defined here or in the file of a hook
+// Additions of single effects are called by hook_*() (render/material/surface_hooks.h).
 // Techniques: bump.normal-encoding, bump.normal-map, bump.tangent-space, env.control-map,
 //     light.phong-pixel, shade.derivatives, skin.detail
 // Source of skin.detail: Barré-Brisebois and Hill 2012
@@ -35,11 +35,11 @@ vec4 material_texel(int i) {
     return material_texel(material_and_flags.x, i);
 }
 
-vec4 map_uv = uv;  // where maps are read: hooks may shift it
+vec4 map_uv = uv;  // texture coordinates of maps: hooks may shift them
 
 #ifdef MAP_LAYERS
-// Where a map is read: texture coordinates and layer.
-vec3 map_place(uint slot) {
+// Texture coordinates and layer of a map.
+vec3 map_texcoord(uint slot) {
     float layer = map_layer(map_layers, slot);
 #if defined(UV_MAPS) || defined(UV_MAP)
 #ifdef UV_MAP
@@ -64,7 +64,7 @@ vec3 srgb_decode(vec3 c) {
 vec4 base_color_texel() {
     vec4 texel = vec4(1.0);
 #ifdef BASE_COLOR_MAP
-    texel = texture(material_maps[BASE_COLOR_MAP], map_place(kBaseColorSlot));
+    texel = texture(material_maps[BASE_COLOR_MAP], map_texcoord(kBaseColorSlot));
 #ifdef SRGB_BASE_COLOR
     texel.rgb = srgb_decode(texel.rgb);
 #endif
@@ -91,13 +91,13 @@ vec4 surface_color() {
 vec3 surface_emission() {
     vec3 emission = material_texel(1).rgb;
 #ifdef EMISSION_MAP
-    emission *= texture(material_maps[EMISSION_MAP], map_place(kEmissionSlot)).rgb;
+    emission *= texture(material_maps[EMISSION_MAP], map_texcoord(kEmissionSlot)).rgb;
 #endif
     return emission;
 }
 
 #ifndef LIT_AT_VERTICES
-// The normal, and as it is without what hooks add.
+// The normal, with and without the hooks' changes.
 vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n = normal_ws;
     smooth_normal = n;
@@ -105,11 +105,11 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n_ts = vec3(0.0, 0.0, 1.0);
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
 #ifdef NORMAL_MAP
-    n_ts = texture(material_maps[NORMAL_MAP], map_place(kNormalSlot)).xyz * 2.0 - 1.0;
+    n_ts = texture(material_maps[NORMAL_MAP], map_texcoord(kNormalSlot)).xyz * 2.0 - 1.0;
     n_ts.xy *= strength;
 #endif
 #ifdef DETAIL_MAP
-    vec3 detail = texture(material_maps[DETAIL_MAP], map_place(kDetailSlot)).xyz * 2.0 - 1.0;
+    vec3 detail = texture(material_maps[DETAIL_MAP], map_texcoord(kDetailSlot)).xyz * 2.0 - 1.0;
     n_ts.xy += n_ts.z * detail.xy / max(detail.z, 0.1);  // slopes of both heights add up
 #endif
     smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
@@ -129,7 +129,7 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
 }
 
 #ifdef STRANDS
-// From root to tip, along v: against the bitangent, in the surface that `normal` is of.
+// From root to tip, along v: opposite to the bitangent, in the plane of `normal`.
 vec3 strand_direction(vec3 normal) {
     vec3 along = -tangent_ws.w * cross(normal_ws, tangent_ws.xyz);
     along -= normal * dot(normal, along);
@@ -138,9 +138,9 @@ vec3 strand_direction(vec3 normal) {
 }
 #endif
 
-// Widens the specular lobe by the variation of a normal map within a pixel, against sparkling. Not for the curvature
-// of meshes, since roughness blurs their reflections too.
-// Tokuyoshi and Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
+// Widens the specular lobe by the variation of a normal map within a pixel, which prevents sparkling. Not for the
+// curvature of meshes, since roughness blurs their reflections too. Tokuyoshi and Kaplanyan, "Improved Geometric
+// Specular Antialiasing", 2019.
 float widen_roughness(float roughness, vec3 normal) {
 #ifdef FINE_NORMALS
     vec3 dx = dFdx(normal);
@@ -165,7 +165,7 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.material = material_and_flags.x;
     s.model = material_and_flags.y >> 8;
 #ifdef METAL_ROUGH_MAP
-    vec3 texel = texture(material_maps[METAL_ROUGH_MAP], map_place(kMetalRoughSlot)).rgb;
+    vec3 texel = texture(material_maps[METAL_ROUGH_MAP], map_texcoord(kMetalRoughSlot)).rgb;
     s.roughness *= texel.g;
     s.metalness *= texel.b;
 #ifdef OCCLUSION_SHARED
@@ -173,7 +173,7 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
 #endif
 #ifdef OCCLUSION_MAP
-    s.occlusion = 1.0 + factors.z * (texture(material_maps[OCCLUSION_MAP], map_place(kOcclusionSlot)).r - 1.0);
+    s.occlusion = 1.0 + factors.z * (texture(material_maps[OCCLUSION_MAP], map_texcoord(kOcclusionSlot)).r - 1.0);
 #endif
     // Highlights of strands follow their direction, not the normal.
     s.roughness = s.model == kModelHair ? s.roughness : widen_roughness(s.roughness, s.normal_ws);

@@ -12,7 +12,7 @@ vec4 material_texel(uint material, int i) {
     return texelFetch(materials, int(material * kMaterialTexels) + i);
 }
 
-// First texel of a block that the material has; of one that it lacks, some texel of no meaning.
+// First texel of a block of the material; meaningless if the material lacks the block.
 int block_begin(uint material, uint kind) {
     vec4 blocks = material_texel(material, 3);
     uint offsets = uint(blocks[1u + kind / kBlocksPerFloat]);
@@ -36,7 +36,7 @@ float map_layer(vec4 layers, uint slot) {
     return float(bitfieldExtract(bits, int(slot % kLayersPerFloat * kLayerBits), int(kLayerBits)));
 }
 
-// Stages of a program agree on what flows between them.
+// All stages of a program must declare the same varyings.
 #if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP)
 #define MAP_LAYERS
 #endif

@@ -13,12 +13,12 @@ layout(location = 4) in vec4 color;
 layout(location = 5) in vec4 world_row0;  // world_from_mesh
 layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
-layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
+layout(location = 8) in uvec4 instance;   // material, flags, index; w: bits of the inflation distance
 layout(location = 13) in vec2 second_uv;
 
 #include "generated/position_hooks.glsl"
 
-// Moved by hooks, inflated or not.
+// The position after hooks and inflation.
 vec3 moved_vertex(vec3 position) {
     hook_position(position);
 #ifdef INFLATE

@@ -124,7 +124,7 @@ float noise(vec3 p, uint seed, int octaves) {
     return 0.5 + 0.5 * sum / total;
 }
 
-// Interleaved gradient noise in [0, 1) (Jimenez 2014): neighboring pixels differ much.
+// Interleaved gradient noise in [0, 1) (Jimenez 2014): neighboring pixels differ strongly.
 float pixel_noise(vec2 pixel) {
     return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
 }

@@ -3,7 +3,7 @@
 
 uniform int light_index;
 
-// By the normal of `s` alone.
+// By the normal of `s` only.
 Reflected reflect_one_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
 #ifdef DIRECTIONAL_LIGHT

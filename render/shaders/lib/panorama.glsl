@@ -12,7 +12,7 @@ const int kAngular = 2;
 
 vec2 panorama_uv(int mapping, vec3 d, float half_angle) {
     float across = length(d.xz);
-    // At a pole any longitude will do; atan(0, 0) is undefined.
+    // At a pole any longitude is valid; atan(0, 0) is undefined.
     float longitude = (across > 0.0 ? atan(d.x, -d.z) : 0.0) / kTwoPi + 0.5;
     if (mapping == kEquirectangular) {
         return vec2(longitude, 2.0 * atan(d.y, across) / kTwoPi + 0.5);

@@ -1,4 +1,4 @@
-// Periodic functions (engine.periodic), as ecs/components/periodic.cpp for times that floats tell apart.
+// Periodic functions (engine.periodic), like ecs/components/periodic.cpp, for times within float precision.
 // Techniques: engine.periodic
 #include "lib/noise.glsl"
 

@@ -1,4 +1,4 @@
-// Whether surfaces of the scene hide what is drawn over its finished image.
+// Whether surfaces of the scene occlude marks that are drawn over the finished image.
 
 #include "furrow_gpu.h"
 

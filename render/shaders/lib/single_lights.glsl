@@ -1,7 +1,7 @@
-// The lights of a point of a mesh one by one, for methods that keep terms of each: directional lights first, then those
-// of the object's list. Include after lib/light_at.glsl. Definition:
-//   SINGLE_LIGHTS  of how many lights terms are kept at most. All others, and those on surfaces of other models than
-//                  Blinn and Phong, are lit at vertices
+// The lights of a mesh point one by one, for methods with separate terms per light: directional lights first, then
+// those of the object's list. Include after lib/light_at.glsl. Definition:
+//   SINGLE_LIGHTS  maximum number of lights with separate terms. All others, and all lights on surfaces with models
+//                  other than Blinn and Phong, are evaluated per vertex
 
 const int kEveryLight = 0x7fffffff;
 
@@ -11,8 +11,8 @@ struct LitPoint {
     vec3 position_ws;
     vec2 pixel;
     uvec2 list;   // see add_listed()
-    int lights;   // all that reach the point's object
-    int single;   // of which terms are kept
+    int lights;   // number of lights that reach the point's object
+    int single;   // number of those with separate terms
 };
 
 LitPoint lit_point(MeshPoint at) {
@@ -31,7 +31,7 @@ LitPoint lit_point(MeshPoint at) {
     return p;
 }
 
-// What arrives of light number `k` < p.lights.
+// Incoming light of light number `k` < p.lights.
 Incoming single_light(LitPoint p, int k) {
     Incoming light = Incoming(p.reflector.normal, vec3(0.0), vec3(0.0));
     int local = k;
@@ -53,7 +53,7 @@ Incoming single_light(LitPoint p, int k) {
     return light;
 }
 
-// Light of the surroundings and of the lights below `end`: diffuse from number `diffuse_from` on, specular from number
+// Light of the environment and of the lights below `end`: diffuse from number `diffuse_from` on, specular from number
 // `specular_from` on. Diffuse: still to be multiplied by the base color map; with the emission of unlit surfaces.
 Reflected light_from(LitPoint p, int diffuse_from, int specular_from, int end) {
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -69,7 +69,7 @@ Reflected light_from(LitPoint p, int diffuse_from, int specular_from, int end) {
     return Reflected(light.diffuse + p.surface.emission, light.specular);
 }
 
-// Exponent of Blinn's highlight that is most like that of the model: Phong's lobe is four times as wide in the exponent
+// Exponent of Blinn's highlight that best matches the model's: Phong's lobe is four times as wide in the exponent
 // (Fisher and Woo, "R.E versus N.H Specular Highlights", 1994).
 float blinn_exponent(uint model, float shininess) {
     return model == kModelPhong ? 4.0 * shininess : shininess;

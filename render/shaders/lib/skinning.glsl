@@ -32,7 +32,7 @@ vec3 unit_or(vec3 v, vec3 fallback) {
 }
 
 // Unit. Transforms by the inverse transpose of `m` up to scale: the cofactor matrix, whose rows are the cross products
-// of the rows, times the sign of the determinant. Where `m` collapses to a line, as when joints twist by half a turn,
+// of the rows, times the sign of the determinant. If `m` collapses to a line, as when joints twist by half a turn,
 // `strongest` is used instead: the matrix of the joint with the largest weight.
 vec3 rows_normal(Rows m, Rows strongest, vec3 n) {
     vec3 yz = cross(m.y.xyz, m.z.xyz);

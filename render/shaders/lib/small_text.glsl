@@ -12,7 +12,7 @@ const uvec2 kGlyphRows[kGlyphs] = uvec2[](
     uvec2(0x8c400u, 0x743d1u), uvec2(0x47c00u, 0x07c44u), uvec2(0x00000u, 0x0001fu));
 const vec2 kGlyphCell = vec2(6.0, 9.0);  // with the gaps [dots]
 
-// Whether a glyph has a dot at `at`, x to the right and y down; others than kGlyphRows has are blank.
+// Whether a glyph has a dot at `at`, x to the right and y down; glyphs that kGlyphRows lacks are blank.
 bool has_dot(int glyph, ivec2 at) {
     if (glyph < 0 || glyph >= kGlyphs || any(lessThan(at, ivec2(0))) || at.x >= 5 || at.y >= 8) {
         return false;

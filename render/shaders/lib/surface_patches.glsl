@@ -4,7 +4,7 @@
 
 const uint kNoPatch = 0xffffffffu;
 const int kPatchTexels = 16;
-const float kMinPatchNormal = 1e-20;  // squared length of a sum of normals that has none
+const float kMinPatchNormal = 1e-20;  // squared length below which a sum of normals counts as zero
 
 struct PatchPoint {
     vec3 position;
@@ -16,30 +16,30 @@ struct PatchPoint {
 };
 
 // One step of de Casteljau's algorithm.
-vec3 mix_three(int patch_texel, ivec3 points, vec3 share) {
-    return share.x * texelFetch(controls, patch_texel + points.x).xyz
-           + share.y * texelFetch(controls, patch_texel + points.y).xyz
-           + share.z * texelFetch(controls, patch_texel + points.z).xyz;
+vec3 mix_three(int patch_texel, ivec3 points, vec3 barycentric) {
+    return barycentric.x * texelFetch(controls, patch_texel + points.x).xyz
+           + barycentric.y * texelFetch(controls, patch_texel + points.y).xyz
+           + barycentric.z * texelFetch(controls, patch_texel + points.z).xyz;
 }
 
 PatchPoint evaluate_patch(int texel, float u, float v) {
-    vec3 share = vec3(u, v, 1.0 - u - v);
-    vec3 q200 = mix_three(texel, ivec3(0, 3, 8), share);
-    vec3 q020 = mix_three(texel, ivec3(4, 1, 5), share);
-    vec3 q002 = mix_three(texel, ivec3(7, 6, 2), share);
-    vec3 q110 = mix_three(texel, ivec3(3, 4, 9), share);
-    vec3 q011 = mix_three(texel, ivec3(9, 5, 6), share);
-    vec3 q101 = mix_three(texel, ivec3(8, 9, 7), share);
-    vec3 r100 = mat3(q200, q110, q101) * share;
-    vec3 r010 = mat3(q110, q020, q011) * share;
-    vec3 r001 = mat3(q101, q011, q002) * share;
-    vec3 m100 = mix_three(texel, ivec3(10, 13, 15), share);
-    vec3 m010 = mix_three(texel, ivec3(13, 11, 14), share);
-    vec3 m001 = mix_three(texel, ivec3(15, 14, 12), share);
-    vec3 sum = mat3(m100, m010, m001) * share;
+    vec3 barycentric = vec3(u, v, 1.0 - u - v);
+    vec3 q200 = mix_three(texel, ivec3(0, 3, 8), barycentric);
+    vec3 q020 = mix_three(texel, ivec3(4, 1, 5), barycentric);
+    vec3 q002 = mix_three(texel, ivec3(7, 6, 2), barycentric);
+    vec3 q110 = mix_three(texel, ivec3(3, 4, 9), barycentric);
+    vec3 q011 = mix_three(texel, ivec3(9, 5, 6), barycentric);
+    vec3 q101 = mix_three(texel, ivec3(8, 9, 7), barycentric);
+    vec3 r100 = mat3(q200, q110, q101) * barycentric;
+    vec3 r010 = mat3(q110, q020, q011) * barycentric;
+    vec3 r001 = mat3(q101, q011, q002) * barycentric;
+    vec3 m100 = mix_three(texel, ivec3(10, 13, 15), barycentric);
+    vec3 m010 = mix_three(texel, ivec3(13, 11, 14), barycentric);
+    vec3 m001 = mix_three(texel, ivec3(15, 14, 12), barycentric);
+    vec3 sum = mat3(m100, m010, m001) * barycentric;
 
     PatchPoint at;
-    at.position = mat3(r100, r010, r001) * share;
+    at.position = mat3(r100, r010, r001) * barycentric;
     at.by_u = 3.0 * (r100 - r001);
     at.by_v = 3.0 * (r010 - r001);
     float length2 = dot(sum, sum);
@@ -57,7 +57,7 @@ PatchPoint evaluate_patch(int texel, float u, float v) {
     return at;
 }
 
-// Where changes of (u, v, distance) lead, at a distance along the normal.
+// Derivatives of the position by (u, v, distance), at a distance along the normal.
 mat3 patch_axes(PatchPoint at, float distance) {
     return mat3(at.by_u + distance * at.normal_by_u, at.by_v + distance * at.normal_by_v, at.normal);
 }
@@ -69,7 +69,7 @@ vec3 patch_normal(mat3 axes, vec3 covector) {
 }
 
 // `offset`: along tangent, bitangent and normal.
-vec3 place_on_patch(PatchPoint at, vec3 offset) {
+vec3 point_on_patch(PatchPoint at, vec3 offset) {
     vec3 tangent = unit_or(at.by_u - dot(at.by_u, at.normal) * at.normal, vec3(1.0, 0.0, 0.0));
     return at.position + mat3(tangent, cross(at.normal, tangent), at.normal) * offset;
 }

@@ -1,8 +1,8 @@
-// What is seen through a clear medium: the image behind it, displaced as by a slab of its thickness, blurred by its
-// roughness, in the color that absorption leaves (M. McGuire and M. Mara, "Phenomenological Transparency", 2017; thickness
-// as in KHR_materials_volume). What lies within the medium, as an iris beneath its cornea, is seen where the bent ray
-// meets it. What is off screen is taken from the surroundings. Definition REFRACTION: it has a
-// thickness. Include after lib/lighting.glsl and lib/material.glsl.
+// Transmission through a clear medium: the image behind it, displaced as by a slab of its thickness, blurred by its
+// roughness, and tinted by absorption (M. McGuire and M. Mara, "Phenomenological Transparency", 2017; thickness as in
+// KHR_materials_volume). Surfaces within the medium, such as an iris beneath its cornea, appear where the refracted ray
+// hits them. Off screen the environment is used. Definition REFRACTION: the medium has a thickness. Include after
+// lib/lighting.glsl and lib/material.glsl.
 
 #include "lib/optics.glsl"
 #include "material_clear_gpu.h"
@@ -12,7 +12,7 @@ layout(binding = kBehindClearDepthUnit) uniform sampler2D behind_depth;
 
 layout(location = 9) flat in float scale;
 
-const float kBorder = 0.04;  // share of the image over which it fades into the surroundings
+const float kBorder = 0.04;  // fraction of the image over which it fades into the environment
 
 struct ClearMedium {
     float transmission;
@@ -25,12 +25,12 @@ ClearMedium clear_medium(uint material) {
     vec3 absorption = block_texel(material, kClearBlock, 1).rgb;
     float thickness = medium.z * scale;
 #ifdef THICKNESS_MAP
-    thickness *= texture(material_maps[THICKNESS_MAP], map_place(kThicknessSlot)).g;
+    thickness *= texture(material_maps[THICKNESS_MAP], map_texcoord(kThicknessSlot)).g;
 #endif
     return ClearMedium(medium.x, medium.y, thickness, absorption);
 }
 
-// The image behind at `uv`, averaged over `diameter` pixels: four bilinear samples, which hide the texels of a mip level.
+// The image behind at `uv`, averaged over `diameter` pixels: four bilinear samples hide the texels of a mip level.
 vec3 blurred_behind(vec2 uv, float diameter) {
     float level = log2(max(diameter, 1.0));
     if (level <= 0.0) {
@@ -50,21 +50,22 @@ vec3 clip_of(vec3 position) {
     return (view.clip_from_world * vec4(position, 1.0)).xyw;
 }
 
-// How far a ray from `position`, `here` away along the view axis, goes inside: to what it meets, at most `thickness`.
-// Fixed-point iteration on the image behind, from what is seen straight ahead. Fails where that hides what the ray meets.
+// Distance that a ray from `position`, at view distance `here`, travels inside: to the surface that it hits, at most
+// `thickness`. Fixed-point iteration on the image behind, starting straight ahead. Fails if nearer surfaces hide the
+// hit.
 float distance_inside(vec3 position, vec3 inside, float here, float thickness) {
     const int kSteps = 5;
     float deeper = clip_of(position + inside).z - here;  // along the view axis, by a unit of the ray
     vec2 uv = gl_FragCoord.xy * view.size.zw;
-    float travelled = thickness;
+    float path = thickness;
     for (int i = 0; i < kSteps; ++i) {
         float depth = textureLod(behind_depth, uv, 0.0).r;
         float behind = depth > 0.0 ? view_distance(depth) - here : 0.0;
-        travelled = behind > 0.0 && deeper > 0.0 ? min(behind / deeper, thickness) : thickness;
-        vec3 clip = clip_of(position + travelled * inside);
+        path = behind > 0.0 && deeper > 0.0 ? min(behind / deeper, thickness) : thickness;
+        vec3 clip = clip_of(position + path * inside);
         uv = clip.xy / max(clip.z, 1e-6) * 0.5 + 0.5;
     }
-    return travelled;
+    return path;
 }
 #endif
 
@@ -78,23 +79,24 @@ vec3 transmitted_radiance(ClearMedium medium, vec3 position, vec3 normal, vec3 t
     vec3 clip = clip_of(position + path * inside);
     vec2 uv = clip.xy / max(clip.z, 1e-6) * 0.5 + 0.5;
     float depth = textureLod(behind_depth, uv, 0.0).r;
-    bool in_front = depth > 0.0 && view_distance(depth) < here;  // what is in front of the medium is not behind it
+    bool in_front = depth > 0.0 && view_distance(depth) < here;  // surfaces in front of the medium are not behind it
     uv = in_front ? here_uv : uv;
-    float turn = medium.index - 1.0;  // of a refracted ray, by a slope of 1
+    float turn = medium.index - 1.0;  // deflection of a refracted ray per unit of slope
 #else
     vec2 uv = here_uv;
-    const float turn = 0.5;  // as glass
+    const float turn = 0.5;  // like glass
 #endif
-    float seen_depth = textureLod(behind_depth, uv, 0.0).r;
-    float travelled = seen_depth > 0.0 ? max(1.0 - here * seen_depth / view.camera_ws.w, 0.0) : 1.0;
+    float depth_behind = textureLod(behind_depth, uv, 0.0).r;
+    // Distance to the surface behind, relative to its depth.
+    float gap = depth_behind > 0.0 ? max(1.0 - here * depth_behind / view.camera_ws.w, 0.0) : 1.0;
     float pixel = 2.0 * length(view.ray_up.xyz) * view.size.w;  // at 1 m
-    vec3 seen = blurred_behind(uv, 2.0 * roughness * roughness * turn * travelled / pixel);
+    vec3 transmitted = blurred_behind(uv, 2.0 * roughness * roughness * turn * gap / pixel);
 #ifdef REFRACTION
     vec2 inward = min(uv, 1.0 - uv) / kBorder;
     float shown = in_front ? 1.0 : clip.z > 0.0 ? clamp(min(inward.x, inward.y), 0.0, 1.0) : 0.0;
     if (shown < 1.0) {
-        seen = mix(environment_light(position, normal, inside, roughness).mirrored, seen, shown);
+        transmitted = mix(environment_light(position, normal, inside, roughness).mirrored, transmitted, shown);
     }
 #endif
-    return seen * exp(-medium.absorption * medium.thickness);
+    return transmitted * exp(-medium.absorption * medium.thickness);
 }

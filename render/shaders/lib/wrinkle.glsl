@@ -42,7 +42,7 @@ vec4 principal_strain(vec3 strain) {
 
 const float kFullStrain = 0.3;  // strain with the full color
 
-// Red by the compression of skin in some direction, blue by its stretch.
+// Red for the largest compression of skin in any direction, blue for its stretch.
 vec3 strain_color(vec4 principal) {
     float compressed = clamp(-principal.x / kFullStrain, 0.0, 1.0);
     float stretched = clamp(principal.y / kFullStrain, 0.0, 1.0);
@@ -56,25 +56,26 @@ vec2 strain_cross(vec2 from_center, vec4 principal, vec2 direction, vec2 other) 
     vec2 cover = vec2(0.0);
     vec2 arms[2] = vec2[2](direction, other);
     for (int i = 0; i < 2; ++i) {
-        float reach = length(arms[i]);
-        vec2 along = arms[i] / max(reach, 1e-3);
-        float place = abs(dot(from_center, along));
+        float full_length = length(arms[i]);
+        vec2 along = arms[i] / max(full_length, 1e-3);
+        float distance_along = abs(dot(from_center, along));
         float beside = abs(dot(from_center, vec2(-along.y, along.x)));
-        float half_length = reach * min(abs(principal[i]) / kFullStrain, 1.0);
-        cover[i] = half_length < 1.0 ? 0.0 : clamp(1.5 - beside, 0.0, 1.0) * clamp(half_length - place + 0.5, 0.0, 1.0);
+        float half_length = full_length * min(abs(principal[i]) / kFullStrain, 1.0);
+        float inside = clamp(1.5 - beside, 0.0, 1.0) * clamp(half_length - distance_along + 0.5, 0.0, 1.0);
+        cover[i] = half_length < 1.0 ? 0.0 : inside;
     }
     return cover;
 }
 
-// Squared length ratio relative to unfolded skin, for skin that is too long by `resting`.
+// Squared length ratio relative to unfolded skin, for skin that has `resting` excess length.
 float rested_ratio(float ratio, float resting) {
     return ratio * (1.0 - resting) * (1.0 - resting);
 }
 
-// The excess length that becomes folds, at most 1.
-float fold_excess(float ratio, float slack, float share) {
+// The excess length that becomes folds, at most 1; `fraction` of the shortening folds.
+float fold_excess(float ratio, float slack, float fraction) {
     float shortening = max(1.0 - sqrt(ratio) - slack, 0.0);
-    return 1.0 / max(1.0 - share * shortening, 0.5) - 1.0;
+    return 1.0 / max(1.0 - fraction * shortening, 0.5) - 1.0;
 }
 
 // Decodes the slope of a wrinkle map. A `texel` of 128 of 255 is exactly flat.
@@ -90,12 +91,12 @@ vec2 lifted_slope(vec2 slope, float strength) {
     return xy * inversesqrt(max(1.0 - dot(xy, xy), 0.0025));
 }
 
-// How much slopes are darkened: all, or those that face down the map.
+// How much slopes are darkened: all of them, or only slopes that face down the map.
 float wrinkle_shade(vec2 slope, bool directional) {
     return clamp(directional ? slope.y : length(slope), 0.0, 1.0);
 }
 
-// Light from the top of the map at 45 degrees, relative to that on smooth skin.
+// Light from the top of the map at 45 degrees, relative to light on smooth skin.
 float painted_light(vec2 slope) {
     return max(1.0 - slope.y, 0.0) * inversesqrt(1.0 + dot(slope, slope));
 }

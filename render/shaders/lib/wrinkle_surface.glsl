@@ -1,10 +1,10 @@
-// What wrinkles add to a surface: hooks of lib/material.glsl. Definitions:
+// The surface hooks of wrinkles, called by lib/material.glsl. Definitions:
 //   WRINKLE_MAP    the texture unit of the map of wrinkles
-//   WRINKLE_BLEND  light of wrinkles in full and of smooth skin is blended
-//   WRINKLE_FADE   light that grazes smooth skin fades
+//   WRINKLE_BLEND  lighting of full wrinkles and of smooth skin is blended
+//   WRINKLE_FADE   light at grazing angles to smooth skin fades
 //   WRINKLE_BOUNCE  light bounces within isometric folds (lib/fold_light.glsl)
-//   WRINKLE_VIEW   in place of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and w
-//                  1 where that frame is known
+//   WRINKLE_VIEW   instead of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and
+//                  w 1 where that frame is known
 //   WRINKLE_MODEL  the wrinkle map is a model of the strain: wrinkle_strength is (tt, bb, tb), and w the weight of its slopes
 //   WRINKLE_LAYERS  the wrinkle map has two layers: wrinkle_strength is of the slopes and then the shade of both
 //   WRINKLE_INDEPENDENT  the second one covers the first
@@ -31,35 +31,35 @@
 #ifdef WRINKLE_FLAT
 flat
 #endif
-layout(location = 8) in vec4 wrinkle_strength;  // x, y: of slopes, as they are and lifted; z, w: of shade
+layout(location = 8) in vec4 wrinkle_strength;  // x, y: of slopes, unchanged and lifted; z, w: of shade
 #endif
 
 #ifdef WRINKLES
 #ifdef WRINKLE_MODEL
-vec4 model_tile(vec3 place, int tile, int tiles, float half_texel) {
-    place.y = (float(tile) + clamp(place.y, half_texel, 1.0 - half_texel)) / float(tiles);
-    return texture(material_maps[WRINKLE_MAP], place);
+vec4 model_tile(vec3 at, int tile, int tiles, float half_texel) {
+    at.y = (float(tile) + clamp(at.y, half_texel, 1.0 - half_texel)) / float(tiles);
+    return texture(material_maps[WRINKLE_MAP], at);
 }
 
-// The slope of wrinkles of skin strained like this.
+// The slope of wrinkles at this strain.
 vec2 wrinkle_slope_here() {
-    vec3 place = map_place(kWrinkleSlot);
+    vec3 at = map_texcoord(kWrinkleSlot);
     vec2 size = vec2(textureSize(material_maps[WRINKLE_MAP], 0).xy);
     int tiles = int(size.y / size.x + 0.5);
     float half_texel = 0.5 / size.x;
-    vec4 range = model_tile(place, 0, tiles, half_texel);
-    vec4 range_tb = model_tile(place, 1, tiles, half_texel);
+    vec4 range = model_tile(at, 0, tiles, half_texel);
+    vec4 range_tb = model_tile(at, 1, tiles, half_texel);
     vec3 x = model_strain(wrinkle_strength.xyz, range, range_tb);
     vec2 slope = vec2(0.0);
     for (int tile = 2; tile < tiles; ++tile) {
-        vec4 coefficients = model_tile(place, tile, tiles, half_texel);
+        vec4 coefficients = model_tile(at, tile, tiles, half_texel);
         slope += coefficients.xy * model_term(x, 2 * tile - 4) + coefficients.zw * model_term(x, 2 * tile - 3);
     }
     return slope;
 }
 #elif defined(WRINKLE_LAYERS)
 vec4 wrinkle_slopes_here() {
-    return wrinkle_slopes(texture(material_maps[WRINKLE_MAP], map_place(kWrinkleSlot)));
+    return wrinkle_slopes(texture(material_maps[WRINKLE_MAP], map_texcoord(kWrinkleSlot)));
 }
 
 vec2 wrinkle_slope_here() {
@@ -72,7 +72,7 @@ vec2 wrinkle_slope_here() {
 }
 #else
 vec2 wrinkle_slope_here() {
-    return wrinkle_slope(texture(material_maps[WRINKLE_MAP], map_place(kWrinkleSlot)).xyz);
+    return wrinkle_slope(texture(material_maps[WRINKLE_MAP], map_texcoord(kWrinkleSlot)).xyz);
 }
 #endif
 
@@ -86,7 +86,7 @@ uint column_method() {
     return columns.methods >> (4 * column) & 15u;
 }
 
-// Its strengths, as wrinkle_strength has them where all of the image has one method.
+// Its strengths, in the layout of wrinkle_strength for images with a single method.
 vec4 column_strength(uint method) {
     bool steep = method == kWrinkleBump || method == kWrinkleIsometric || method == kWrinkleBlend;
     return (method == kWrinkleIsometric ? wrinkle_strength.x : wrinkle_strength.y) * vec4(
@@ -97,12 +97,12 @@ vec4 column_strength(uint method) {
 }
 #endif
 
-// What is left of the color of slopes that are darkened.
+// Factor of the color of darkened slopes.
 float shaded_slope(vec2 slope, vec4 strength) {
     return 1.0 - clamp(strength.z * wrinkle_shade(slope, false) + strength.w * wrinkle_shade(slope, true), 0.0, 1.0);
 }
 
-// The same of slopes in painted light.
+// Factor of the color of slopes in painted light.
 float painted_slope(vec2 slope, float strength) {
     return mix(1.0, painted_light(slope), clamp(strength, 0.0, 1.0));
 }
@@ -111,13 +111,14 @@ float painted_slope(vec2 slope, float strength) {
 #if defined(WRINKLE_VIEW) && !defined(LIT_AT_VERTICES)
 const float kCrossCell = 22.0;  // [px]
 
-// A direction on the surface, as seen [px]; a unit vector that faces the viewer has half the size of a cell.
-vec2 seen_direction(vec3 direction_ws) {
+// Projects a direction on the surface to the screen [px]; a unit vector parallel to the screen has half the size of a
+// cell.
+vec2 screen_direction(vec3 direction_ws) {
     vec4 moved = view.clip_from_world * vec4(direction_ws, 0.0);
     vec2 ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0;
-    vec2 seen = (moved.xy - ndc * moved.w) * view.size.xy;
+    vec2 projected = (moved.xy - ndc * moved.w) * view.size.xy;
     float scale = view.size.x * length(vec3(view.clip_from_world[0].x, view.clip_from_world[1].x, view.clip_from_world[2].x));
-    return seen * (0.5 * kCrossCell / scale);
+    return projected * (0.5 * kCrossCell / scale);
 }
 
 vec3 strain_view() {
@@ -126,8 +127,8 @@ vec3 strain_view() {
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
     vec2 cover = strain_cross(
         mod(gl_FragCoord.xy, kCrossCell) - 0.5 * kCrossCell, principal,
-        seen_direction(principal.z * tangent_ws.xyz + principal.w * bitangent),
-        seen_direction(-principal.w * tangent_ws.xyz + principal.z * bitangent));
+        screen_direction(principal.z * tangent_ws.xyz + principal.w * bitangent),
+        screen_direction(-principal.w * tangent_ws.xyz + principal.z * bitangent));
     cover *= wrinkle_strength.w;
     vec2 stretched = step(vec2(0.0), principal.xy);
     color = mix(color, mix(vec3(0.12, 0.0, 0.0), vec3(0.0, 0.0, 0.15), stretched.x), cover.x);
@@ -176,7 +177,7 @@ void wrinkle_sample(inout SurfaceSample s, vec3 smooth_normal) {
 #endif
 #if defined(WRINKLES) && defined(SMOOTH_NORMALS)
     s.smooth_normal_ws = smooth_normal;
-    bool stores = s.model != kModelUnlit && s.model != kModelHair;  // in place of the emission
+    bool stores = s.model != kModelUnlit && s.model != kModelHair;  // in the texel of the emission
 #ifdef WRINKLE_BLEND
 #ifdef WRINKLE_COLUMNS
     bool blends = column_method() == kWrinkleBlend;
@@ -188,7 +189,7 @@ void wrinkle_sample(inout SurfaceSample s, vec3 smooth_normal) {
     if (blends) {
         s.raised = clamp(raised, 0.0, 1.0);
         s.smooth_is_stored = stores && s.raised > 0.0;
-        s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // to the bit that of skin that has no wrinkles
+        s.normal_ws = s.raised > 0.0 ? s.normal_ws : smooth_normal;  // bit-identical to skin without wrinkles
     }
 #endif
 #ifdef WRINKLE_BOUNCE
