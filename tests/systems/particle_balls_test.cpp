@@ -188,7 +188,7 @@ TEST_CASE("particle balls: of pairs that meet, each by itself, a bounce of 1 kee
     CHECK(motion_of(half).energy < 0.7 * before.energy);
 }
 
-TEST_CASE("particle balls: of two at one place each goes its way, the same in each run") {
+TEST_CASE("particle balls: two at one position part in a direction that is the same in each run") {
     const auto run = [] {
         ParticlePool pool;
         add_ball(pool, {1, 2, 3});
@@ -201,7 +201,7 @@ TEST_CASE("particle balls: of two at one place each goes its way, the same in ea
     CHECK(same_bits(pool, run()));
 }
 
-TEST_CASE("particle balls: what sticks to a surface stays, and whoever meets it goes back") {
+TEST_CASE("particle balls: one that sticks to a surface stays, and others bounce off it") {
     ParticlePool pool;
     add_ball(pool, {0, 0, 0});
     add_ball(pool, {0.15f, 0, 0}, {-4, 0, 0});
@@ -213,7 +213,7 @@ TEST_CASE("particle balls: what sticks to a surface stays, and whoever meets it 
     CHECK(velocity(pool, 1).x == near(4));
 }
 
-TEST_CASE("particle balls: a hundred thousand at one place end, and no place is NaN") {
+TEST_CASE("particle balls: a hundred thousand at one position terminate without NaN") {
     ParticlePool pool;
     for (int i = 0; i < 100000; ++i) {
         add_ball(pool, {1, 1, 1});

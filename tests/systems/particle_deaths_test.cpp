@@ -118,7 +118,7 @@ TEST_CASE("particle deaths: a mixed pool comes back into the order of ages, rows
     CHECK(after == before);
 }
 
-TEST_CASE("particle deaths: whoever is told by its order keeps it, and nobody else") {
+TEST_CASE("particle deaths: order is kept only where something depends on it") {
     Emitters scene;
     const Entity plain = scene.add(restless());
     const Entity births = scene.add(restless());

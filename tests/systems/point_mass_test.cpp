@@ -282,7 +282,8 @@ TEST_CASE("point mass: its entity is where the mean velocity brings it; fields a
     CHECK(scene.mass(ball).velocity.y == near(before).epsilon(1e-4));
 }
 
-TEST_CASE("point mass: it bounces by the share of its speed, ends by a hit, or sticks") {
+TEST_CASE(
+    "point mass: it keeps a fraction of its speed when it bounces, ends by a hit, or sticks") {
     for (const CollisionAction action :
          {CollisionAction::Bounce, CollisionAction::Kill, CollisionAction::Stick}) {
         CAPTURE(static_cast<int>(action));

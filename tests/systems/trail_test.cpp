@@ -95,7 +95,7 @@ TEST_CASE("trail: a straight flight leaves a point at every spacing, as old as i
     }
 }
 
-TEST_CASE("trail: on a circle points are a spacing apart and reach no farther than the length") {
+TEST_CASE("trail: on a circle points are a spacing apart and extend no farther than the length") {
     const Trail trail = {.spacing = 0.1f, .length = 5, .life = 100};
     Flight flight(trail, circle(0), 1.0f / 60);
     flight.fly(circle, 10);
