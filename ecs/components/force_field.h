@@ -34,7 +34,7 @@ LIMN_FIELDS(ForceField) {
     LIMN_FIELD(
         strength,
         "acceleration; of a spring for a meter, of wind for each m/s relative to it; negative: "
-        "the other way",
+        "in the opposite direction",
         "m/s^2", -1e4, 1e4);
     LIMN_FIELD(speed, "of the wind", "m/s", -1000, 1000);
     LIMN_FIELD(

@@ -11,8 +11,8 @@ namespace limn {
 // particle.variable-mass). Each is an entity that gravity, force fields and what stands beside it
 // here move, and that carries trails, emitters and lights with it.
 
-/// Moves its entity, which must not have a parent. With a ParticleCollision it meets what particles
-/// meet, but water; "kill" destroys it with its children, and "stick" ends its flight.
+/// Moves its entity, which must not have a parent. With a ParticleCollision it hits what particles
+/// hit, but not water; "kill" destroys it with its children, and "stick" ends its flight.
 struct PointMass {
     Vec3 velocity = {0, 0, 0};
     float mass = 5;
@@ -42,7 +42,7 @@ LIMN_FIELDS(AirDrag) {
     LIMN_FIELD(coefficient, "of drag; a sphere: 0.47", "", 0, 100);
     LIMN_FIELD(radius, "of the cross-section, a disc", "m", 0, 1e3);
     LIMN_FIELD(density, "of the air", "kg/m^3", 0, 1e5);
-    LIMN_FIELD(weather, "share of the wind of the resource weather", "", 0, 10);
+    LIMN_FIELD(weather, "fraction of the wind of the resource weather", "", 0, 10);
 }
 
 /// What becomes of the momentum of the mass that leaves.

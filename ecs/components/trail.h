@@ -42,8 +42,8 @@ LIMN_FIELDS(Trail) {
     LIMN_FIELD(
         path, .doc = "what is followed: the entity, each particle, or particles by age",
         .values = "entity particles births");
-    LIMN_FIELD(emitter, "whose particles or, for an entity's path, whose way; none: this entity");
-    LIMN_FIELD(active, "whether it grows; what is there fades all the same");
+    LIMN_FIELD(emitter, "whose particles or, for an entity's path, which entity; none: this one");
+    LIMN_FIELD(active, "whether it grows; what is there fades either way");
     LIMN_FIELD(
         spacing, "between points, whatever the frame rate; at least a thousandth of the length",
         "m", 0.001, 1e3);
@@ -93,7 +93,7 @@ LIMN_FIELDS(TrailStrand) {
     LIMN_FIELD(before, "its end two steps earlier", "m");
     LIMN_FIELD(live, "still grows");
     LIMN_FIELD(key, "random bits of its particle");
-    LIMN_FIELD(slot, "place of its points");
+    LIMN_FIELD(slot, "slot of its points");
     LIMN_FIELD(first, "oldest point");
     LIMN_FIELD(count, "number of points");
     LIMN_FIELD(number, "points so far");
@@ -111,7 +111,7 @@ LIMN_FIELDS(TrailState) {
     LIMN_FIELD(capacity, "points of a strand at most");
     LIMN_FIELD(strands, "unbroken trails");
     LIMN_FIELD(points, "of all strands");
-    LIMN_FIELD(free_slots, "places without a strand");
+    LIMN_FIELD(free_slots, "slots without a strand");
 }
 
 [[nodiscard]] inline const TrailPoint&
