@@ -10,7 +10,7 @@
 namespace limn {
 
 // Quads of all Billboards, in the order in which they are added (engine.billboard). Their corners
-// are found where they are drawn, because each view faces them its own way (lib/billboard.glsl).
+// are found where they are drawn, because that depends on the view (lib/billboard.glsl).
 
 /// What particle.vert reads of a quad: texels of four floats.
 struct BillboardQuad {
@@ -24,16 +24,16 @@ struct BillboardQuad {
 static_assert(sizeof(BillboardQuad) == 16 * layout::kBillboardTexels);
 
 /// The rest of a quad.
-struct BillboardPlace {
-    Vec3 position = {0, 0, 0};  ///< of its middle
-    float share = 0;            ///< of its colors, 0 .. 1
+struct BillboardShading {
+    Vec3 position = {0, 0, 0};  ///< of its center
+    float color_at = 0;         ///< position in the look's colors, 0 .. 1
     float opacity = 1;
     bool is_section = false;  ///< has its own image
 };
 
 struct BillboardList {
     std::vector<BillboardQuad> quads{};
-    std::vector<BillboardPlace> places{};  ///< of each quad
+    std::vector<BillboardShading> shadings{};  ///< of each quad
 };
 
 /// Adds the quads of a billboard at `world` as they are `time` seconds after it began: one, or two

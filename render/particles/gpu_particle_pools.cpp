@@ -22,7 +22,7 @@ namespace limn {
 namespace {
 
 constexpr unsigned kStepsUnit = 0;
-constexpr unsigned kSeenDepthUnit = 1;
+constexpr unsigned kPreviousDepthUnit = 1;
 constexpr unsigned kViewBinding = 0;
 constexpr unsigned kStateBinding = 0;
 constexpr unsigned kBitsBinding = 1;
@@ -37,10 +37,10 @@ Vec4 response_texel(const ParticleCollision* collision) {
     if (collision == nullptr) {
         return Vec4(0);
     }
-    const auto share = [](float value) { return std::clamp(finite_or(value, 0), 0.0f, 1.0f); };
+    const auto clamped = [](float value) { return std::clamp(finite_or(value, 0), 0.0f, 1.0f); };
     const auto action = static_cast<std::uint32_t>(collision->action) + 1;
     return {
-        share(collision->bounce), share(collision->friction),
+        clamped(collision->bounce), clamped(collision->friction),
         std::max(finite_or(collision->radius, 0), 0.0f), word(action)};
 }
 
@@ -75,10 +75,10 @@ void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<
         word(step.first), word(step.count), word(first.run), word(step.births.size()));
     texels.emplace_back(motion.step.gravity * dt, dt);
     texels.emplace_back(motion.step.air, motion.step.keep);
-    for (const Affine* const place : {&step.place.before, &step.place.now}) {
-        texels.insert(texels.end(), std::begin(place->row), std::end(place->row));
+    for (const Affine* const world : {&step.pose.before, &step.pose.now}) {
+        texels.insert(texels.end(), std::begin(world->row), std::end(world->row));
     }
-    texels.emplace_back(step.inherited, motion.step.old_share);
+    texels.emplace_back(step.inherited, motion.step.old_weight);
     texels.emplace_back(motion.turbulence.drift_a, motion.turbulence.strength * dt);
     texels.emplace_back(motion.turbulence.drift_b, 1 / motion.turbulence.size);
     texels.emplace_back(motion.vortex.origin, motion.vortex.around * dt);
@@ -138,9 +138,9 @@ ParticleWindow sort_window(const GpuParticlePool& pool) {
 
 }  // namespace
 
-std::uint32_t particle_stride(float share) {
+std::uint32_t particle_stride(float fraction) {
     std::uint32_t stride = 1;
-    while (stride < 1024 && static_cast<float>(stride) * share < 1) {
+    while (stride < 1024 && static_cast<float>(stride) * fraction < 1) {
         stride *= 2;
     }
     return stride;
@@ -172,10 +172,10 @@ std::vector<Vec4> pack_particle_steps(
     }
     layout.forces = static_cast<int>(texels.size());
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
-        const float share = step.motion.forces_share * step.motion.step.dt;
+        const float scale = step.motion.force_scale * step.motion.step.dt;
         for (const Force& one : step.motion.forces) {
             texels.emplace_back(one.origin, word(static_cast<std::uint32_t>(one.kind)));
-            texels.emplace_back(one.axis, one.strength * share);
+            texels.emplace_back(one.axis, one.strength * scale);
             texels.emplace_back(one.speed, one.radius, 0.0f, 0.0f);
         }
     }
@@ -207,7 +207,7 @@ void GpuParticlePools::begin_frame(const World& world) {
     }
 }
 
-void GpuParticlePools::forget_unused() {
+void GpuParticlePools::drop_unused() {
     std::erase_if(pools_, [](const auto& pool) { return !pool.second->used; });
 }
 
@@ -224,15 +224,15 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
 }
 
 bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
-    if (programs_.seen_old == nullptr) {
-        const Result<const gpu::Program*> births = load_update(device, {{"SEEN_DEPTH"}});
-        const Result<const gpu::Program*> old = load_update(device, {{"SEEN_DEPTH"}, {"OLD"}});
+    if (programs_.depth_old == nullptr) {
+        const Result<const gpu::Program*> births = load_update(device, {{"DEPTH_COLLISION"}});
+        const Result<const gpu::Program*> old = load_update(device, {{"DEPTH_COLLISION"}, {"OLD"}});
         if (!births || !old) {
             log_error("{}", (births ? old : births).error().message);
             return false;
         }
-        programs_.seen_births = *births;
-        programs_.seen_old = *old;
+        programs_.depth_births = *births;
+        programs_.depth_old = *old;
     }
     return true;
 }
@@ -293,8 +293,8 @@ void GpuParticlePools::add(
 
 /// Those born before the steps to do, and those born in them.
 void GpuParticlePools::move(
-    gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const {
-    const bool meets = seen && pool.collide_depth > 0;
+    gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const {
+    const bool meets = has_depth && pool.collide_depth > 0;
     const bool is_plain_step = pool.plain.has_value() && !meets;
     pool.steps.bind(device, kStepsUnit);
     device.bind_storage(kStateBinding, pool.state);
@@ -323,16 +323,16 @@ void GpuParticlePools::move(
         program.set("thickness", pool.collide_depth);
         if (pool.plain) {
             const ParticleStep& step = *pool.plain;
-            const float old_way = step.dt * step.old_share;
+            const float old_dt = step.dt * step.old_weight;
             const Vec3 added = step.air + (step.gravity * step.dt - step.air) * step.keep;
             program.set("added_dt", Vec4(added, step.dt));
             program.set("kept", step.keep);
-            program.set("ways", Vec2(old_way, step.dt - old_way));
+            program.set("velocity_dt", Vec2(old_dt, step.dt - old_dt));
         }
         device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
     };
     const gpu::Program* const old = is_plain_step ? programs_.plain
-                                    : meets       ? programs_.seen_old
+                                    : meets       ? programs_.depth_old
                                                   : programs_.old;
     // The slots are a ring: what lies beyond its end is at its beginning.
     const std::uint32_t first_slot = pool.first % pool.capacity + offset_of(pool);
@@ -340,12 +340,12 @@ void GpuParticlePools::move(
     const std::uint32_t wrap = room / pool.stride + (room % pool.stride > 0 ? 1 : 0);
     const auto dispatch_parts = [&](const gpu::Program& program, std::uint32_t begin,
                                     std::uint32_t end) {
-        const std::uint32_t middle = std::clamp(wrap, begin, end);
-        dispatch(program, begin, middle, first_slot);
-        dispatch(program, middle, end, first_slot - pool.capacity);
+        const std::uint32_t ring_end = std::clamp(wrap, begin, end);
+        dispatch(program, begin, ring_end, first_slot);
+        dispatch(program, ring_end, end, first_slot - pool.capacity);
     };
     dispatch_parts(*old, 0, pool.old);
-    dispatch_parts(*(meets ? programs_.seen_births : programs_.births), pool.old, pool.count);
+    dispatch_parts(*(meets ? programs_.depth_births : programs_.births), pool.old, pool.count);
 }
 
 void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
@@ -361,20 +361,20 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
             writes.emplace_back(graph.import("particles", *buffer));
         }
     }
-    const SeenDepth seen = view.seen;
+    const PreviousDepth depth = view.depth;
     std::vector<Use> reads;
-    if (seen.depth != nullptr) {
-        reads.push_back(sampled(graph.import("seen depth", *seen.depth), kSeenDepthUnit));
+    if (depth.depth != nullptr) {
+        reads.push_back(sampled(graph.import("previous depth", *depth.depth), kPreviousDepthUnit));
     }
     graph.add_pass(
-        "move particles", reads, writes, [this, back = view.back, seen](PassContext& context) {
+        "move particles", reads, writes, [this, back = view.back, depth](PassContext& context) {
             gpu::Device& device = context.device();
-            if (seen.depth != nullptr) {
+            if (depth.depth != nullptr) {
                 device.bind_uniforms(
-                    kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
+                    kViewBinding, depth.camera.buffer, depth.camera.offset, depth.camera.size);
             }
             for (const auto& [entity, pool] : pools_) {
-                move(device, *pool, back, seen.depth != nullptr);
+                move(device, *pool, back, depth.depth != nullptr);
             }
         });
     for (const auto& [entity, found] : pools_) {

@@ -7,7 +7,7 @@
 #include "render/gpu/buffer_texture.h"
 #include "render/gpu/program.h"
 #include "render/particles/gpu_particle_sort.h"
-#include "render/particles/seen_depth.h"
+#include "render/particles/previous_depth.h"
 
 #include <cstdint>
 #include <map>
@@ -23,12 +23,12 @@ class World;
 
 // Particles that the GPU moves (particle.gpu-state, particle.gpu-update): for each emitter a ring
 // of slots, 36 bytes each, that particle_update.comp brings up to date with the steps that the
-// systems have written down (systems/particles/gpu_particle_system.h), and a list of what to draw,
+// systems have recorded (systems/particles/gpu_particle_system.h), and a list of what to draw,
 // oldest first.
 //
-// Where a million are too many, every `stride`th by its number is moved and drawn, the others are
-// as if they were not there. A larger stride leaves some of those that were moved; for a smaller
-// one all steps that are kept are done again.
+// Where a million are too many, only every `stride`th particle by its number is simulated and
+// drawn. A larger stride keeps a part of those; for a smaller one all recorded steps are simulated
+// again.
 
 /// Where the parts of the texels of steps begin.
 struct ParticleStepTexels {
@@ -64,15 +64,15 @@ struct GpuParticlePool {
     float collide_depth = 0;  ///< as ParticleCollision::collide_depth
 };
 
-/// The stride that leaves `share` of the particles, or less: 1 .. 1024.
-[[nodiscard]] std::uint32_t particle_stride(float share);
+/// The stride that leaves this fraction of the particles, or less: 1 .. 1024.
+[[nodiscard]] std::uint32_t particle_stride(float fraction);
 
-/// When and from where they are seen.
+/// The instant and the camera that they are drawn for.
 struct GpuParticleView {
     float back = 0;             ///< before the end of the last step [s]
     Vec3 eye = {0, 0, 0};       ///< [m]
     Vec3 forward = {0, 0, -1};  ///< unit
-    SeenDepth seen{};           ///< what those with a collide_depth meet
+    PreviousDepth depth{};      ///< what those with a collide_depth collide with
 };
 
 /// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
@@ -85,8 +85,8 @@ class GpuParticlePools {
   public:
     [[nodiscard]] static Result<GpuParticlePools> create(gpu::Device& device);
 
-    /// Before those of a frame are added: forgets all pools of another world, or of one that was
-    /// loaded anew.
+    /// Before those of a frame are added: drops all pools of another world, or of one that was
+    /// reloaded.
     void begin_frame(const World& world);
     /// An emitter's particles, every `stride`th, drawn with the look of this number. `sort_passes`:
     /// none: as they were born; 0: sorted; otherwise so many passes of a sort.
@@ -95,11 +95,11 @@ class GpuParticlePools {
         const GpuParticles& particles, std::uint32_t look,
         std::optional<std::uint32_t> sort_passes = std::nullopt,
         const ParticleCollision* collision = nullptr, std::uint32_t stride = 1);
-    /// After they have been added: forgets all others.
-    void forget_unused();
-    /// Adds the passes that move and sort them, unless someone has in this frame.
+    /// After they have been added: drops all others.
+    void drop_unused();
+    /// Adds the passes that move and sort them, once in a frame.
     void update(FrameGraph& graph, const GpuParticleView& view);
-    /// Whether some of this frame meet what the camera saw.
+    /// Whether some of this frame collide with the depth of the previous one.
     [[nodiscard]] bool meets_depth() const;
 
     [[nodiscard]] const std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>>& pools() const {
@@ -110,16 +110,16 @@ class GpuParticlePools {
     bool can_sort(gpu::Device& device);
     bool can_meet_depth(gpu::Device& device);
 
-    /// For those born in the steps to do; those born before; those that meet what was seen,
+    /// For those born in the steps to do; those born before; those that collide with depth,
     /// likewise, loaded when there are some; those of a plain step.
     struct Programs {
         const gpu::Program* births = nullptr;
         const gpu::Program* old = nullptr;
-        const gpu::Program* seen_births = nullptr;
-        const gpu::Program* seen_old = nullptr;
+        const gpu::Program* depth_births = nullptr;
+        const gpu::Program* depth_old = nullptr;
         const gpu::Program* plain = nullptr;
     };
-    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const;
+    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const;
 
     Programs programs_{};
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted

@@ -27,7 +27,7 @@ void make_sort_buffers(std::uint32_t size, GpuParticleSort& sort) {
         entries =
             gpu::Buffer("particle order", size * sizeof(std::uint64_t), gpu::BufferUse::GpuOnly);
     }
-    // Those that have died during a sort keep their places until the next one.
+    // Those that have died during a sort keep their positions in the order until the next one.
     sort.instances = gpu::Buffer(
         "sorted particles", std::size_t{2} * size * layout::kParticleWords * sizeof(std::uint32_t),
         gpu::BufferUse::GpuOnly);

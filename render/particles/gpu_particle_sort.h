@@ -15,7 +15,7 @@ namespace limn {
 // Back-to-front order of an emitter's particles on the GPU: Batcher's bitonic sort (1968), a whole
 // one each frame; or, after the first, a few of its passes (Latta, "Building a Million Particle
 // System", GDC 2004), with the order of the last one that has ended shown meanwhile
-// (particle.sort-amortised). Its keys are distances from where the camera will be in the middle of
+// (particle.sort-amortised). Its keys are distances from where the camera will be halfway through
 // that time if it moves on as it does, so that a steady camera finds the order half a sort old or
 // young, not one to two sorts old. Particles are taken to stay where they are.
 
@@ -25,7 +25,7 @@ struct ParticleWindow {
     std::uint32_t count = 0;
 };
 
-/// From where they are seen.
+/// The camera that they are sorted for.
 struct ParticleSortView {
     Vec3 eye = {0, 0, 0};       ///< [m]
     Vec3 forward = {0, 0, -1};  ///< unit
@@ -41,7 +41,7 @@ struct ParticleSortPlan {
     std::uint32_t first_pass = 0;  ///< of bitonic_pass_at()
     std::uint32_t last_pass = 0;   ///< one after the last
     std::uint32_t size = 0;        ///< entries, a power of two
-    float ahead = 0;               ///< middle of the time when the order will be shown [frames]
+    float ahead = 0;               ///< half the time for which the order will be shown [frames]
 };
 
 /// The order of an emitter's particles as far as it is known.

@@ -23,12 +23,12 @@ constexpr float kMaxPoint = 4;     // [px] across, above which a disc is drawn a
 constexpr float kHighestWave = 5;  // above the rest level of water [m]
 
 std::uint32_t look_of(const ParticleInstance& instance) {
-    return instance.look_and_share >> 16;
+    return instance.look_and_life >> 16;
 }
 
-/// Among the visible instances at half the resolution, the index of the middle one in the order; 0
+/// Among the visible instances at half the resolution, the index of the median in the order; 0
 /// if there are none.
-std::size_t find_middle_half(const ParticleScene& scene, const std::vector<std::uint8_t>& visible) {
+std::size_t find_median_half(const ParticleScene& scene, const std::vector<std::uint8_t>& visible) {
     const auto is_visible_half = [&](std::size_t i) {
         return visible[i] != 0 && scene.layers[look_of(scene.sorted[i])] == LookLayer::Half;
     };
@@ -92,7 +92,8 @@ void append_instance(
 LightBounds
 window_of(const RenderView& view, const ParticleInstance& instance, const LookRecord& look) {
     const bool is_bounded = std::isfinite(bounds_of(instance, look).min.x);
-    return light_bounds(view, instance.position, is_bounded ? reach_of(instance, look) : INFINITY);
+    return light_bounds(
+        view, instance.position, is_bounded ? corner_radius(instance, look) : INFINITY);
 }
 
 /// Below the rest level of some water, wherever its waves are.
@@ -155,9 +156,9 @@ bool is_before(
     return meets({ground.min - width, ground.max + width}, eye, to, 1 - radius / away);
 }
 
-/// What of the particles is seen through water from above: what is in it, and only before the
-/// ground, since water without ground behind it hides all that is in it. Nothing if the camera is
-/// in the water, too.
+/// Which particles are visible through water from above: those in it, and only in front of the
+/// ground, since water without ground behind it hides all that is in it. None if the camera is in
+/// the water, too.
 class UnderwaterTest {
   public:
     UnderwaterTest(const ParticleScene& scene, const FrameData& frame, const ViewData& view)
@@ -169,7 +170,7 @@ class UnderwaterTest {
         }
     }
 
-    /// Whether anything may be seen.
+    /// Whether any may be visible.
     [[nodiscard]] bool can_see() const { return can_see_; }
     [[nodiscard]] bool can_see(const ParticleInstance& instance) const {
         return can_see_
@@ -194,7 +195,7 @@ void sort_into_layers(
         list.indices[layer].clear();
         list.underwater[layer].clear();
     }
-    const std::size_t middle = scene.has_halves ? find_middle_half(scene, list.visible) : 0;
+    const std::size_t median = scene.has_halves ? find_median_half(scene, list.visible) : 0;
     for (std::uint32_t i = 0; i < scene.sorted.size(); ++i) {
         if (list.visible[i] == 0) {
             continue;
@@ -202,7 +203,7 @@ void sort_into_layers(
         const LookLayer look_layer = scene.layers[look_of(scene.sorted[i])];
         const SpriteLayer layer = look_layer == LookLayer::Half       ? SpriteLayer::Half
                                   : look_layer == LookLayer::Weighted ? SpriteLayer::Weighted
-                                  : i < middle                        ? SpriteLayer::Behind
+                                  : i < median                        ? SpriteLayer::Behind
                                                                       : SpriteLayer::Front;
         list.indices[static_cast<std::size_t>(layer)].push_back(i);
         if (underwater.can_see(scene.sorted[i])) {
@@ -270,7 +271,7 @@ void find_weighted_bounds(
     }
     for (const auto& [entity, pool] : gpu.pools()) {
         if (scene.layers[pool->look] == LookLayer::Weighted) {
-            grow(list.weighted_bounds, scene.extents[pool->look].ways);
+            grow(list.weighted_bounds, scene.extents[pool->look].travel);
         }
     }
 }

@@ -24,8 +24,8 @@ struct ViewData;
 
 /// In the order in which they are drawn.
 enum class SpriteLayer : std::uint8_t {
-    Underwater,  ///< seen through a water surface, before the water: drawn again above it
-    Behind,      ///< at full resolution, farther than the middle one of Half
+    Underwater,  ///< visible through a water surface: drawn before the water, and again above it
+    Behind,      ///< at full resolution, farther than the median of Half
     Half,        ///< at half the resolution, as one image
     Front,       ///< at full resolution
     Weighted,    ///< blended without an order, as one image

@@ -11,7 +11,7 @@ class Program;
 }  // namespace gpu
 
 // A layer of half the width and height over the scene, for what is soft and covers much. Its depth
-// is that in the middle of each four pixels where they are of one surface, else the nearest and the
+// is that at the center of each four pixels where they are of one surface, else the nearest and the
 // farthest of them, in turn like the squares of a chessboard. Enlarged, a pixel lies between its
 // four nearest texels, without those that are of another surface, so that the layer neither spills
 // over edges nor leaves a rim (Cantlay, "High-Speed, Off-Screen Particles", GPU Gems 3, 2007;

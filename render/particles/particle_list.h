@@ -34,7 +34,7 @@ struct LookLayers {
 [[nodiscard]] bool is_point(const LookRecord& look);
 
 /// Whether a look scatters light that is evaluated once a particle, or at the corners of quads.
-[[nodiscard]] bool is_lit_in_middle(const LookRecord& look);
+[[nodiscard]] bool is_lit_at_center(const LookRecord& look);
 [[nodiscard]] bool is_lit_at_corners(const LookRecord& look);
 
 /// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
@@ -46,11 +46,11 @@ void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
     std::vector<ParticleInstance>& instances, const Vec3& observer = {0, 0, 0});
 
-/// Distance of its corners from its middle [m] at most, if its size is in meters and it is no
+/// Distance of its corners from its center [m] at most, if its size is in meters and it is no
 /// streak.
-[[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
+[[nodiscard]] float corner_radius(const ParticleInstance& instance, const LookRecord& look);
 
-/// Diameter of its quad in the image at least [px]; 0 where it may be seen at an angle.
+/// Diameter of its quad in the image at least [px]; 0 if it may be tilted.
 [[nodiscard]] float
 least_pixels(const ParticleInstance& instance, const LookRecord& look, const RenderView& view);
 

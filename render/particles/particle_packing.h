@@ -15,7 +15,7 @@ namespace limn {
 /// The words of kParticleWords in particle_gpu.h.
 struct ParticleInstance {
     Vec3 position;
-    std::uint32_t look_and_share = 0;  ///< look in the high half; share of the life, of 65,535
+    std::uint32_t look_and_life = 0;   ///< look in the high half; fraction of the life, of 65,535
     std::uint32_t velocity_xy = 0;     ///< two halfs, the first in the low bits
     std::uint32_t velocity_z_age = 0;  ///< likewise; a negative age: dead
     std::uint32_t random = 0;

@@ -35,13 +35,13 @@ constexpr unsigned kRibbonsUnit = 8;
 constexpr unsigned kVeilUnit = 23;
 constexpr unsigned kNegativeLightsUnit = 27;
 constexpr unsigned kBillboardsUnit = 26;
-constexpr unsigned kMiddleLightUnit = 28;
-constexpr unsigned kMiddleLightBinding = 0;
+constexpr unsigned kCenterLightUnit = 28;
+constexpr unsigned kCenterLightBinding = 0;
 constexpr int kLightGroup = 64;  // invocations of a work group
 
-/// Surrounds the image with as much on each side, so that quads which its border cuts are not
-/// clipped: one of them would send its neighbors through llvmpipe's slow clipper. Returns the
-/// extent of the image as a share of the viewport's.
+/// Makes the viewport three times as wide and high as the image, so that quads across its border
+/// are not clipped: one of them would send its neighbors through llvmpipe's slow clipper. Returns
+/// the extent of the image as a fraction of the viewport's.
 float set_wide_viewport(PassContext& context) {
     constexpr int kMaxViewport = 16384;  // that every OpenGL 4.5 has
     const IVec2 size = context.size();
@@ -122,7 +122,7 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
         gpu::Sampler("particle images", {.minify = minify, .wrap = GL_CLAMP_TO_EDGE});
     effect.finest_sampler =
         gpu::Sampler("finest particle images", {.minify = GL_LINEAR, .wrap = GL_CLAMP_TO_EDGE});
-    effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
+    effect.depth_copy = LIMN_TRY(load_fullscreen(device, "previous_depth.frag"));
     return effect;
 }
 
@@ -137,7 +137,7 @@ void ParticleEffect::collect(FrameData& frame) {
         .back = particle_lag(frame),
         .eye = transform_point(camera, Vec3(0)),
         .forward = transform_vector(camera, Vec3(0, 0, -1)),
-        .seen = gpu.meets_depth() ? recall_depth(seen_depth, frame) : SeenDepth{}};
+        .depth = gpu.meets_depth() ? recall_depth(previous_depth, frame) : PreviousDepth{}};
     auto& sprites = frame.data.publish<ParticleSprites>();
     sprites.instances = scene.instances;
     sprites.gpu = &gpu;
@@ -210,7 +210,7 @@ void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewD
         add_lens_depth(graph, view);
     }
     if (view.is(kMainViews) && gpu.meets_depth()) {
-        remember_depth(graph, *depth_copy, view, seen_depth);
+        remember_depth(graph, *depth_copy, view, previous_depth);
     }
 }
 
@@ -327,13 +327,13 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
     add_particle_sums(graph, splats, view);
 }
 
-// ---- light of those that are lit in the middle ----
+// ---- light of those that are lit at their centers ----
 
 /// Once a view, before any are drawn.
 void ParticleEffect::add_light(FrameGraph& graph, ViewData& view) {
     auto& particles = view.data.publish<ViewParticles>();  // as prepare() left it
     const std::size_t count = particles.list.instances.size();
-    if (particles.is_lit || !scene.lit_in_middle) {
+    if (particles.is_lit || !scene.lit_at_center) {
         return;
     }
     particles.is_lit = true;
@@ -361,7 +361,7 @@ void ParticleEffect::evaluate_light(PassContext& context, const ViewData& view) 
     bind_lighting(context, view);
     particles.texels.bind(device, kParticlesUnit);
     look_texels.bind(device, kLooksUnit);
-    device.bind_storage(kMiddleLightBinding, particles.light);
+    device.bind_storage(kCenterLightBinding, particles.light);
     device.use(*program);
     program->set("count", count);
     device.dispatch(static_cast<std::uint32_t>((count + kLightGroup - 1) / kLightGroup));
@@ -429,7 +429,7 @@ void ParticleEffect::draw_layer(
         const SpriteShape shape = draw.shape;
         Variant variant = view.lighting.variant;
         variant.add_if(draw.lit && shape != SpriteShape::SmallDisc, "LIT");
-        variant.add_if(scene.lit_in_middle && shape == SpriteShape::Quad, "LIT_MIDDLE");
+        variant.add_if(scene.lit_at_center && shape == SpriteShape::Quad, "LIT_CENTER");
         variant.add_if(is_six_way_draw(draw), "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
         variant.add_if(veiled, "VEILED");
@@ -507,7 +507,7 @@ void ParticleEffect::draw_sprites(
     const float framed = set_wide_viewport(context);
     const auto& particles = view.data.get<ViewParticles>();
     if (particles.is_lit) {
-        particles.light_texels.bind(device, kMiddleLightUnit);
+        particles.light_texels.bind(device, kCenterLightUnit);
     }
     look_texels.bind(device, kLooksUnit);
     ribbon_texels.bind(device, kRibbonsUnit);

@@ -34,11 +34,11 @@ namespace limn {
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
 // format. Each view has one list of draws (layered_draws.h) without what it does not see; of
 // particles on the GPU, emitters are left out as a whole. Particles at half the resolution are
-// sorted among themselves, in one image (particle_layer.h); those in front of its middle are drawn
+// sorted among themselves, in one image (particle_layer.h); those in front of its median are drawn
 // after it. Weighted ones (particle_weighted.h) are one image in front of all that are sorted.
 // Where blended surfaces are visible, all layers above water are drawn twice: pixels behind the
 // nearest blended surface before it, and the others after all of them; so particles between two of
-// these surfaces are seen through both. Ribbons, billboards and sprites share a program because
+// these surfaces are visible through both. Ribbons, billboards and sprites share a program because
 // they share draws: a program for each would be a draw for every few segments of a ribbon among
 // sparks.
 
@@ -46,7 +46,7 @@ struct ParticleEffect {
     struct ViewParticles {
         LayeredDraws list{};
         BufferTexture texels = BufferTexture("particles in view", GL_R32UI);  ///< of its instances
-        gpu::Buffer light{};       ///< vec4 of each instance, of those that are lit in the middle
+        gpu::Buffer light{};  ///< vec4 of each instance, of those that are lit at their centers
         std::size_t capacity = 0;  ///< of `light`
         bool is_lit = false;       ///< the pass that writes it has been added
         BufferTexture light_texels = BufferTexture("light of particles", GL_RGBA32F);
@@ -71,7 +71,7 @@ struct ParticleEffect {
     const gpu::Program* depth_copy = nullptr;
     gpu::Sampler image_sampler = {};
     gpu::Sampler finest_sampler = {};  ///< without mip levels
-    DepthMemory seen_depth = {};       ///< while some on the GPU meet what the camera sees
+    DepthMemory previous_depth = {};   ///< while some on the GPU collide with it
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
     BufferTexture billboard_texels = BufferTexture("billboards", GL_RGBA32F);
@@ -124,8 +124,8 @@ struct ParticlesInFront {
     std::optional<TextureId> veil{};  ///< depth of the nearest blended surface, if one is visible
 };
 
-/// Particles in water, seen from above it: brighter by what the water pass will absorb between
-/// them and the ground. Not in water without ground.
+/// Particles in water, as visible from above it: brighter by what the water pass will absorb
+/// between them and the ground. Not in water without ground.
 struct ParticlesUnderWaterEffect {
     [[nodiscard]] static Result<ParticlesUnderWaterEffect>
     create(gpu::Device&, const RenderSettings&) {

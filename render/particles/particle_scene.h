@@ -36,10 +36,10 @@ struct DrawnWater {
 /// Keeps its memory from frame to frame.
 struct ParticleScene {
     std::vector<LookRecord> looks = {};
-    std::vector<ParticleArrays> arrays = {};       ///< of each look
-    std::vector<LookLayer> layers = {};            ///< of each look
-    std::vector<LookExtent> extents = {};          ///< of each look
-    std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
+    std::vector<ParticleArrays> arrays = {};          ///< of each look
+    std::vector<LookLayer> layers = {};               ///< of each look
+    std::vector<LookExtent> extents = {};             ///< of each look
+    std::vector<std::optional<Vec3>> positions = {};  ///< of each look, for order_by_distance()
     RibbonList ribbons = {};
     BillboardList billboards = {};
     std::vector<ParticleInstance> weighted = {};   ///< not sorted
@@ -50,7 +50,7 @@ struct ParticleScene {
     FrameInsetTable insets = {};                                  ///< from frame to frame
     SpriteFeatures features = {};                                 ///< of all looks
     std::array<SpriteFeatures, kLookLayers> layer_features = {};  ///< of those of a LookLayer
-    bool lit_in_middle = false;
+    bool lit_at_center = false;
     bool soft = false;     ///< some fade where they meet a surface
     bool moving = false;   ///< some look may cover enough to move pixels
     bool focused = false;  ///< some look may cover enough for the lens to focus on

@@ -41,9 +41,9 @@ std::uint32_t ordered(float x) {
     return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
 }
 
-void grow(ShadowRange& range, float middle, float radius) {
-    range.low = std::min(range.low, middle - radius);
-    range.high = std::max(range.high, middle + radius);
+void grow(ShadowRange& range, float center, float radius) {
+    range.low = std::min(range.low, center - radius);
+    range.high = std::max(range.high, center + radius);
 }
 float extent(const ShadowRange& range) {
     return std::max(range.high - range.low, kMinExtent);
@@ -86,9 +86,9 @@ view_from_sun(std::uint32_t record, const Vec3& axis, std::span<const ShadowBall
     ShadowRange t;
     ShadowRange depth;
     for (const ShadowBall& ball : balls) {
-        grow(s, glm::dot(ball.middle, view.right), ball.radius);
-        grow(t, glm::dot(ball.middle, view.up), ball.radius);
-        grow(depth, glm::dot(ball.middle, axis), ball.radius);
+        grow(s, glm::dot(ball.center, view.right), ball.radius);
+        grow(t, glm::dot(ball.center, view.up), ball.radius);
+        grow(depth, glm::dot(ball.center, axis), ball.radius);
     }
     view.ranges = {s, t, depth};
     if (!balls.empty()) {
@@ -108,10 +108,10 @@ ParticleShadowView view_from_spot(const ShadowedLight& spot, std::span<const Sha
     ParticleShadowView view;
     set_axes(view, spot.axis, spot.right);
     view.origin = spot.position;
-    view.reach = spot.radius;
+    view.spot_range = spot.radius;
     ShadowRange depth;
     for (const ShadowBall& ball : balls) {
-        const float ahead = glm::dot(ball.middle - spot.position, spot.axis);
+        const float ahead = glm::dot(ball.center - spot.position, spot.axis);
         if (ahead + ball.radius > 0 && ahead - ball.radius < spot.radius) {
             grow(depth, ahead, ball.radius);
         }
@@ -178,10 +178,10 @@ void ParticleShadowEffect::request_views(FrameData& frame) {
     }
     light = in_spot ? kInSpotlight : kInSunlight;
     for (const ParticleInstance& instance : sprites->instances) {
-        const std::uint32_t number = instance.look_and_share >> 16;
+        const std::uint32_t number = instance.look_and_life >> 16;
         const LookRecord& look = sprites->looks[number];
-        const ShadowBall ball = {instance.position, reach_of(instance, look)};
-        const float sum = ball.middle.x + ball.middle.y + ball.middle.z + ball.radius;
+        const ShadowBall ball = {instance.position, corner_radius(instance, look)};
+        const float sum = ball.center.x + ball.center.y + ball.center.z + ball.radius;
         if (!can_cast(look) || ball.radius <= 0 || !std::isfinite(sum)) {
             continue;
         }
@@ -235,7 +235,7 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
             program.set("light_up", view.up);
             program.set("light_axis", view.axis);
             program.set("origin", view.origin);
-            program.set("reach", view.reach);
+            program.set("spot_range", view.spot_range);
             device.bind_storage(kRangesBinding, ranges);
         };
         begin(*find_ranges);

@@ -27,9 +27,9 @@ namespace limn {
 // Shadow. The map fits what casts. Each particle is a slab as thick as its diameter that faces the
 // light; the tint of the shadow is the mean along each ray.
 
-/// What casts: a ball about a particle [m].
+/// What casts a shadow: a ball about a particle [m].
 struct ShadowBall {
-    Vec3 middle;
+    Vec3 center;
     float radius = 0;
 };
 
@@ -46,7 +46,7 @@ struct ParticleShadowView {
     Vec3 up = {0, 1, 0};                  ///< unit, along its t
     Vec3 axis = {0, 0, -1};               ///< unit, where the light goes
     Vec3 origin = {0, 0, 0};              ///< of depths
-    float reach = -1;                     ///< of a spot [m]; < 0: the sun
+    float spot_range = -1;                ///< of a spot [m]; < 0: the sun
     std::array<ShadowRange, 3> ranges{};  ///< of s (the sun's), t (likewise) and depth
 };
 

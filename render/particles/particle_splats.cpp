@@ -53,8 +53,8 @@ float brightest_of(const LookRecord& look) {
 
 const gpu::Program* begin_particle_splats(
     ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest) {
-    const float share = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
-    splats.max_amount = std::max(std::min(kMaxSteps, share) - 1, 1.0f);  // rounding may add one
+    const float largest = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
+    splats.max_amount = std::max(std::min(kMaxSteps, largest) - 1, 1.0f);  // rounding may add one
     splats.unit = brightest > 0 ? splats.max_amount / brightest : 1;
     const IVec2 size = view.size();
     const std::size_t words =

@@ -20,7 +20,7 @@ struct GpuParticlePool;
 // Optimization", 2021). Each adds its light to integer sums of the pixels that it covers, so that
 // the image does not depend on the order; then the sums are added to the radiance. What is between
 // two integers is rounded to either, at random by its distance: a million faint ones count in full.
-// A unit of the sums is so large that all points together fit, even at one place.
+// A unit of the sums is so large that all points together fit, even at one pixel.
 
 struct ParticleSplats {
     ProgramVariants splat;

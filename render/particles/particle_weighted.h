@@ -12,8 +12,8 @@ class Program;
 // Transparency that needs no order (McGuire and Bavoil, "Weighted Blended Order-Independent
 // Transparency", 2013): the colors of all layers at a pixel are averaged by opacity times a weight
 // that falls with the distance, and cover what is behind by their exact product of transmittances.
-// A single layer is exact, and so is what is seen through all of them; among layers the nearer one
-// wins by weight alone, so a nearly opaque one still lets those behind it show through.
+// A single layer is exact, and so is what is visible through all of them; among layers the nearer
+// one wins by weight alone, so a nearly opaque one still lets those behind it show through.
 //
 // The weight is exp(-kWeightFall t), t = 0 .. 1 from the nearest to the farthest particle: the
 // transmittance in front of a layer of an evenly filled cloud of that optical depth. So it depends

@@ -19,7 +19,7 @@ struct RibbonPoint {
     Vec3 position;
     float u = 0;            ///< texture coordinate along the ribbon
     Vec3 span = {0, 0, 0};  ///< from edge to edge; 0: faces the camera
-    float share = 0;        ///< where on the look's curves
+    float curve_at = 0;     ///< position on the look's curves, 0 .. 1
 };
 
 /// Points of all ribbons. A sharp turn is there twice: the segment between is its join, while those
@@ -47,8 +47,8 @@ void append_trail(
 void append_births(
     const Trail& trail, const ParticlePool& pool, float back, const Vec3* head, RibbonList& list);
 
-/// Appends a beam as it is at `alpha` between the steps and at `time`, with its branches, which
-/// take on where they leave it on the look's curves and go on to their ends.
+/// Appends a beam as it is at `alpha` between the steps and at `time`, with its branches, whose
+/// positions on the look's curves go on from where they leave it to 1 at their ends.
 void append_beam(
     const Beam& beam, const BeamState& state, Entity entity, float alpha, double time,
     RibbonList& list);

@@ -2,7 +2,7 @@
 //   SOFT  some fade where they meet a surface
 //   SIX_WAY  some have images of the light from six sides
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
-//   IN_WATER  seen from above, before the water is drawn over it
+//   IN_WATER  visible from above, before the water is drawn over it
 //   VEILED  only what is behind the blended surfaces of the view, or only what is not
 // Techniques: particle.light-source-render, particle.weighted-blended
 #version 450
@@ -38,7 +38,7 @@ layout(location = 1) out float opacity;
 const float kMaxOpticalDepth = 4.0;  // that is undone: half floats hold what is 55 times as bright
 
 // What undoes the part behind the particle of the absorption down to the ground, which the water pass applies.
-// `room`: to the ground along the view axis [m]. The way in the water is that of light refracted by a flat surface.
+// `room`: to the ground along the view axis [m]. The path in the water is that of light refracted by a flat surface.
 vec3 undone_absorption(float room) {
     vec3 ray = view_ray(gl_FragCoord.xy);
     float sine = length(ray.xz) / length(ray) / medium.w;
@@ -55,13 +55,13 @@ void main() {
         discard;
     }
 #endif
-    vec2 place = sprite_place(corner);
-    vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
+    vec2 position = sprite_position(corner);
+    vec4 s = sprite_at(position, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
     vec3 shown = light.rgb * s.rgb;
 #ifdef SIX_WAY
     if (positive_side[0].w >= 0.0) {
         vec4 n = book_at(
-            negative_lights, place, frames, next_frame.xy, blend.z, positive_side[0].w, next_frame.zw);
+            negative_lights, position, frames, next_frame.xy, blend.z, positive_side[0].w, next_frame.zw);
         shown = glow_color * n.a;
         for (int i = 0; i < 3; ++i) {
             shown += s[i] * positive_side[i].rgb + n[i] * negative_side[i];

@@ -7,8 +7,8 @@
 #include "lib/sprite.glsl"
 
 void main() {
-    vec2 place = sprite_place(corner);
-    vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
+    vec2 position = sprite_position(corner);
+    vec4 s = sprite_at(position, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
     if (light.a * s.a * blend.x <= 1.0) {  // blend.x: 1 / the least opacity that counts
         discard;
     }

@@ -10,22 +10,22 @@ layout(binding = 4) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 radiance;
 
-const float kAlike = 0.1;  // difference of distances up to which texels are of one surface, as a share
+const float kAlike = 0.1;  // difference of distances up to which texels are of one surface, as a fraction
 const float kOnPlane = 0.02;  // how far off the plane of the four a pixel of their surface is, likewise
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     float here = texelFetch(scene_depth, at, 0).r;
     vec2 size = vec2(textureSize(layer, 0));
-    vec2 place = 0.5 * gl_FragCoord.xy;  // [texels]
-    vec2 corner = clamp(floor(place - 0.5), vec2(0.0), size - 2.0);
+    vec2 texel = 0.5 * gl_FragCoord.xy;  // [texels]
+    vec2 corner = clamp(floor(texel - 0.5), vec2(0.0), size - 2.0);
     vec4 four = textureGather(layer_depth, (corner + 1.0) / size);  // upper left, upper right, lower right, lower left
 
-    // Depths are near / distance, so that their differences are shares of distances, too.
+    // Depths are near / distance, so that their differences are fractions of distances, too.
     vec4 apart = abs(four - here);
     float nearest = min(min(apart.x, apart.y), min(apart.z, apart.w));
     float farthest = max(max(apart.x, apart.y), max(apart.z, apart.w));
-    vec2 right = clamp(place - 0.5 - corner, 1e-3, 1.0 - 1e-3);  // all texels count, should one of them alone be left
+    vec2 right = clamp(texel - 0.5 - corner, 1e-3, 1.0 - 1e-3);  // all texels count, should one of them alone be left
     vec4 weights = vec4(1.0 - right.x, right.x, right.x, 1.0 - right.x) * vec4(right.yy, 1.0 - right.yy);
     float off_plane = abs(dot(weights, four) - here) + abs(four.x - four.y + four.z - four.w);
     bool is_even = farthest <= kAlike * here || off_plane <= kOnPlane * here;

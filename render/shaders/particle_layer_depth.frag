@@ -1,4 +1,4 @@
-// Of each four pixels the depth in their middle where they are of one surface, else the nearest and the farthest, in turn
+// Of each four pixels the depth at their center where they are of one surface, else the nearest and the farthest, in turn
 // (render/particles/particle_layer.h).
 #version 450
 

@@ -1,5 +1,5 @@
 // Fits the maps of particle shadows to what the GPU has moved (render/particles/particle_shadow_pass.h). Definition:
-//   RECORD  the rows of the maps, by one invocation; else the ranges of places of an emitter's particles
+//   RECORD  the rows of the maps, by one invocation; else the ranges of positions of an emitter's particles
 // Techniques: particle.gpu-shadow
 #version 450
 #include "lib/particle.glsl"
@@ -16,7 +16,7 @@ uniform vec3 light_right;  // unit, along the map's columns and rows, and where 
 uniform vec3 light_up;
 uniform vec3 light_axis;
 uniform vec3 origin;  // of depths
-uniform float reach;  // of a spot [m]; < 0: the sun
+uniform float spot_range;  // of a spot [m]; < 0: the sun
 
 uint ordered(float x) {
     uint bits = floatBitsToUint(x);
@@ -31,7 +31,7 @@ layout(std430, binding = 1) writeonly buffer Record {
     vec4 rows[];  // ParticleShadowRecord
 };
 layout(binding = 31) uniform samplerBuffer particle_shadow;  // of a spot all but what follows from depths
-uniform float border;      // around what casts, as a share of the map
+uniform float border;      // around what casts, as a fraction of the map
 uniform float min_extent;  // [m]
 
 // Row of an affine map from low to high along `axis`.
@@ -47,7 +47,7 @@ void main() {
     vec3 high = vec3(from_ordered(highest[0]), from_ordered(highest[1]), from_ordered(highest[2]));
     bool none = low.z > high.z;
     vec3 rim = border * max(high - low, vec3(min_extent));
-    bool is_spot = reach >= 0.0;
+    bool is_spot = spot_range >= 0.0;
     vec4 row3 = is_spot ? texelFetch(particle_shadow, 3) : vec4(0.0, 0.0, 0.0, 1.0);
     rows[0] = is_spot ? texelFetch(particle_shadow, 0) : row_along(light_right, low.x - rim.x, high.x + rim.x);
     rows[1] = is_spot ? texelFetch(particle_shadow, 1) : row_along(light_up, low.y - rim.y, high.y + rim.y);
@@ -65,13 +65,13 @@ void main() {
     for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
         Particle p = read_particle(int(i));
         float radius = 0.7072 * size_of(p, look_texel(p.look, 0u));
-        vec3 way = p.position - origin;
-        vec3 place = vec3(dot(p.position, light_right), dot(p.position, light_up), dot(way, light_axis));
-        bool casts = !p.is_dead && radius > 0.0 && abs(place.x + place.y + place.z + radius) < 1e20;
-        bool lit = reach < 0.0 || (place.z + radius > 0.0 && place.z - radius < reach);
+        vec3 offset = p.position - origin;
+        vec3 position = vec3(dot(p.position, light_right), dot(p.position, light_up), dot(offset, light_axis));
+        bool casts = !p.is_dead && radius > 0.0 && abs(position.x + position.y + position.z + radius) < 1e20;
+        bool lit = spot_range < 0.0 || (position.z + radius > 0.0 && position.z - radius < spot_range);
         if (casts && lit) {
-            low = min(low, place - radius);
-            high = max(high, place + radius);
+            low = min(low, position - radius);
+            high = max(high, position + radius);
         }
     }
     if (low.z <= high.z) {

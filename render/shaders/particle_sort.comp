@@ -50,8 +50,8 @@ uint depth_key(float depth) {
 }
 
 // Along the view, rounded as on the CPU: equally far particles must stay equal.
-float depth_of(vec3 place) {
-    vec3 away = place - eye;
+float depth_of(vec3 position) {
+    vec3 away = position - eye;
     precise float depth = away.x * forward.x + away.y * forward.y + away.z * forward.z;
     return depth;
 }
@@ -66,9 +66,9 @@ void main() {
     uint key = kPad;
     if (i < count) {
         uint word = kParticleWords * i;
-        vec3 place = uintBitsToFloat(uvec3(instances[word], instances[word + 1u], instances[word + 2u]));
+        vec3 position = uintBitsToFloat(uvec3(instances[word], instances[word + 1u], instances[word + 2u]));
         bool is_dead = unpackHalf2x16(instances[word + 5u]).y < 0.0;
-        key = is_dead ? kDead : min(depth_key(depth_of(place)), kDead - 1u);
+        key = is_dead ? kDead : min(depth_key(depth_of(position)), kDead - 1u);
     }
     if (i < size) {
         entries[i] = uvec2(key, i);

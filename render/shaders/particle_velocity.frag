@@ -17,8 +17,8 @@ layout(location = 6) in vec3 previous_clip;
 layout(location = 0) out vec2 velocity;
 
 void main() {
-    vec2 place = sprite_place(corner);
-    vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
+    vec2 position = sprite_position(corner);
+    vec4 s = sprite_at(position, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
     float fade = 1.0;
 #ifdef SOFT
     float depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;

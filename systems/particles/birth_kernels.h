@@ -25,7 +25,7 @@ struct BirthColumns {
 
 /// Writes the births first .. first + count - 1 of `run`, numbered from `number` on. Returns how
 /// many: fewer where the next one's position or life is not finite or, of those that fly away from
-/// a shape's middle, just there, and where no vector is full; draw_birth continues.
+/// a shape's center, just there, and where no vector is full; draw_birth continues.
 std::size_t draw_births(
     const BirthDraw& draw, const BirthRun& run, std::uint32_t first, std::size_t count,
     std::uint64_t number, const BirthColumns& out);

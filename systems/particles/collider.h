@@ -32,7 +32,8 @@ struct BoxCollider {
 
 /// Solid below the bilinear surface over a grid: terrain, or water sampled by the caller. Point
 /// (i, j) has index j * width + i and is at origin + (i cell.x, heights[index], j cell.y). Nothing
-/// beyond its edges: who comes from there under the surface is not held, but pushed up later. The
+/// beyond its edges: a particle that enters under the surface from there is not stopped, but pushed
+/// up later. The
 /// normal is that of the bilinear surface: differences across the cell.
 struct HeightCollider {
     Vec3 origin = Vec3(0);
@@ -51,35 +52,35 @@ using Collider =
     std::variant<PlaneCollider, SphereCollider, BoxCollider, HeightCollider, MeshCollider>;
 
 struct Contact {
-    float share = 0;        ///< of the way, 0 .. 1
+    float fraction = 0;     ///< of the path, 0 .. 1
     Vec3 point = Vec3(0);   ///< the particle's center then
-    Vec3 normal = Vec3(0);  ///< unit, against the way
+    Vec3 normal = Vec3(0);  ///< unit, against the motion
 };
 
-/// Where a particle of radius `radius` >= 0 [m] on the way from `from` to `to` first touches.
+/// Where a particle of radius `radius` >= 0 [m] that moves from `from` to `to` first touches.
 /// Exact for points. With a radius: planes and spheres grow by it, exactly; boxes keep sharp
 /// corners; height fields are raised by radius / cos(slope) in each cell; of meshes, the plane of
 /// the triangle that the center would meet is moved along its normal (found up to 75 degrees from
 /// the normal: at more grazing angles, and at edges, the center comes nearer, but never crosses).
-/// A cell of a height field is met exactly where the quadratic of its bilinear patch along the way
-/// vanishes. None if the way starts inside a solid, has no length or is not finite.
+/// A cell of a height field is met exactly where the quadratic of its bilinear patch along the path
+/// vanishes. None if the path starts inside a solid, has no length or is not finite.
 [[nodiscard]] std::optional<Contact>
 first_contact(const Collider& collider, const Vec3& from, const Vec3& to, float radius = 0);
 
-/// The way out of a solid.
+/// How to leave a solid.
 struct Escape {
     Vec3 point = Vec3(0);   ///< on the surface grown by the radius
     Vec3 normal = Vec3(0);  ///< unit, outward
     float depth = 0;        ///< [m], > 0; vertical for height fields
 };
 
-/// To the nearest place outside; straight up for height fields and from the center of a sphere.
+/// To the nearest position outside; straight up for height fields and from the center of a sphere.
 /// None if the particle is outside, or inside by no more than `tolerance` [m]. Meshes have no
 /// inside.
 [[nodiscard]] std::optional<Escape>
 find_escape(const Collider& collider, const Vec3& position, float radius, float tolerance = 0);
 
-/// That place, or `position` if it is outside. Twice is once, but for rounding.
+/// That position, or `position` if it is outside. Idempotent but for rounding.
 [[nodiscard]] Vec3 push_out(const Collider& collider, const Vec3& position, float radius = 0);
 
 }  // namespace limn

@@ -93,7 +93,7 @@ void add_births(const EmitterStep& step, float dt, Random random, const StepCont
     const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
     find_births(emitter, step.rate_scale, dt, room, random, pool.clock, births);
     add_particles(
-        emitter, step.place, step.motion.step, surface_of(step), context.seed, step.row.subject(),
+        emitter, step.pose, step.motion.step, surface_of(step), context.seed, step.row.subject(),
         births, pool);
 }
 
@@ -114,9 +114,9 @@ EmitterStep
 make_emitter_step(const EmitterRow& row, const MotionStep& motion, const StepContext& context) {
     EmitterStep step;
     step.row = row;
-    step.place = place_of(*row.now, *row.previous);
+    step.pose = emitter_pose(*row.now, *row.previous);
     step.motion = motion;
-    step.rate_scale = seen_share(*row.emitter, row.now->world, context.eye);
+    step.rate_scale = screen_coverage(*row.emitter, row.now->world, context.eye);
     return step;
 }
 
@@ -161,8 +161,8 @@ EmitterSteps find_emitter_steps(
             make_emitter_step(row, find_emitter_motion(motion, wrap, now.world, context), context);
         if (surface != nullptr) {
             step.surface = find_surface_source(
-                *surface, mesh, entity, step.place, surfaces.meshes, surfaces.poses,
-                surfaces.morphs, *surfaces.assets);
+                *surface, mesh, entity, step.pose, surfaces.meshes, surfaces.poses, surfaces.morphs,
+                *surfaces.assets);
         }
         steps.others.push_back(std::move(step));
     });

@@ -76,7 +76,7 @@ inline constexpr std::uint32_t kNoParent = 0xffffffff;
 /// An emitter with all that its step needs, and what comes of that.
 struct EmitterStep {
     EmitterRow row{};
-    EmitterPlace place{};
+    EmitterPose pose{};
     MotionStep motion{};
     SurfaceSource surface{};
     float rate_scale = 1;

@@ -52,8 +52,8 @@ Box box_of(const Triangle& corners) {
     return box;
 }
 
-int cell_of(float place, float low, float cell, int side) {
-    const float at = cell > 0 ? (place - low) / cell : 0;
+int cell_of(float coordinate, float low, float cell, int side) {
+    const float at = cell > 0 ? (coordinate - low) / cell : 0;
     return static_cast<int>(std::clamp(at, 0.0f, static_cast<float>(side - 1)));
 }
 
@@ -217,8 +217,8 @@ std::optional<Vec3> draw_in_volume(
     const MeshVolume& volume, std::span<const Vec3> positions,
     std::span<const std::uint32_t> indices, Random& random) {
     for (int i = 0; i < kTries; ++i) {
-        const double share = volume.sums.back() * static_cast<double>(random.uniform());
-        const auto found = std::upper_bound(volume.sums.begin(), volume.sums.end(), share);
+        const double wanted = volume.sums.back() * static_cast<double>(random.uniform());
+        const auto found = std::upper_bound(volume.sums.begin(), volume.sums.end(), wanted);
         const auto last = static_cast<std::ptrdiff_t>(volume.sums.size()) - 1;
         const auto cell = static_cast<std::size_t>(std::min(found - volume.sums.begin(), last));
         const std::size_t side = static_cast<std::size_t>(volume.side);

@@ -10,12 +10,12 @@
 
 namespace limn {
 
-// Points within a closed mesh, even by volume, by rejection. The mesh is seen from above through a
-// grid of cells; over each cell a box reaches from the lowest to the highest of its triangles. A
+// Points within a closed mesh, even by volume, by rejection. The mesh is projected vertically onto
+// a grid of cells; over each cell a box extends from the lowest to the highest of its triangles. A
 // point is drawn evenly from all boxes, and kept if it is inside: if the triangles above it
 // enclose it (nonzero winding along +y, so that bodies that overlap are one). A column whose
 // triangles do not close is left out. An edge that two triangles share belongs to exactly one of
-// them, as seen from above, so that a closed mesh is closed in every column.
+// them, in that projection, so that a closed mesh is closed in every column.
 //
 // Filling takes a pass over the triangles, a point some tens of nanoseconds per triangle over its
 // cell: meshes that are deformed anew in each step need no hierarchy.

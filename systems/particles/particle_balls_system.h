@@ -17,7 +17,7 @@ namespace limn {
 // Westermann, "UberFlow", 2004): they are sorted by the cells of a grid as wide as a ball, so that
 // whoever touches a ball is in one of the 27 cells around it. Pairs are moved apart by half of
 // their overlap each, pair by pair, a few times, with walls in between; then they part by their
-// share of the speed at which they met (Mueller et al., "Detailed Rigid Body Simulation with
+// fraction of the speed at which they met (Mueller et al., "Detailed Rigid Body Simulation with
 // Extended Position Based Dynamics", 2020). So heaps rest, and overlaps do not explode. Momentum is
 // kept; of two that meet, with a bounce of 1, energy too.
 
@@ -28,7 +28,7 @@ struct BallPair {
 };
 
 /// Pairs nearer than 2 `radius` [m], each once, at most 64 for each particle as its first. In an
-/// order that depends on the places alone.
+/// order that depends on the positions alone.
 void find_ball_pairs(const ParticlePool& pool, float radius, std::vector<BallPair>& pairs);
 
 /// What holds the balls of an emitter. Of its meshes, planes and so on, not of water.

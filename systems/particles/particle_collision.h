@@ -1,7 +1,7 @@
 #pragma once
 
 #include "systems/particles/collider.h"
-#include "systems/particles/collider_reach.h"
+#include "systems/particles/collider_bounds.h"
 
 #include <cstdint>
 #include <span>
@@ -15,8 +15,8 @@ namespace limn {
 
 /// Response of a surface, each 0 .. 1, clamped (table 8.1).
 struct SurfaceResponse {
-    float bounce = 0.3f;    ///< share of the normal speed kept, outward; "bump"
-    float friction = 0.8f;  ///< share of the tangential velocity *kept*: 1 is frictionless
+    float bounce = 0.3f;    ///< fraction of the normal speed kept, outward; "bump"
+    float friction = 0.8f;  ///< fraction of the tangential velocity *kept*: 1 is frictionless
 };
 
 /// friction v_t - bounce v_n for a velocity toward the surface; others are unchanged. Never faster
@@ -50,7 +50,7 @@ struct CollisionResult {
     int contacts = 0;
 };
 
-/// Moves a particle by velocity * dt, dt >= 0 [s], responding to each contact on the way. Each
+/// Moves a particle by velocity * dt, dt >= 0 [s], responding to each contact along the path. Each
 /// straight piece has been tested against all colliders, so that a particle that is outside stays
 /// outside, at any speed and however thin the wall. One that starts inside a solid is pushed out,
 /// and loses its speed into it, but does not bounce. If position, velocity or dt is not finite, it
@@ -85,13 +85,13 @@ struct ParticleHit {
 /// Colliders and what is needed to leave out quickly those that a particle cannot touch.
 struct ColliderSet {
     std::vector<Collider> colliders{};
-    std::vector<ColliderReach> reach{};  ///< of each
+    std::vector<ColliderBounds> bounds{};  ///< of each
 };
 
 /// Call it when colliders or heights have changed: takes as long as reading all heights.
 void set_colliders(ColliderSet& set, std::span<const Collider> colliders);
 
-/// As move_with_collisions, for each particle, along the given way first. Those that touch nothing
+/// As move_with_collisions, for each particle, along the given path first. Those that touch nothing
 /// keep position and velocity. Writes each mark, and appends the hits in the order of particles,
 /// for each as they happen; touches slower than rest_speed are no hits. A particle that starts
 /// inside a solid counts as hit by the actions Stick and Kill only.

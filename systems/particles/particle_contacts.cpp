@@ -61,15 +61,16 @@ void begin_paths(ParticlePool& pool, std::uint32_t first, std::uint32_t count, P
         .marks = std::span(paths.marks).first(count),
         .first = first};
     int axis = 0;
-    for (const std::span<float> place : {paths.particles.x, paths.particles.y, paths.particles.z}) {
-        std::copy(place.begin(), place.end(), paths.start[axis++].begin());
+    for (const std::span<float> axis_values :
+         {paths.particles.x, paths.particles.y, paths.particles.z}) {
+        std::copy(axis_values.begin(), axis_values.end(), paths.start[axis++].begin());
     }
     for (std::size_t i = 0; i < count && first + i < pool.stuck.size(); ++i) {
         paths.marks[i] = pool.stuck[first + i] != 0 ? kParticleStuck : 0;
     }
 }
 
-/// Ends the ways of those that would enter water at its surface.
+/// Ends the paths of those that would enter water at its surface.
 void stop_at_water(
     const Paths& paths, std::span<const ParticleWater> waters, std::vector<Entry>& entries) {
     for (std::uint32_t i = 0; i < paths.particles.x.size(); ++i) {
@@ -100,7 +101,7 @@ void hit_water(
         if (collision.action == CollisionAction::Bounce) {
             after = respond(velocity, contact.normal, {collision.bounce, collision.friction});
         }
-        const float rest = (1 - contact.share) * dt;
+        const float rest = (1 - contact.fraction) * dt;
         paths.move(i, contact.point + kDry * contact.normal + rest * after, after);
         paths.marks[i] = collision.action == CollisionAction::Kill    ? kParticleKilled
                          : collision.action == CollisionAction::Stick ? kParticleStuck
@@ -159,7 +160,7 @@ find_particle_waters(WaterQuery& waters, const Query<const ParticleCollider>& co
     return found;
 }
 
-void add_dents(
+void add_ripples(
     std::span<const ParticleHit> hits, const ParticleSurroundings& around,
     Query<RippleState>& ripples) {
     const std::size_t solids = around.solid->colliders.size();
@@ -170,7 +171,7 @@ void add_dents(
         const ParticleWater& water = around.waters[hit.collider - solids];
         RippleState* const state = ripples.find<RippleState>(water.surface.entity);
         if (state != nullptr && water.ripple > 0) {
-            state->impulses.push_back(make_dent(water, hit.point, hit.velocity));
+            state->impulses.push_back(make_ripple_impulse(water, hit.point, hit.velocity));
         }
     }
 }

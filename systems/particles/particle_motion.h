@@ -21,7 +21,7 @@ inline constexpr float kMaxParticleStep = 0.1f;
     std::span<const Force> forces, float dt, const FrameTime& time);
 
 /// The same about another emitter, at `world`.
-void turn_motion(MotionStep& motion, const Affine& world);
+void orient_motion(MotionStep& motion, const Affine& world);
 
 /// Moves particles by a step; returns how many have reached the end of life.
 std::size_t move_block(const MotionStep& motion, const ParticleBlock& block);

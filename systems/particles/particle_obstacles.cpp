@@ -60,9 +60,9 @@ Axes obstacle_axes(const Affine& world) {
     for (int axis = 0; axis < 3; ++axis) {
         Vec3 unit(0);
         unit[axis] = 1;
-        const Vec3 reach = transform_vector(world, unit);
-        axes.length[axis] = glm::length(reach);
-        axes.unit[axis] = normalize_or(reach, unit);
+        const Vec3 axis_in_world = transform_vector(world, unit);
+        axes.length[axis] = glm::length(axis_in_world);
+        axes.unit[axis] = normalize_or(axis_in_world, unit);
     }
     return axes;
 }

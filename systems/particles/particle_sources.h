@@ -24,7 +24,7 @@ struct ParticleSpawn {
 
 /// Appends to `spawns` the births in a step of the parent's particles, which have moved but not
 /// lost their dead, in their order; `hits` by index. At most `room`; returns how many more there
-/// would have been. Places are on the straight line along the last velocity.
+/// would have been. Positions are on the straight line along the last velocity.
 std::uint64_t find_spawns(
     const ParticleSource& source, const ParticleEmitter& emitter, const ParticlePool& parent,
     std::span<const ParticleHit> hits, float dt, std::size_t room, Random& random,

@@ -43,7 +43,7 @@ class MotionCache {
             return step_;
         }
         if (depends_on_transform()) {
-            turn_motion(step_, row.now->world);
+            orient_motion(step_, row.now->world);
         }
         set_wrap(step_, row.wrap, context_);
         return step_;
@@ -175,7 +175,7 @@ void collect_hits(
     for (const MovedBlock& block : blocks) {
         std::vector<ParticleHit>& hits = emitters[block.emitter].hits;
         hits.insert(hits.end(), block.hits.begin(), block.hits.end());
-        add_dents(block.hits, surroundings, ripples);
+        add_ripples(block.hits, surroundings, ripples);
     }
 }
 
@@ -222,8 +222,8 @@ void add_all_spawns(const EmitterSteps& steps, const StepContext& context) {
             const EmitterStep& child = steps.others[steps.children[i]];
             ParticlePool& pool = *child.row.pool;
             add_spawns(
-                *child.row.emitter, child.place.now, child.spawns, context.seed,
-                child.row.subject(), pool);
+                *child.row.emitter, child.pose.now, child.spawns, context.seed, child.row.subject(),
+                pool);
             pool.fresh = child.spawns.size();
         }
     });

@@ -48,7 +48,7 @@ PointMassForces find_forces_on(
     return found;
 }
 
-/// Turns local -z along the flight, by the shortest way.
+/// Turns local -z along the flight, by the shortest rotation.
 Quat aimed(const Quat& turn, const Vec3& velocity) {
     if (!(glm::length(velocity) > kMinPointSpeed)) {
         return turn;
@@ -110,13 +110,13 @@ void update_point_masses(
         }
         PointMass next = step_point_mass(body, forces, dt);
         const Vec3 mean = 0.5f * (body.velocity + next.velocity);
-        Vec3 place = transform.position + mean * dt;
+        Vec3 position = transform.position + mean * dt;
         if (collision != nullptr && !solid.empty()) {
             const CollisionResult moved = move_with_collisions(
                 transform.position, mean, dt, solid,
                 {.bounce = collision->bounce, .friction = collision->friction},
                 point_options(*collision));
-            place = moved.position;
+            position = moved.position;
             if (moved.contacts > 0) {
                 next.velocity = moved.velocity;
                 if (collision->action == CollisionAction::Kill) {
@@ -128,12 +128,12 @@ void update_point_masses(
                 }
             }
         }
-        if (!is_finite(place) || !is_finite(next.velocity)) {
+        if (!is_finite(position) || !is_finite(next.velocity)) {
             body.velocity = Vec3(0);
             return;
         }
         body = next;
-        transform.position = place;
+        transform.position = position;
         if (body.aim) {
             transform.rotation = aimed(transform.rotation, body.velocity);
         }

@@ -39,7 +39,7 @@ struct PointMassForces {
 step_point_mass(const PointMass& body, const PointMassForces& forces, float dt);
 
 /// A step of all point masses, by kMaxParticleStep at most: they are there in the next step. Those
-/// whose mass, velocity or place is not finite stay and stop. After find_particle_obstacles.
+/// whose mass, velocity or position is not finite stay and stop. After find_particle_obstacles.
 void update_point_masses(
     Query<
         PointMass, Transform, Optional<const AirDrag>, Optional<const VariableMass>,

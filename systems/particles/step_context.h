@@ -11,7 +11,7 @@
 #include "ecs/param_group.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 
 #include <cstdint>
 #include <vector>
@@ -43,7 +43,7 @@ struct StepContext {
     std::uint64_t seed = 0;     ///< of all random numbers
     Vec3 wind = {0, 0, 0};      ///< [m/s]
     std::vector<Force> forces;  ///< of all force fields
-    EmitterEye eye{};
+    Viewpoint eye{};
 };
 [[nodiscard]] StepContext find_step_context(const ParticleEnvironment& environment);
 

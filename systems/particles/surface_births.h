@@ -16,7 +16,7 @@
 
 namespace limn {
 
-// Places of births on and in meshes, on paths and pieces of meshes (ParticleSurface). A mesh is
+// Positions of births on and in meshes, on paths and pieces of meshes (ParticleSurface). A mesh is
 // taken as it is deformed at the end of the step; its entity moves during it. Points of a triangle
 // are even by area: (1 - sqrt(u)) a + sqrt(u) (1 - v) b + sqrt(u) v c (Turk 1990). A step with
 // births takes about 60 us for a skinned mesh of 3000 triangles.
@@ -26,7 +26,7 @@ struct SurfaceSource {
     const ParticleSurface* surface = nullptr;  ///< null: none
     MeshSource mesh{};
     const PathData* path = nullptr;
-    EmitterPlace place{};  ///< of the mesh or path
+    EmitterPose pose{};  ///< of the mesh or path
 };
 
 /// The entities that have a mesh, as a parameter of systems.
@@ -34,10 +34,10 @@ using MeshQuery = Query<
     const MeshInstance, const WorldTransform, const PreviousWorldTransform,
     Optional<const Deformed>, Optional<const DeformerState>, Optional<const SurfaceBindingState>>;
 
-/// `mesh` may be null; `emitter` is the entity with the ParticleSurface and `place` its place.
+/// `mesh` may be null; `emitter` is the entity with the ParticleSurface and `pose` its pose.
 [[nodiscard]] SurfaceSource find_surface_source(
     const ParticleSurface& surface, const ParticleMesh* mesh, Entity emitter,
-    const EmitterPlace& place, const MeshQuery& meshes, const Query<const Pose>& poses,
+    const EmitterPose& pose, const MeshQuery& meshes, const Query<const Pose>& poses,
     const Query<const MorphWeights>& morphs, const Assets& assets);
 
 /// What is needed of a source to find points: keep it for its memory.
@@ -60,7 +60,7 @@ struct SurfacePoint {
     std::uint32_t piece = 0;    ///< which it is of the pieces
 };
 
-/// For birth `number` at the share `at` of a step of length `dt` [s]. The table must be filled.
+/// For birth `number` at the fraction `at` of a step of length `dt` [s]. The table must be filled.
 /// None where no point of a volume was found (draw_in_volume).
 [[nodiscard]] std::optional<SurfacePoint> surface_point(
     const SurfaceSource& source, const SurfaceTable& table, std::uint64_t number, float at,

@@ -29,8 +29,8 @@ void push_point(TrailState& state, TrailStrand& strand, const TrailPoint& point)
         strand.first = (strand.first + 1) % state.capacity;
         --strand.count;
     }
-    const std::uint32_t place = (strand.first + strand.count) % state.capacity;
-    state.points[std::size_t{strand.slot} * state.capacity + place] = point;
+    const std::uint32_t position = (strand.first + strand.count) % state.capacity;
+    state.points[std::size_t{strand.slot} * state.capacity + position] = point;
     ++strand.count;
     ++strand.number;
 }
@@ -39,16 +39,16 @@ TrailPoint mix_points(const TrailPoint& a, const TrailPoint& b, float t) {
     return {a.position + (b.position - a.position) * t, 0, a.span + (b.span - a.span) * t};
 }
 
-/// Leaves a point wherever the straight way from `a` to `b` is a spacing away from the last one.
+/// Leaves a point wherever the straight path from `a` to `b` is a spacing away from the last one.
 void walk(
     TrailState& state, TrailStrand& strand, float spacing, const TrailPoint& a, const TrailPoint& b,
     float age, float duration) {
-    const Vec3 way = b.position - a.position;
-    const float way2 = glm::dot(way, way);
+    const Vec3 path = b.position - a.position;
+    const float way2 = glm::dot(path, path);
     for (float from = 0; way2 > 0;) {
         const Vec3 last = trail_point(state, strand, strand.count - 1).position;
         const Vec3 offset = a.position - last;
-        const float along = glm::dot(offset, way);
+        const float along = glm::dot(offset, path);
         const float room = spacing * spacing - glm::dot(offset, offset);
         const float root = along * along + way2 * room;
         const float t = root >= 0 ? (std::sqrt(root) - along) / way2 : 2.0f;
@@ -150,15 +150,15 @@ bool extend_strand(
     TrailState& state, TrailStrand& strand, const Trail& trail, const TrailPoint& to, float dt) {
     const TrailPoint from = strand.head;
     const float spacing = trail_spacing(trail);
-    const Vec3 way = to.position - from.position;
-    const float length = glm::length(way);
+    const Vec3 path = to.position - from.position;
+    const float length = glm::length(path);
     if (!is_finite_point(to) || !(length <= std::min(trail.jump, kMaxStepPoints * spacing))) {
         strand.live = false;
         return false;
     }
     const Vec3 came = from.position - strand.before;
-    const bool smooth = glm::dot(came, way) > kSharpTurn * glm::length(came) * length;
-    const Vec3 bend = smooth ? 0.5f * (way - came) : Vec3(0);
+    const bool smooth = glm::dot(came, path) > kSharpTurn * glm::length(came) * length;
+    const Vec3 bend = smooth ? 0.5f * (path - came) : Vec3(0);
     const int parts = std::clamp(static_cast<int>(2 * length / spacing), 1, 64);
     TrailPoint a = from;
     for (int i = 1; i <= parts; ++i) {
@@ -180,8 +180,8 @@ void age_trail(TrailState& state, const Trail& trail, float dt) {
         strand.previous = strand.head;
         strand.head.age += strand.live ? 0 : dt;
         for (std::uint32_t i = 0; i < strand.count; ++i) {
-            const std::uint32_t place = (strand.first + i) % state.capacity;
-            state.points[std::size_t{strand.slot} * state.capacity + place].age += dt;
+            const std::uint32_t position = (strand.first + i) % state.capacity;
+            state.points[std::size_t{strand.slot} * state.capacity + position].age += dt;
         }
         const auto beyond = [&](std::uint32_t i) {
             const float behind = static_cast<float>(strand.count - 1 - i) * spacing;
@@ -203,7 +203,8 @@ void age_trail(TrailState& state, const Trail& trail, float dt) {
 
 void update_trails(
     Query<const Trail, TrailState> trails, Query<const ParticlePool> pools,
-    Query<const WorldTransform, const PreviousWorldTransform> places, Res<const FrameTime> time) {
+    Query<const WorldTransform, const PreviousWorldTransform> transforms,
+    Res<const FrameTime> time) {
     trails.each([&](Entity entity, const Trail& trail, TrailState& state) {
         if (trail.path == TrailPath::Births) {
             return;
@@ -218,8 +219,8 @@ void update_trails(
             if (const auto* const pool = pools.find<const ParticlePool>(followed)) {
                 follow_particles(state, trail, *pool, time->step);
             }
-        } else if (const auto* const now = places.find<const WorldTransform>(followed)) {
-            const Affine& previous = places.find<const PreviousWorldTransform>(followed)->world;
+        } else if (const auto* const now = transforms.find<const WorldTransform>(followed)) {
+            const Affine& previous = transforms.find<const PreviousWorldTransform>(followed)->world;
             follow_entity(state, trail, now->world, previous, time->step);
         }
     });

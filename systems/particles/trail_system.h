@@ -12,7 +12,7 @@ namespace limn {
 
 // Histories of positions that trails are drawn from (engine.trail). A point is left at every
 // spacing of the path, not at every step, and with its own age: so a trail is the same at every
-// frame rate. Between steps the path is a parabola through the last three places, which is
+// frame rate. Between steps the path is a parabola through the last three positions, which is
 // straightened where it turns sharply. Memory is reused: a trail in flight allocates nothing.
 
 /// Adds a TrailState to every Trail that lacks one. Before update_trails, with a sync point in
@@ -22,7 +22,8 @@ void add_trail_states(Query<const Trail, Without<TrailState>> trails, Commands c
 /// A step of all trails. After update_particles and update_transforms.
 void update_trails(
     Query<const Trail, TrailState> trails, Query<const ParticlePool> pools,
-    Query<const WorldTransform, const PreviousWorldTransform> places, Res<const FrameTime> time);
+    Query<const WorldTransform, const PreviousWorldTransform> transforms,
+    Res<const FrameTime> time);
 
 // ---- parts of the above ----
 

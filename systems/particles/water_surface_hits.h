@@ -24,18 +24,18 @@ struct ParticleWater {
 
 struct WaterContact {
     std::uint32_t water = 0;  ///< index
-    float share = 0;          ///< of the way, 0 .. 1
+    float fraction = 0;       ///< of the path, 0 .. 1
     Vec3 point = Vec3(0);     ///< on the surface, within 1 mm of height [m]
     Vec3 normal = Vec3(0);    ///< unit, up
 };
 
-/// Where the way `from` .. `to` first enters a water from above. None if it begins below: who is in
-/// the water has been there before. Waves whose crests are shorter than the way may be missed.
+/// Where the path from `from` to `to` first enters a body of water from above. None if it begins
+/// below the surface. Waves whose crests are shorter than the path may be missed.
 [[nodiscard]] std::optional<WaterContact>
 enter_water(std::span<const ParticleWater> waters, const Vec3& from, const Vec3& to);
 
-/// The dent that a hit with this velocity [m/s] leaves, in the water's local space.
+/// The ripple that a hit with this velocity [m/s] leaves, in the water's local space.
 [[nodiscard]] RippleImpulse
-make_dent(const ParticleWater& water, const Vec3& point, const Vec3& velocity);
+make_ripple_impulse(const ParticleWater& water, const Vec3& point, const Vec3& velocity);
 
 }  // namespace limn

@@ -300,7 +300,8 @@ TEST_CASE(
     CHECK(shown < 1900);
 }
 
-TEST_CASE("particle visibility: a streak out of view is seen as far as its speed makes it reach") {
+TEST_CASE(
+    "particle visibility: a streak whose center is out of view is drawn if it extends into it") {
     const Frustum frustum = make_frustum(Scene().look({0, 0, 5}, {0, 0, 0}).clip_from_world);
     const auto shown = [&](float x, float stretch, float speed) {
         ParticleInstance instance;

@@ -94,7 +94,7 @@ struct SeenScene : Scene {
             frame, emitter, world.get<const ParticleEmitter>(emitter),
             world.get<GpuParticles>(emitter), 0, std::nullopt,
             &world.get<const ParticleCollision>(emitter));
-        const SeenDepth seen = {
+        const PreviousDepth seen = {
             &depth, ring.push_value(make_view_block(camera, ClusterShape{}, LightList{}, false))};
         graph.begin_frame();
         pools.update(graph, {.seen = seen});

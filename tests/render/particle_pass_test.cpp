@@ -150,12 +150,12 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle pass: whoever counts as one thing is ordered by its place"
+    "particle pass: particles that are sorted as one are ordered by their emitter's position"
     * technique("particle.distance-sort")) {
     std::vector<ParticleInstance> instances(6);
     for (std::uint32_t i = 0; i < 6; ++i) {
         instances[i].position = {0, 0, -static_cast<float>(i)};
-        instances[i].look_and_share = (i % 2) << 16;
+        instances[i].look_and_life = (i % 2) << 16;
     }
     DistanceOrder found;
     // Looks 0 at 0, -2, -4 m; looks 1 all at -3 m.
@@ -189,7 +189,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ParticleScene,
-    "particle pass: a point sprite is as large in a corner of the image as in the middle"
+    "particle pass: a point sprite is as large in a corner of the image as in the center"
         * technique("particle.gpu-draw")) {
     ParticleLook point = add_point_sprite(*this);
     for (const float shift : {0.0f, 1.0f, 1.9f}) {  // of 2.31 m from the middle to the edge
@@ -464,7 +464,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "particle pass: between steps they are back on their way, and not there before birth"
+    "particle pass: between steps they are earlier on their paths, and absent before birth"
     * technique("particle.gpu-draw")) {
     ParticlePool pool;
     for (const float age : {0.5f, 0.01f}) {
@@ -482,8 +482,8 @@ TEST_CASE(
     append_particles(pool, 5, 0.1f, instances);
     REQUIRE(instances.size() == 1);
     CHECK(instances[0].position.x == test::near(2));
-    CHECK((instances[0].look_and_share >> 16) == 5);
-    CHECK((instances[0].look_and_share & 0xffff) / 65535.0 == test::near(0.2).epsilon(1e-3));
+    CHECK((instances[0].look_and_life >> 16) == 5);
+    CHECK((instances[0].look_and_life & 0xffff) / 65535.0 == test::near(0.2).epsilon(1e-3));
 }
 
 TEST_CASE(

@@ -121,7 +121,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("particle shadow: the map of a sun holds what casts, whole and in depth") {
+TEST_CASE("particle shadow: the map of a sun covers all casters, in depth too") {
     const Vec3 axis = glm::normalize(Vec3(0.4f, -0.8f, 0.2f));
     const std::vector<ShadowBall> balls = {{{1, 2, 3}, 0.5f}, {{-2, 0, 1}, 1}, {{0, 5, 0}, 0.1f}};
     const ParticleShadowView view = view_from_sun(4, axis, balls);
@@ -182,7 +182,7 @@ TEST_CASE_FIXTURE(
     const std::vector<Vec3> places = cloud();
     std::vector<oracle::ShadowDisc> discs;
     for (const Vec3& place : places) {
-        discs.push_back({.middle = place, .diameter = 0.8, .opacity = 0.3});
+        discs.push_back({.center = place, .diameter = 0.8, .opacity = 0.3});
     }
     add_sun();
     for (const auto& placed :

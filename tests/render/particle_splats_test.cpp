@@ -180,7 +180,7 @@ TEST_CASE("particle splats: many faint ones count in full beside a bright one") 
     CHECK(sum(true) / sum(false) == near(1).epsilon(0.03));
 }
 
-TEST_CASE("particle splats: a hundred thousand at one place are as bright as all together") {
+TEST_CASE("particle splats: a hundred thousand at one pixel are as bright as their sum") {
     Points scene;
     scene.emit(Points::look_of(3, {0.5f, 0.25f, 0.125f}), 100000);
     const Vec3 found = rgb_at(scene.picture(), kSide / 2, kSide / 2);

@@ -78,8 +78,8 @@ struct RibbonScene : Scene {
         TrailState state;
         state.capacity = static_cast<std::uint32_t>(places.size());
         TrailStrand strand;
-        for (const Vec3& place : places) {
-            state.points.push_back({place, 0.02f, trail.span});
+        for (const Vec3& position : places) {
+            state.points.push_back({position, 0.02f, trail.span});
         }
         strand.count = strand.number = state.capacity;
         strand.head = strand.previous = {places.back(), 0, trail.span};
@@ -172,8 +172,8 @@ TEST_CASE(
                 ribbons_of({.spacing = 0.25f, .length = length, .life = life}, state);
             const RibbonPoint& head = list.points[1];
             const RibbonPoint& tail = list.points[list.points.size() - 2];
-            CHECK(head.share == 0);
-            CHECK(tail.share == near(1).epsilon(1e-4));
+            CHECK(head.curve_at == 0);
+            CHECK(tail.curve_at == near(1).epsilon(1e-4));
             CHECK(head.u == 0);
             CHECK(tail.u == near(1));
             CHECK(
@@ -244,7 +244,7 @@ TEST_CASE("ribbon: through particles it goes from the youngest to the oldest, an
     CHECK(line == std::vector<float>{-0.5f, -0.5f, 0, 1, 2, 3, 89, 89, 90});
     CHECK(u[2] == near(-105 / 4.0));
     CHECK(u[5] == near(-102 / 4.0));
-    CHECK(list.points[list.segments[3] + 1].share == near(0.1));
+    CHECK(list.points[list.segments[3] + 1].curve_at == near(0.1));
 }
 
 TEST_CASE("ribbon: a beam reaches exactly from end to end, between steps as well") {
@@ -258,10 +258,10 @@ TEST_CASE("ribbon: a beam reaches exactly from end to end, between steps as well
         RibbonList list;
         append_beam({.jag = 0.3f, .detail = 5}, state, {}, alpha, 0, list);
         CHECK(list.points[1].position == Vec3(0, 2 - 2 * alpha, 0));
-        CHECK(list.points[1].share == 0);
+        CHECK(list.points[1].curve_at == 0);
         const RibbonPoint& end = list.points[list.points.size() - 2];
         CHECK(end.position == Vec3(8, 0, 4 - 4 * alpha));
-        CHECK(end.share == 1);
+        CHECK(end.curve_at == 1);
         CHECK(end.u == near(1));
     }
     RibbonList none;
@@ -278,7 +278,7 @@ TEST_CASE("ribbon: branches leave their beam at one of its points, and end as it
     for (const std::uint32_t before : list.segments) {
         const bool is_cap = points[before].position == points[before + 3].position;
         const RibbonPoint& begin = points[before + 1];
-        if (is_cap && begin.share > 0 && begin.share < 1) {
+        if (is_cap && begin.curve_at > 0 && begin.curve_at < 1) {
             ++branches;
             bool found = false;
             for (const Vec3& point : list.bolt) {
@@ -288,14 +288,14 @@ TEST_CASE("ribbon: branches leave their beam at one of its points, and end as it
         }
     }
     CHECK(branches == 9);
-    CHECK(points[points.size() - 2].share == 1);
+    CHECK(points[points.size() - 2].curve_at == 1);
 }
 
 TEST_CASE("ribbon: points that coincide or are not finite leave no segment") {
     RibbonList list;
     const float nan = std::nanf("");
-    for (const Vec3& place : {Vec3(1), Vec3(1), Vec3(nan), Vec3(2), Vec3(2.00001f)}) {
-        list.strip.push_back({place, 0, Vec3(0), 0});
+    for (const Vec3& position : {Vec3(1), Vec3(1), Vec3(nan), Vec3(2), Vec3(2.00001f)}) {
+        list.strip.push_back({position, 0, Vec3(0), 0});
     }
     list.add_strip();
     CHECK(list.segments.size() == 3);

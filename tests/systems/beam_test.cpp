@@ -95,7 +95,7 @@ TEST_CASE("beam: its shape lasts for a period of its rate, and is the same in ev
     CHECK(beam_random({.seed = 5}, one, 1).word() == beam_random({.seed = 5}, {8, 2}, 1).word());
 }
 
-TEST_CASE("beam: it goes to an entity or along -z, and is gone when either has no place") {
+TEST_CASE("beam: it goes to an entity or along -z, and is gone when either has no transform") {
     Beams beams;
     const Entity target = beams.world.create(WorldTransform{at(kEnd)});
     const Entity to = beams.add({.to = target}, at(kStart));

@@ -90,7 +90,7 @@ TEST_CASE(
              {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
             column->push_back(0.5f);
         }
-        push_particles(particle_block(pool, 0, 1), forces, 1, 1);
+        apply_forces(particle_block(pool, 0, 1), forces, 1, 1);
         return velocity_of(pool);
     };
     const Vec3 forward = pushed();
@@ -127,7 +127,7 @@ TEST_CASE(
     CHECK(std::abs(place_of(spring.pool()).y) < 0.02f);
 }
 
-TEST_CASE("force fields: an emitter takes its share of them, or none") {
+TEST_CASE("force fields: an emitter scales them, or ignores them") {
     for (const float share : {0.0f, 1.0f, -2.5f}) {
         Emitters scene;
         ParticleEmitter emitter = burst(1);

@@ -202,7 +202,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle balls: of two at one place each goes its way, the same in each run"
+    "particle balls: two at one position part in a direction that is the same in each run"
     * technique("particle.interparticle")) {
     const auto run = [] {
         ParticlePool pool;
@@ -217,7 +217,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle balls: what sticks to a surface stays, and whoever meets it goes back"
+    "particle balls: one that sticks to a surface stays, and others bounce off it"
     * technique("particle.interparticle")) {
     ParticlePool pool;
     add_ball(pool, {0, 0, 0});
@@ -231,7 +231,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle balls: a hundred thousand at one place end, and no place is NaN"
+    "particle balls: a hundred thousand at one position terminate without NaN"
     * technique("particle.interparticle")) {
     ParticlePool pool;
     for (int i = 0; i < 100000; ++i) {

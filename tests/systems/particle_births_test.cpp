@@ -4,7 +4,7 @@
 #include "ecs/components/water_spray.h"
 #include "systems/particles/birth_attributes.h"
 #include "systems/particles/birth_kernels.h"
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 #include "systems/particles/particle_births.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
@@ -395,13 +395,14 @@ TEST_CASE("particles: the curves of births are those of the library") {
         const double root = std::cbrt(exact);
         root_error = std::max(root_error, std::abs(static_cast<double>(cube_root(x)) - root));
         const double power = std::exp(exact);
-        exp_error = std::max(exp_error, std::abs(static_cast<double>(exp_of_share(x)) / power - 1));
+        exp_error =
+            std::max(exp_error, std::abs(static_cast<double>(exp_of_fraction(x)) / power - 1));
     }
     CHECK(turn_error < 2e-7);
     CHECK(root_error < 2e-7);
     CHECK(exp_error < 4e-7);
     CHECK(cube_root(0) < 1e-13f);
-    CHECK(exp_of_share(0) == 1);
+    CHECK(exp_of_fraction(0) == 1);
 }
 
 namespace {
@@ -454,10 +455,10 @@ void check_births(const BirthDraw& draw, const BirthRun& run, std::uint64_t numb
 TEST_CASE(
     "particles: births in vectors have the bits of those drawn one by one"
     * technique("particle.generation-shape")) {
-    const EmitterPlace still = {
+    const EmitterPose still = {
         affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f}),
         affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f})};
-    EmitterPlace moving = still;
+    EmitterPose moving = still;
     moving.now = affine_from({2, 2, 4}, Quat(0.6f, 0, 0, 0.8f), {1, 1, 1});
     const ParticleStep fall = {
         .gravity = {0.1f, -9.8f, 0}, .air = {3, 0, 1}, .keep = 0.9f, .dt = 0.02f};

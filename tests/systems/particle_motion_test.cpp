@@ -216,8 +216,8 @@ TEST_CASE("particles: opposite forces cancel") {
     ParticlePool pool = random_pool(100);
     const ParticlePool before = pool;
     const ParticleBlock block = particle_block(pool, 0, pool.size());
-    whirl_particles(block, {.around = 3, .toward = 2}, 0.1f);
-    whirl_particles(block, {.around = -3, .toward = -2}, 0.1f);
+    apply_vortex(block, {.around = 3, .toward = 2}, 0.1f);
+    apply_vortex(block, {.around = -3, .toward = -2}, 0.1f);
     for (std::size_t i = 0; i < pool.size(); ++i) {
         CHECK(pool.vx[i] == test::near(before.vx[i]).scale(1).epsilon(1e-5));
     }
@@ -229,7 +229,7 @@ TEST_CASE("particles: a vortex turns about its axis and pulls toward it, by unit
     pool.y = {9, 1, 2};
     pool.z = {0, -3, 0};
     const ParticlePool before = pool;
-    whirl_particles(
+    apply_vortex(
         particle_block(pool, 0, 3),
         {.origin = {5, 0, 0}, .axis = {0, 1, 0}, .around = 4, .toward = 6}, 0.5f);
     // The first is at -x of the axis: around it is +z, toward it +x.

@@ -328,7 +328,7 @@ TEST_CASE("particle obstacles: drops end on the waves, where a query has them") 
     CHECK(scene.impulses().empty());  // of a collider that ripples by 0
 }
 
-TEST_CASE("particle obstacles: a way enters water where it is as high as the water is there") {
+TEST_CASE("particle obstacles: a path enters water where it is as high as the surface") {
     Pond scene(0.4f, 0);
     const ParticleWater water = {.surface = scene.surface(), .highest = 1.5f};
     for (int i = 0; i < 100; ++i) {
@@ -337,10 +337,10 @@ TEST_CASE("particle obstacles: a way enters water where it is as high as the wat
         const Vec3 to = {-x, 0.2f, 0.5f * x};
         const auto contact = enter_water({&water, 1}, from, to);
         REQUIRE(contact);
-        const Vec3 there = from + contact->share * (to - from);
+        const Vec3 there = from + contact->fraction * (to - from);
         CHECK(glm::distance(contact->point, there) < 1e-3f);
         CHECK(!enter_water({&water, 1}, to, from));  // from below
-        CHECK(!enter_water({&water, 1}, from, from + 0.5f * contact->share * (to - from)));
+        CHECK(!enter_water({&water, 1}, from, from + 0.5f * contact->fraction * (to - from)));
     }
 }
 

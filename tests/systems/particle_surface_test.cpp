@@ -306,7 +306,7 @@ TEST_CASE("particle surface: along a path +y of the shape is up and +z ahead") {
     }
 }
 
-TEST_CASE("particle surface: they take over a share of the velocity of the place") {
+TEST_CASE("particle surface: they inherit a fraction of the velocity of the surface") {
     Surfaces scene;
     const Entity mesh = scene.add_instance(scene.add_mesh(two_rectangles()), placed({0, 0, 0}));
     scene.world.get<WorldTransform>(mesh).world =
@@ -484,7 +484,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("particle surface: a place depends on the number of the birth alone") {
+TEST_CASE("particle surface: a position depends only on the number of the birth") {
     const auto places = [](float rate, int steps, float life = 1000) {
         Surfaces scene;
         const Entity mesh = scene.add_instance(scene.add_mesh(two_rectangles()), placed(Vec3(0)));

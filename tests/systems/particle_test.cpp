@@ -274,7 +274,7 @@ TEST_CASE("particles: without room none is born, and a lifetime of 0 is over at 
     CHECK(scene.pool(1).clock.dropped == 0);
 }
 
-TEST_CASE("particles: an emitter without a place has none, one that lost its parent goes on") {
+TEST_CASE("particles: an emitter without a transform has none, one that lost its parent goes on") {
     Emitters scene;
     const Entity nowhere = scene.world.create(steady(600));
     scene.world.run(add_particle_pools);

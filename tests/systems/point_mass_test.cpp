@@ -307,7 +307,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "point mass: it bounces by the share of its speed, ends by a hit, or sticks"
+    "point mass: it keeps a fraction of its speed when it bounces, ends by a hit, or sticks"
     * technique("particle.projectile")) {
     for (const CollisionAction action :
          {CollisionAction::Bounce, CollisionAction::Kill, CollisionAction::Stick}) {

@@ -99,7 +99,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "trail: on a circle points are a spacing apart and reach no farther than the length"
+    "trail: on a circle points are a spacing apart and extend no farther than the length"
     * technique("engine.trail")) {
     const Trail trail = {.spacing = 0.1f, .length = 5, .life = 100};
     Flight flight(trail, circle(0), 1.0f / 60);

@@ -1,7 +1,7 @@
 // Particles that are discs which face the camera, of particle.vert and particle_splat.comp. Include after
 // lib/particle.glsl and lib/view.glsl.
 
-// Extent of a pixel at this place [m].
+// Extent of a pixel at this position [m].
 float pixel_extent(vec3 position_ws) {
     float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
     return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
@@ -26,7 +26,7 @@ float size_from(Particle p, vec4 shape, int facing, float away) {
     return size;
 }
 
-// Diameter [px]. One that faces the camera is an oval off the image's middle: a disc as large.
+// Diameter [px]. One that faces the camera is an oval off the image's center: a disc as large.
 float point_diameter(vec3 position_ws, float size, int facing, float away) {
     float diameter = size / pixel_extent(position_ws);
     if (facing == kFacingCamera) {

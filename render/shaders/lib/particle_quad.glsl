@@ -4,7 +4,7 @@ const float kFilterPixels = 1.0;  // that a mip level as coarse as a pixel sprea
 
 const float kRoundness = 0.8;  // how far the normals at the corners lean outward, by eye
 
-// Toward which a corner, or a position on the way to it, faces.
+// Toward which a corner, or a position between it and the center, faces.
 vec3 rounded_normal(vec3 position_ws, vec3 offset) {
     return normalize(to_viewer(position_ws) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
 }
@@ -31,12 +31,12 @@ Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, floa
         float speed = length(p.velocity);
         vec3 along = speed > 1e-6 ? p.velocity / speed : up;
         vec3 across = cross(along, to_camera);
-        float seen = length(across);  // its length in the image, of what it would be from the side
-        across = seen > 1e-3 ? across / seen : right;
+        float projected = length(across);  // its length in the image, of what it would be from the side
+        across = projected > 1e-3 ? across / projected : right;
         return Quad(half_size * across, (half_size + 0.5 * streak.y * speed) * along);
     }
     if (tumble > 0.0) {
-        float lean = tumble * (0.6 + 0.4 * random_share(p.random, 3u)) * p.age + 3.14159 * random_share(p.random, 4u);
+        float lean = tumble * (0.6 + 0.4 * random_signed(p.random, 3u)) * p.age + 3.14159 * random_signed(p.random, 4u);
         right = cos(lean) * right + sin(lean) * cross(right, up);
     }
     return Quad(half_size * right, half_size * up);

@@ -46,7 +46,7 @@ vec4 ribbon_side(RibbonSegment s, int vertex, float half_width, bool has_image) 
 ParticleCorner ribbon_corner(inout Particle p, Look look, int vertex) {
     RibbonSegment segment = ribbon_segment(p.record, vertex & 1);
     p.position = segment.point.xyz;
-    p.share = segment.rest.w;
+    p.life_fraction = segment.rest.w;
     float away = distance(p.position, view.camera_ws.xyz);
     ParticleCorner c;
     c.size = size_from(p, look.shape, int(look.glow.w), away);
@@ -66,7 +66,7 @@ ParticleCorner ribbon_corner(inout Particle p, Look look, int vertex) {
         c.offset = across.xyz;
         side = across.w;
     } else {
-        c.offset = side * 0.5 * size_factor(look.index, p.share * float(kLookSamples - 1u)) * span;
+        c.offset = side * 0.5 * size_factor(look.index, p.life_fraction * float(kLookSamples - 1u)) * span;
         p.position += 0.5 * span;
     }
     c.normal = rounded_normal(p.position, c.offset);

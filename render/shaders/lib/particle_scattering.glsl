@@ -8,7 +8,7 @@
 #define NORMALS vec3
 #endif
 
-const float kShadeReach = 0.5;  // of the way to its corners at which it is shadowed by others, by eye
+const float kShadedFraction = 0.5;  // of the distance to its corners at which it is shadowed by others, by eye
 
 #ifdef MEAN_OF_CORNERS
 vec3 surrounding_light(vec3 position_ws, mat4x3 normals) {
@@ -48,7 +48,7 @@ vec3 scattered(Incoming light, NORMALS normals, vec3 to_camera, float forward) {
 }
 
 #ifdef LOCAL_LIGHTS
-// Mean of 1 / d^2 over a ball, by its value in the middle: 3 (2 + (1 / x - x) ln|(1 + x) / (1 - x)|) / 4 of 1 / radius^2,
+// Mean of 1 / d^2 over a ball, by its value at the center: 3 (2 + (1 / x - x) ln|(1 + x) / (1 - x)|) / 4 of 1 / radius^2,
 // where x = d / radius, to 5 %. Without it, a puff about a lamp would be as bright as what touches the lamp.
 float mean_over_ball(float d2, float radius) {
     float x2 = max(d2, 1e-4) / max(radius * radius, 1e-12);
@@ -90,9 +90,9 @@ vec3 scattered_light(vec3 position_ws, NORMALS normals, float forward, float rad
 }
 
 // Where a corner is lit: where shadows of particles are, it varies over the quad.
-vec3 lit_place(Particle p, vec3 offset) {
+vec3 lit_position(Particle p, vec3 offset) {
 #ifdef PARTICLE_SHADOWS
-    return p.position + kShadeReach * offset;
+    return p.position + kShadedFraction * offset;
 #else
     return p.position;
 #endif

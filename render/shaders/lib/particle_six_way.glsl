@@ -57,7 +57,7 @@ void write_six_way(Particle p, Look look, ParticleCorner c, vec3 at) {
     if (is_six_way(look) && look.glow.y > 0.0) {
         vec3 away_axis = -to_viewer(p.position);
         mat3 axes = mat3(normalize(c.quad.right), normalize(c.quad.up), away_axis);
-        SixWayLight sides = six_way_light(lit_place(p, c.offset), -away_axis, axes, 0.5 * c.size, at.xy, at.z);
+        SixWayLight sides = six_way_light(lit_position(p, c.offset), -away_axis, axes, 0.5 * c.size, at.xy, at.z);
         vec3 white = c.color.rgb * look.glow.y * c.color.a;
         for (int i = 0; i < 3; ++i) {
             positive_side[i].rgb = white * sides.positive[i];

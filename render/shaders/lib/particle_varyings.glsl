@@ -1,7 +1,7 @@
 // What particle.vert hands to the shaders of its fragments. Definitions: VARYING, as `out` in the former and `in` in the
 // latter; those of particle.vert and
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
-//   IN_WATER  seen from above, before the water is drawn over it
+//   IN_WATER  visible from above, before the water is drawn over it
 // What is the same at all corners is not interpolated.
 
 #if defined(LIT) || defined(RIBBONS)
@@ -16,9 +16,9 @@
 #endif
 
 layout(location = 0) VARYING vec3 corner;  // -1 .. 1; of ribbons, y is multiplied by z, so that it stays straight
-layout(location = 1) LIGHT_INTERPOLATION VARYING vec4 light;  // radiance of the middle, premultiplied by a: its opacity
+layout(location = 1) LIGHT_INTERPOLATION VARYING vec4 light;  // radiance at the center, premultiplied by a: its opacity
 layout(location = 2) flat VARYING vec4 frames;      // texture coordinates: scale xy, offset of the frame zw
-layout(location = 3) flat VARYING vec4 blend;       // cover, softness [m], share of the next frame, layer
+layout(location = 3) flat VARYING vec4 blend;       // cover, softness [m], weight of the next frame, layer
 layout(location = 4) flat VARYING vec4 next_frame;  // its offset; layer of the motion map, its full value
 layout(location = 5) VARYING float distance_ahead;  // along the view axis [m]
 #ifdef SIX_WAY
@@ -33,5 +33,5 @@ layout(location = 13) flat VARYING vec3 glow_color;  // radiance by itself, prem
 layout(location = 14) VARYING float weight;  // of a layer at this distance
 #endif
 #ifdef IN_WATER
-layout(location = 15) flat VARYING vec4 medium;  // extinction of the water that its middle is in [1/m], index of refraction
+layout(location = 15) flat VARYING vec4 medium;  // extinction of the water that its center is in [1/m], index of refraction
 #endif

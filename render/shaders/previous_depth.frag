@@ -1,4 +1,4 @@
-// A copy of the depth, for the next frame (render/particles/seen_depth.h).
+// A copy of the depth, for the next frame (render/particles/previous_depth.h).
 #version 450
 
 layout(binding = 4) uniform sampler2D scene_depth;

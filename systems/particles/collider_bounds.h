@@ -12,8 +12,8 @@ namespace limn {
 // rejects one that would touch. Most particles touch nothing, and eight or sixteen are tested at
 // once (Highway, dispatched at run time).
 
-/// What a collider reaches, in the form that is quickest to test.
-struct ColliderReach {
+/// The bounds of a collider, in the form that is quickest to test.
+struct ColliderBounds {
     enum class Kind : std::uint8_t {
         Plane,   ///< dot(normal, x) < offset
         Hollow,  ///< beyond `radius` of a center
@@ -31,10 +31,10 @@ struct ColliderReach {
     float stretch = 1;     ///< how many radii away a ball may touch
 };
 
-[[nodiscard]] ColliderReach find_reach(const Collider& collider);
+[[nodiscard]] ColliderBounds find_collider_bounds(const Collider& collider);
 
-/// The ways of particles, an array per scalar, all of the same size.
-struct ParticleWays {
+/// The paths of particles in a step, an array per scalar, all of the same size.
+struct ParticlePaths {
     std::span<const float> x0{}, y0{}, z0{};
     std::span<const float> x1{}, y1{}, z1{};
     std::span<const float> radius{};  ///< [m]; empty: `one_radius` for all
@@ -42,22 +42,22 @@ struct ParticleWays {
     float skin = 0;  ///< as in CollisionOptions
 };
 
-/// Distance from surfaces that a particle keeps: several units in the last place of where it goes,
-/// or the skin would round away.
+/// Distance from surfaces that a particle keeps: several units in the last place of its
+/// coordinates, or the skin would be lost to rounding.
 [[nodiscard]] float skin_of(const Vec3& from, const Vec3& to, float skin);
 
 /// Whether a particle may touch, or be inside. True if a coordinate is not finite.
 [[nodiscard]] bool
-may_touch(const ColliderReach& reach, const Vec3& from, const Vec3& to, float radius, float skin);
+may_touch(const ColliderBounds& bounds, const Vec3& from, const Vec3& to, float radius, float skin);
 
-/// Writes the numbers of those of [first, first + count) that may_touch one of `reach`, ascending,
-/// to `found`, which has room for count + kReachRoom; returns how many.
-inline constexpr std::size_t kReachRoom = 64;
+/// Writes the indices of those of [first, first + count) that may_touch one of `bounds`, ascending,
+/// to `found`, which has room for count + kCandidatePadding; returns how many.
+inline constexpr std::size_t kCandidatePadding = 64;
 std::size_t find_near(
-    const ParticleWays& ways, std::size_t first, std::size_t count,
-    std::span<const ColliderReach> reach, std::uint32_t* found);
+    const ParticlePaths& paths, std::size_t first, std::size_t count,
+    std::span<const ColliderBounds> bounds, std::uint32_t* found);
 std::size_t find_near_scalar(
-    const ParticleWays& ways, std::size_t first, std::size_t count,
-    std::span<const ColliderReach> reach, std::uint32_t* found);
+    const ParticlePaths& paths, std::size_t first, std::size_t count,
+    std::span<const ColliderBounds> bounds, std::uint32_t* found);
 
 }  // namespace limn
