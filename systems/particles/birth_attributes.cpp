@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-constexpr float kMinKept = 0.37f;  // for which drag is taken back [1/e]
+constexpr float kMinKept = 0.37f;  // fraction of the velocity, down to which drag is undone [1/e]
 
 /// Unit, uniform by area.
 Vec3 sample_direction(Random& random) {
@@ -150,7 +150,7 @@ draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& ran
     born.velocity = aim * spread(emitter.speed, emitter.speed_spread, random);
     born.life = spread(emitter.life, emitter.life_spread, random);
     born.look = random.word();
-    // Last, so that whoever has none gets the same numbers as ever.
+    // Drawn last, so that emitters without spreads get the same numbers as before there were any.
     if (emitter.size_spread != Vec3(0)) {
         born.local += emitter.size_spread * random_vector(random);
     }

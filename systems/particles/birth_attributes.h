@@ -47,9 +47,9 @@ struct BirthAttributes {
 [[nodiscard]] BirthAttributes
 draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& random);
 
-/// Moves newborns back in time by a part of a step, along the path on which gravity and drag will
-/// bring them here. Otherwise all births of a step would fall equally far, and jets would break
-/// into clumps.
+/// Moves newborns back in time by a fraction of a step, along the path on which gravity and drag
+/// will bring them here. Otherwise all births of a step would fall equally far, and jets would
+/// break into clumps.
 struct Rewind {
     explicit Rewind(const ParticleStep& step);
 

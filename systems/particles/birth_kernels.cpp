@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 namespace {
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR  // no SIMD
 
 std::size_t draw_births_vector(
     const BirthDraw&, const BirthRun&, std::uint32_t, std::size_t, std::uint64_t,
@@ -45,10 +45,10 @@ HWY_INLINE V constant(float value) {
     return hn::Set(d, value);
 }
 
-/// Random of as many births as there are lanes, numbered in a row. Of the 64 bits of a lane of L,
-/// only the lower half counts: Philox multiplies 32 bits to 64, in the even and the odd lanes
-/// apart. Eight words at a time, which is what most births take: two blocks of four, whose rounds
-/// do not wait for each other.
+/// Random for as many consecutive births as there are lanes. Of the 64 bits of a lane of L, only
+/// the lower half counts: Philox multiplies 32 bits to 64, separately in the even and the odd
+/// lanes. It draws eight words at a time, which is what most births need: two blocks of four, whose
+/// rounds do not depend on each other.
 class LaneRandom {
   public:
     HWY_INLINE LaneRandom(const Random& first, U numbers)
@@ -319,7 +319,7 @@ struct Lanes {
     U look;
 };
 
-/// False where not all lanes can be drawn alike.
+/// False if the lanes need different branches, or if one is not finite.
 HWY_INLINE bool
 draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes& born) {
     const ParticleEmitter& emitter = *draw.emitter;
@@ -333,12 +333,12 @@ draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes&
     V3 local = sample_shape(emitter.shape, emitter.size, random);
     V3 direction;
     const V zero = hn::Zero(d);
-    const auto in_middle =
+    const auto at_center =
         hn::And(hn::And(hn::Eq(local.x, zero), hn::Eq(local.y, zero)), hn::Eq(local.z, zero));
-    if (emitter.direction != EmitterDirection::Radial || hn::AllTrue(d, in_middle)) {
+    if (emitter.direction != EmitterDirection::Radial || hn::AllTrue(d, at_center)) {
         const V y = hn::Sub(constant(1.0f), hn::Mul(random.uniform(), constant(1.0f - lowest)));
         direction = direction_at(y, random);
-    } else if (hn::AllFalse(d, in_middle)) {
+    } else if (hn::AllFalse(d, at_center)) {
         direction = scale(local, hn::Div(constant(1.0f), hn::Sqrt(dot(local))));
     } else {
         return false;
@@ -438,13 +438,13 @@ HWY_EXPORT(draw_births_vector);
 std::size_t draw_births(
     const BirthDraw& draw, const BirthRun& run, std::uint32_t first, std::size_t count,
     std::uint64_t number, const BirthColumns& out) {
-    // Lanes count 32 bits up, and instants are floats of signed ones.
+    // Lanes count the numbers in 32 bits, and convert indices to floats as signed ones.
     constexpr std::uint64_t kNumbers = std::uint64_t{1} << 32;
     constexpr std::uint64_t kInstants = std::uint64_t{1} << 31;
     const std::uint64_t instants = first < kInstants ? kInstants - first : 0;
-    const std::uint64_t most = std::min({count, kNumbers - number % kNumbers, instants});
+    const std::uint64_t limit = std::min({count, kNumbers - number % kNumbers, instants});
     return HWY_DYNAMIC_DISPATCH(draw_births_vector)(
-        draw, run, first, static_cast<std::size_t>(most), number, out);
+        draw, run, first, static_cast<std::size_t>(limit), number, out);
 }
 
 }  // namespace limn

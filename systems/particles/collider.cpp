@@ -17,18 +17,17 @@ namespace {
 
 using Dvec3 = glm::dvec3;
 
-/// A sweep to be tested, in double precision: fractions are then exact to the rounding of a
-/// position.
+/// The path to test, in double precision, so that fractions are as exact as rounded positions.
 struct Sweep {
     Dvec3 from;
     Dvec3 delta;
     double radius;
 
-    [[nodiscard]] Dvec3 at(double share) const { return from + share * delta; }
+    [[nodiscard]] Dvec3 at(double fraction) const { return from + fraction * delta; }
 };
 
 struct Touch {
-    double share;
+    double fraction;
     Dvec3 point;
     Dvec3 normal;
 };
@@ -47,8 +46,8 @@ std::optional<Touch> touch(const PlaneCollider& plane, const Sweep& sweep) {
     if (!(before >= 0 && before + change < 0)) {
         return {};
     }
-    const double share = before / -change;
-    return Touch{share, sweep.at(share), normal};
+    const double fraction = before / -change;
+    return Touch{fraction, sweep.at(fraction), normal};
 }
 
 /// Solves |from + t delta - center| = radius in the forms that do not cancel.
@@ -64,12 +63,13 @@ std::optional<Touch> touch(const SphereCollider& sphere, const Sweep& sweep) {
     if (!(radius > 0 && outside) || (!sphere.inverted && !(root > 0 && b < 0))) {
         return {};
     }
-    const double share = sphere.inverted && b <= 0 ? (std::sqrt(root) - b) / a
-                                                   : side * c / (std::sqrt(root) - side * b);
-    if (!(share <= 1)) {
+    const double fraction = sphere.inverted && b <= 0 ? (std::sqrt(root) - b) / a
+                                                      : side * c / (std::sqrt(root) - side * b);
+    if (!(fraction <= 1)) {
         return {};
     }
-    return Touch{share, sweep.at(share), side * glm::normalize(from + share * sweep.delta)};
+    return Touch{
+        fraction, sweep.at(fraction), side * glm::normalize(from + fraction * sweep.delta)};
 }
 
 struct BoxFrame {
@@ -142,7 +142,7 @@ Patch patch_at(const HeightCollider& field, int i, int j, double radius) {
     return patch;
 }
 
-/// Where a s^2 + b s + c, c >= 0, becomes negative; NaN: nowhere.
+/// The smallest s >= 0 at which a s^2 + b s + c, c >= 0, becomes negative; NaN if it never does.
 double falls_below_zero(double a, double b, double c) {
     const double root = std::sqrt(b * b - 4 * a * c);
     if (b < 0) {
@@ -151,7 +151,8 @@ double falls_below_zero(double a, double b, double c) {
     return a < 0 ? -(b + root) / (2 * a) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Walks the cells below the sweep; in each, height above the surface is a quadratic of the share.
+/// Walks the cells below the sweep; in each, the height above the surface is quadratic in the
+/// fraction of the path.
 std::optional<Touch> touch(const HeightCollider& field, const Sweep& sweep) {
     LIMN_CHECK(field.heights.size() >= static_cast<std::size_t>(field.width * field.depth));
     if (field.width < 2 || field.depth < 2) {
@@ -160,7 +161,7 @@ std::optional<Touch> touch(const HeightCollider& field, const Sweep& sweep) {
     const double cells[2] = {field.width - 1.0, field.depth - 1.0};
     double from[2];
     double delta[2];
-    double share = 0;
+    double fraction = 0;
     double end = 1;
     for (int k = 0; k < 2; ++k) {
         from[k] = (sweep.from[2 * k] - double{field.origin[2 * k]}) / double{field.cell[k]};
@@ -168,18 +169,18 @@ std::optional<Touch> touch(const HeightCollider& field, const Sweep& sweep) {
         if (delta[k] != 0) {
             const double a = -from[k] / delta[k];
             const double b = (cells[k] - from[k]) / delta[k];
-            share = std::max(share, std::min(a, b));
+            fraction = std::max(fraction, std::min(a, b));
             end = std::min(end, std::max(a, b));
         } else if (!(from[k] >= 0 && from[k] <= cells[k])) {
             return {};
         }
     }
-    if (!(share <= end)) {
+    if (!(fraction <= end)) {
         return {};
     }
     int cell[2];
     for (int k = 0; k < 2; ++k) {
-        cell[k] = static_cast<int>(std::clamp(from[k] + share * delta[k], 0.0, cells[k] - 1));
+        cell[k] = static_cast<int>(std::clamp(from[k] + fraction * delta[k], 0.0, cells[k] - 1));
     }
     for (bool first = true;; first = false) {
         double next = end;
@@ -188,19 +189,20 @@ std::optional<Touch> touch(const HeightCollider& field, const Sweep& sweep) {
             if (delta[k] != 0) {
                 const double border = (cell[k] + (delta[k] > 0 ? 1 : 0) - from[k]) / delta[k];
                 if (border < next) {
-                    next = std::max(border, share);
+                    next = std::max(border, fraction);
                     crossed = k;
                 }
             }
         }
         const Patch patch = patch_at(field, cell[0], cell[1], sweep.radius);
-        const double x = from[0] + share * delta[0] - cell[0];
-        const double z = from[1] + share * delta[1] - cell[1];
-        const double above = sweep.at(share).y - patch.at(x, z);
+        const double x = from[0] + fraction * delta[0] - cell[0];
+        const double z = from[1] + fraction * delta[1] - cell[1];
+        const double above = sweep.at(fraction).y - patch.at(x, z);
         if (first && above < 0) {
             return {};  // starts below
         }
-        // Below where the cell begins, but not where the last one ended: rounding, or radius.
+        // May be below the surface where this cell begins, though not where the previous one ended:
+        // by rounding, or because the radius raises each cell differently.
         const double fall = above < 0
                                 ? 0.0
                                 : falls_below_zero(
@@ -208,15 +210,15 @@ std::optional<Touch> touch(const HeightCollider& field, const Sweep& sweep) {
                                     sweep.delta.y - (patch.along_x + patch.twist * z) * delta[0]
                                         - (patch.along_z + patch.twist * x) * delta[1],
                                     above);
-        if (share + fall <= next) {
+        if (fraction + fall <= next) {
             return Touch{
-                share + fall, sweep.at(share + fall),
+                fraction + fall, sweep.at(fraction + fall),
                 patch.normal(x + fall * delta[0], z + fall * delta[1])};
         }
         if (crossed < 0) {
             return {};
         }
-        share = next;
+        fraction = next;
         cell[crossed] += delta[crossed] > 0 ? 1 : -1;
         if (cell[crossed] < 0 || cell[crossed] >= static_cast<int>(cells[crossed])) {
             return {};
@@ -224,8 +226,8 @@ std::optional<Touch> touch(const HeightCollider& field, const Sweep& sweep) {
     }
 }
 
-/// Looks 4 radii further: up to 75 degrees from the normal the ball touches before its center
-/// comes that near.
+/// Extends the segment by 4 radii, which finds every triangle that the ball touches up to 75
+/// degrees from the normal.
 std::optional<Touch> touch(const MeshCollider& mesh, const Sweep& sweep) {
     const double length = glm::length(sweep.delta);
     if (mesh.bvh == nullptr || length == 0) {
@@ -246,11 +248,12 @@ std::optional<Touch> touch(const MeshCollider& mesh, const Sweep& sweep) {
     if (before < sweep.radius) {
         return Touch{0, sweep.from + (sweep.radius - before) * normal, normal};
     }
-    const double share = sweep.radius > 0 ? (before - sweep.radius) / -speed : double{hit.fraction};
-    if (!(share <= 1)) {
+    const double fraction =
+        sweep.radius > 0 ? (before - sweep.radius) / -speed : double{hit.fraction};
+    if (!(fraction <= 1)) {
         return {};
     }
-    return Touch{share, sweep.at(share), normal};
+    return Touch{fraction, sweep.at(fraction), normal};
 }
 
 // ---- pushing out
@@ -328,7 +331,7 @@ first_contact(const Collider& collider, const Vec3& from, const Vec3& to, float 
     if (!found) {
         return {};
     }
-    return Contact{static_cast<float>(found->share), Vec3(found->point), Vec3(found->normal)};
+    return Contact{static_cast<float>(found->fraction), Vec3(found->point), Vec3(found->normal)};
 }
 
 std::optional<Escape>

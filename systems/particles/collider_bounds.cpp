@@ -197,21 +197,21 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// 4 radii beyond the end of the path, see first_contact, and one for the ball itself.
+// 4 radii beyond the end of the path, as first_contact tests, and one for the ball itself.
 constexpr float kMeshRadii = 5;
 
 float largest_of(const Vec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-ColliderBounds reach_of(const PlaneCollider& plane) {
+ColliderBounds bounds_of_shape(const PlaneCollider& plane) {
     return {
         .kind = ColliderBounds::Kind::Plane,
         .normal = normalize_or(plane.normal, Vec3(0, 1, 0)),
         .offset = plane.offset};
 }
 
-ColliderBounds reach_of(const SphereCollider& sphere) {
+ColliderBounds bounds_of_shape(const SphereCollider& sphere) {
     if (sphere.inverted) {
         return {
             .kind = ColliderBounds::Kind::Hollow, .center = sphere.center, .radius = sphere.radius};
@@ -219,7 +219,7 @@ ColliderBounds reach_of(const SphereCollider& sphere) {
     return {.box = {sphere.center - Vec3(sphere.radius), sphere.center + Vec3(sphere.radius)}};
 }
 
-ColliderBounds reach_of(const BoxCollider& box) {
+ColliderBounds bounds_of_shape(const BoxCollider& box) {
     const Mat4 m = to_mat4(box.world_from_box);
     const Vec3 center(m[3]);
     Vec3 half(0);
@@ -229,7 +229,7 @@ ColliderBounds reach_of(const BoxCollider& box) {
     return {.box = {center - half, center + half}};
 }
 
-ColliderBounds reach_of(const HeightCollider& field) {
+ColliderBounds bounds_of_shape(const HeightCollider& field) {
     if (field.width < 2 || field.depth < 2) {
         return {};
     }
@@ -254,12 +254,12 @@ ColliderBounds reach_of(const HeightCollider& field) {
     const Vec3 origin = field.origin;
     bounds.box = {
         {origin.x, -kInfinity, origin.z}, {origin.x + x, origin.y + highest, origin.z + z}};
-    // A ball touches the plane of its cell: where that is steep, more than its radius above.
+    // A ball touches the tangent plane of its cell: on slopes, higher than a radius above.
     bounds.stretch = 1 + bounds.slope.x + bounds.slope.y;
     return bounds;
 }
 
-ColliderBounds reach_of(const MeshCollider& mesh) {
+ColliderBounds bounds_of_shape(const MeshCollider& mesh) {
     ColliderBounds bounds = {.stretch = kMeshRadii};
     if (mesh.bvh != nullptr && !mesh.bvh->nodes.empty()) {
         const MeshBvh::Node& root = mesh.bvh->nodes[0];
@@ -361,7 +361,7 @@ std::size_t find_near_from(
 }  // namespace
 
 ColliderBounds find_collider_bounds(const Collider& collider) {
-    return std::visit([](const auto& shape) { return reach_of(shape); }, collider);
+    return std::visit([](const auto& shape) { return bounds_of_shape(shape); }, collider);
 }
 
 float skin_of(const Vec3& from, const Vec3& to, float skin) {

@@ -8,9 +8,9 @@
 
 namespace limn {
 
-// Which of many particles come near a collider in a step. The test is conservative: it never
-// rejects one that would touch. Most particles touch nothing, and eight or sixteen are tested at
-// once (Highway, dispatched at run time).
+// Broad phase: which of many particles come near a collider in a step. The test is conservative: it
+// never rejects one that would touch. Most particles touch nothing, and eight or sixteen are tested
+// at once (Highway, dispatched at run time).
 
 /// The bounds of a collider, in the form that is quickest to test.
 struct ColliderBounds {
@@ -28,7 +28,7 @@ struct ColliderBounds {
     Bounds box{};
     HeightCollider field{};
     Vec2 slope = Vec2(0);  ///< of the field, largest along x and z
-    float stretch = 1;     ///< how many radii away a ball may touch
+    float stretch = 1;     ///< maximum distance of a ball that touches, in radii
 };
 
 [[nodiscard]] ColliderBounds find_collider_bounds(const Collider& collider);
@@ -42,8 +42,8 @@ struct ParticlePaths {
     float skin = 0;  ///< as in CollisionOptions
 };
 
-/// Distance from surfaces that a particle keeps: several units in the last place of its
-/// coordinates, or the skin would be lost to rounding.
+/// Distance that a particle keeps from surfaces: at least several units in the last place of its
+/// coordinates, or rounding would swallow it.
 [[nodiscard]] float skin_of(const Vec3& from, const Vec3& to, float skin);
 
 /// Whether a particle may touch, or be inside. True if a coordinate is not finite.

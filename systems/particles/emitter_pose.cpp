@@ -67,8 +67,8 @@ bool is_unused(const EmitterClock& clock) {
 }
 
 int prewarm_steps(const ParticleEmitter& emitter, float dt) {
-    constexpr float kMost = 60;  // [s]
-    const float time = std::clamp(finite_or(emitter.prewarm, 0), 0.0f, kMost);
+    constexpr float kMaxPrewarm = 60;  // [s]
+    const float time = std::clamp(finite_or(emitter.prewarm, 0), 0.0f, kMaxPrewarm);
     return dt > 0 ? static_cast<int>(time / dt + 0.5f) : 0;
 }
 

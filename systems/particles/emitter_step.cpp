@@ -35,7 +35,7 @@ EntitySet find_parents(const ParticleFollowers& followers) {
     return parents;
 }
 
-/// Emitters whose particles are looked at one after another: parents, and those with trails.
+/// Emitters whose particles are identified by their order: parents, and those with trails.
 EntitySet find_followed(const ParticleFollowers& followers, const EntitySet& parents) {
     EntitySet followed = parents;
     followers.trails.each([&](Entity entity, const Trail& trail) {
@@ -54,14 +54,14 @@ bool is_independent(const EmitterRow& row, const EntitySet& parents, bool may_hi
            && row.source == nullptr && row.surface == nullptr && !parents.contains(row.entity);
 }
 
-/// For followers that have begun to look at the order since the last step.
+/// For followers that depend on the order only since this step.
 void restore_order_if_needed(const EmitterRow& row) {
     if (row.pool->mixed && keeps_order(row.order)) {
         restore_order(*row.pool);
     }
 }
 
-/// Lists the children and finds their parents, but for those that would be their own.
+/// Lists the children and finds their parents; none is its own parent.
 void link_children(EmitterSteps& steps) {
     for (std::uint32_t i = 0; i < steps.others.size(); ++i) {
         EmitterStep& child = steps.others[i];

@@ -11,7 +11,7 @@
 
 namespace limn {
 
-/// All ForceFields at an instant [s], in world space. Their directions do not scale.
+/// All ForceFields at `time` [s], in world space. The scale of their entities does not count.
 [[nodiscard]] std::vector<Force>
 find_forces(const Query<const ForceField, const WorldTransform>& fields, double time);
 

@@ -47,7 +47,7 @@ struct Ray {
     float inverse[3];    ///< 1 / direction, finite
 };
 
-/// Whether there is something to trace.
+/// Whether the segment is finite and long enough to trace.
 HWY_INLINE bool is_traceable(const Segment& segment) {
     const Vec3 from = glm::abs(segment.from);
     const Vec3 size = glm::abs(segment.to - segment.from);
@@ -85,8 +85,8 @@ inline Ray make_ray(const Segment& segment, float pad) {
     return ray;
 }
 
-/// A segment that traverses the tree: most short ones meet few boxes, which their own box finds
-/// out, so that the ray is made when it is needed first.
+/// A segment that traverses the tree. Most segments are so short that overlap with their bounding
+/// box already rejects nearly all nodes, so the ray is set up only when first needed.
 struct Path {
     const Segment& segment;
     float pad;
@@ -108,9 +108,9 @@ struct Path {
     }
 };
 
-/// The test of triangle `lane`, with exact signs: products of floats are exact in double. The
-/// fraction, or NaN if it is not hit. For rays through an edge as far as float can tell.
-inline float exact_share(const MeshBvh::Leaf& leaf, std::size_t lane, const Ray& ray) {
+/// Tests triangle `lane` with exact signs (products of floats are exact in double), for rays that
+/// in single precision pass through an edge. Returns the fraction, or NaN if it is not hit.
+inline float exact_fraction(const MeshBvh::Leaf& leaf, std::size_t lane, const Ray& ray) {
     float p[3][3];
     for (int corner = 0; corner < 3; ++corner) {
         float* const q = p[corner];
@@ -135,7 +135,7 @@ inline float exact_share(const MeshBvh::Leaf& leaf, std::size_t lane, const Ray&
         (u * double{p[0][2]} + v * double{p[1][2]} + w * double{p[2][2]}) / sum);
 }
 
-/// So that misses of the cache overlap.
+/// So that cache misses overlap.
 template <typename T>
 inline void prefetch(const T& object) {
     const auto* const bytes = reinterpret_cast<const unsigned char*>(&object);
@@ -153,7 +153,7 @@ namespace limn::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using mesh_bvh::Ray;
 
-/// Calls hit(lane, near) for each child whose box the path may meet within `limit`.
+/// Calls hit(lane, near) for each child whose box the path may intersect within `limit`.
 template <typename Hit>
 HWY_INLINE void meet_boxes(const MeshBvh::Node& node, mesh_bvh::Path& path, float limit, Hit hit) {
     const hn::CappedTag<float, MeshBvh::kChildren> d;
@@ -166,7 +166,7 @@ HWY_INLINE void meet_boxes(const MeshBvh::Node& node, mesh_bvh::Path& path, floa
         const auto overlaps = hn::And(hn::And(overlap(0), overlap(1)), overlap(2));
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, overlaps, bits);
-        if ((bits[0] & (bits[0] - 1)) == 0) {  // at most one: not worth the test that orders them
+        if ((bits[0] & (bits[0] - 1)) == 0) {  // at most one: no need to order by distance
             if (bits[0] != 0) {
                 hit(first + static_cast<std::size_t>(std::countr_zero(bits[0])), 0.0f);
             }
@@ -200,7 +200,7 @@ HWY_INLINE void meet_boxes(const MeshBvh::Node& node, mesh_bvh::Path& path, floa
     }
 }
 
-/// Calls hit(lane, fraction) for each triangle that the ray meets.
+/// Calls hit(lane, fraction) for each triangle that the ray intersects.
 template <typename Hit>
 HWY_INLINE void meet_triangles(const MeshBvh::Leaf& leaf, const Ray& ray, Hit hit) {
     const hn::CappedTag<float, MeshBvh::kTriangles> d;
@@ -255,7 +255,7 @@ HWY_INLINE void meet_triangles(const MeshBvh::Leaf& leaf, const Ray& ray, Hit hi
         for (unsigned left = bits[0]; left != 0; left &= left - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(left));
             const float fraction = ((edges[0] >> lane) & 1u) != 0
-                                       ? mesh_bvh::exact_share(leaf, first + lane, ray)
+                                       ? mesh_bvh::exact_fraction(leaf, first + lane, ray)
                                        : fractions[lane];
             if (fraction >= -slack[lane] && fraction <= 1 + slack[lane]) {
                 hit(first + lane, std::clamp(fraction, 0.0f, 1.0f));
@@ -380,7 +380,7 @@ Bounds bounds_of(std::span<const Item> items) {
     return bounds;
 }
 
-/// The area that a leaf of all this would have, times its groups of triangles.
+/// SAH cost: the surface area times the number of leaves that the triangles fill.
 float cost_of(const Bin& bin) {
     const std::size_t groups = (bin.count + MeshBvh::kTriangles - 1) / MeshBvh::kTriangles;
     return half_area(bin.bounds) * static_cast<float>(groups);
@@ -434,8 +434,8 @@ Cut find_cut(std::span<const Item> items, const Bounds& centers) {
     return best;
 }
 
-/// Splits where tracing is expected to be cheapest; in half where all centers are the same, or
-/// where bins have cut off little for many levels.
+/// Splits where the SAH cost is least; in halves if all centers coincide, or below kMaxDepth, where
+/// binning has cut off too little.
 std::pair<Range, Range> split(const Range& range, int depth) {
     Bounds centers;
     for (const Item& item : range.items) {
@@ -602,8 +602,8 @@ void refit_mesh_bvh(
     }
     if (!bvh.nodes.empty()) {
         const Bounds all = bounds_of(bvh.nodes[0]);
-        const Vec3 most = glm::max(glm::abs(all.min), glm::abs(all.max));
-        bvh.largest = is_empty(all) ? 0.0f : std::max({most.x, most.y, most.z});
+        const Vec3 size = glm::max(glm::abs(all.min), glm::abs(all.max));
+        bvh.largest = is_empty(all) ? 0.0f : std::max({size.x, size.y, size.z});
     }
 }
 

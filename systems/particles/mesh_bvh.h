@@ -10,15 +10,15 @@
 
 namespace limn {
 
-// Where short segments, the paths of particles, first meet a triangle mesh: a bounding volume
+// First hits of short segments, the paths of particles, on a triangle mesh: a bounding volume
 // hierarchy with eight children per node, built by the surface area heuristic over 16 bins per axis
 // (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), directly with
 // eight children (Wald, Benthin and Boulos 2008). Children and triangles are tested with SIMD.
 //
 // Watertight (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013): a segment
 // never slips between triangles that share an edge or a vertex. Fractions are tested with a
-// tolerance of their rounding errors, so that it does not slip between two segments with a common
-// end either. Triangles have two sides. Both results and their bits are the same on every machine.
+// tolerance for rounding, so that nothing slips between two segments with a common end either.
+// Triangles are two-sided. Results are bit-identical on every machine.
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
@@ -59,8 +59,8 @@ struct MeshBvh {
 [[nodiscard]] MeshBvh
 build_mesh_bvh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 
-/// Follows moved vertices: the same tree with new bounds, slower the more triangles have changed
-/// places. `indices` must be those it was built from. Triangles that were left out stay so.
+/// Refits the same tree to moved vertices; tracing is slower the more triangles have moved relative
+/// to each other. `indices` must be those it was built from. Triangles that were left out stay so.
 void refit_mesh_bvh(
     MeshBvh& bvh, std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 
@@ -68,7 +68,7 @@ void refit_mesh_bvh(
 /// for segments that are not finite or shorter than 1e-30.
 [[nodiscard]] MeshHit first_hit(const MeshBvh& bvh, const Segment& segment);
 
-/// Memory of first_hits: keep it from frame to frame.
+/// Scratch memory of first_hits: keep it from frame to frame.
 struct SegmentBatch {
     std::vector<std::uint32_t> keys{};
     std::vector<std::uint32_t> order{};

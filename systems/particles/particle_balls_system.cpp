@@ -17,10 +17,10 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kMaxNear = 64;  // of one ball that are tested, so that a crowd ends
-constexpr float kReach = 1.1f;          // of the radius: whom a push may bring together
-constexpr int kPasses = 12;             // over all pairs: as far as a push goes in a step
-constexpr float kBallRestSpeed = 0.2f;  // slower toward each other there is no rebound [m/s]
+constexpr std::uint32_t kMaxNear = 64;  // neighbors tested per ball: bounds the cost of a crowd
+constexpr float kPairRadius = 1.1f;     // of the radius: pairs that pushes may bring into contact
+constexpr int kPasses = 12;             // over all pairs: how many balls far a push spreads
+constexpr float kBallRestSpeed = 0.2f;  // below this approach speed there is no rebound [m/s]
 constexpr int kCellBits = 21;           // of each axis in a key
 constexpr std::int64_t kLastCell = (std::int64_t{1} << kCellBits) - 2;
 
@@ -74,7 +74,8 @@ void accelerate(ParticlePool& pool, std::size_t i, const Vec3& change) {
     pool.vz[i] += change.z;
 }
 
-/// Of a change of a pair: half each, or all of it for who does not stick to a surface.
+/// How the displacement of a pair is distributed: half each, or all of it to the one that does not
+/// stick to a surface.
 struct MassWeights {
     float a = 0.5f;
     float b = 0.5f;
@@ -89,7 +90,7 @@ MassWeights weights_of(const ParticlePool& pool, const BallPair& pair) {
     return a + b > 0 ? MassWeights{a / (a + b), b / (a + b)} : MassWeights{0, 0};
 }
 
-/// The positions of a pool, moved until nobody overlaps, or nearly.
+/// The positions of a pool, which passes move apart until almost no balls overlap.
 class BallPositions {
   public:
     BallPositions(const ParticleBalls& balls, const BallWalls& walls, const ParticlePool& pool)
@@ -107,7 +108,7 @@ class BallPositions {
         Random random(pool_.look[pair.a], pool_.look[pair.b], name_hash("particle balls"), 0);
         return random.direction();
     }
-    /// Whether they overlapped.
+    /// Returns whether they overlapped.
     bool push_apart(const BallPair& pair) {
         const float overlap = 2 * radius_ - glm::distance(at(pair.a), at(pair.b));
         if (overlap > 0) {
@@ -118,8 +119,8 @@ class BallPositions {
         }
         return overlap > 0;
     }
-    /// Walls hold whoever has been pushed into them since the last call.
-    void meet_walls() {
+    /// Stops balls at the walls that they have been pushed into since the last call.
+    void collide_with_walls() {
         if (walls_.solid == nullptr || walls_.solid->colliders.empty()) {
             return;
         }
@@ -161,7 +162,7 @@ class BallPositions {
     BallWalls walls_;
     const ParticlePool& pool_;
     std::vector<float> x_, y_, z_;
-    std::vector<float> held_x_, held_y_, held_z_;  // after the last call of meet_walls
+    std::vector<float> held_x_, held_y_, held_z_;  // after the last call of collide_with_walls
     std::vector<float> vx_, vy_, vz_;
     std::vector<std::uint8_t> marks_;
     std::vector<ParticleHit> hits_;
@@ -174,7 +175,7 @@ void find_ball_pairs(const ParticlePool& pool, float radius, std::vector<BallPai
     const float width = 2 * radius;
     const std::vector<Keyed> sorted = sort_by_cell(pool, width);
     const std::size_t count = sorted.size();
-    // Of the cells around, half: own cell and the next one in z, then rows of three along z.
+    // Half of the neighbor cells: the own cell and the next one in z, then rows of three along z.
     constexpr std::uint64_t kRows[] = {
         key_of(0, 1, 0), key_of(1, 0, 0) - key_of(0, 1, 0), key_of(1, 0, 0),
         key_of(1, 0, 0) + key_of(0, 1, 0)};
@@ -211,7 +212,7 @@ void collide_balls(
         return;
     }
     std::vector<BallPair> pairs;
-    find_ball_pairs(pool, kReach * balls.radius, pairs);
+    find_ball_pairs(pool, kPairRadius * balls.radius, pairs);
     if (pairs.empty()) {
         return;
     }
@@ -219,15 +220,15 @@ void collide_balls(
     std::vector<std::uint8_t> touched(pairs.size(), 0);
     for (int pass = 0; pass < kPasses; ++pass) {
         for (std::size_t k = 0; k < pairs.size(); ++k) {
-            // To and fro, so that nobody is always first.
+            // Alternating order, so that no pair is favored.
             const std::size_t i = pass % 2 == 0 ? k : pairs.size() - 1 - k;
             if (positions.push_apart(pairs[i])) {
                 touched[i] = 1;
             }
         }
-        positions.meet_walls();
+        positions.collide_with_walls();
     }
-    std::vector<float> approach;  // before that
+    std::vector<float> approach;  // speeds before the collision
     approach.reserve(pairs.size());
     for (const BallPair& pair : pairs) {
         approach.push_back(glm::dot(
@@ -240,7 +241,7 @@ void collide_balls(
         pool.y[i] += push.y;
         pool.z[i] += push.z;
     }
-    // They part as fast as they bounce, however far they have been pushed.
+    // The separation speed follows from the bounce alone, not from the distance pushed.
     const float bounce = std::clamp(finite_or(balls.bounce, 0), 0.0f, 1.0f);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (touched[i] == 0) {

@@ -18,12 +18,12 @@ namespace limn {
 namespace {
 
 constexpr float kAspect = 16.0f / 9.0f;
-constexpr double kMostBirths = 1e12;  // of a cause in a step or a second, so that sums stay finite
-constexpr double kSlack =
-    1e-5;  // of a birth: 600 per second are 10 in each step of 1/60 s, as far as floats know
-constexpr double kMinDuration = 1e-3;  // [s] of an emitter that starts again
+constexpr double kMaxBirths = 1e12;  // of a burst or per second, so that sums stay finite
+// Of a birth: 600 per second are 10 in each step of 1/60 s, in spite of rounding.
+constexpr double kSlack = 1e-5;
+constexpr double kMinDuration = 1e-3;  // [s] of an emitter that loops
 
-/// Once for all particles that it may hold: unused memory only costs address space.
+/// Reserves the whole capacity at once: unused memory only costs address space.
 void reserve(ParticlePool& pool, std::size_t count) {
     for (auto* column :
          {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
@@ -147,12 +147,12 @@ double interval_of(const ParticleBurst& burst) {
 double first_repeat(const ParticleBurst& burst, double begin) {
     return std::max(std::ceil((begin - static_cast<double>(burst.time)) / interval_of(burst)), 0.0);
 }
-/// When that is, after `begin` [s].
+/// When it is due, after `begin` [s].
 double time_of_repeat(const ParticleBurst& burst, double repeat, double begin) {
     return static_cast<double>(burst.time) + repeat * interval_of(burst) - begin;
 }
 
-/// One piece of a step, without a restart of the emitter within it.
+/// A part of a step within which the emitter does not restart.
 struct Piece {
     double begin;  ///< of the emitter's time [s]
     double length;
@@ -169,7 +169,7 @@ class Births {
         if (!(rate > 0)) {
             return;
         }
-        rate = std::min(rate, kMostBirths);
+        rate = std::min(rate, kMaxBirths);
         const double due = clock_.carry + rate * piece.length;
         const double whole = std::floor(due + kSlack);
         add(piece.offset + (1 - clock_.carry) / rate, 1 / rate, whole);
@@ -183,7 +183,7 @@ class Births {
                 break;
             }
             const auto asked = static_cast<double>(spread(burst.count, burst.spread, random));
-            add(piece.offset + at, 0, std::min(std::round(asked), kMostBirths));
+            add(piece.offset + at, 0, std::min(std::round(asked), kMaxBirths));
         }
     }
 

@@ -18,7 +18,8 @@ namespace limn {
 // When and where particles are born. All random numbers are keyed by the emitter and the number of
 // the birth, so they depend neither on the frame rate nor on what else is born.
 
-/// How many more may be born while `window` count as alive (particle.linear-window).
+/// How many more particles the capacity admits while `window` of them count as alive
+/// (particle.linear-window).
 [[nodiscard]] std::size_t
 birth_room(const ParticleEmitter& emitter, std::uint64_t window, const EmitterClock& clock);
 
@@ -38,19 +39,19 @@ void find_births(
 [[nodiscard]] float screen_coverage(float radius, float distance, float fov_y);
 
 /// Adds a particle for every drop that waves have thrown up in this step (water.crest-spray,
-/// water.impact-spray), at any instant of it; lifetimes are the emitter's. At most up to its
-/// capacity.
+/// water.impact-spray), at a random instant of the step; lifetimes are the emitter's. Drops over
+/// capacity are counted in `clock.dropped`.
 void add_drops(
     const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, const ParticleStep& step,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool);
 
-/// What is added at birth of the emitter's own velocity [m/s].
+/// The part of the emitter's own velocity that is added at birth [m/s].
 [[nodiscard]] Vec3
 inherited_velocity(const ParticleEmitter& emitter, const EmitterPose& pose, float dt);
 
-/// Adds a particle for every birth, where the emitter is at that instant, moved back in time so
-/// that a whole step brings it to where it should be; on `surface` unless it is null. Where nothing
-/// can be born there, the births are added to `clock.dropped`.
+/// Adds a particle for every birth, where the emitter is at that instant, or on `surface` unless it
+/// is null. Particles are moved back in time, so that a whole step brings them to where they should
+/// be. If nothing can be born on the surface, the births are added to `clock.dropped`.
 void add_particles(
     const ParticleEmitter& emitter, const EmitterPose& pose, const ParticleStep& step,
     const SurfaceSource* surface, std::uint64_t seed, std::uint64_t subject,

@@ -15,9 +15,9 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kCollisionBlock = 512;  // particles that are tested before some of them move
+constexpr std::size_t kCollisionBlock = 512;  // particles per broad phase
 
-/// What a particle may meet; `bounds` is empty where nothing is known.
+/// What a particle may hit; `bounds` is empty if they are not known.
 struct Obstacles {
     std::span<const Collider> colliders;
     std::span<const ColliderBounds> bounds;
@@ -42,7 +42,7 @@ bool is_far_from_obstacle(
     return !obstacles.bounds.empty() && !may_touch(obstacles.bounds[i], from, to, radius, skin);
 }
 
-/// Of the contacts with all colliders the first.
+/// The first contact with any collider.
 std::optional<NumberedContact>
 nearest_contact(const Obstacles& obstacles, const Vec3& from, const Vec3& to, float radius) {
     std::optional<NumberedContact> nearest;
@@ -59,7 +59,7 @@ nearest_contact(const Obstacles& obstacles, const Vec3& from, const Vec3& to, fl
     return nearest;
 }
 
-/// Moves to `to` if nothing is between.
+/// Moves to `to` if no collider is in between.
 void move_if_clear(Vec3& position, const Vec3& to, const Obstacles& obstacles, float radius) {
     if (!nearest_contact(obstacles, position, to, radius)) {
         position = to;
@@ -80,7 +80,7 @@ CollisionResult follow(
     const float skin = skin_of(step.from, step.to, options.skin);
     Vec3 to = step.to;
 
-    // Inside, or so near that rounding decides: out, which is no bounce.
+    // If it starts inside, or so near that rounding decides, it is pushed out without a bounce.
     for (std::size_t i = 0; i < obstacles.colliders.size(); ++i) {
         if (is_far_from_obstacle(obstacles, i, now.position, now.position, step.radius, skin)) {
             continue;

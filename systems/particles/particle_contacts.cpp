@@ -10,9 +10,9 @@
 namespace limn {
 namespace {
 
-constexpr float kDry = 1e-3f;  // kept above water by what bounces off or sticks [m]
+constexpr float kWaterSkin = 1e-3f;  // distance above water of what bounces off or sticks [m]
 
-/// A particle of a block that would enter water, if nothing solid is before it.
+/// A particle of a block that enters water, unless it hits something solid before.
 struct Entry {
     std::uint32_t particle = 0;  ///< within the block
     WaterContact contact;
@@ -70,7 +70,7 @@ void begin_paths(ParticlePool& pool, std::uint32_t first, std::uint32_t count, P
     }
 }
 
-/// Ends the paths of those that would enter water at its surface.
+/// Ends the paths of those that would enter water at the surface.
 void stop_at_water(
     const Paths& paths, std::span<const ParticleWater> waters, std::vector<Entry>& entries) {
     for (std::uint32_t i = 0; i < paths.particles.x.size(); ++i) {
@@ -84,7 +84,7 @@ void stop_at_water(
     }
 }
 
-/// What the water does to those that met nothing solid before.
+/// The response of those that hit nothing solid before the water.
 void hit_water(
     Paths& paths, const ParticleCollision& collision, const ParticleSurroundings& around, float dt,
     std::span<const Entry> entries, std::vector<ParticleHit>& hits) {
@@ -102,7 +102,7 @@ void hit_water(
             after = respond(velocity, contact.normal, {collision.bounce, collision.friction});
         }
         const float rest = (1 - contact.fraction) * dt;
-        paths.move(i, contact.point + kDry * contact.normal + rest * after, after);
+        paths.move(i, contact.point + kWaterSkin * contact.normal + rest * after, after);
         paths.marks[i] = collision.action == CollisionAction::Kill    ? kParticleKilled
                          : collision.action == CollisionAction::Stick ? kParticleStuck
                                                                       : kParticleHit;

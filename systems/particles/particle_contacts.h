@@ -20,7 +20,7 @@ namespace limn {
 
 // What particles hit during a step, solid or water, and how they respond.
 
-/// Most particles that move as one piece of work.
+/// Maximum number of particles that move as one piece of work.
 inline constexpr std::uint32_t kParticleBlock = 1024;
 
 /// What particles hit, as one parameter of a system.
@@ -51,7 +51,7 @@ struct ParticleSurroundings {
     const ParticleSurroundings& around, ParticlePool& pool, std::uint32_t first,
     std::uint32_t count, std::vector<ParticleHit>& hits);
 
-/// Water with a ParticleCollider of that shape.
+/// The bodies of water that have a ParticleCollider of shape Water.
 [[nodiscard]] std::vector<ParticleWater>
 find_particle_waters(WaterQuery& waters, const Query<const ParticleCollider>& colliders);
 

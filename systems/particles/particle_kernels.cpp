@@ -24,8 +24,8 @@ inline constexpr std::uint32_t kHashZ = 0xcb1ab31fu;
 inline constexpr std::uint32_t kHashMix = 0x7feb352du;
 inline constexpr std::uint32_t kSeedB = 0x68bc21ebu;  // of the second field of curl noise
 
-// Added to whole numbers up to 2^22 it leaves them in the lowest bits of the sum. Beyond, where
-// floats have no fraction to speak of, the lattice is another one.
+// Added to whole numbers up to 2^22, it leaves them in the lowest bits of the sum. Beyond, where
+// floats have next to no fraction, the lattice is a different one.
 inline constexpr float kWhole = 0x1.8p23f;
 inline constexpr auto kWholeBits = std::bit_cast<std::uint32_t>(kWhole);
 
@@ -45,7 +45,7 @@ namespace limn::HWY_NAMESPACE {
 
 // Each returns the number of particles processed; the scalar version handles the remainder.
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR  // no SIMD
 
 std::size_t move_particles_vector(const ParticleBlock&, const ParticleStep&, std::size_t&) {
     return 0;
@@ -93,9 +93,9 @@ HWY_INLINE std::size_t each_whole_vector(D tag, std::size_t i, std::size_t count
 }
 
 /// Calls run(tag, first, count) for whole vectors, ever narrower ones, then for a part of the
-/// narrowest if that can be loaded without touching what is behind it. Parts of wide vectors would
-/// wait for stores to what is behind them, and small pools lie close to each other. Returns how
-/// many elements that were.
+/// narrowest if masked loads do not fault. Partial wide vectors would stall on recent stores to the
+/// memory behind them, and small pools lie close to each other. Returns the number of elements
+/// processed.
 template <typename Run>
 HWY_INLINE std::size_t each_vector(std::size_t count, Run run) {
     constexpr hn::CappedTag<float, 4> d4;
@@ -128,8 +128,8 @@ HWY_INLINE void move_axis(
     });
 }
 
-/// Axis after axis: arrays that begin at the same offset of a page, as large ones do, would
-/// displace each other from the cache if all were walked at once.
+/// One axis after another: arrays that begin at the same offset in a page, as large ones do, would
+/// evict each other from the cache if all were walked at once.
 std::size_t
 move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::size_t& dead) {
     const Vec3 push = step.gravity * step.dt;
@@ -142,7 +142,7 @@ move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::siz
             const auto age = hn::Add(load_part(tag, b.age + i, n), hn::Set(tag, step.dt));
             store_part(tag, age, b.age + i, n);
             const auto old = hn::Ge(age, load_part(tag, b.life + i, n));
-            // Lanes behind the end do not count.
+            // Lanes beyond the end do not count.
             found +=
                 hn::CountTrue(tag, n < hn::Lanes(tag) ? hn::And(old, hn::FirstN(tag, n)) : old);
         });
@@ -158,8 +158,8 @@ HWY_INLINE V lattice_value(U x, U y, U z) {
     return hn::ConvertTo(d, hn::BitCast(di, h));
 }
 
-/// Along an axis: lattice points before and behind, times the multiplier; quintic weight of the
-/// one behind, and a thirtieth of its slope.
+/// Along an axis: the lattice points below and above, times the multiplier; the quintic weight of
+/// the upper one, and a thirtieth of the derivative of that.
 struct Axis {
     U low, high;
     V weight, slope;

@@ -14,10 +14,10 @@ namespace limn {
 namespace {
 
 constexpr float kMinScale = 1e-4f;      // so that normals have a direction
-constexpr float kMeshRestSpeed = 1.0f;  // at which colliding particles begin to spin less [m/s]
-constexpr float kMinSpeed = 1e-4f;      // that has a direction [m/s]
+constexpr float kMeshRestSpeed = 1.0f;  // below which colliding particles spin less [m/s]
+constexpr float kMinSpeed = 1e-4f;      // below which a velocity has no direction [m/s]
 
-/// As in particle.vert: 0 .. 1, a number for each index.
+/// As random_signed() of lib/particle.glsl, but 0 .. 1: a random number for each index.
 float random_fraction(std::uint32_t bits, std::uint32_t index) {
     std::uint32_t h = (bits + index * 0x9e3779b9u) * 0x7feb352du;
     h = (h ^ (h >> 15)) * 0x846ca68bu;
@@ -69,7 +69,7 @@ MeshId mesh_of_particles(const ParticleMesh& mesh, const MeshData* whole, std::u
     return mesh.meshes[std::min(static_cast<std::size_t>(pick), mesh.meshes.size() - 1)];
 }
 
-/// Of all particles of an emitter in a step.
+/// What is the same for all particles of an emitter in a step.
 struct MeshStep {
     Affine world{};                   ///< of the emitter
     const MeshData* whole = nullptr;  ///< whose pieces they are, or null

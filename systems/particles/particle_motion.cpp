@@ -15,11 +15,11 @@ namespace limn {
 namespace {
 
 constexpr float kGravity = 9.81f;            // [m/s^2]
-constexpr float kOrbitRate = 60.0f;          // in which `orbit` is what a step turns [1/s]
+constexpr float kOrbitRate = 60.0f;          // steps per second for which `orbit` is defined [1/s]
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
 const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
 
-constexpr float kMinDrag = 0.1f;  // at which falling leads to no velocity too large to add [1/s]
+constexpr float kMinDrag = 0.1f;  // from which the terminal velocity is small enough to add [1/s]
 
 }  // namespace
 
@@ -52,12 +52,11 @@ MotionStep find_motion(
                                                                               : 0.5f,
         .closed_form = closed_form};
     if (motion.drag >= kMinDrag) {
-        // Both lead to one velocity, exactly, however long the step is.
+        // Gravity and drag together approach the terminal velocity, exactly for any step.
         found.step.air += found.step.gravity / motion.drag;
         found.step.gravity = Vec3(0);
     }
-    // Drifts stay small, so that positions in the noise keep their precision: it repeats every
-    // 4,096 whirls.
+    // The drift repeats every 4,096 whirls, so that positions in the noise keep their precision.
     const auto turns = static_cast<float>(
         std::fmod(static_cast<double>(motion.turbulence_speed) * time.time, 4096.0));
     found.turbulence = {
@@ -98,7 +97,7 @@ void change_velocities(const MotionStep& motion, const ParticleBlock& block) {
     }
 }
 
-/// Positions by the velocities at the beginning of the step, which all else changes.
+/// Explicit Euler: positions by the velocities at the beginning of the step.
 std::size_t move_by_old_velocities(const MotionStep& motion, const ParticleBlock& block) {
     std::array<std::vector<float>, 3> ends;
     float* const positions[] = {block.x, block.y, block.z};

@@ -75,7 +75,7 @@ BoxCollider make_box(const Axes& axes, const Vec3& center, const Vec3& size) {
     return {pose, size * axes.length};
 }
 
-/// None of a field that is turned, scaled or not there yet.
+/// False for a field that is rotated, scaled, or not transformed yet.
 bool is_upright_obstacle(const Affine& world) {
     constexpr float kTolerance = 1e-4f;
     for (int row = 0; row < 3; ++row) {

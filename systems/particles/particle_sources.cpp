@@ -33,8 +33,9 @@ class Spawns {
         for (double i = 0; i < std::min(count, free); ++i) {
             out_.push_back(spawn);
         }
-        constexpr double kMost = 1e12;  // also of infinitely many
-        dropped_ += count > free ? static_cast<std::uint64_t>(std::min(count - free, kMost)) : 0;
+        constexpr double kMaxDropped = 1e12;  // infinity included
+        dropped_ +=
+            count > free ? static_cast<std::uint64_t>(std::min(count - free, kMaxDropped)) : 0;
     }
 
     const ParticlePool& parent_;
@@ -44,8 +45,8 @@ class Spawns {
     std::uint64_t dropped_ = 0;
 };
 
-/// In equal intervals of a particle's age, of which the first is a random fraction: k births before
-/// age t where k = floor(rate t + fraction).
+/// Births at equal intervals of a particle's age, offset by a random fraction of an interval: until
+/// age t there are floor(rate t + fraction).
 void add_trail(
     Spawns& spawns, const ParticleEmitter& emitter, const ParticlePool& parent, std::size_t i,
     float dt) {

@@ -22,9 +22,9 @@ struct ParticleSpawn {
     float age = 0;              ///< at the end of the step [s]
 };
 
-/// Appends to `spawns` the births in a step of the parent's particles, which have moved but not
-/// lost their dead, in their order; `hits` by index. At most `room`; returns how many more there
-/// would have been. Positions are on the straight line along the last velocity.
+/// Appends to `spawns` the births in a step by the parent's particles, in their order; the parent
+/// has moved, but its dead are not removed yet; `hits` are sorted by particle. At most `room`;
+/// returns how many were dropped. Positions are extrapolated along the last velocity.
 std::uint64_t find_spawns(
     const ParticleSource& source, const ParticleEmitter& emitter, const ParticlePool& parent,
     std::span<const ParticleHit> hits, float dt, std::size_t room, Random& random,

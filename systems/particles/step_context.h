@@ -20,7 +20,7 @@ namespace limn {
 
 // What is the same for all emitters in a step, whether the CPU or the GPU simulates them.
 
-/// What it follows from, as one parameter of a system.
+/// Its inputs, as one parameter of a system.
 struct ParticleEnvironment {
     Query<const ForceField, const WorldTransform> fields;
     Query<const Camera, const WorldTransform> cameras;
@@ -52,7 +52,7 @@ struct StepContext {
     const ParticleMotion* motion, const ParticleWrap* wrap, const Affine& world,
     const StepContext& context);
 
-/// Keeps the particles about the viewer if `wrap` is not null and their positions are integrated.
+/// Wraps the particles around the camera if `wrap` is not null and their positions are integrated.
 void set_wrap(MotionStep& motion, const ParticleWrap* wrap, const StepContext& context);
 
 }  // namespace limn

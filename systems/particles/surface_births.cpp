@@ -15,7 +15,7 @@
 namespace limn {
 namespace {
 
-/// Triangle `i` of the table's vertices, moved by `world`; false if it is none.
+/// Triangle `i` of the table's vertices, transformed by `world`; false if an index is out of range.
 bool find_source_triangle(
     const MeshData& mesh, const std::vector<Vec3>& positions, std::size_t i, const Affine& world,
     std::array<Vec3, 3>& corners) {
@@ -44,7 +44,7 @@ Quat with_up(const Vec3& up) {
     return {Vec3(0, 1, 0), up};
 }
 
-/// `local` is a position in the space of the source: where it is in the world, and how it moves.
+/// World position and velocity of a position in the space of the source.
 SurfacePoint
 follow_source(const SurfaceSource& source, const Vec3& local, const Affine& world, float dt) {
     SurfacePoint point;
@@ -112,7 +112,7 @@ std::optional<SurfacePoint> volume_point(
     return local ? std::optional(follow_source(source, *local, world, dt)) : std::nullopt;
 }
 
-/// Sums of the areas; false if there is none.
+/// Prefix sums of the areas; false if the total is 0.
 bool sum_areas(const SurfaceSource& source, SurfaceTable& table) {
     const MeshData& mesh = *source.mesh.data;
     table.areas.resize(mesh.indices.size() / 3);

@@ -10,15 +10,15 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxStepPoints = 2000;  // that one step may leave; more are a jump
-constexpr float kSharpTurn = 0.5f;      // cosine of the angle beyond which a path is straightened
+constexpr float kMaxStepPoints = 2000;  // of one step; more are a jump
+constexpr float kSharpTurn = 0.5f;      // cosine of the turn beyond which a path is straightened
 
 bool is_finite_point(const TrailPoint& point) {
     const Vec3 sum = point.position + point.span;
     return std::isfinite(sum.x + sum.y + sum.z);
 }
 
-/// Points of a strand: half as many again as its length takes, for what a step adds.
+/// Points of a strand: 1.5 times as many as its length needs, to leave room for those of a step.
 std::uint32_t capacity_of(const Trail& trail) {
     const float points = 1.5f * trail.length / trail_spacing(trail);
     return points > 0 ? static_cast<std::uint32_t>(std::min(points, 1500.0f)) + 8 : 8;
@@ -44,14 +44,14 @@ void walk(
     TrailState& state, TrailStrand& strand, float spacing, const TrailPoint& a, const TrailPoint& b,
     float age, float duration) {
     const Vec3 path = b.position - a.position;
-    const float way2 = glm::dot(path, path);
-    for (float from = 0; way2 > 0;) {
+    const float path2 = glm::dot(path, path);
+    for (float from = 0; path2 > 0;) {
         const Vec3 last = trail_point(state, strand, strand.count - 1).position;
         const Vec3 offset = a.position - last;
         const float along = glm::dot(offset, path);
         const float room = spacing * spacing - glm::dot(offset, offset);
-        const float root = along * along + way2 * room;
-        const float t = root >= 0 ? (std::sqrt(root) - along) / way2 : 2.0f;
+        const float root = along * along + path2 * room;
+        const float t = root >= 0 ? (std::sqrt(root) - along) / path2 : 2.0f;
         if (!(t >= from && t <= 1)) {
             return;
         }
@@ -106,7 +106,7 @@ void follow_particles(TrailState& state, const Trail& trail, const ParticlePool&
         }
         if (found < known) {
             for (; next < found; ++next) {
-                state.strands[next].live = false;  // died between
+                state.strands[next].live = false;  // its particle has died
             }
             ++next;
             extend_strand(state, state.strands[found], trail, to, dt);

@@ -27,15 +27,15 @@ void update_trails(
 
 // ---- parts of the above ----
 
-/// Ages all points and heads by `dt`, and drops those beyond the trail's length and life but for
-/// one, to end on.
+/// Ages all points and heads by `dt`, and drops those beyond the trail's length and life but the
+/// first, between which and the others the trail ends.
 void age_trail(TrailState& state, const Trail& trail, float dt);
 
 /// A new strand that begins at `start`.
 TrailStrand& add_strand(TrailState& state, const TrailPoint& start);
 
-/// Moves the head to `to`, which takes `dt`. Returns false, and ends the strand, if that is not a
-/// number or a jump.
+/// Moves the head to `to` in `dt`. Returns false, and ends the strand, if `to` is not finite or a
+/// jump away.
 bool extend_strand(
     TrailState& state, TrailStrand& strand, const Trail& trail, const TrailPoint& to, float dt);
 

@@ -11,15 +11,16 @@ namespace limn {
 
 // Particles that fall into water, with all of its waves.
 
-/// Water that particles meet.
+/// Water that particles hit.
 struct ParticleWater {
     WaterSurface surface{};
-    float highest = 0;        ///< no water is higher, world space [m]
+    float highest = 0;        ///< upper bound of its surface in world space [m]
     float ripple = 0;         ///< ParticleCollider::ripple [m]
     float ripple_radius = 0;  ///< [m]
 };
 
-/// A bound on the height of the water above rest [m]: the sum of the highest of each kind of waves.
+/// Upper bound of the height of the water above rest [m]: the sum of the maxima of all kinds of
+/// waves.
 [[nodiscard]] float highest_wave(const WaterSurface& surface);
 
 struct WaterContact {
