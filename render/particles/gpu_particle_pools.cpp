@@ -7,6 +7,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/shaders/particle_gpu.h"
+#include "render/shaders/view_gpu.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,13 +21,6 @@
 
 namespace limn {
 namespace {
-
-constexpr unsigned kStepsUnit = 0;
-constexpr unsigned kPreviousDepthUnit = 1;
-constexpr unsigned kViewBinding = 0;
-constexpr unsigned kStateBinding = 0;
-constexpr unsigned kBitsBinding = 1;
-constexpr unsigned kInstancesBinding = 2;
 
 float word(std::uint64_t bits) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
@@ -296,10 +290,10 @@ void GpuParticlePools::move(
     gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const {
     const bool meets = has_depth && pool.collide_depth > 0;
     const bool is_plain_step = pool.plain.has_value() && !meets;
-    pool.steps.bind(device, kStepsUnit);
-    device.bind_storage(kStateBinding, pool.state);
-    device.bind_storage(kBitsBinding, pool.bits);
-    device.bind_storage(kInstancesBinding, pool.instances);
+    pool.steps.bind(device, layout::kParticleStepsUnit);
+    device.bind_storage(layout::kParticleStateBinding, pool.state);
+    device.bind_storage(layout::kParticleBitsBinding, pool.bits);
+    device.bind_storage(layout::kParticleInstancesBinding, pool.instances);
     const auto dispatch = [&](const gpu::Program& program, std::uint32_t begin, std::uint32_t end,
                               std::uint32_t first_slot) {
         if (begin >= end) {
@@ -364,14 +358,16 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
     const PreviousDepth depth = view.depth;
     std::vector<Use> reads;
     if (depth.depth != nullptr) {
-        reads.push_back(sampled(graph.import("previous depth", *depth.depth), kPreviousDepthUnit));
+        reads.push_back(
+            sampled(graph.import("previous depth", *depth.depth), layout::kPreviousDepthUnit));
     }
     graph.add_pass(
         "move particles", reads, writes, [this, back = view.back, depth](PassContext& context) {
             gpu::Device& device = context.device();
             if (depth.depth != nullptr) {
                 device.bind_uniforms(
-                    kViewBinding, depth.camera.buffer, depth.camera.offset, depth.camera.size);
+                    layout::kViewBinding, depth.camera.buffer, depth.camera.offset,
+                    depth.camera.size);
             }
             for (const auto& [entity, pool] : pools_) {
                 move(device, *pool, back, depth.depth != nullptr);

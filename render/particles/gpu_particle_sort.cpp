@@ -16,9 +16,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kEntriesBinding = 0;
-constexpr unsigned kSortedInstancesBinding = 1;
-constexpr unsigned kSortedBinding = 2;
 constexpr std::uint32_t kSortGroup = 512;  // invocations of a work group
 constexpr std::uint32_t kLocal = 1024;     // entries that a work group sorts by itself
 
@@ -143,8 +140,8 @@ void run_particle_sort(
     const bool ended = sort.next_pass == 0;
     const int sorted = ended ? 1 - sort.current : sort.current;
     device.storage_barrier();  // after the particles have moved
-    device.bind_storage(kEntriesBinding, sort.entries[sorted]);
-    device.bind_storage(kSortedInstancesBinding, instances);
+    device.bind_storage(layout::kSortEntriesBinding, sort.entries[sorted]);
+    device.bind_storage(layout::kSortInstancesBinding, instances);
     if (plan.read_keys) {
         device.use(*programs.keys);
         programs.keys->set("count", now.count);
@@ -160,8 +157,8 @@ void run_particle_sort(
     } else {
         sort_some(device, programs, plan);
     }
-    device.bind_storage(kEntriesBinding, sort.entries[1 - sort.current]);
-    device.bind_storage(kSortedBinding, sort.instances);
+    device.bind_storage(layout::kSortEntriesBinding, sort.entries[1 - sort.current]);
+    device.bind_storage(layout::kSortedInstancesBinding, sort.instances);
     device.use(*programs.gather);
     programs.gather->set("count", now.count);
     programs.gather->set("sorted_count", sort.shown->count);

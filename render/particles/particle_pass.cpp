@@ -11,6 +11,7 @@
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/particles/particle_weighted.h"
+#include "render/shaders/particle_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -26,17 +27,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kImagesUnit = 0;
-constexpr unsigned kMotionsUnit = 1;
-constexpr unsigned kParticlesUnit = 2;
-constexpr unsigned kLooksUnit = 3;
-constexpr unsigned kSceneDepthUnit = 4;
-constexpr unsigned kRibbonsUnit = 8;
-constexpr unsigned kVeilUnit = 23;
-constexpr unsigned kNegativeLightsUnit = 27;
-constexpr unsigned kBillboardsUnit = 26;
-constexpr unsigned kCenterLightUnit = 28;
-constexpr unsigned kCenterLightBinding = 0;
 constexpr int kLightGroup = 64;  // invocations of a work group
 
 /// Makes the viewport three times as wide and high as the image, so that quads across its border
@@ -281,12 +271,12 @@ void ParticleEffect::add_sprites(
     std::span<const Use> targets) {
     add_light(graph, view);
     std::vector<Use> reads =
-        lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+        lighting_reads(view, {depth_tested(depth), sampled(depth, layout::kParticleDepthUnit)});
     if (const auto& particles = view.data.get<ViewParticles>(); particles.is_lit) {
         reads.emplace_back(graph.import("particles.light", particles.light));
     }
     if (side.veil) {
-        reads.push_back(sampled(*side.veil, kVeilUnit));
+        reads.push_back(sampled(*side.veil, layout::kParticleVeilUnit));
     }
     add_pool_reads(graph, reads);
     graph.add_pass(
@@ -301,7 +291,7 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
         view.data.get<ViewParticles>().list.of(SpriteLayer::Splats);
     std::size_t count = 0;
     float brightest = 0;
-    std::vector<Use> reads = {sampled(view.gbuffer.depth, kSceneDepthUnit)};
+    std::vector<Use> reads = {sampled(view.gbuffer.depth, layout::kParticleDepthUnit)};
     for (const SpriteDraw& draw : draws) {
         count += draw.pool->count;
         brightest = std::max(brightest, brightest_of(scene.looks[draw.pool->look]));
@@ -316,10 +306,10 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
         layer_row(SpriteLayer::Splats).pass, std::span<const Use>(reads), writes,
         [this, &view, program, draws](PassContext& context) {
             bind_view(context, view);
-            look_texels.bind(context.device(), kLooksUnit);
+            look_texels.bind(context.device(), layout::kLooksUnit);
             for (const SpriteDraw& draw : draws) {
                 if (program != nullptr && draw.count > 0) {
-                    draw.pool->texels.bind(context.device(), kParticlesUnit);
+                    draw.pool->texels.bind(context.device(), layout::kParticlesUnit);
                     draw_particle_splats(context, *program, splats, *draw.pool);
                 }
             }
@@ -359,9 +349,9 @@ void ParticleEffect::evaluate_light(PassContext& context, const ViewData& view) 
     const int count = static_cast<int>(particles.list.instances.size());
     gpu::Device& device = context.device();
     bind_lighting(context, view);
-    particles.texels.bind(device, kParticlesUnit);
-    look_texels.bind(device, kLooksUnit);
-    device.bind_storage(kCenterLightBinding, particles.light);
+    particles.texels.bind(device, layout::kParticlesUnit);
+    look_texels.bind(device, layout::kLooksUnit);
+    device.bind_storage(layout::kCenterLightBinding, particles.light);
     device.use(*program);
     program->set("count", count);
     device.dispatch(static_cast<std::uint32_t>((count + kLightGroup - 1) / kLightGroup));
@@ -371,7 +361,7 @@ void ParticleEffect::evaluate_light(PassContext& context, const ViewData& view) 
 
 void ParticleEffect::add_velocity(FrameGraph& graph, ViewData& view) {
     std::vector<Use> reads = {
-        depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)};
+        depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, layout::kParticleDepthUnit)};
     add_pool_reads(graph, reads);
     const Use writes[] = {view.gbuffer.velocity};
     graph.add_pass(
@@ -488,13 +478,15 @@ void ParticleEffect::bind_images(
     const ImagePool& pool = view.frame->materials->images();
     const gpu::Sampler& sampler = magnified ? finest_sampler : image_sampler;
     if (scene.features.images) {
-        device.bind_texture(kImagesUnit, pool.array(arrays.images), &sampler);
+        device.bind_texture(layout::kSpriteImagesUnit, pool.array(arrays.images), &sampler);
     }
     if (scene.features.motions) {
-        device.bind_texture(kMotionsUnit, pool.array(arrays.motions), &finest_sampler);
+        device.bind_texture(
+            layout::kSpriteMotionsUnit, pool.array(arrays.motions), &finest_sampler);
     }
     if (arrays.negative_lights != 0) {
-        device.bind_texture(kNegativeLightsUnit, pool.array(arrays.negative_lights), &sampler);
+        device.bind_texture(
+            layout::kNegativeLightsUnit, pool.array(arrays.negative_lights), &sampler);
     }
 }
 
@@ -507,11 +499,11 @@ void ParticleEffect::draw_sprites(
     const float framed = set_wide_viewport(context);
     const auto& particles = view.data.get<ViewParticles>();
     if (particles.is_lit) {
-        particles.light_texels.bind(device, kCenterLightUnit);
+        particles.light_texels.bind(device, layout::kCenterLightUnit);
     }
-    look_texels.bind(device, kLooksUnit);
-    ribbon_texels.bind(device, kRibbonsUnit);
-    billboard_texels.bind(device, kBillboardsUnit);
+    look_texels.bind(device, layout::kLooksUnit);
+    ribbon_texels.bind(device, layout::kRibbonPointsUnit);
+    billboard_texels.bind(device, layout::kBillboardQuadsUnit);
     const gpu::Program* program = nullptr;
     std::optional<SpriteDraw> last;
     const auto draw_one = [&](const SpriteDraw& draw) {
@@ -522,7 +514,7 @@ void ParticleEffect::draw_sprites(
             (pool == nullptr ? particles.texels
              : pool->sorted  ? pool->sort.texels
                              : pool->texels)
-                .bind(device, kParticlesUnit);
+                .bind(device, layout::kParticlesUnit);
         }
         program = same_program ? program : use(draw);
         last = draw;

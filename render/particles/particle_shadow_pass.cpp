@@ -4,6 +4,7 @@
 #include "render/gpu/device.h"
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/particle_gpu.h"
 #include "render/shadow/shadow_view.h"
 
 #include <glm/geometric.hpp>
@@ -19,19 +20,11 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kShadowImagesUnit = 0;
-constexpr unsigned kShadowMotionsUnit = 1;
-constexpr unsigned kShadowParticlesUnit = 2;
-constexpr unsigned kShadowLooksUnit = 3;
-constexpr unsigned kMapsUnit = 30;
-constexpr unsigned kRecordUnit = 31;
 constexpr int kShadowSide = 128;     // of the maps [texels]
 constexpr int kLayers = 3;           // two of coefficients, one of tints
 constexpr float kMinExtent = 1e-3f;  // of what the maps cover [m]
 constexpr float kShadowBorder =
-    2.0f / kShadowSide;  // that stays empty, so that nothing is smeared beyond the map
-constexpr unsigned kRangesBinding = 0;
-constexpr unsigned kRecordBinding = 1;
+    2.0f / kShadowSide;         // that stays empty, so that nothing is smeared beyond the map
 constexpr int kInSunlight = 1;  // values of PARTICLE_SHADOWS
 constexpr int kInSpotlight = 2;
 
@@ -71,9 +64,9 @@ bool can_cast(const LookRecord& look) {
 }
 
 void bind_particle_shadow(PassContext& context, const ParticleShadowEffect& effect) {
-    context.device().bind_texture(kMapsUnit, effect.maps);
+    context.device().bind_texture(layout::kParticleOpacityUnit, effect.maps);
     (effect.gpu_casters.empty() ? effect.record : effect.fitted)
-        .bind(context.device(), kRecordUnit);
+        .bind(context.device(), layout::kParticleShadowUnit);
 }
 
 }  // namespace
@@ -236,16 +229,16 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
             program.set("light_axis", view.axis);
             program.set("origin", view.origin);
             program.set("spot_range", view.spot_range);
-            device.bind_storage(kRangesBinding, ranges);
+            device.bind_storage(layout::kShadowRangesBinding, ranges);
         };
         begin(*find_ranges);
-        sprites.look_texels->bind(device, kShadowLooksUnit);
+        sprites.look_texels->bind(device, layout::kLooksUnit);
         for (const GpuShadowCaster& caster : gpu_casters) {
             constexpr std::uint32_t kMaxGroups = 16;  // whose invocations take several in turn
             const std::uint32_t groups = std::min(
                 (caster.pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup,
                 kMaxGroups);
-            caster.pool->texels.bind(device, kShadowParticlesUnit);
+            caster.pool->texels.bind(device, layout::kParticlesUnit);
             find_ranges->set("count", caster.pool->count);
             find_ranges->set("stride", groups * layout::kParticleGroup);
             device.dispatch(groups);
@@ -254,8 +247,8 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
         begin(*write_record);
         write_record->set("border", kShadowBorder);
         write_record->set("min_extent", kMinExtent);
-        record.bind(device, kRecordUnit);
-        device.bind_storage(kRecordBinding, fitted_record);
+        record.bind(device, layout::kParticleShadowUnit);
+        device.bind_storage(layout::kShadowRecordBinding, fitted_record);
         device.dispatch(1);
     });
 }
@@ -296,17 +289,17 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
         {.depth = {.test = false, .write = false}, .blend = gpu::kBlendAdd, .cull = GL_NONE}});
     program->set("light_right", view.right);
     program->set("light_up", view.up);
-    (gpu_casters.empty() ? record : fitted).bind(device, kRecordUnit);
-    sprites.look_texels->bind(device, kShadowLooksUnit);
+    (gpu_casters.empty() ? record : fitted).bind(device, layout::kParticleShadowUnit);
+    sprites.look_texels->bind(device, layout::kLooksUnit);
     const auto bind_images = [&](const ParticleArrays& arrays) {
         if (sprites.features.images) {
-            device.bind_texture(kShadowImagesUnit, images.array(arrays.images));
+            device.bind_texture(layout::kSpriteImagesUnit, images.array(arrays.images));
         }
         if (sprites.features.motions) {
-            device.bind_texture(kShadowMotionsUnit, images.array(arrays.motions));
+            device.bind_texture(layout::kSpriteMotionsUnit, images.array(arrays.motions));
         }
     };
-    texels.bind(device, kShadowParticlesUnit);
+    texels.bind(device, layout::kParticlesUnit);
     for (const ShadowCasters& run : runs) {
         program->set("first", run.first);
         bind_images(run.arrays);
@@ -315,7 +308,7 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
     program->set("first", 0);
     for (const GpuShadowCaster& caster : gpu_casters) {
         bind_images(caster.arrays);
-        caster.pool->texels.bind(device, kShadowParticlesUnit);
+        caster.pool->texels.bind(device, layout::kParticlesUnit);
         device.draw_quads(static_cast<int>(caster.pool->count));
     }
 }

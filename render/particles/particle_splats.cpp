@@ -3,6 +3,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/particles/gpu_particle_pools.h"
+#include "render/shaders/fullscreen_gpu.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kSumsBinding = 0;
-constexpr unsigned kRadianceImage = 0;
 constexpr unsigned kAddGroup = 64;  // pixels of a row
 constexpr float kMaxSteps =
     1 << 17;  // that a point adds to a pixel; less if there are more than 32,768
@@ -71,7 +70,7 @@ void draw_particle_splats(
     const GpuParticlePool& pool) {
     gpu::Device& device = context.device();
     device.use(program);
-    device.bind_storage(kSumsBinding, splats.sums);
+    device.bind_storage(layout::kSplatSumsBinding, splats.sums);
     program.set("count", static_cast<int>(pool.count));
     program.set("unit", splats.unit);
     program.set("max_amount", splats.max_amount);
@@ -89,8 +88,8 @@ void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view
             return;
         }
         context.device().use(*program);
-        context.bind_storage(kSumsBinding, sums);
-        context.bind_image(kRadianceImage, radiance, GL_READ_WRITE);
+        context.bind_storage(layout::kSplatSumsBinding, sums);
+        context.bind_image(layout::kTargetImage, radiance, GL_READ_WRITE);
         program->set("unit", splats.unit);
         const gpu::Texture& target = context.texture(radiance);
         context.device().dispatch(

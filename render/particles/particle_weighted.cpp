@@ -2,6 +2,7 @@
 
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
+#include "render/shaders/particle_gpu.h"
 
 #include <glm/geometric.hpp>
 
@@ -12,12 +13,6 @@
 // Source of particle.weighted-blended: McGuire and Bavoil 2013
 
 namespace limn {
-namespace {
-
-constexpr unsigned kSumUnit = 0;
-constexpr unsigned kKeptUnit = 1;
-
-}  // namespace
 
 WeightedLayers create_weighted_layers(FrameGraph& graph, const ViewData& view) {
     return {
@@ -41,7 +36,9 @@ Vec2 weight_range(const Bounds& bounds, const RenderView& view) {
 void resolve_weighted(
     FrameGraph& graph, const gpu::Program& program, const WeightedLayers& layers, ViewData& view) {
     graph.add_pass(
-        "particles.resolve", {sampled(layers.sum, kSumUnit), sampled(layers.kept, kKeptUnit)},
+        "particles.resolve",
+        {sampled(layers.sum, layout::kWeightedSumUnit),
+         sampled(layers.kept, layout::kWeightedKeptUnit)},
         {view.radiance}, [&program](PassContext& context) {
             gpu::PipelineState state = gpu::kFullscreenState;
             state.blend = gpu::kBlendPremultiplied;

@@ -3,6 +3,7 @@
 #include "render/fullscreen.h"
 #include "render/light/light_clusters.h"
 #include "render/light/light_list.h"
+#include "render/shaders/particle_gpu.h"
 #include "render/view_block.h"
 
 // Techniques: particle.depth-collision
@@ -17,7 +18,6 @@ PreviousDepth recall_depth(const DepthMemory& memory, const FrameData& frame) {
 
 void remember_depth(
     FrameGraph& graph, const gpu::Program& copy, const ViewData& view, DepthMemory& memory) {
-    constexpr unsigned kSceneDepthUnit = 4;
     const IVec2 size = view.size();
     if (memory.depth.width() != size.x || memory.depth.height() != size.y) {
         memory.depth =
@@ -26,7 +26,7 @@ void remember_depth(
     memory.camera = make_view_block(view.camera, ClusterShape{}, LightList{}, false);
     memory.frame = view.frame->number;
     add_fullscreen_pass(
-        graph, "previous depth", {sampled(view.gbuffer.depth, kSceneDepthUnit)},
+        graph, "previous depth", {sampled(view.gbuffer.depth, layout::kParticleDepthUnit)},
         {discarded(graph.import("previous depth", memory.depth))}, &copy);
 }
 

@@ -16,15 +16,15 @@
 #include "lib/view.glsl"
 
 #if defined(SOFT) || defined(IN_WATER)
-layout(binding = 4) uniform sampler2D scene_depth;
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
 #endif
 
 #ifdef SIX_WAY
-layout(binding = 27) uniform sampler2DArray negative_lights;
+layout(binding = kNegativeLightsUnit) uniform sampler2DArray negative_lights;
 #endif
 
 #ifdef VEILED
-layout(binding = 23) uniform sampler2D veil;  // depth of the nearest blended surface, 0: none
+layout(binding = kParticleVeilUnit) uniform sampler2D veil;  // depth of the nearest blended surface, 0: none
 uniform int behind;                           // 1: what is behind it; 0: the rest
 uniform float resolution;                     // of the image, as a share of the view's
 #endif

@@ -5,7 +5,7 @@
 
 #include "lib/view.glsl"  // of the previous frame
 
-layout(binding = 1) uniform sampler2D previous_depth;
+layout(binding = kPreviousDepthUnit) uniform sampler2D previous_depth;
 uniform float thickness;  // of what the depth shows [m]; 0: particles do not collide with it
 
 const int kDepthSamples = 12;     // of the path of a step

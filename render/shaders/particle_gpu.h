@@ -100,6 +100,39 @@ const uint kColliderTexels = 4u;
 const uint kForceTexels = 3u;
 const uint kParticleGroup = 128u;  // particles of a work group
 
+// Bindings: of what draws particles,
+const uint kSpriteImagesUnit = 0u;
+const uint kSpriteMotionsUnit = 1u;
+const uint kParticlesUnit = 2u;
+const uint kLooksUnit = 3u;
+const uint kParticleDepthUnit = 4u;  // of the scene
+const uint kRibbonPointsUnit = 8u;
+const uint kParticleVeilUnit = 23u;
+const uint kBillboardQuadsUnit = 26u;
+const uint kNegativeLightsUnit = 27u;
+const uint kCenterLightUnit = 28u;
+const uint kCenterLightBinding = 0u;
+const uint kSplatSumsBinding = 0u;
+const uint kParticleLayerUnit = 0u;
+const uint kParticleLayerDepthUnit = 1u;
+const uint kWeightedSumUnit = 0u;
+const uint kWeightedKeptUnit = 1u;
+// of their shadows,
+const uint kParticleOpacityUnit = 30u;
+const uint kParticleShadowUnit = 31u;
+const uint kShadowRangesBinding = 0u;
+const uint kShadowRecordBinding = 1u;
+// of what moves them,
+const uint kParticleStepsUnit = 0u;
+const uint kPreviousDepthUnit = 1u;
+const uint kParticleStateBinding = 0u;
+const uint kParticleBitsBinding = 1u;
+const uint kParticleInstancesBinding = 2u;
+// and of what sorts them.
+const uint kSortEntriesBinding = 0u;
+const uint kSortInstancesBinding = 1u;
+const uint kSortedInstancesBinding = 2u;
+
 #ifdef __cplusplus
 }  // namespace limn::layout
 #endif

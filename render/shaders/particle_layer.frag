@@ -3,10 +3,11 @@
 // Techniques: particle.half-resolution
 #version 450
 #include "lib/view.glsl"
+#include "particle_gpu.h"
 
-layout(binding = 0) uniform sampler2D layer;
-layout(binding = 1) uniform sampler2D layer_depth;
-layout(binding = 4) uniform sampler2D scene_depth;
+layout(binding = kParticleLayerUnit) uniform sampler2D layer;
+layout(binding = kParticleLayerDepthUnit) uniform sampler2D layer_depth;
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 radiance;
 

@@ -1,8 +1,9 @@
 // Of each four pixels the depth at their center where they are of one surface, else the nearest and the farthest, in turn
 // (render/particles/particle_layer.h).
 #version 450
+#include "particle_gpu.h"
 
-layout(binding = 4) uniform sampler2D scene_depth;
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
 
 // Depths about a corner of four pixels: upper left, upper right, lower right, lower left.
 vec4 depths_about(ivec2 corner) {

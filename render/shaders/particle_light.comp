@@ -11,7 +11,7 @@
 #include "lib/view.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) writeonly buffer Light {
+layout(std430, binding = kCenterLightBinding) writeonly buffer Light {
     vec4 center_light[];  // radiance of a white particle
 };
 

@@ -2,7 +2,7 @@
 #version 450
 #include "lib/particle.glsl"
 
-layout(binding = 31) uniform samplerBuffer particle_shadow;  // ParticleShadowRecord
+layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;  // ParticleShadowRecord
 uniform int first;         // of the particles to draw
 uniform vec3 light_right;  // unit, along the map's columns and rows
 uniform vec3 light_up;

@@ -7,7 +7,7 @@
 layout(local_size_x = 128) in;  // kParticleGroup
 
 // Lowest and highest of s, t and depth [m], as words that are ordered as the floats are.
-layout(std430, binding = 0) buffer Ranges {
+layout(std430, binding = kShadowRangesBinding) buffer Ranges {
     uint lowest[3];
     uint highest[3];
 };
@@ -27,10 +27,10 @@ float from_ordered(uint word) {
 }
 
 #ifdef RECORD
-layout(std430, binding = 1) writeonly buffer Record {
+layout(std430, binding = kShadowRecordBinding) writeonly buffer Record {
     vec4 rows[];  // ParticleShadowRecord
 };
-layout(binding = 31) uniform samplerBuffer particle_shadow;  // of a spot all but what follows from depths
+layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;  // of a spot all but what follows from depths
 uniform float border;      // around what casts, as a fraction of the map
 uniform float min_extent;  // [m]
 

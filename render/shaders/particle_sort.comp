@@ -11,16 +11,16 @@
 layout(local_size_x = 512) in;  // kSortGroup
 
 // Of each, the key and the number in the order of births, counted from the oldest when keys were read.
-layout(std430, binding = 0) buffer Entries {
+layout(std430, binding = kSortEntriesBinding) buffer Entries {
     uvec2 entries[];
 };
 #if defined(KEYS) || !(defined(PASS) || defined(LOCAL))
-layout(std430, binding = 1) readonly buffer Instances {
+layout(std430, binding = kSortInstancesBinding) readonly buffer Instances {
     uint instances[];
 };
 #endif
 #if !(defined(KEYS) || defined(PASS) || defined(LOCAL))
-layout(std430, binding = 2) writeonly buffer Sorted {
+layout(std430, binding = kSortedInstancesBinding) writeonly buffer Sorted {
     uint in_order[];
 };
 #endif

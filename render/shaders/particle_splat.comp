@@ -9,8 +9,8 @@
 #include "lib/particle_point.glsl"
 
 layout(local_size_x = 128) in;  // kParticleGroup
-layout(binding = 4) uniform sampler2D scene_depth;
-layout(std430, binding = 0) buffer Sums {
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
+layout(std430, binding = kSplatSumsBinding) buffer Sums {
     uint sums[];  // of red, green and blue of each pixel
 };
 

@@ -13,15 +13,15 @@
 
 layout(local_size_x = 128) in;  // kParticleGroup
 #ifndef PLAIN
-layout(binding = 0) uniform samplerBuffer steps;
+layout(binding = kParticleStepsUnit) uniform samplerBuffer steps;
 #endif
-layout(std430, binding = 0) buffer State {
+layout(std430, binding = kParticleStateBinding) buffer State {
     vec4 state[];  // of each slot: position, age; velocity, lifetime
 };
-layout(std430, binding = 1) buffer Bits {
+layout(std430, binding = kParticleBitsBinding) buffer Bits {
     uint bits[];  // of each slot: random
 };
-layout(std430, binding = 2) writeonly buffer Instances {
+layout(std430, binding = kParticleInstancesBinding) writeonly buffer Instances {
     uint instances[];  // of each particle that is moved, oldest first: as particle.vert reads them
 };
 

@@ -9,7 +9,7 @@
 #include "lib/view.glsl"
 
 #ifdef SOFT
-layout(binding = 4) uniform sampler2D scene_depth;
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
 #endif
 
 layout(location = 6) in vec3 previous_clip;

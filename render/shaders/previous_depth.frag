@@ -1,7 +1,8 @@
 // A copy of the depth, for the next frame (render/particles/previous_depth.h).
 #version 450
+#include "particle_gpu.h"
 
-layout(binding = 4) uniform sampler2D scene_depth;
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
 
 layout(location = 0) out float depth;
 

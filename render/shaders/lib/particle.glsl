@@ -3,8 +3,8 @@
 #include "lib/periodic.glsl"
 #include "particle_gpu.h"
 
-layout(binding = 2) uniform usamplerBuffer particles;
-layout(binding = 3) uniform samplerBuffer looks;
+layout(binding = kParticlesUnit) uniform usamplerBuffer particles;
+layout(binding = kLooksUnit) uniform samplerBuffer looks;
 
 const int kFacingCamera = 0;  // ParticleFacing
 const int kFacingVelocity = 1;

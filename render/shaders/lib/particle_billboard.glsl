@@ -1,7 +1,7 @@
 // The corner of a billboard's quad: after lib/particle_sprite.glsl.
 
 #include "lib/billboard.glsl"
-layout(binding = 26) uniform samplerBuffer billboard_quads;
+layout(binding = kBillboardQuadsUnit) uniform samplerBuffer billboard_quads;
 
 const int kAlignedView = 1;  // BillboardAlignment
 const int kAlignedAxis = 2;

@@ -1,7 +1,7 @@
 // The corner of a segment of a ribbon: after lib/particle_corner.glsl and lib/particle_quad.glsl.
 
 #include "lib/ribbon.glsl"
-layout(binding = 8) uniform samplerBuffer ribbon_points;
+layout(binding = kRibbonPointsUnit) uniform samplerBuffer ribbon_points;
 
 // A segment from `begin` to `end`, between its neighbors; a join where these coincide.
 struct RibbonSegment {

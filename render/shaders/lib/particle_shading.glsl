@@ -11,7 +11,7 @@
 #include "lib/particle_six_way.glsl"
 #endif
 #ifdef LIT_CENTER
-layout(binding = 28) uniform samplerBuffer center_light;  // of each particle to draw
+layout(binding = kCenterLightUnit) uniform samplerBuffer center_light;  // of each particle to draw
 #endif
 
 // Of the particle's position: in the image [px], and along the view axis [m].

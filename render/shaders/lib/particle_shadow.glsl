@@ -5,8 +5,8 @@
 #include "lib/fourier_opacity.glsl"
 #include "particle_gpu.h"
 
-layout(binding = 30) uniform sampler2DArray particle_opacity;  // two layers of coefficients, one of tints
-layout(binding = 31) uniform samplerBuffer particle_shadow;    // ParticleShadowRecord
+layout(binding = kParticleOpacityUnit) uniform sampler2DArray particle_opacity;  // two layers of coefficients, one of tints
+layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;    // ParticleShadowRecord
 
 // Transmittance between light number `index` and `position_ws`.
 vec3 particle_transmittance(int index, vec3 position_ws) {

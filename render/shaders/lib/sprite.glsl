@@ -7,8 +7,10 @@
 //            will be, so that shapes move instead of cross-fading (particle.motion-vectors)
 // Techniques: particle.motion-vectors
 
+#include "particle_gpu.h"
+
 #ifdef IMAGES
-layout(binding = 0) uniform sampler2DArray images;
+layout(binding = kSpriteImagesUnit) uniform sampler2DArray images;
 
 // The frame at `offset`; `frames` as in lib/particle.glsl.
 vec4 image_at(sampler2DArray book, vec2 uv, vec4 frames, vec2 offset, float layer) {
@@ -22,7 +24,7 @@ vec4 image_at(sampler2DArray book, vec2 uv, vec4 frames, vec2 offset, float laye
 }
 
 #ifdef MOTION
-layout(binding = 1) uniform sampler2DArray motion_maps;
+layout(binding = kSpriteMotionsUnit) uniform sampler2DArray motion_maps;
 
 // How far what the frame at `offset` shows at `uv` moves until the next frame, as a fraction of the frame; `motion`: layer of
 // the map, what its full value means.
