@@ -69,8 +69,8 @@ Mesh make_ball(int rings, int sectors, const Vec3& center, float dents) {
     return mesh;
 }
 
-/// Brute force in double precision (Moeller and Trumbore 1997). `margin`: how far, in shares and
-/// barycentric coordinates, all triangles are from being hit or missed the other way.
+/// Brute force in double precision (Moeller and Trumbore 1997). `margin`: how far, in fractions and
+/// barycentric coordinates, all triangles are from being deciding the other way.
 struct Reference {
     double fraction = std::numeric_limits<double>::infinity();
     double margin = std::numeric_limits<double>::infinity();
@@ -79,16 +79,16 @@ struct Reference {
 Reference first_hit_reference(const Mesh& mesh, const Segment& segment) {
     Reference first;
     const Dvec3 from(segment.from);
-    const Dvec3 way = Dvec3(segment.to) - from;
+    const Dvec3 path = Dvec3(segment.to) - from;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const Dvec3 a(mesh.positions[mesh.indices[i]]);
         const Dvec3 ab = Dvec3(mesh.positions[mesh.indices[i + 1]]) - a;
         const Dvec3 ac = Dvec3(mesh.positions[mesh.indices[i + 2]]) - a;
-        const Dvec3 p = glm::cross(way, ac);
+        const Dvec3 p = glm::cross(path, ac);
         const double det = glm::dot(ab, p);
         const double u = glm::dot(from - a, p) / det;
         const Dvec3 q = glm::cross(from - a, ab);
-        const double v = glm::dot(way, q) / det;
+        const double v = glm::dot(path, q) / det;
         const double t = glm::dot(ac, q) / det;
         const double inside = std::min({u, v, 1 - u - v, t, 1 - t});
         if (inside >= 0) {
@@ -235,9 +235,9 @@ TEST_CASE("mesh bvh: a segment cut in two at the surface does not slip between i
         const Vec3 from = Vec3(5, 6, 7) + 0.4f * random.uniform() * random.direction();
         const Vec3 to = from + 3.0f * random.direction();
         const MeshHit whole = first_hit(bvh, {from, to});
-        const Vec3 middle = from + whole.fraction * (to - from);
-        const bool hit = first_hit(bvh, {from, middle}).triangle != kNoTriangle
-                         || first_hit(bvh, {middle, to}).triangle != kNoTriangle;
+        const Vec3 center = from + whole.fraction * (to - from);
+        const bool hit = first_hit(bvh, {from, center}).triangle != kNoTriangle
+                         || first_hit(bvh, {center, to}).triangle != kNoTriangle;
         leaks += hit ? 0 : 1;
     }
     CHECK(leaks == 0);
@@ -348,16 +348,16 @@ TEST_CASE("mesh bvh: built twice it has the same bits, and holds each triangle o
     REQUIRE(a.nodes.size() == b.nodes.size());
     REQUIRE(a.leaves.size() == b.leaves.size());
     CHECK(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(a.nodes[0])) == 0);
-    std::vector<int> seen(mesh.indices.size() / 3);
+    std::vector<int> counts(mesh.indices.size() / 3);
     for (std::size_t i = 0; i < a.leaves.size(); ++i) {
         for (std::size_t lane = 0; lane < MeshBvh::kTriangles; ++lane) {
             CHECK(a.leaves[i].triangle[lane] == b.leaves[i].triangle[lane]);
             if (a.leaves[i].triangle[lane] != kNoTriangle) {
-                ++seen[a.leaves[i].triangle[lane]];
+                ++counts[a.leaves[i].triangle[lane]];
             }
         }
     }
-    CHECK(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
+    CHECK(std::all_of(counts.begin(), counts.end(), [](int times) { return times == 1; }));
 }
 
 TEST_CASE("mesh bvh: empty meshes and triangles that are none are never hit, others stay") {

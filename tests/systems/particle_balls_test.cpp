@@ -22,7 +22,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-Vec3 place(const ParticlePool& pool, std::size_t i) {
+Vec3 position(const ParticlePool& pool, std::size_t i) {
     return {pool.x[i], pool.y[i], pool.z[i]};
 }
 Vec3 velocity(const ParticlePool& pool, std::size_t i) {
@@ -72,7 +72,7 @@ Pairs all_pairs(const ParticlePool& pool, float radius) {
     Pairs pairs;
     for (std::uint32_t a = 0; a < pool.size(); ++a) {
         for (std::uint32_t b = a + 1; b < pool.size(); ++b) {
-            const Vec3 offset = place(pool, b) - place(pool, a);
+            const Vec3 offset = position(pool, b) - position(pool, a);
             if (glm::dot(offset, offset) < 4 * radius * radius) {
                 pairs.emplace_back(a, b);
             }
@@ -212,7 +212,7 @@ TEST_CASE(
         return pool;
     };
     const ParticlePool pool = run();
-    CHECK(glm::distance(place(pool, 0), place(pool, 1)) == near(0.2));
+    CHECK(glm::distance(position(pool, 0), position(pool, 1)) == near(0.2));
     CHECK(same_bits(pool, run()));
 }
 
@@ -224,7 +224,7 @@ TEST_CASE(
     add_ball(pool, {0.15f, 0, 0}, {-4, 0, 0});
     pool.stuck = {1, 0};
     collide_balls({.radius = 0.1f, .bounce = 1}, {}, kStep, pool);
-    CHECK(place(pool, 0) == Vec3(0));
+    CHECK(position(pool, 0) == Vec3(0));
     CHECK(velocity(pool, 0) == Vec3(0));
     CHECK(pool.x[1] == near(0.2));
     CHECK(velocity(pool, 1).x == near(4));
@@ -242,7 +242,7 @@ TEST_CASE(
     CHECK(pairs.size() <= 64 * 100000u);
     collide_balls({.radius = 0.05f}, {}, kStep, pool);
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        REQUIRE(is_finite(place(pool, i)));
+        REQUIRE(is_finite(position(pool, i)));
     }
     ParticlePool none;
     collide_balls({}, {}, kStep, none);
@@ -284,11 +284,11 @@ TEST_CASE(
     double overlap = 0;
     double speed = 0;
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        CHECK(glm::length(place(pool, i)) < 0.8f - kRadius + 0.02f);
+        CHECK(glm::length(position(pool, i)) < 0.8f - kRadius + 0.02f);
         highest = std::max(highest, pool.y[i]);
-        speed += static_cast<double>(glm::distance(place(pool, i), place(before, i))) / 300;
+        speed += static_cast<double>(glm::distance(position(pool, i), position(before, i))) / 300;
         for (std::size_t j = 0; j < i; ++j) {
-            const float apart = glm::distance(place(pool, i), place(pool, j));
+            const float apart = glm::distance(position(pool, i), position(pool, j));
             overlap = std::max(overlap, static_cast<double>(2 * kRadius - apart));
         }
     }

@@ -102,8 +102,8 @@ TEST_CASE(
     CHECK(far / near == test::near(0.5).epsilon(0.01));
     // A ball of 0.5 m at 10 m, in an image of 2 tan(0.5) by 16 / 9 of it.
     const double height = 2 * std::tan(0.5);
-    const double share = 3.14159 * 0.25 / 99.75 / (height * height * 16 / 9);
-    CHECK(near == test::near(1e5 * share).epsilon(0.01));
+    const double fraction = 3.14159 * 0.25 / 99.75 / (height * height * 16 / 9);
+    CHECK(near == test::near(1e5 * fraction).epsilon(0.01));
     seen_from(0.1f);
     scene.run(1);
     CHECK(
@@ -125,7 +125,7 @@ TEST_CASE("particles: births are evenly spaced in time, across steps too") {
     CHECK(pool.age.front() <= 5 * kStep);
 }
 
-TEST_CASE("particles: bursts come at their time and again, and with the duration anew") {
+TEST_CASE("particles: bursts come at their times, repeat, and start over with the duration") {
     Emitters scene(0.1f);
     ParticleEmitter emitter = steady(0);
     emitter.bursts = {{.time = 0.25f, .count = 5, .spread = 0, .interval = 0.5f, .repeats = 2}};
@@ -305,13 +305,13 @@ TEST_CASE(
     Random random(1, 2, 3, 4);
     constexpr int kCount = 50000;
     const float cone = 0.7f;
-    const float middle = 0.5f * (1 + std::cos(cone));  // halves the cap's area
+    const float halving = 0.5f * (1 + std::cos(cone));  // halves the cap's area
     int inner = 0;
     for (int i = 0; i < kCount; ++i) {
         const Vec3 v = sample_cone(cone, random);
         REQUIRE(std::abs(glm::length(v) - 1) < 1e-5f);
         REQUIRE(v.y >= std::cos(cone) - 1e-6f);
-        inner += v.y > middle ? 1 : 0;
+        inner += v.y > halving ? 1 : 0;
     }
     CHECK(inner / double{kCount} == test::near(0.5).epsilon(0.02));
 }
@@ -366,9 +366,9 @@ TEST_CASE("particles: a moving emitter leaves no gaps, and gives on its velocity
     emitter.speed = 0;
     emitter.inherit = 0;
     const Entity entity = scene.add(emitter, falling(0));
-    const auto place = [](float x) { return affine_from({x, 0, 0}, Quat(1, 0, 0, 0), Vec3(1)); };
-    scene.world.get<WorldTransform>(entity).world = place(6);
-    scene.world.get<PreviousWorldTransform>(entity).world = place(5);
+    const auto at_x = [](float x) { return affine_from({x, 0, 0}, Quat(1, 0, 0, 0), Vec3(1)); };
+    scene.world.get<WorldTransform>(entity).world = at_x(6);
+    scene.world.get<PreviousWorldTransform>(entity).world = at_x(5);
     scene.run();
     REQUIRE(scene.pool().size() == 10);
     for (std::size_t i = 0; i < 10; ++i) {

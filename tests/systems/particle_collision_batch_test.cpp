@@ -105,9 +105,9 @@ struct Scene {
             heights.push_back(random.uniform(-3.0f, -1.5f));
         }
         for (std::uint32_t i = 0; i < 60; ++i) {
-            const Vec3 middle = random_vector(random, 3);
+            const Vec3 center = random_vector(random, 3);
             for (std::uint32_t corner = 0; corner < 3; ++corner) {
-                positions.push_back(middle + random_vector(random, 0.5f));
+                positions.push_back(center + random_vector(random, 0.5f));
                 indices.push_back(3 * i + corner);
             }
         }
@@ -226,8 +226,8 @@ TEST_CASE("particle collision: the quick test knows how far a ball looks along a
     const Collider mesh = MeshCollider{.bvh = &bvh};
     const ColliderBounds bounds = find_collider_bounds(mesh);
     Swarm swarm;
-    const Vec3 way = {0.95f, -0.31f, 0};
-    swarm.add(Vec3(0.1f, 0, 0) - 1.6f * way, way, 0.2f, 1);  // ends 0.6 m before the triangle
+    const Vec3 path = {0.95f, -0.31f, 0};
+    swarm.add(Vec3(0.1f, 0, 0) - 1.6f * path, path, 0.2f, 1);  // ends 0.6 m before the triangle
     REQUIRE(first_contact(mesh, swarm.from(0), swarm.to(0), 0.2f));
     std::vector<std::uint32_t> found(1 + kCandidatePadding);
     CHECK(find_near(swarm.paths(), 0, 1, {&bounds, 1}, found.data()) == 1);

@@ -30,7 +30,7 @@ Vec3 random_vector(Random& random, float size) {
     return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
-/// A collider beside an independent measure of how far outside a place is.
+/// A collider beside an independent measure of how far outside a position is.
 struct Shape {
     std::string name;
     Collider collider;
@@ -83,9 +83,9 @@ double above_hills(const Dvec3& p) {
 std::vector<Shape> make_shapes() {
     const Vec3 normal(1, 2, -0.5f);
     const Vec3 center(0.2f, -0.1f, 0.3f);
-    const Mat4 place =
+    const Mat4 box_pose =
         glm::translate(Mat4(1), center) * glm::rotate(Mat4(1), 0.8f, glm::normalize(Vec3(1, 1, 0)));
-    const glm::dmat4 box_from_world = glm::inverse(glm::dmat4(place));
+    const glm::dmat4 box_from_world = glm::inverse(glm::dmat4(box_pose));
     const Vec3 half(0.9f, 0.3f, 0.6f);
     std::vector<Shape> shapes;
     for (const float radius : {0.0f, 0.2f}) {
@@ -101,7 +101,7 @@ std::vector<Shape> make_shapes() {
             {"hollow", SphereCollider{.center = center, .radius = 1.5f, .inverted = true}, radius,
              [=](const Dvec3& p) { return double{1.5f} - r - glm::length(p - Dvec3(center)); }});
         shapes.push_back(
-            {"box", BoxCollider{.world_from_box = to_affine(place), .half = half}, radius,
+            {"box", BoxCollider{.world_from_box = to_affine(box_pose), .half = half}, radius,
              [=](const Dvec3& p) {
                  const Dvec3 local =
                      glm::abs(box_from_world * glm::dvec4(p, 1)) - glm::dvec4(half, 0);
@@ -159,7 +159,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle collision: pushed out is outside, at once, by the shortest distance"
+    "particle collision: one push moves a particle outside, by the shortest distance"
     * technique("particle.constraints")) {
     Random random(3, 3, 3, 3);
     for (const Shape& shape : make_shapes()) {
@@ -284,13 +284,13 @@ TEST_CASE(
         const float lean = random.uniform(0.0f, 1.3f);
         const float around = random.uniform(0.0f, 6.28f);
         const float side = n % 2 == 0 ? 1.0f : -1.0f;
-        const Vec3 way = random.uniform(0.2f, 3.0f)
-                         * Vec3(
-                             std::sin(lean) * std::cos(around), -side * std::cos(lean),
-                             std::sin(lean) * std::sin(around));
+        const Vec3 path = random.uniform(0.2f, 3.0f)
+                          * Vec3(
+                              std::sin(lean) * std::cos(around), -side * std::cos(lean),
+                              std::sin(lean) * std::sin(around));
         const Vec3 from(0, side * (radius + random.uniform(0.0f, 0.5f)), 0);
-        const auto found = first_contact(MeshCollider{.bvh = &bvh}, from, from + way, radius);
-        const bool reaches = std::abs(from.y) - std::abs(way.y) < radius;
+        const auto found = first_contact(MeshCollider{.bvh = &bvh}, from, from + path, radius);
+        const bool reaches = std::abs(from.y) - std::abs(path.y) < radius;
         CHECK(found.has_value() == reaches);
         if (found) {
             CHECK(double{found->point.y} == near(double{side * radius}).epsilon(1e-4));

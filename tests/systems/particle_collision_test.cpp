@@ -67,7 +67,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle collision: long normals are normalized, shares beyond 0 .. 1 are clamped"
+    "particle collision: long normals are normalized, fractions beyond 0 .. 1 are clamped"
     * technique("particle.plane-response")) {
     CHECK(respond({3, -4, 0}, {0, 10, 0}, {0.5f, 0.5f}) == Vec3(1.5f, 2, 0));
     CHECK(respond({3, -4, 0}, {0, 1, 0}, {7, 7}) == Vec3(3, 4, 0));

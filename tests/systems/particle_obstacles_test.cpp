@@ -202,7 +202,7 @@ TEST_CASE(
     scene.world.add(square, MorphWeights{.weights = {0.75f}, .previous = {0.75f}});
     scene.run(60);
     scene.check_height(1 + 2 * 0.75);
-    // A skin whose joints nobody has: as it is at rest.
+    // A skin without joints: as it is at rest.
     scene.world.get<MorphWeights>(square).weights = {std::nanf("")};
     scene.drop(kStop);
     scene.run(60);
@@ -353,10 +353,10 @@ TEST_CASE("particle obstacles: a roof keeps drops from the water, and what is be
     CHECK(scene.pool().size() == 0);
     CHECK(scene.impulses().empty());
     const Entity bubbles = scene.drop({.action = CollisionAction::Kill});
-    for (auto* place :
+    for (auto* position :
          {&scene.world.get<WorldTransform>(bubbles).world,
           &scene.world.get<PreviousWorldTransform>(bubbles).world}) {
-        *place = affine_from({0, 0.9f, 0}, Quat(1, 0, 0, 0), Vec3(1));
+        *position = affine_from({0, 0.9f, 0}, Quat(1, 0, 0, 0), Vec3(1));
     }
     scene.run(5);
     CHECK(scene.pool(1).size() == 100);

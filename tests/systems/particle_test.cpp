@@ -164,7 +164,7 @@ TEST_CASE(
 }
 
 TEST_CASE("particles: an emitter moves the same whether or not others are born by it") {
-    // Whoever gives birth to nobody is stepped at once, together with others alike.
+    // Emitters without children do their whole step at once.
     ParticleEmitter emitter = steady(90);
     emitter.shape = EmitterShape::Ball;
     emitter.bursts = {{.time = 0.2f, .count = 30, .spread = 9, .interval = 0.3f, .repeats = 2}};
