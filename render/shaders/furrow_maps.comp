@@ -31,7 +31,7 @@ vec2 both_heights(int pixel) {
 float height_at(int pixel) {
     vec2 both = both_heights(pixel);
     uvec4 words = philox(uvec4(0u, 0u, uint(pixel) / 4u, 0u), uvec2(key_x, key_y));
-    return min(both.x, both.y) - share_of(words[pixel % 4]) * noise;
+    return min(both.x, both.y) - unit_float(words[pixel % 4]) * noise;
 }
 
 vec3 triangle_vec3(int triangle, int at) {

@@ -274,7 +274,7 @@ bool grow(inout Progress now) {
     float turn = 1.0;
     if (literal_turn == 0) {
         uvec2 key = field == 0u ? uvec2(first_key_x, first_key_y) : uvec2(second_key_x, second_key_y);
-        turn = 2.0 * share_of(philox(uvec4(0u, now.segment * 2u + now.backward, now.furrow, 0u), key).x) - 1.0;
+        turn = 2.0 * unit_float(philox(uvec4(0u, now.segment * 2u + now.backward, now.furrow, 0u), key).x) - 1.0;
     }
     precise float angle = shape.angle * turn;
     vec2 rotation = repeatable_cos_sin(angle);

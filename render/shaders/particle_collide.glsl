@@ -1,11 +1,11 @@
 // A step of a particle among planes, spheres and boxes: swept from contact to contact as in
 // systems/particles/particle_collision.cpp, in single precision. Included by particle_update.comp. Definition:
-//   DEPTH_COLLISION  particles also meet what the camera saw in the previous frame
+//   DEPTH_COLLISION  particles also collide with the depth of the previous frame
 
 const uint kColliderPlane = 0u, kColliderSphere = 1u, kColliderBox = 2u;
 const uint kBounce = 1u, kStick = 2u, kKill = 3u;  // of the emitter; 0: does not collide
 const float kSkin = 1e-4;       // distance kept from surfaces [m]
-const float kRestSpeed = 0.2;   // slower toward the surface: no rebound [m/s]
+const float kRestSpeed = 0.2;   // impact speed below which there is no rebound [m/s]
 const int kMaxBounces = 8;
 
 struct GpuCollider {
@@ -92,7 +92,7 @@ Touch touch(GpuCollider collider, vec3 from, vec3 delta, float radius) {
                                             : touch_box(collider, from, delta, radius);
 }
 
-// Outward normal and depth > 0 of who is inside.
+// Outward normal and penetration depth: > 0 inside.
 vec4 find_exit(GpuCollider collider, vec3 position, float radius) {
     if (collider.kind == kColliderPlane) {
         return vec4(collider.a.xyz, collider.a.w + radius - dot(collider.a.xyz, position));
@@ -125,15 +125,15 @@ Touch first_touch(int first_collider, int collider_count, vec3 from, vec3 delta,
         }
     }
 #ifdef DEPTH_COLLISION
-    Touch seen = touch_depth(from, delta, radius);
-    if (seen.fraction < nearest.fraction) {
-        nearest = seen;
+    Touch by_depth = touch_depth(from, delta, radius);
+    if (by_depth.fraction < nearest.fraction) {
+        nearest = by_depth;
     }
 #endif
     return nearest;
 }
 
-// Moves a particle at `position` that goes to `to` out of what it is in. Whether it was in it, by more than rounding.
+// Pushes a particle that moves from `position` to `to` out of a solid. Returns whether it was inside by more than rounding.
 bool leave(vec4 exit_plane, inout vec3 position, inout vec3 to, inout vec3 velocity) {
     if (exit_plane.w <= 0.0) {
         return false;
@@ -149,7 +149,8 @@ bool leave(vec4 exit_plane, inout vec3 position, inout vec3 to, inout vec3 veloc
     return is_inside;
 }
 
-// From `start` to where the step has moved it, in `dt` seconds. `response`: bounce, friction, radius, action (word).
+// Resolves the collisions of a particle that a step of `dt` seconds has moved from `start`. `response`: bounce, friction,
+// radius, action (word).
 void collide(inout Particle p, vec3 start, float dt, int first_collider, int collider_count, vec4 response) {
     uint action = floatBitsToUint(response.w);
     bool stops = action != kBounce;

@@ -1,4 +1,4 @@
-// Light that particles scatter whose look is lit at the center, evaluated once for each. Definitions: those of
+// The light that particles whose look is lit at the center scatter, evaluated once per particle. Definitions: those of
 // lib/lighting.glsl.
 // Techniques: particle.lit-in-middle
 #version 450

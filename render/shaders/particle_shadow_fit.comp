@@ -1,4 +1,4 @@
-// Fits the maps of particle shadows to what the GPU has moved (render/particles/particle_shadow_pass.h). Definition:
+// Fits the maps of particle shadows to casters that the GPU moves (render/particles/particle_shadow_pass.h). Definition:
 //   RECORD  the rows of the maps, by one invocation; else the ranges of positions of an emitter's particles
 // Techniques: particle.gpu-shadow
 #version 450
@@ -30,8 +30,8 @@ float from_ordered(uint word) {
 layout(std430, binding = kShadowRecordBinding) writeonly buffer Record {
     vec4 rows[];  // ParticleShadowRecord
 };
-layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;  // of a spot all but what follows from depths
-uniform float border;      // around what casts, as a fraction of the map
+layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;  // the record to fit: of a spot, rows 0, 1, 3 stay
+uniform float border;      // around the casters, as a fraction of the map
 uniform float min_extent;  // [m]
 
 // Row of an affine map from low to high along `axis`.
@@ -46,11 +46,11 @@ void main() {
     vec3 low = vec3(from_ordered(lowest[0]), from_ordered(lowest[1]), from_ordered(lowest[2]));
     vec3 high = vec3(from_ordered(highest[0]), from_ordered(highest[1]), from_ordered(highest[2]));
     bool none = low.z > high.z;
-    vec3 rim = border * max(high - low, vec3(min_extent));
+    vec3 margin = border * max(high - low, vec3(min_extent));
     bool is_spot = spot_range >= 0.0;
     vec4 row3 = is_spot ? texelFetch(particle_shadow, 3) : vec4(0.0, 0.0, 0.0, 1.0);
-    rows[0] = is_spot ? texelFetch(particle_shadow, 0) : row_along(light_right, low.x - rim.x, high.x + rim.x);
-    rows[1] = is_spot ? texelFetch(particle_shadow, 1) : row_along(light_up, low.y - rim.y, high.y + rim.y);
+    rows[0] = is_spot ? texelFetch(particle_shadow, 0) : row_along(light_right, low.x - margin.x, high.x + margin.x);
+    rows[1] = is_spot ? texelFetch(particle_shadow, 1) : row_along(light_up, low.y - margin.y, high.y + margin.y);
     rows[2] = row_along(light_axis, low.z + dot(light_axis, origin), high.z + dot(light_axis, origin));
     rows[3] = row3;
     rows[4] = vec4(none ? -1.0 : texelFetch(particle_shadow, 4).z, 1.0 / max(high.z - low.z, min_extent), 0.0, 0.0);

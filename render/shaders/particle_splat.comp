@@ -1,5 +1,5 @@
-// Discs that only add light, one invocation each: adds theirs to the sums of the pixels that they cover. The sums are
-// integers, so that they do not depend on the order (render/particles/particle_splats.h).
+// Splats discs that only add light, one per invocation, into sums at the pixels that they cover. The sums are integers, so
+// that they do not depend on the order (render/particles/particle_splats.h).
 // Techniques: particle.gpu-draw
 #version 450
 #include "lib/particle.glsl"
@@ -16,7 +16,7 @@ layout(std430, binding = kSplatSumsBinding) buffer Sums {
 
 uniform int count;
 uniform float unit;  // of radiance, in the sums
-uniform float max_amount;  // that a disc adds to a pixel, in units of the sums
+uniform float max_amount;  // of a disc at a pixel, in units of the sums
 
 struct Disc {
     vec2 center;   // [px]
@@ -26,12 +26,12 @@ struct Disc {
     uint random;   // bits
 };
 
-const float kLargest = 4.0;  // radius of those that one invocation draws alone [px]
+const float kLargest = 4.0;  // radius up to which a disc is drawn by one invocation; larger ones by the whole group [px]
 
 shared Disc large[128];
 shared uint large_count;
 
-// Radius 0: it is not visible.
+// Of radius 0 if it is not visible.
 Disc disc_of(Particle p) {
     vec4 glow = look_texel(p.look, 2u);
     float away = distance(p.position, view.camera_ws.xyz);
@@ -46,7 +46,7 @@ Disc disc_of(Particle p) {
                 clip.z / clip.w, light, p.random);
 }
 
-// Pixels whose centers are in the square about it: the first, and the one after the last.
+// Pixels whose centers are in the disc's bounding square: the first, and one past the last.
 ivec4 pixels_of(Disc disc) {
     vec2 low = clamp(ceil(disc.center - disc.radius - 0.5), vec2(0.0), view.size.xy);
     vec2 high = clamp(ceil(disc.center + disc.radius - 0.5), vec2(0.0), view.size.xy);

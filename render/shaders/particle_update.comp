@@ -1,8 +1,8 @@
-// Births and motion of particles, one invocation each: all steps since it last ran (particle.gpu-init,
-// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definitions: that of
-// particle_collide.glsl, and, for what most of them need, as a software OpenGL runs both sides of every condition,
-//   OLD    all were born before these steps
-//   PLAIN  with OLD: one step, under gravity and drag alone
+// Births and motion of particles, one per invocation: all steps since it last ran (particle.gpu-init, particle.gpu-update).
+// The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definitions: that of particle_collide.glsl,
+// and, for the common cases, because a software OpenGL executes both sides of every branch,
+//   OLD    all particles were born before these steps
+//   PLAIN  with OLD: a single step with only gravity and drag
 // Techniques: engine.particle-params, particle.circular-list, particle.forces, particle.gpu-init,
 //     particle.gpu-state, particle.gpu-update, particle.gpu-update-mrt, particle.million,
 //     particle.stateless-script
@@ -22,28 +22,28 @@ layout(std430, binding = kParticleBitsBinding) buffer Bits {
     uint bits[];  // of each slot: random
 };
 layout(std430, binding = kParticleInstancesBinding) writeonly buffer Instances {
-    uint instances[];  // of each particle that is moved, oldest first: as particle.vert reads them
+    uint instances[];  // of each simulated particle, oldest first: as particle.vert reads them
 };
 
 uniform uint first;       // number of the oldest particle, low word
-uniform uint begin;       // of those to move, from the oldest of them on
-uniform uint end;         // one after the last
-uniform uint stride;      // every so many are moved
-uniform uint offset;      // from the oldest particle to the oldest that is moved
-uniform uint first_slot;  // of the oldest that is moved, in this round of the ring: it wraps
-uniform int step_count;   // steps to do
+uniform uint begin;       // first particle to move: index among the simulated ones, from the oldest on
+uniform uint end;         // one past the last
+uniform uint stride;      // only every stride-th particle is simulated
+uniform uint offset;      // from the oldest particle to the oldest simulated one
+uniform uint first_slot;  // of the oldest simulated one, on this lap around the ring: may wrap below 0
+uniform int step_count;   // steps to simulate
 uniform int runs;         // texel of the first run of births
 uniform int forces;       // texel of the first force of a field
 uniform int colliders;    // texel of the first collider
 uniform uint look;
-uniform int closed_form;  // states are those of birth
+uniform int closed_form;  // states are those at birth
 uniform vec3 gravity;
 #ifdef PLAIN
-uniform vec4 added_dt;  // to the fraction of the velocity that is kept; length of the step
-uniform float kept;
+uniform vec4 added_dt;     // velocity that is added [m/s], step [s]
+uniform float kept;        // fraction of the velocity that is kept
 uniform vec2 velocity_dt;  // time at the old velocity and at the new one [s]
 #endif
-uniform float back;       // how long before the end of the last step the particles are drawn [s]
+uniform float back;       // time of drawing before the end of the last step [s]
 
 const float kPi = 3.14159265358979;
 // As in particle_kernels.cpp.
@@ -57,7 +57,7 @@ struct Particle {
     vec3 position;
     float age;
     vec3 velocity;
-    float life;  // negative: of one that sticks
+    float life;  // negative: sticks to a surface
     uint look_bits;
 };
 
@@ -96,11 +96,11 @@ uint next_word(inout Random random) {
     --random.left;
     return word;
 }
-float next_share(inout Random random) {
-    return share_of(next_word(random));
+float next_fraction(inout Random random) {
+    return unit_float(next_word(random));
 }
 float next_signed(inout Random random) {
-    return -1.0 + 2.0 * next_share(random);
+    return -1.0 + 2.0 * next_fraction(random);
 }
 
 vec3 next_vector(inout Random random) {
@@ -115,21 +115,21 @@ const float kMinKept = 0.37;
 
 vec3 sample_direction(inout Random random) {
     float y = next_signed(random);
-    float angle = 2.0 * kPi * next_share(random);
+    float angle = 2.0 * kPi * next_fraction(random);
     float radius = sqrt(max(1.0 - y * y, 0.0));
     return vec3(radius * cos(angle), y, radius * sin(angle));
 }
 
 vec3 sample_shape(uint shape, vec3 size, inout Random random) {
     if (shape == kTorus) {
-        float radius = size.y * sqrt(next_share(random));
-        float turn = 2.0 * kPi * next_share(random);
-        float angle = 2.0 * kPi * next_share(random);
+        float radius = size.y * sqrt(next_fraction(random));
+        float turn = 2.0 * kPi * next_fraction(random);
+        float angle = 2.0 * kPi * next_fraction(random);
         vec2 tube = radius * vec2(cos(turn), sin(turn));
         return vec3((size.x + tube.x) * cos(angle), tube.y, (size.z + tube.x) * sin(angle));
     }
     if (shape == kBall) {
-        float radius = pow(next_share(random), 1.0 / 3.0);
+        float radius = pow(next_fraction(random), 1.0 / 3.0);
         return size * (sample_direction(random) * radius);
     }
     if (shape == kSphere) {
@@ -138,12 +138,12 @@ vec3 sample_shape(uint shape, vec3 size, inout Random random) {
         return size * (used == direction ? direction : used / max(length(used), 1e-15));
     }
     if (shape == kDisc) {
-        float radius = sqrt(next_share(random));
-        float angle = 2.0 * kPi * next_share(random);
+        float radius = sqrt(next_fraction(random));
+        float angle = 2.0 * kPi * next_fraction(random);
         return size * vec3(radius * cos(angle), 0.0, radius * sin(angle));
     }
     if (shape == kCircle) {
-        float angle = 2.0 * kPi * next_share(random);
+        float angle = 2.0 * kPi * next_fraction(random);
         return size * vec3(cos(angle), 0.0, sin(angle));
     }
     if (shape == kBox) {
@@ -155,8 +155,8 @@ vec3 sample_shape(uint shape, vec3 size, inout Random random) {
 }
 
 vec3 sample_cone(float lowest, inout Random random) {
-    float y = 1.0 - next_share(random) * (1.0 - lowest);
-    float angle = 2.0 * kPi * next_share(random);
+    float y = 1.0 - next_fraction(random) * (1.0 - lowest);
+    float angle = 2.0 * kPi * next_fraction(random);
     float radius = sqrt(max(1.0 - y * y, 0.0));
     return vec3(radius * cos(angle), y, radius * sin(angle));
 }
@@ -176,7 +176,7 @@ vec3 transform_vector(Rows m, vec3 v) {
     return vec3(dot(m.row[0].xyz, v), dot(m.row[1].xyz, v), dot(m.row[2].xyz, v));
 }
 
-// Moves a newborn back in time by the fraction `at` of a step, along the path on which gravity and drag will bring it here.
+// As Rewind of birth_attributes.h: moves a newborn back in time by the fraction `at` of a step.
 void rewind(inout Particle p, float at, int texel) {
     vec4 push = texelFetch(steps, texel + 1);
     vec4 air = texelFetch(steps, texel + 2);
@@ -189,7 +189,7 @@ void rewind(inout Particle p, float at, int texel) {
 }
 
 // Particle `number` (low word), the birth `index` of the step at `texel`.
-Particle give_birth(uint number, uint index, int texel, uvec4 births) {
+Particle draw_birth(uint number, uint index, int texel, uvec4 births) {
     vec4 run = vec4(0.0);
     for (uint i = 0u; i < births.w; ++i) {
         run = texelFetch(steps, runs + int(births.z + i));
@@ -234,7 +234,7 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
         rewind(p, at, texel);
     }
     float sum = dot(p.position + p.velocity, vec3(1.0)) + p.life;
-    if (!is_finite(sum) || abs(sum) >= 1e30) {  // settings beyond reason: it is never visible
+    if (!is_finite(sum) || abs(sum) >= 1e30) {  // by extreme settings: never visible
         p.position = vec3(0.0);
         p.velocity = vec3(0.0);
         p.life = 0.0;
@@ -279,7 +279,7 @@ vec3 noise_gradient(vec3 at, uint seed) {
     return vec3(mix(dx0, dx1, w.z), mix(x10 - x00, x11 - x01, w.z), mix(x01, x11, w.y) - mix(x00, x10, w.y)) * slope;
 }
 
-void stir(inout Particle p, int texel) {
+void apply_turbulence(inout Particle p, int texel) {
     vec4 a = texelFetch(steps, texel + 10);
     if (a.w != 0.0) {
         vec4 b = texelFetch(steps, texel + 11);
@@ -293,7 +293,7 @@ void stir(inout Particle p, int texel) {
 const uint kPush = 0u, kAttract = 1u, kSpring = 2u, kWhirl = 3u, kWind = 4u;
 
 // As acceleration() in force_fields.cpp, times dt.
-vec3 push_of(int texel, Particle p) {
+vec3 force_push(int texel, Particle p) {
     vec4 origin = texelFetch(steps, texel);
     vec4 axis = texelFetch(steps, texel + 1);
     vec4 rest = texelFetch(steps, texel + 2);
@@ -318,17 +318,17 @@ vec3 push_of(int texel, Particle p) {
     return strength * (rest.x * axis.xyz - p.velocity);
 }
 
-void push(inout Particle p, int texel) {
+void apply_forces(inout Particle p, int texel) {
     int count = int(floatBitsToUint(texelFetch(steps, texel + 16).w));
     int first_force = forces + int(floatBitsToUint(texelFetch(steps, texel + 15).w));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < count; ++i) {
-        sum += push_of(first_force + i * int(kForceTexels), p);
+        sum += force_push(first_force + i * int(kForceTexels), p);
     }
     p.velocity += sum;
 }
 
-void whirl_and_steer(inout Particle p, int texel) {
+void apply_vortex_and_steering(inout Particle p, int texel) {
     vec4 origin = texelFetch(steps, texel + 12);
     vec4 axis = texelFetch(steps, texel + 13);
     vec4 steering = texelFetch(steps, texel + 14);
@@ -361,9 +361,9 @@ void move(inout Particle p, int texel) {
     float old_weight = texelFetch(steps, texel + 9).w;
     vec3 start = p.velocity;
     vec3 start_position = p.position;
-    stir(p, texel);
-    push(p, texel);
-    whirl_and_steer(p, texel);
+    apply_turbulence(p, texel);
+    apply_forces(p, texel);
+    apply_vortex_and_steering(p, texel);
     vec3 old = old_weight == 1.0 ? start : p.velocity;
     p.velocity = air.xyz + (p.velocity + push_dt.xyz - air.xyz) * air.w;
     p.position += old * (push_dt.w * old_weight) + p.velocity * (push_dt.w - push_dt.w * old_weight);
@@ -371,13 +371,14 @@ void move(inout Particle p, int texel) {
     vec3 box = texelFetch(steps, texel + 16).xyz;
     vec3 turns = floor((p.position - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
     p.position -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));
-    uvec4 met = floatBitsToUint(texelFetch(steps, texel + 17));
-    bool collides = met.y > 0u;
+    uvec4 obstacles = floatBitsToUint(texelFetch(steps, texel + 17));  // first collider, number of them
+    bool collides = obstacles.y > 0u;
 #ifdef DEPTH_COLLISION
     collides = collides || thickness > 0.0;
 #endif
     if (collides) {
-        collide(p, start_position, push_dt.w, colliders + int(met.x), int(met.y), texelFetch(steps, 6));
+        collide(
+            p, start_position, push_dt.w, colliders + int(obstacles.x), int(obstacles.y), texelFetch(steps, 6));
     }
 }
 
@@ -389,9 +390,9 @@ void main() {
         return;
     }
     uint slot = first_slot + moved * stride;
-    vec4 place_age = state[2u * slot];
+    vec4 position_age = state[2u * slot];
     vec4 velocity_life = state[2u * slot + 1u];
-    Particle p = Particle(place_age.xyz, place_age.w, velocity_life.xyz, velocity_life.w, bits[slot]);
+    Particle p = Particle(position_age.xyz, position_age.w, velocity_life.xyz, velocity_life.w, bits[slot]);
 #ifdef PLAIN
     move(p);
 #else
@@ -405,7 +406,7 @@ void main() {
             continue;  // not born yet
         }
         if (since >= 0) {
-            p = give_birth(number, uint(since), texel, births);
+            p = draw_birth(number, uint(since), texel, births);
         }
 #endif
         move(p, texel);

@@ -1,5 +1,5 @@
-// Motion of pixels that particles cover, as gbuffer.frag writes it of surfaces: where opacity times cover is above what
-// the look states. Definitions: those of lib/sprite.glsl, and SOFT as in particle.frag.
+// Velocity of pixels that particles cover, as gbuffer.frag writes it for surfaces: where opacity times cover is above the
+// threshold of the look. Definitions: those of lib/sprite.glsl, and SOFT as in particle.frag.
 // Techniques: particle.velocity
 #version 450
 #define VARYING in
@@ -22,12 +22,12 @@ void main() {
     float fade = 1.0;
 #ifdef SOFT
     float depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
-    float room = view_distance(max(depth, 1e-20)) - distance_ahead;
-    fade = clamp(room / max(blend.y, 1e-4), 0.0, 1.0);
+    float gap = view_distance(max(depth, 1e-20)) - distance_ahead;
+    fade = clamp(gap / max(blend.y, 1e-4), 0.0, 1.0);
 #endif
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
     velocity = velocity_from(now_ndc, previous_clip, view.size.xy);
-    if (light.a * s.a * fade * blend.x <= 1.0) {  // blend.x: cover, as a multiple of the least that counts
+    if (light.a * s.a * fade * blend.x <= 1.0) {  // blend.x: cover / the threshold
         discard;
     }
 }

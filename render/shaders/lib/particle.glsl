@@ -44,7 +44,7 @@ struct Quad {
     vec3 up;
 };
 
-// Of the quad's vertices, -1 .. 1, as a strip.
+// The corners of a quad as a triangle strip, -1 .. 1.
 vec2 corner_of(int vertex) {
     return 2.0 * vec2(vertex & 1, vertex >> 1) - 1.0;
 }
@@ -59,7 +59,7 @@ vec4 look_texel(int look, uint texel) {
     return texelFetch(looks, look * int(kLookTexels) + int(texel));
 }
 
-// What most shapes need of a look: texels 0 to 3, and kLookMore (particle_gpu.h).
+// The texels of a look that most shapes need: 0 to 3, and kLookMore (particle_gpu.h).
 struct Look {
     int index;
     vec4 shape;
@@ -87,7 +87,7 @@ float size_of(Particle p, vec4 shape) {
            * size_factor(p.look, p.life_fraction * float(kLookSamples - 1u));
 }
 
-// Color and opacity at its age, without fades by distance.
+// Color and opacity at its age, without the fades by distance.
 vec4 color_of(Particle p) {
     vec4 wave = look_texel(p.look, kLookMore + 2u);
     vec4 varied = look_texel(p.look, kLookMore + 3u);
@@ -122,7 +122,7 @@ struct Flipbook {
     float progress;  // toward it, 0 .. 1
     vec2 numbers;    // of the frame and the next one
 };
-// Which frame it shows; `book`: texel 3 of the look; `kind`: ParticleFrames.
+// The frame that it shows, with a fraction; `book`: texel 3 of the look; `kind`: ParticleFrames.
 float frame_shown(Particle p, vec4 book, int kind) {
     float count = book.x * book.y;
     float shown = book.z > 0.0 ? p.age * book.z : p.life_fraction * (count - 1.0);

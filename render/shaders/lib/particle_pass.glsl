@@ -14,10 +14,10 @@ const bool kHidesRibbons = false;
 #ifdef WEIGHTED
 uniform vec2 weight_range;  // nearest distance ahead [m], 1 / (farthest - nearest)
 
-const float kWeightFall = 8.0;  // optical depth of the cloud that the weights suit
+const float kWeightFall = 8.0;  // optical depth of the cloud that the weights assume
 #endif
 
-// Factor on the opacity, or what multiplies it to a value above 1 where it counts.
+// Factor on the opacity; for VELOCITY and FOCUS scaled by the threshold, so that a product above 1 passes.
 float cover_in_pass(Look look) {
 #if defined(VELOCITY)
     return look.glow.z / max(look_texel(look.index, kLookMotion).z, 1e-6);

@@ -3,14 +3,14 @@
 #include "lib/ribbon.glsl"
 layout(binding = kRibbonPointsUnit) uniform samplerBuffer ribbon_points;
 
-// A segment from `begin` to `end`, between its neighbors; a join where these coincide.
+// A segment from `begin` to `end`, with the points of its neighbors; a join if `begin` and `end` coincide.
 struct RibbonSegment {
     vec3 before;
     vec3 begin;
     vec3 end;
     vec3 after;
-    vec4 point;  // the end at which the corner is: position, texture coordinate along the ribbon
-    vec4 rest;   // its span, its position on the look's curves
+    vec4 point;  // at the corner: position, texture coordinate along the ribbon
+    vec4 rest;   // at the corner: span, position on the look's curves
 };
 
 vec4 ribbon_texel(int point, int texel) {
@@ -59,7 +59,7 @@ ParticleCorner ribbon_corner(inout Particle p, Look look, int vertex) {
     float side = corner_of(vertex).y;
     float half_width = 1.0;
     if (span == vec3(0.0)) {
-        float thinnest = pixel_extent(p.position);  // fainter instead of narrower: thin ones would break up into dots
+        float thinnest = pixel_extent(p.position);  // below it fainter instead of narrower, or it would break up into dots
         c.color.a *= min(0.5 * c.size / thinnest, 1.0);
         half_width = max(0.5 * c.size, thinnest);
         vec4 across = ribbon_side(segment, vertex, half_width, !is_disc);

@@ -3,7 +3,7 @@
 //   LIT         some particle scatters light that is evaluated at its corners
 //   LIT_CENTER  some scatters light that particle_light.comp has evaluated
 //   SIX_WAY     some have images of the light from six sides
-//   IN_WATER    without fog: the water that is drawn over them gets it
+//   IN_WATER    without fog, which the water that is drawn over them gets
 #ifdef LIT
 #include "lib/particle_scattering.glsl"
 #endif
@@ -14,7 +14,7 @@
 layout(binding = kCenterLightUnit) uniform samplerBuffer center_light;  // of each particle to draw
 #endif
 
-// Of the particle's position: in the image [px], and along the view axis [m].
+// Projection of a position: pixel [px], distance along the view axis [m].
 vec3 pixel_and_distance(vec3 position_ws) {
     vec4 clip = view.clip_from_world * vec4(position_ws, 1.0);
     vec2 pixel = (clip.xy / max(clip.w, 1e-6) * 0.5 + 0.5) * view.size.xy;

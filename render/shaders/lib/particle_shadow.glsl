@@ -1,4 +1,4 @@
-// What particles leave of a light. Definition:
+// Transmittance of light through particles. Definition:
 //   PARTICLE_SHADOWS  1: they shadow the directional light, 2: a spot
 // Techniques: particle.shadow
 

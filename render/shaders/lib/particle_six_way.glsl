@@ -11,7 +11,7 @@ struct SixWayLight {
     vec3 negative[3];
 };
 
-// A light counts at the sides that it faces by the squares of its cosines, whose sum is 1.
+// Adds a light to the three sides that face it, weighted by the squared cosines, whose sum is 1.
 void add_light(inout SixWayLight sum, Incoming light, mat3 axes) {
     vec3 cosines = light.to_light * axes;
     for (int i = 0; i < 3; ++i) {

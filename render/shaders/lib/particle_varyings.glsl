@@ -1,8 +1,8 @@
-// What particle.vert hands to the shaders of its fragments. Definitions: VARYING, as `out` in the former and `in` in the
-// latter; those of particle.vert and
+// Varyings from particle.vert to its fragment shaders. Definitions: VARYING, `out` in the former and `in` in the latter;
+// those of particle.vert and
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
 //   IN_WATER  visible from above, before the water is drawn over it
-// What is the same at all corners is not interpolated.
+// Values that are the same at all corners are flat.
 
 #if defined(LIT) || defined(RIBBONS)
 #define LIGHT_INTERPOLATION smooth
@@ -26,7 +26,7 @@ layout(location = 7) SIDES_INTERPOLATION VARYING vec4
     positive_side[3];  // of what comes from the right, above and behind: premultiplied radiance of a white particle; w:
                        // layer of their map, -1: none
 layout(location = 10) SIDES_INTERPOLATION VARYING vec3
-    negative_side[3];  // likewise from the left, from below and from the camera
+    negative_side[3];  // the same from the left, from below and from the camera
 layout(location = 13) flat VARYING vec3 glow_color;  // radiance by itself, premultiplied
 #endif
 #ifdef WEIGHTED

@@ -12,6 +12,6 @@ uvec4 philox(uvec4 counter, uvec2 key) {
 }
 
 // 0 <= x < 1, of one word.
-float share_of(uint word) {
+float unit_float(uint word) {
     return float(word >> 8) * (1.0 / 16777216.0);
 }

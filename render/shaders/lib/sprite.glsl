@@ -26,17 +26,17 @@ vec4 image_at(sampler2DArray book, vec2 uv, vec4 frames, vec2 offset, float laye
 #ifdef MOTION
 layout(binding = kSpriteMotionsUnit) uniform sampler2DArray motion_maps;
 
-// How far what the frame at `offset` shows at `uv` moves until the next frame, as a fraction of the frame; `motion`: layer of
-// the map, what its full value means.
+// Motion at `uv` from the frame at `offset` to the next one, as a fraction of the frame; `motion`: layer of the map, what
+// its full value means.
 vec2 motion_at(vec2 uv, vec4 frames, vec2 offset, vec2 motion) {
     vec2 encoded = textureLod(motion_maps, vec3(uv * frames.xy + offset, motion.x), 0.0).rg;
     return motion.y * (encoded * (255.0 / 127.0) - 128.0 / 127.0);
 }
 
-// Not beyond the centers of the frame's outermost texels.
+// Clamped to the centers of the frame's outermost texels.
 vec2 within_frame(vec2 uv, vec4 frames) {
-    vec2 rim = 0.5 / (vec2(textureSize(images, 0).xy) * frames.xy);
-    return clamp(uv, rim, 1.0 - rim);
+    vec2 half_texel = 0.5 / (vec2(textureSize(images, 0).xy) * frames.xy);
+    return clamp(uv, half_texel, 1.0 - half_texel);
 }
 #endif
 
@@ -74,7 +74,7 @@ vec2 sprite_position(vec3 corner) {
 // Color, and opacity in a.
 //   position  in the quad, -1 .. 1
 //   layer     of its image; < 0: none
-//   motion    layer of its motion map, < 0: none; what the map's full value means, as a share of a frame
+//   motion    layer of its motion map, < 0: none; what the map's full value means, as a fraction of a frame
 vec4 sprite_at(vec2 position, vec4 frames, vec2 next_frame, float progress, float layer, vec2 motion) {
     float inside = max(1.0 - dot(position, position), 0.0);
     vec4 disc = vec4(1.0, 1.0, 1.0, inside * inside);
