@@ -55,7 +55,7 @@ void pack_emitter(
     texels.push_back(response_texel(collision));
 }
 
-/// Texels of what belongs to a step, counted from the first of their kind.
+/// The first texels of what belongs to a step, each relative to the first of its kind.
 struct StepParts {
     std::uint32_t run = 0;
     std::uint32_t force = 0;
@@ -90,7 +90,7 @@ load_update(gpu::Device& device, std::vector<gpu::ShaderDefine> defines) {
         {.compute = "particle_update.comp", .defines = std::move(defines)});
 }
 
-/// Whether gravity and drag alone move particles in a step.
+/// Whether a step has only gravity and drag.
 bool is_plain(const GpuParticleStep& step) {
     const MotionStep& motion = step.motion;
     const bool steers = motion.steering.orbit > 0 || motion.steering.loss > 0;
@@ -112,12 +112,13 @@ void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
     pool.done = 0;
 }
 
-/// From the oldest particle to the oldest that is moved: one whose number the stride divides.
+/// Offset from the oldest particle to the oldest simulated one, whose number is a multiple of the
+/// stride.
 std::uint32_t offset_of(const GpuParticlePool& pool) {
     return (0u - pool.first) & (pool.stride - 1);
 }
 
-/// How many of the `count` oldest are moved.
+/// How many of the `count` oldest particles are simulated.
 std::uint32_t moved_of(std::uint64_t count, const GpuParticlePool& pool) {
     const std::uint64_t offset = offset_of(pool);
     return count > offset
@@ -125,7 +126,7 @@ std::uint32_t moved_of(std::uint64_t count, const GpuParticlePool& pool) {
                : 0;
 }
 
-/// Those that are moved, numbered without gaps.
+/// The simulated particles, numbered without gaps.
 ParticleWindow sort_window(const GpuParticlePool& pool) {
     return {(pool.first + offset_of(pool)) / pool.stride, pool.count};
 }
@@ -217,7 +218,7 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
     return true;
 }
 
-bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
+bool GpuParticlePools::can_collide_with_depth(gpu::Device& device) {
     if (programs_.depth_old == nullptr) {
         const Result<const gpu::Program*> births = load_update(device, {{"DEPTH_COLLISION"}});
         const Result<const gpu::Program*> old = load_update(device, {{"DEPTH_COLLISION"}, {"OLD"}});
@@ -231,7 +232,7 @@ bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
     return true;
 }
 
-bool GpuParticlePools::meets_depth() const {
+bool GpuParticlePools::collides_with_depth() const {
     return std::any_of(pools_.begin(), pools_.end(), [](const auto& pool) {
         return pool.second->collide_depth > 0;
     });
@@ -247,29 +248,30 @@ void GpuParticlePools::add(
     }
     GpuParticlePool& pool = *found;
     const std::uint64_t window = particles.clock.born - particles.oldest();
-    // A smaller capacity than there are particles counts when those have died.
+    // A capacity below the number of particles takes effect when enough of them have died.
     const auto slots =
         static_cast<std::uint32_t>(std::max<std::uint64_t>(emitter.capacity, window));
     const std::uint64_t first_kept = particles.step - particles.kept().size();
     if (pool.capacity != std::max(slots, 1u) || pool.done > particles.step || pool.done < first_kept
         || stride < pool.stride) {
-        make_buffers(slots, pool);  // and all steps again
+        make_buffers(slots, pool);  // all recorded steps are simulated again
     }
     pool.stride = stride;
     pool.steps.upload(
         *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
-    const std::span<const GpuParticleStep> to_do =
+    const std::span<const GpuParticleStep> pending =
         particles.kept().last(static_cast<std::size_t>(pool.layout.steps));
     pool.done = particles.step;
     pool.used = true;
     pool.look = look;
     pool.first = static_cast<std::uint32_t>(particles.oldest());
     pool.count = moved_of(window, pool);
-    const std::uint64_t born_before = to_do.empty() ? particles.clock.born : to_do.front().first;
+    const std::uint64_t born_before =
+        pending.empty() ? particles.clock.born : pending.front().first;
     pool.old = moved_of(std::max(born_before, particles.oldest()) - particles.oldest(), pool);
     pool.plain.reset();
-    if (to_do.size() == 1 && is_plain(to_do.front())) {
-        pool.plain = to_do.front().motion.step;
+    if (pending.size() == 1 && is_plain(pending.front())) {
+        pool.plain = pending.front().motion.step;
     }
     if (!particles.kept().empty()) {
         const ParticleStep& step = particles.kept().back().motion.step;
@@ -278,18 +280,20 @@ void GpuParticlePools::add(
     }
     const bool closed_form = pool.closed_form;
     const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
-    pool.collide_depth = depth > 0 && !closed_form && can_meet_depth(*frame.device) ? depth : 0.0f;
+    pool.collide_depth =
+        depth > 0 && !closed_form && can_collide_with_depth(*frame.device) ? depth : 0.0f;
     pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
         plan_particle_sort(sort_window(pool), *sort_passes, pool.sort);
     }
 }
 
-/// Those born before the steps to do, and those born in them.
+/// Dispatches the update of the particles born before the steps to simulate, and of those born
+/// during them.
 void GpuParticlePools::move(
     gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const {
-    const bool meets = has_depth && pool.collide_depth > 0;
-    const bool is_plain_step = pool.plain.has_value() && !meets;
+    const bool collides = has_depth && pool.collide_depth > 0;
+    const bool is_plain_step = pool.plain.has_value() && !collides;
     pool.steps.bind(device, layout::kParticleStepsUnit);
     device.bind_storage(layout::kParticleStateBinding, pool.state);
     device.bind_storage(layout::kParticleBitsBinding, pool.bits);
@@ -326,9 +330,9 @@ void GpuParticlePools::move(
         device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
     };
     const gpu::Program* const old = is_plain_step ? programs_.plain
-                                    : meets       ? programs_.depth_old
+                                    : collides    ? programs_.depth_old
                                                   : programs_.old;
-    // The slots are a ring: what lies beyond its end is at its beginning.
+    // The slots are a ring: indices beyond its end wrap to its beginning.
     const std::uint32_t first_slot = pool.first % pool.capacity + offset_of(pool);
     const std::uint32_t room = pool.capacity - std::min(first_slot, pool.capacity);
     const std::uint32_t wrap = room / pool.stride + (room % pool.stride > 0 ? 1 : 0);
@@ -339,7 +343,7 @@ void GpuParticlePools::move(
         dispatch(program, ring_end, end, first_slot - pool.capacity);
     };
     dispatch_parts(*old, 0, pool.old);
-    dispatch_parts(*(meets ? programs_.depth_births : programs_.births), pool.old, pool.count);
+    dispatch_parts(*(collides ? programs_.depth_births : programs_.births), pool.old, pool.count);
 }
 
 void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {

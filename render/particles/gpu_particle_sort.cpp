@@ -24,7 +24,7 @@ void make_sort_buffers(std::uint32_t size, GpuParticleSort& sort) {
         entries =
             gpu::Buffer("particle order", size * sizeof(std::uint64_t), gpu::BufferUse::GpuOnly);
     }
-    // Those that have died during a sort keep their positions in the order until the next one.
+    // Particles that have died during a sort keep their slots in the order until the next sort.
     sort.instances = gpu::Buffer(
         "sorted particles", std::size_t{2} * size * layout::kParticleWords * sizeof(std::uint32_t),
         gpu::BufferUse::GpuOnly);
@@ -34,7 +34,7 @@ void make_sort_buffers(std::uint32_t size, GpuParticleSort& sort) {
     sort.shown.reset();
 }
 
-/// A whole sort: passes within a work group's entries are done at once.
+/// A whole sort; consecutive passes within the entries of a work group are one dispatch.
 void sort_all(gpu::Device& device, const ParticleSortPrograms& programs, std::uint32_t size) {
     const auto sort_local = [&](std::uint32_t run, std::uint32_t last_run) {
         device.use(*programs.local);
@@ -72,10 +72,9 @@ void sort_some(
 
 ParticleSortView
 predict_sort_view(const ParticleSortView& previous, const ParticleSortView& now, float frames) {
-    constexpr float kMaxMove = 10;      // a frame [m]; more is a cut, as is_cut() has it
-    constexpr float kMinCosine = 0.5f;  // of its turn
-    constexpr float kMaxTurn =
-        0.15f;  // that is expected [rad]: who looks around soon stops, by eye
+    constexpr float kMaxMove = 10;      // in a frame [m]; more is a cut, as in is_cut()
+    constexpr float kMinCosine = 0.5f;  // of the turn in a frame
+    constexpr float kMaxTurn = 0.15f;   // to extrapolate [rad]: turns soon stop, by eye
     const Vec3 move = now.eye - previous.eye;
     if (!(glm::length(move) <= kMaxMove && glm::dot(previous.forward, now.forward) >= kMinCosine)) {
         return now;

@@ -19,7 +19,7 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxPoint = 4;     // [px] across, above which a disc is drawn as a quad
+constexpr float kMaxPoint = 4;     // diameter above which a disc is drawn as a quad [px]
 constexpr float kHighestWave = 5;  // above the rest level of water [m]
 
 std::uint32_t look_of(const ParticleInstance& instance) {
@@ -77,7 +77,7 @@ void append_instance(
     SpriteDraw& draw = list.draws.back();
     const float scale = layer == SpriteLayer::Half ? 0.5f : 1.0f;
     const float texels = scene.extents[look].texels;
-    const float pixels = scale * least_pixels(instance, record, camera);
+    const float pixels = scale * min_diameter(instance, record, camera);
     const bool is_small_disc = texels == 0 && record[2].y == 0 && pixels > 0 && pixels <= kMaxPoint;
     draw.magnified = draw.magnified && (texels == 0 || pixels > 0.999f * texels);
     if (draw.shape == SpriteShape::SmallDisc && !is_small_disc) {
@@ -124,8 +124,8 @@ Bounds find_ground(const RenderItems& items, std::span<const DrawnWater> waters)
     return ground;
 }
 
-/// Whether the ray eye + t to, t >= `near`, meets the box.
-bool meets(const Bounds& box, const Vec3& eye, const Vec3& to, float near) {
+/// Whether the ray eye + t to, t >= `near`, intersects the box.
+bool intersects(const Bounds& box, const Vec3& eye, const Vec3& to, float near) {
     float far = INFINITY;
     for (int i = 0; i < 3; ++i) {
         if (to[i] == 0) {
@@ -140,8 +140,8 @@ bool meets(const Bounds& box, const Vec3& eye, const Vec3& to, float near) {
     return near <= far;
 }
 
-/// Whether some of the ground may be behind a particle.
-bool is_before(
+/// Whether the ground may be behind a particle.
+bool may_be_before_ground(
     const Bounds& ground, const Vec3& eye, const ParticleInstance& instance,
     const LookExtent& extent) {
     const Vec3 to = instance.position - eye;
@@ -150,10 +150,10 @@ bool is_before(
     if (extent.culling != ParticleCulling::Particles || !(away > radius)) {
         return true;
     }
-    // As wide as what it hides at the far end of the ground.
+    // Grown by the radius of the particle's projection at the far end of the ground.
     const Vec3 farthest = glm::max(glm::abs(ground.min - eye), glm::abs(ground.max - eye));
     const float width = radius * glm::length(farthest) / std::sqrt(square(away) - square(radius));
-    return meets({ground.min - width, ground.max + width}, eye, to, 1 - radius / away);
+    return intersects({ground.min - width, ground.max + width}, eye, to, 1 - radius / away);
 }
 
 /// Which particles are visible through water from above: those in it, and only in front of the
@@ -176,7 +176,8 @@ class UnderwaterTest {
         return can_see_
                && (warm_up_
                    || (is_under_water(scene_.waters, instance.position)
-                       && is_before(ground_, eye_, instance, scene_.extents[look_of(instance)])));
+                       && may_be_before_ground(
+                           ground_, eye_, instance, scene_.extents[look_of(instance)])));
     }
 
   private:
@@ -239,7 +240,8 @@ draw_of_pool(const ParticleScene& scene, const GpuParticlePool& pool, SpriteLaye
         .pool = &pool};
 }
 
-/// What blended surfaces hide, points in front of them among it, is drawn by the rasterizer.
+/// Splats are composited without regard to blended surfaces: with one in view, points are
+/// rasterized.
 bool can_show_splats(const ViewData& view) {
     return view.is(kMainViews) && !is_clipped(view)
            && view.data.get<InstanceList>().blended.empty();
@@ -304,8 +306,8 @@ void list_draws(
         const bool is_underwater = layer == SpriteLayer::Underwater;
         list.begin[i] = list.draws.size();
         if (is_underwater) {
-            // One layer after the other, as above water: sorted among each other, they would take
-            // turns in binding images and programs.
+            // One layer after another, as above water: sorted together, draws would alternate
+            // between images and programs.
             for (const std::vector<std::uint32_t>& indices : list.underwater) {
                 append_instances(layer, indices);
             }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 
-/// False where the box, `margin` larger, is outside one of the planes. NaN counts as inside.
+/// False if the box, grown by `margin`, is outside one of the planes. NaN counts as inside.
 bool may_be_in_view(const Frustum& frustum, const Vec3& center_ws, const Vec3& half, float margin) {
     return std::none_of(
         std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
@@ -26,7 +26,7 @@ bool may_be_in_view(const Frustum& frustum, const Vec3& center_ws, const Vec3& h
         });
 }
 
-/// With planes of unit normals.
+/// Scales the planes to unit normals.
 Frustum normalized(Frustum frustum) {
     for (Vec4& plane : frustum.planes) {
         plane /= std::max(glm::length(Vec3(plane)), 1e-30f);
@@ -34,7 +34,7 @@ Frustum normalized(Frustum frustum) {
     return frustum;
 }
 
-/// Likewise of a ball; `frustum` is normalized.
+/// The same for a sphere; `frustum` must be normalized.
 bool may_be_in_view(const Frustum& frustum, const Vec3& center_ws, float radius) {
     return std::none_of(
         std::begin(frustum.planes), std::end(frustum.planes),
@@ -123,7 +123,7 @@ void cull_particles(
         }
         const Vec3& position = instances[i].position;
         visible[i] = may_be_in_view(planes, position, extent.radius);
-        if (visible[i] == 0 && extent.stretch > 0) {  // speeds of few are unpacked
+        if (visible[i] == 0 && extent.stretch > 0) {  // the few that need it unpack their speed
             const float speed = glm::length(Vec3(instances[i].motion()));
             visible[i] = may_be_in_view(planes, position, extent.radius + extent.stretch * speed);
         }

@@ -12,7 +12,7 @@
 namespace limn {
 namespace {
 
-/// Pixels of the layer, with those that filters read.
+/// Sets the scissor to the window in the layer's pixels, with a border that filters read.
 void set_layer_scissor(gpu::Device& device, const LightBounds& window) {
     constexpr int kBorder = 2;
     const int x = std::max(window.x / 2 - kBorder, 0);

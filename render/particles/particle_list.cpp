@@ -14,7 +14,7 @@ float clamp_fraction(float value) {
     return std::min(std::max(0.0f, value), 1.0f);
 }
 
-/// Factors on the optical depth of red, green and blue; on the opacity.
+/// Factors on the optical depth of red, green and blue; factor on the opacity.
 Vec4 shadow_texel(const ParticleLook& look) {
     const Vec3& tint = look.shadow_tint;
     return {
@@ -66,7 +66,7 @@ bool is_point(const LookRecord& look) {
                || facing == static_cast<float>(ParticleFacing::Pixels));
 }
 
-/// On the diameter, at its fraction of the life.
+/// Factor on the diameter at its fraction of the life.
 float size_factor(const ParticleInstance& instance, const LookRecord& look) {
     const float fraction = static_cast<float>(instance.look_and_life & 0xffffu) / 65535.0f;
     const float at = fraction * static_cast<float>(layout::kLookSamples - 1);
@@ -94,7 +94,7 @@ float corner_radius(const ParticleInstance& instance, const LookRecord& look) {
     return 0.7072f * size;  // half the diagonal of the quad, however it is turned
 }
 
-float least_pixels(
+float min_diameter(
     const ParticleInstance& instance, const LookRecord& look, const RenderView& view) {
     const float facing = look[2].w;
     const bool in_pixels = facing == static_cast<float>(ParticleFacing::Pixels);

@@ -14,9 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 
-// Packs from `first` on up to where a particle is not born yet; returns how many.
+// Packs from `first` on until a particle is not born yet; returns how many it has packed.
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR  // no SIMD
 
 std::size_t
 pack_particles_vector(const ParticlePool&, const ParticlePacking&, std::size_t, ParticleInstance*) {
@@ -99,10 +99,9 @@ namespace {
 
 HWY_EXPORT(pack_particles_vector);
 
-constexpr std::size_t kGroup =
-    64;  // particles that are tested one by one after one that is not born
+constexpr std::size_t kScalarRun = 64;  // particles packed one by one where one is not born yet
 
-/// Appends those of [first, last) that are born; returns how many there are then.
+/// Appends those of [first, last) that are born; returns the new number of instances.
 std::size_t pack_each(
     const ParticlePool& pool, const ParticlePacking& packing, std::size_t first, std::size_t last,
     std::size_t packed, std::span<ParticleInstance> out) {
@@ -137,7 +136,7 @@ std::size_t pack_particles(
             HWY_DYNAMIC_DISPATCH(pack_particles_vector)(pool, packing, i, out.data() + packed);
         i += run;
         packed += run;
-        const std::size_t last = std::min(i + kGroup, pool.size());
+        const std::size_t last = std::min(i + kScalarRun, pool.size());
         packed = pack_each(pool, packing, i, last, packed, out);
         i = last;
     }

@@ -30,10 +30,10 @@ namespace {
 constexpr int kLightGroup = 64;  // invocations of a work group
 
 /// Makes the viewport three times as wide and high as the image, so that quads across its border
-/// are not clipped: one of them would send its neighbors through llvmpipe's slow clipper. Returns
-/// the extent of the image as a fraction of the viewport's.
+/// need no clipping: a single one sends its neighbors through llvmpipe's slow clipper. Returns the
+/// extent of the image as a fraction of the viewport's.
 float set_wide_viewport(PassContext& context) {
-    constexpr int kMaxViewport = 16384;  // that every OpenGL 4.5 has
+    constexpr int kMaxViewport = 16384;  // that OpenGL 4.5 guarantees
     const IVec2 size = context.size();
     if (3 * std::max(size.x, size.y) > kMaxViewport) {
         return 1;
@@ -45,7 +45,7 @@ float set_wide_viewport(PassContext& context) {
 /// How a layer is drawn.
 struct SpriteLayerRow {
     const char* pass;
-    const char* pass_behind;  ///< of what is behind blended surfaces
+    const char* pass_behind;  ///< the pass behind blended surfaces
     float resolution = 1;     ///< as a fraction of the view's
 };
 constexpr std::array<SpriteLayerRow, kSpriteLayers> kSpriteLayerRows = {{
@@ -61,12 +61,12 @@ const SpriteLayerRow& layer_row(SpriteLayer layer) {
     return kSpriteLayerRows[static_cast<std::size_t>(layer)];
 }
 
-/// Other draws would evaluate the six sides in vain.
+/// Whether the draw needs the variant that evaluates light from six sides.
 bool is_six_way_draw(const SpriteDraw& draw) {
     return draw.arrays.negative_lights != 0 && draw.shape == SpriteShape::Quad;
 }
 
-/// Features of the looks that may be in the layer: others would cost each of its pixels fetches.
+/// Features of the looks in the layer: unused ones would cost fetches at every pixel.
 const SpriteFeatures& features_of(const ParticleScene& scene, SpriteLayer layer) {
     const auto of = [&](LookLayer look_layer) -> const SpriteFeatures& {
         return scene.layer_features[static_cast<std::size_t>(look_layer)];
@@ -86,8 +86,8 @@ const SpriteFeatures& features_of(const ParticleScene& scene, SpriteLayer layer)
     return scene.features;
 }
 
-/// The same draw as it may be in another frame, in which its particles are larger, in other images
-/// or not lit.
+/// Variants of a draw that other frames may need, to compile them at the warm-up: with other sizes,
+/// other images, or unlit.
 std::vector<SpriteDraw> alternatives_of(const SpriteDraw& draw) {
     SpriteDraw other = draw;
     other.shape = draw.shape == SpriteShape::Quad ? SpriteShape::SmallDisc : SpriteShape::Quad;
@@ -105,7 +105,7 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
         SpritePrograms(device), ProgramVariants(device, {.compute = "particle_light.comp"}),
         ProgramVariants::of_meshes(device, "depth_first.frag"), create_particle_splats(device)};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
-    // As of materials: between mip levels only where that costs nothing.
+    // As for materials: trilinear only where that is free.
     const GLenum minify =
         device.caps().software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
     effect.image_sampler =
@@ -127,7 +127,7 @@ void ParticleEffect::collect(FrameData& frame) {
         .back = particle_lag(frame),
         .eye = transform_point(camera, Vec3(0)),
         .forward = transform_vector(camera, Vec3(0, 0, -1)),
-        .depth = gpu.meets_depth() ? recall_depth(previous_depth, frame) : PreviousDepth{}};
+        .depth = gpu.collides_with_depth() ? recall_depth(previous_depth, frame) : PreviousDepth{}};
     auto& sprites = frame.data.publish<ParticleSprites>();
     sprites.instances = scene.instances;
     sprites.gpu = &gpu;
@@ -199,7 +199,7 @@ void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewD
     if (view.camera.lens.aperture_radius > 0 && scene.focused) {
         add_lens_depth(graph, view);
     }
-    if (view.is(kMainViews) && gpu.meets_depth()) {
+    if (view.is(kMainViews) && gpu.collides_with_depth()) {
         remember_depth(graph, *depth_copy, view, previous_depth);
     }
 }
@@ -294,7 +294,7 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
     std::vector<Use> reads = {sampled(view.gbuffer.depth, layout::kParticleDepthUnit)};
     for (const SpriteDraw& draw : draws) {
         count += draw.pool->count;
-        brightest = std::max(brightest, brightest_of(scene.looks[draw.pool->look]));
+        brightest = std::max(brightest, max_light(scene.looks[draw.pool->look]));
         reads.emplace_back(graph.import("particles", draw.pool->instances));
     }
     if (brightest <= 0) {
@@ -317,9 +317,9 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
     add_particle_sums(graph, splats, view);
 }
 
-// ---- light of those that are lit at their centers ----
+// ---- light of particles that are lit at their centers ----
 
-/// Once a view, before any are drawn.
+/// Once per view, before the first draw.
 void ParticleEffect::add_light(FrameGraph& graph, ViewData& view) {
     auto& particles = view.data.publish<ViewParticles>();  // as prepare() left it
     const std::size_t count = particles.list.instances.size();
@@ -357,7 +357,7 @@ void ParticleEffect::evaluate_light(PassContext& context, const ViewData& view) 
     device.dispatch(static_cast<std::uint32_t>((count + kLightGroup - 1) / kLightGroup));
 }
 
-// ---- motion and depth of the pixels that they cover ----
+// ---- velocity and depth of covered pixels ----
 
 void ParticleEffect::add_velocity(FrameGraph& graph, ViewData& view) {
     std::vector<Use> reads = {
@@ -438,7 +438,7 @@ void ParticleEffect::draw_layer(
 }
 
 void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
-    // Frames between steps show particles on straight lines, from the velocity of the step's end.
+    // Between steps, particles are drawn on straight lines along the velocity at the step's end.
     const float step = particle_step(*view.frame);
     const float back = particle_lag(*view.frame);
     const RenderView& camera = view.camera;
@@ -490,7 +490,7 @@ void ParticleEffect::bind_images(
     }
 }
 
-/// `use(draw)` uses the program for it and returns it, or null.
+/// Calls `use(draw)` to bind the program of a draw; it returns the program, or null.
 template <typename Use>
 void ParticleEffect::draw_sprites(
     PassContext& context, const ViewData& view, std::span<const SpriteDraw> draws, float resolution,

@@ -25,8 +25,8 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
-constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
+constexpr std::uint32_t kSortPasses = 4;    // per frame of an amortized sort (Latta 2004)
+constexpr std::uint32_t kMaxLooks = 65536;  // that 16 bits of an instance can index
 
 /// The transform of an entity in this frame; none without one.
 std::optional<Affine> pose_of(const World& world, Entity entity, float alpha) {
@@ -43,14 +43,14 @@ std::optional<Vec3> position_of(const World& world, Entity entity, float alpha) 
     return pose ? std::optional(transform_point(*pose, Vec3(0))) : std::nullopt;
 }
 
-/// What only adds light needs no weights.
+/// Looks that only add light need no weights.
 LookLayer layer_of(const ParticleLook& look) {
     return look.sort == ParticleSort::Weighted && look.cover > 0 ? LookLayer::Weighted
            : look.resolution == ParticleResolution::Half         ? LookLayer::Half
                                                                  : LookLayer::Full;
 }
 
-/// Passes of a sort on the GPU a frame, 0: all; none for particles that need no order.
+/// Passes per frame of a sort on the GPU, 0: all; none for particles that need no order.
 std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
     if (look.sort == ParticleSort::Births || look.sort == ParticleSort::Weighted
         || look.cover <= 0) {
@@ -59,7 +59,7 @@ std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
     return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
 }
 
-/// One for `stride` particles: their area in one.
+/// The look of one particle that stands for `stride`: with their total area.
 ParticleLook enlarged(ParticleLook look, std::uint32_t stride) {
     const float factor = std::sqrt(static_cast<float>(stride));
     look.size *= factor;
@@ -85,7 +85,8 @@ void clear_insets(LookRecord& record) {
     std::fill_n(record.begin() + layout::kLookInsets, layout::kMaxInsetFrames / 4, Vec4(0));
 }
 
-/// Instead of at the center. Light that differs between corners is for those of the whole quad.
+/// Lights the look at the corners instead of the center. Insets are cleared, because light is
+/// interpolated between the corners of the whole quad.
 void light_at_corners(LookRecord& record) {
     record[layout::kLookFocus].y = 0;
     const bool is_six_way = record[layout::kLookMotion].w >= 0;
@@ -155,7 +156,7 @@ std::uint32_t add_look(
     return static_cast<std::uint32_t>(scene.looks.size() - 1);
 }
 
-/// Accelerations that bend the paths of an emitter's particles, but for gusts.
+/// Records the acceleration that bends the paths of an emitter's particles, without gusts.
 void add_pull(const World& world, Entity emitter, std::uint32_t look, ParticleScene& scene) {
     if (const auto* const motion = world.find<ParticleMotion>(emitter)) {
         constexpr float kGravity = 9.81f;  // [m/s^2]
@@ -268,7 +269,7 @@ void collect_billboards(const FrameData& frame, float back, ParticleScene& scene
     scene.has_billboards = !scene.billboards.quads.empty();
 }
 
-/// For a warm-up, whose image is not shown: a particle for each program that some look needs.
+/// For a warm-up, whose image is not shown: appends a particle for each program that a look needs.
 void append_one_of_each(ParticleScene& scene) {
     std::set<std::tuple<LookLayer, bool, bool, bool>> made;
     for (std::uint32_t i = 0; i < scene.looks.size(); ++i) {
@@ -338,7 +339,7 @@ void collect_pools(const FrameData& frame, float back, float step, ParticleScene
         });
 }
 
-/// Of those that the GPU moves, looks alone.
+/// Particles that the GPU moves: only their looks are added to the scene.
 void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleScene& scene) {
     const World& world = *frame.world;
     const float alpha = frame.camera.alpha;

@@ -24,7 +24,7 @@ constexpr int kShadowSide = 128;     // of the maps [texels]
 constexpr int kLayers = 3;           // two of coefficients, one of tints
 constexpr float kMinExtent = 1e-3f;  // of what the maps cover [m]
 constexpr float kShadowBorder =
-    2.0f / kShadowSide;         // that stays empty, so that nothing is smeared beyond the map
+    2.0f / kShadowSide;         // kept empty around the casters, as a fraction of the map
 constexpr int kInSunlight = 1;  // values of PARTICLE_SHADOWS
 constexpr int kInSpotlight = 2;
 
@@ -42,7 +42,7 @@ float extent(const ShadowRange& range) {
     return std::max(range.high - range.low, kMinExtent);
 }
 
-/// Row of an affine map: 0 at `range.low` along `axis`, 1 at its end.
+/// Row of an affine map: 0 at `range.low` along `axis`, 1 at `range.high`.
 Vec4 row_along(const Vec3& axis, const ShadowRange& range) {
     return Vec4(axis, -range.low) / extent(range);
 }
@@ -204,7 +204,7 @@ bool ParticleShadowEffect::prepare(const FrameData&, ViewData& drawn_view) {
     return light != 0;
 }
 
-/// Widens the ranges of the view to what the GPU has moved, and makes a record of them.
+/// Widens the ranges of the view to the casters that the GPU moves, and writes the record for them.
 void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleSprites& sprites) {
     sprites.gpu->update(graph, *sprites.gpu_view);
     std::uint32_t words[6];
@@ -234,7 +234,7 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
         begin(*find_ranges);
         sprites.look_texels->bind(device, layout::kLooksUnit);
         for (const GpuShadowCaster& caster : gpu_casters) {
-            constexpr std::uint32_t kMaxGroups = 16;  // whose invocations take several in turn
+            constexpr std::uint32_t kMaxGroups = 16;  // whose invocations loop over particles
             const std::uint32_t groups = std::min(
                 (caster.pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup,
                 kMaxGroups);

@@ -15,10 +15,9 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kAddGroup = 64;  // pixels of a row
-constexpr float kMaxSteps =
-    1 << 17;  // that a point adds to a pixel; less if there are more than 32,768
-constexpr float kLargestSum = 4.29e9f;  // a little less than a word holds
+constexpr unsigned kAddGroup = 64;    // pixels of a row
+constexpr float kMaxSteps = 1 << 17;  // units per point and pixel; less for more than 32,768 points
+constexpr float kLargestSum = 4.29e9f;  // a little less than the maximum of 32 bits
 
 bool is_positive(float x) {
     return x > 0 && std::isfinite(x);
@@ -39,14 +38,14 @@ bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look) {
     return !pool.sorted && is_point(look) && lit == 0 && cover == 0 && softness == 0;
 }
 
-float brightest_of(const LookRecord& look) {
-    Vec4 most = {0, 0, 0, 0};
+float max_light(const LookRecord& look) {
+    Vec4 top = {0, 0, 0, 0};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
-        most = glm::max(most, look[layout::kLookColors + i]);
+        top = glm::max(top, look[layout::kLookColors + i]);
     }
     const Vec4& varied = look[layout::kLookMore + 3];
-    const float color = std::max({most.x + varied.y, most.y + varied.z, most.z + varied.w});
-    const float brightest = look[2].x * color * most.w;
+    const float color = std::max({top.x + varied.y, top.y + varied.z, top.z + varied.w});
+    const float brightest = look[2].x * color * top.w;
     return is_positive(brightest) ? brightest : 0;
 }
 

@@ -14,8 +14,8 @@ namespace gpu {
 class Program;
 }  // namespace gpu
 
-// The depth of the previous frame, for particles on the GPU that collide with it before this frame
-// is drawn (ParticleCollision::collide_depth).
+// The depth of the previous frame, with which particles on the GPU collide before this frame is
+// drawn (ParticleCollision::collide_depth).
 
 /// Kept from frame to frame.
 struct DepthMemory {
@@ -26,7 +26,7 @@ struct DepthMemory {
 
 /// For this frame.
 struct PreviousDepth {
-    const gpu::Texture* depth = nullptr;  ///< null: not known
+    const gpu::Texture* depth = nullptr;  ///< null: not available
     gpu::RingSlice camera{};              ///< layout::ViewBlock
 };
 

@@ -10,12 +10,12 @@
 namespace limn {
 namespace {
 
-constexpr float kSamePosition = 1e-4f;  // points as near are one [m]
-constexpr float kSharpTurn = 0.6f;      // [rad], about: gets a join
-constexpr float kSmoothTurn = 0.1f;     // [rad]: gets none
+constexpr float kSamePosition = 1e-4f;  // distance below which points are merged [m]
+constexpr float kSharpTurn = 0.6f;      // above about this a turn gets a join [rad]
+constexpr float kSmoothTurn = 0.1f;     // below about this it gets none [rad]
 constexpr float kBranchSpread = 0.4f;   // of lightning's branches, by eye
 
-/// Whether a miter would be long, or edges on the inside of the turn would cross.
+/// Whether a miter would be too long, or the inner edges of the turn would cross.
 bool is_sharp(const Vec3& before, const Vec3& point, const Vec3& after, float width) {
     const float came = glm::distance(before, point);
     const float goes = glm::distance(point, after);
@@ -29,7 +29,8 @@ RibbonPoint mix_points(const RibbonPoint& a, const RibbonPoint& b, float t) {
         a.span + (b.span - a.span) * t, a.curve_at + (b.curve_at - a.curve_at) * t};
 }
 
-/// Adds a point, or where the ribbon ends before it, its end. Returns whether it goes on.
+/// Adds a point, or the end of the ribbon if that is before it. Returns whether the ribbon
+/// continues.
 bool add_point(std::vector<RibbonPoint>& strip, const RibbonPoint& point) {
     if (point.curve_at < 1 || strip.empty()) {
         strip.push_back(point);
@@ -41,8 +42,8 @@ bool add_point(std::vector<RibbonPoint>& strip, const RibbonPoint& point) {
     return false;
 }
 
-/// Texture coordinates from distances: of the distance since the birth of the trail, so that they
-/// stay with its points, or of the whole ribbon.
+/// Turns distances into texture coordinates: with a tile, measured from the birth of the trail, so
+/// that the texture stays with its points; else the image spans the whole ribbon.
 void set_texture(std::vector<RibbonPoint>& strip, double head, float tile) {
     if (tile > 0) {
         const double turns = std::fmod(head / static_cast<double>(tile), 1024.0);
@@ -98,7 +99,7 @@ void append_strand(
     list.add_strip();
 }
 
-/// A ribbon along `points`, from `curve_at` of the curves on.
+/// Adds a ribbon along `points`, from position `curve_at` on the curves to 1.
 void add_line(const std::vector<Vec3>& points, float curve_at, float tile, RibbonList& list) {
     float along = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -24,8 +24,8 @@ void set_opaque(ImageData& image, int x, int y) {
     image.pixels[4 * static_cast<std::size_t>(y * image.width + x) + 3] = 1;
 }
 
-/// The share of a frame that an inset leaves out.
-float share(std::uint32_t inset) {
+/// The fraction of a frame that an inset leaves out.
+float inset_fraction(std::uint32_t inset) {
     return static_cast<float>(inset) / static_cast<float>(layout::kInsetSteps);
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("frame insets: nothing that a filter shows is left out, and little mor
         const FrameInsets found =
             find_insets(image, kFrames, kFrames, static_cast<std::uint32_t>(frame));
         const auto fits = [](std::uint32_t inset, int transparent) {
-            const float texels = share(inset) * kFrame;
+            const float texels = inset_fraction(inset) * kFrame;
             const float filtered = static_cast<float>(transparent) - 0.5f;
             const bool keeps_what_is_seen = texels <= std::max(filtered, 0.0f);
             return keeps_what_is_seen && texels >= filtered - 1;
@@ -61,12 +61,12 @@ TEST_CASE("frame insets: nothing that a filter shows is left out, and little mor
     }
 }
 
-TEST_CASE("frame insets: of a frame without anything a speck is left, of a full one all") {
+TEST_CASE("frame insets: an empty frame leaves a speck, a full one stays whole") {
     ImageData image = make_book();
     const FrameInsets empty = find_insets(image, kFrames, kFrames, 4);
-    CHECK(share(empty.left + empty.right) < 1);
-    CHECK(share(empty.left + empty.right) > 0.95f);
-    CHECK(share(empty.bottom + empty.top) > 0.95f);
+    CHECK(inset_fraction(empty.left + empty.right) < 1);
+    CHECK(inset_fraction(empty.left + empty.right) > 0.95f);
+    CHECK(inset_fraction(empty.bottom + empty.top) > 0.95f);
     std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{255});
     CHECK(find_insets(image, kFrames, kFrames, 4) == FrameInsets{});
 }
@@ -93,7 +93,7 @@ TEST_CASE("frame insets: each is a digit of a float, which holds them all") {
     CHECK(rest == 0);
 }
 
-TEST_CASE("frame insets: a table finds those of an image anew only for other assets") {
+TEST_CASE("frame insets: a table finds those of an image again only for other assets") {
     FrameInsetTable table;
     table.use_assets(1);
     ImageData image = make_book();

@@ -52,8 +52,7 @@ TEST_CASE("particle packing: vectors pack what the plain loop packs, in its orde
     }
 }
 
-TEST_CASE("particle packing: an instance has the look above the share, and velocities less the "
-          "observer's") {
+TEST_CASE("particle packing: the look is above the fraction of the life, velocities are relative") {
     ParticlePool pool = make_pool(32);
     pool.age.assign(32, 0.504f);
     pool.life.assign(32, 1.0f);

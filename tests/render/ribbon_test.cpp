@@ -73,16 +73,17 @@ ParticleLook line(float size, float opacity = 1, float cover = 0) {
 struct RibbonScene : Scene {
     RibbonScene() { world.insert_resource(FrameTime{.step = 0.02f}); }
 
-    /// A trail through `places`, from the oldest on.
-    void draw_trail(const std::vector<Vec3>& places, const ParticleLook& look, Trail trail = {}) {
+    /// A trail through `positions`, from the oldest on.
+    void
+    draw_trail(const std::vector<Vec3>& positions, const ParticleLook& look, Trail trail = {}) {
         TrailState state;
-        state.capacity = static_cast<std::uint32_t>(places.size());
+        state.capacity = static_cast<std::uint32_t>(positions.size());
         TrailStrand strand;
-        for (const Vec3& position : places) {
+        for (const Vec3& position : positions) {
             state.points.push_back({position, 0.02f, trail.span});
         }
         strand.count = strand.number = state.capacity;
-        strand.head = strand.previous = {places.back(), 0, trail.span};
+        strand.head = strand.previous = {positions.back(), 0, trail.span};
         state.strands.push_back(strand);
         trail.length = trail.life = 1000;
         world.create(trail, state, look);
@@ -92,8 +93,7 @@ struct RibbonScene : Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(
-    RenderTest, "ribbon: a straight one is as wide as it should be, seen from anywhere") {
+TEST_CASE_FIXTURE(RenderTest, "ribbon: a straight one has its width from any view") {
     const std::vector<Vec4> edges = evaluate_shader(
         kRibbonCode,
         "vec3 along = direction(x.x); vec3 to_camera = direction(x.x + 500.5);"
@@ -208,7 +208,7 @@ TEST_CASE("ribbon: texture stays with the points of a trail while it moves on an
 }
 
 TEST_CASE(
-    "ribbon: between steps the head is on its way, and points it has not reached are not there") {
+    "ribbon: between steps the head is on its path, and points it has not reached are absent") {
     const Trail trail = {.spacing = 0.25f, .length = 2, .life = 100};
     const TrailState state = straight_strand(41);
     const RibbonList list = ribbons_of(trail, state, 0.01f);
@@ -324,12 +324,12 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     RibbonScene, "ribbon: pieces meet without a seam, and bends glow no more than the rest"
                      * technique("engine.trail")) {
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (int i = 0; i <= 40; ++i) {
         const float angle = kPi * static_cast<float>(i) / 40;
-        places.emplace_back(-0.6f * std::cos(angle), 0.6f * std::sin(angle) - 0.3f, 0);
+        positions.emplace_back(-0.6f * std::cos(angle), 0.6f * std::sin(angle) - 0.3f, 0);
     }
-    draw_trail(places, line(0.2f));
+    draw_trail(positions, line(0.2f));
     const gpu::FloatImage found = image();
     float most = 0;
     for (const float value : found.pixels) {
@@ -337,7 +337,7 @@ TEST_CASE_FIXTURE(
     }
     CHECK(most <= 1.001f);
     for (int i = 2; i <= 38; ++i) {
-        const Vec3& p = places[static_cast<std::size_t>(i)];
+        const Vec3& p = positions[static_cast<std::size_t>(i)];
         const int x = static_cast<int>(32.5f + 32.5f * p.x);
         const int y = static_cast<int>(32.5f - 32.5f * p.y);
         CHECK(std::max(found.at(x, y, 0), found.at(x, 64 - y, 0)) > 0.8f);
@@ -345,7 +345,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(RibbonScene, "ribbon: it is blended among other particles by its distance") {
-    const auto middle = [&](float depth) {
+    const auto center_pixel = [&](float depth) {
         world.clear();
         draw_trail({{-0.7f, 0, depth}, {0.7f, 0, depth}}, line(0.4f, 1, 1));
         ParticlePool pool;
@@ -360,9 +360,9 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: it is blended among other particles by i
         world.create(ParticleEmitter{}, green, pool);
         return rgb_at(image(), 32, 32);
     };
-    CHECK(middle(0.2f).x > 0.95f);
-    CHECK(middle(-0.2f).x < 0.05f);
-    CHECK(middle(-0.2f).y > 0.9f);
+    CHECK(center_pixel(0.2f).x > 0.95f);
+    CHECK(center_pixel(-0.2f).x < 0.05f);
+    CHECK(center_pixel(-0.2f).y > 0.9f);
 }
 
 TEST_CASE_FIXTURE(RibbonScene, "ribbon: one thinner than a pixel is fainter, not dotted") {
@@ -392,7 +392,7 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: a blade's is spanned as the blade was, w
         high += found.at(32, i, 0) > 1e-4f ? 1 : 0;
     }
     CHECK(std::abs(high - 0.8 * 32.5) <= 2);
-    CHECK(found.at(32, 32, 0) > 0.95f);  // in the middle
+    CHECK(found.at(32, 32, 0) > 0.95f);  // at the center
     const gpu::FloatImage above = radiance(look({0, 1, 0.001f}, {0, 0, 0}, 65, 65));
     high = 0;
     for (int i = 0; i < 65; ++i) {
@@ -401,7 +401,8 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: a blade's is spanned as the blade was, w
     CHECK(high <= 1);  // edge-on
 }
 
-TEST_CASE_FIXTURE(RibbonScene, "ribbon: a beam is drawn between its ends, at the time it is seen") {
+TEST_CASE_FIXTURE(
+    RibbonScene, "ribbon: a beam is drawn between its ends, at the time of the frame") {
     const BeamState state = {
         .shown = true,
         .start = {-0.5f, 0, 0},
