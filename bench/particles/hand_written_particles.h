@@ -10,14 +10,14 @@
 #include <span>
 #include <vector>
 
-// Particles as people write them by hand, to compare with: whoever includes this is compiled with
-// the flags that suit these loops best (-O3 -march=native).
+// Particles as people write them by hand, to compare with. Files that include this are compiled
+// with the flags that suit these loops best (-O3 -march=native).
 
 namespace limn::bench {
 
 inline constexpr float kStep = 1.0f / 60.0f;
 
-/// Gravity and motion over six arrays, the least that can be done.
+/// Gravity and motion over six arrays: the minimum of work.
 inline void step_arrays(
     float* __restrict x, float* __restrict y, float* __restrict z, float* __restrict vx,
     float* __restrict vy, float* __restrict vz, std::size_t count) {

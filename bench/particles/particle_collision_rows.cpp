@@ -183,7 +183,7 @@ struct Hills {
     }
 };
 
-/// Of 0.3 to 1 m, from places up to `spread` above or below the hills.
+/// Of 0.3 to 1 m, from positions up to `spread` above or below the hills.
 std::vector<Segment> make_segments(std::size_t count, float spread) {
     Random random(5, 6, 7, 8);
     std::vector<Segment> segments(count);
@@ -191,9 +191,10 @@ std::vector<Segment> make_segments(std::size_t count, float spread) {
         const float x = random.uniform(-24.0f, 24.0f);
         const float z = random.uniform(-24.0f, 24.0f);
         segment.from = {x, Hills::height(x, z) + random.uniform(-spread, spread), z};
-        const Vec3 way(
+        const Vec3 direction(
             random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f));
-        segment.to = segment.from + random.uniform(0.3f, 1.0f) * normalize_or(way, Vec3(0, 1, 0));
+        segment.to =
+            segment.from + random.uniform(0.3f, 1.0f) * normalize_or(direction, Vec3(0, 1, 0));
     }
     return segments;
 }
@@ -204,7 +205,7 @@ void add_tracing_rows(ParticleBench& bench) {
     const MeshBvh bvh = build_mesh_bvh(hills.positions, hills.indices);
     const ScalarBvh scalar(hills.positions, hills.indices);
     std::vector<MeshHit> hits(kSegments);
-    std::vector<float> shares(kSegments);
+    std::vector<float> fractions(kSegments);
     SegmentBatch batch;
     const auto one_by_one = [&](const std::vector<Segment>& segments) {
         return [&] {
@@ -216,7 +217,7 @@ void add_tracing_rows(ParticleBench& bench) {
     const auto by_hand = [&](const std::vector<Segment>& segments) {
         return [&] {
             for (std::size_t i = 0; i < segments.size(); ++i) {
-                shares[i] = scalar.first_share(segments[i]);
+                fractions[i] = scalar.first_hit_fraction(segments[i]);
             }
         };
     };
@@ -243,7 +244,7 @@ void add_tracing_rows(ParticleBench& bench) {
             0.6});
         std::size_t differ = 0;
         for (std::size_t i = 0; i < kSegments; ++i) {
-            differ += (hits[i].triangle != kNoTriangle) == (shares[i] <= 1) ? 0 : 1;
+            differ += (hits[i].triangle != kNoTriangle) == (fractions[i] <= 1) ? 0 : 1;
         }
         bench.note(fmt::format("of {} segments, {} were decided otherwise", kSegments, differ));
     }

@@ -31,8 +31,8 @@
 #include <utility>
 #include <vector>
 
-// Drawing and moving particles on the GPU, beside programs without an engine. On a software OpenGL,
-// which draws with several threads, times are of all threads of the process together.
+// Drawing and moving particles on the GPU, against programs without an engine. On a software
+// OpenGL, which draws with several threads, times are the sum over all threads of the process.
 
 namespace limn::bench {
 namespace {
@@ -76,9 +76,9 @@ ImageData make_spot() {
     return image;
 }
 
-/// Middles of particles in the image, whole quads inside, as the engine and the plain programs draw
-/// them [shares of the image].
-std::vector<Vec2> places(std::size_t count, float side) {
+/// Centers of particles whose whole quads are in the image, for the engine and the plain programs
+/// [fractions of the image].
+std::vector<Vec2> random_centers(std::size_t count, float side) {
     Random random(7, 1, 8, 2);
     const Vec2 border = 0.5f * side / Vec2(kWidth, kHeight);
     std::vector<Vec2> found(count);
@@ -88,7 +88,7 @@ std::vector<Vec2> places(std::size_t count, float side) {
     return found;
 }
 
-/// Quads by a program that does no more than it must.
+/// Quads drawn by a minimal program.
 class PlainSprites {
   public:
     PlainSprites(gpu::Device& device, std::span<const Vec2> at, float side)
@@ -105,7 +105,7 @@ class PlainSprites {
         for (const Vec2& one : at) {
             records.emplace_back(2.0f * one - 1.0f, 0.0f, 0.0f);
         }
-        records_ = gpu::Buffer::of("places", std::span<const Vec4>(records));
+        records_ = gpu::Buffer::of("centers", std::span<const Vec4>(records));
         texels_.set(records_);
     }
     ~PlainSprites() { glDeleteFramebuffers(1, &frame_); }
@@ -153,7 +153,7 @@ class PlainSprites {
     static gpu::ShaderFiles make_files() {
         gpu::ShaderFiles files = gpu::ShaderFiles::standard();
         files.put("plain.vert", R"(#version 450
-layout(binding = 2) uniform samplerBuffer places;
+layout(binding = 2) uniform samplerBuffer centers;
 uniform vec2 extent;
 layout(location = 0) out vec2 uv;
 void main() {
@@ -164,9 +164,9 @@ void main() {
     int at = gl_VertexID / 6;
     int corner = int[6](0, 1, 2, 2, 1, 3)[gl_VertexID % 6];
 #endif
-    vec2 place = texelFetch(places, at).xy;
+    vec2 center = texelFetch(centers, at).xy;
     uv = vec2(corner & 1, corner >> 1);
-    gl_Position = vec4(place + extent * (2.0 * uv - 1.0), 0.0, 1.0);
+    gl_Position = vec4(center + extent * (2.0 * uv - 1.0), 0.0, 1.0);
 }
 )");
         files.put("plain.frag", R"(#version 450
@@ -177,8 +177,8 @@ void main() {
 #ifdef TEXTURED
     vec4 s = texture(image, uv);
 #else
-    vec2 place = 2.0 * uv - 1.0;
-    float inside = max(1.0 - dot(place, place), 0.0);
+    vec2 position = 2.0 * uv - 1.0;
+    float inside = max(1.0 - dot(position, position), 0.0);
     vec4 s = vec4(1.0, 1.0, 1.0, inside * inside);
 #endif
     color = vec4(s.rgb * s.a, s.a);
@@ -194,7 +194,7 @@ void main() {
     gpu::Texture target_;
     gpu::Texture image_;
     gpu::Buffer records_;
-    BufferTexture texels_ = BufferTexture("places", GL_RGBA32F);
+    BufferTexture texels_ = BufferTexture("centers", GL_RGBA32F);
     GLuint frame_ = 0;
 };
 
@@ -202,7 +202,7 @@ void main() {
 class EngineSprites {
   public:
     EngineSprites(Renderer& renderer, std::span<const Vec2> at, float side)
-        : renderer_(renderer), places_(at.begin(), at.end()) {
+        : renderer_(renderer), centers_(at.begin(), at.end()) {
         world_.insert_resource(FrameTime{});
         Assets assets;
         assets.images.push_back(make_spot());
@@ -220,7 +220,7 @@ class EngineSprites {
         look_.softness = 0;
         look_.image = {0};
     }
-    /// White lamps around the middle of the particles, each of which reaches all of them.
+    /// White lamps around the center of the particles, each of which lights all of them.
     void add_lamps(int count) {
         for (int i = 0; i < count; ++i) {
             const float turn = 2 * kPi * static_cast<float>(i) / static_cast<float>(count);
@@ -230,7 +230,7 @@ class EngineSprites {
                     {3 * std::cos(turn), 3 * std::sin(turn), -kAway}, Quat(1, 0, 0, 0), Vec3(1))});
         }
     }
-    /// Time of a frame with them, less that of one without [s].
+    /// Time of a frame with them minus that of one without [s].
     double time(const ParticleLook& look) {
         const Entity all = emit(look);
         const double with = frame_time();
@@ -250,7 +250,7 @@ class EngineSprites {
   private:
     Entity emit(const ParticleLook& look) {
         ParticlePool pool;
-        for (const Vec2& at : places_) {
+        for (const Vec2& at : centers_) {
             const Vec2 ndc = 2.0f * at - 1.0f;
             pool.x.push_back(ndc.x * kAway * view_.tangent.x);
             pool.y.push_back(ndc.y * kAway * view_.tangent.y);
@@ -270,7 +270,7 @@ class EngineSprites {
 
     static constexpr float kAway = 5;  // [m]
     Renderer& renderer_;
-    std::vector<Vec2> places_;
+    std::vector<Vec2> centers_;
     World world_;
     RenderView view_ = make_render_view(
         {.fov_y = radians(60.0f), .near = 0.05f}, Affine{}, Affine{},
@@ -278,9 +278,9 @@ class EngineSprites {
     ParticleLook look_;
 };
 
-/// Least of several runs of two functions that return times, in turns.
+/// Minimum of several runs of two functions that return times, alternating.
 template <typename A, typename B>
-std::pair<double, double> least(A a, B b) {
+std::pair<double, double> best_of(A a, B b) {
     std::pair<double, double> best = {INFINITY, INFINITY};
     for (int i = 0; i < std::min(max_repeats, 9); ++i) {
         best.first = std::min(best.first, a());
@@ -294,12 +294,12 @@ void add_fill_rows(ParticleBench& bench, gpu::Device& device, Renderer& renderer
     constexpr std::size_t kCount = 2000;
     constexpr float kSide = 64;
     constexpr double kPixel = 1e9 / (static_cast<double>(kCount) * kSide * kSide);
-    const std::vector<Vec2> at = places(kCount, kSide);
+    const std::vector<Vec2> at = random_centers(kCount, kSide);
     PlainSprites plain(device, at, kSide);
     EngineSprites engine(renderer, at, kSide);
     const auto add = [&](const char* gate, const char* name, const ParticleLook& look,
                          double limit) {
-        const auto [ours, other] = least(
+        const auto [ours, other] = best_of(
             [&] { return engine.time(look); },
             [&] { return plain.time(PlainSprites::Shape::Strip, true); });
         bench.add(
@@ -327,17 +327,17 @@ void add_fill_rows(ParticleBench& bench, gpu::Device& device, Renderer& renderer
 void add_small_rows(ParticleBench& bench, gpu::Device& device, Renderer& renderer) {
     constexpr std::size_t kCount = 50000;
     constexpr double kEach = 1e9 / static_cast<double>(kCount);
-    const std::vector<Vec2> at = places(kCount, 2);
+    const std::vector<Vec2> at = random_centers(kCount, 2);
     PlainSprites plain(device, at, 2);
     EngineSprites engine(renderer, at, 2);
     using Shape = PlainSprites::Shape;
     const ParticleLook disc = engine.disc(ParticleFacing::Camera);
-    const auto [discs, six] = least(
+    const auto [discs, six] = best_of(
         [&] { return engine.time(disc); }, [&] { return plain.time(Shape::SixVertices, false); });
     bench.add(GateRow{
         "20", "disc of 2 px", discs * kEach, six * kEach, "a quad of 6 vertices, plain", "ns",
         0.75});
-    const auto [points, images] = least(
+    const auto [points, images] = best_of(
         [&] { return engine.time(engine.disc(ParticleFacing::Point)); },
         [&] { return engine.time(engine.look()); });
     bench.add(GateRow{
@@ -349,23 +349,23 @@ void add_small_rows(ParticleBench& bench, gpu::Device& device, Renderer& rendere
 void add_light_row(ParticleBench& bench, Renderer& renderer) {
     constexpr std::size_t kCount = 20000;
     constexpr double kEach = 1e9 / static_cast<double>(kCount);
-    EngineSprites engine(renderer, places(kCount, 2), 2);
+    EngineSprites engine(renderer, random_centers(kCount, 2), 2);
     engine.add_lamps(16);
     ParticleLook look = engine.disc(ParticleFacing::Camera);
     look.lit = 1;
     look.emission = 0;
-    ParticleLook in_middle = look;
-    in_middle.lit_at = ParticleLitAt::Middle;
-    const auto [middle, corners] =
-        least([&] { return engine.time(in_middle); }, [&] { return engine.time(look); });
+    ParticleLook at_center = look;
+    at_center.lit_at = ParticleLitAt::Middle;
+    const auto [center, corners] =
+        best_of([&] { return engine.time(at_center); }, [&] { return engine.time(look); });
     bench.add(GateRow{
-        "28", "disc of 2 px, 16 lamps, lit in the middle", middle * kEach, corners * kEach,
+        "28", "disc of 2 px, 16 lamps, lit in the middle", center * kEach, corners * kEach,
         "lit at its corners", "ns", 0.9});
 }
 
 constexpr std::uint32_t kMillion = 1000000;
 
-/// A world that holds nothing but a million that fall, moved by the GPU.
+/// A world with nothing but a million falling particles, moved by the GPU.
 struct Million {
     World world;
     Entity entity;
@@ -396,7 +396,7 @@ struct Million {
     }
 };
 
-/// The engine's dispatch, and one that reads and writes the same.
+/// The engine's dispatch, and one that reads and writes the same buffers.
 void add_move_row(ParticleBench& bench, gpu::Device& device) {
     Million all;
     Result<GpuParticlePools> pools = GpuParticlePools::create(device);
@@ -433,15 +433,15 @@ uniform vec4 shift;  // so that no compiler leaves out what is written
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i < count) {
-        vec4 place = state[2u * i] + shift;
+        vec4 position = state[2u * i] + shift;
         vec4 velocity = state[2u * i + 1u] + shift;
         uint word = bits[i];
-        state[2u * i] = place;
+        state[2u * i] = position;
         state[2u * i + 1u] = velocity;
-        instances[7u * i] = floatBitsToUint(place.x);
-        instances[7u * i + 1u] = floatBitsToUint(place.y);
-        instances[7u * i + 2u] = floatBitsToUint(place.z);
-        instances[7u * i + 3u] = floatBitsToUint(place.w);
+        instances[7u * i] = floatBitsToUint(position.x);
+        instances[7u * i + 1u] = floatBitsToUint(position.y);
+        instances[7u * i + 2u] = floatBitsToUint(position.z);
+        instances[7u * i + 3u] = floatBitsToUint(position.w);
         instances[7u * i + 4u] = floatBitsToUint(velocity.x);
         instances[7u * i + 5u] = floatBitsToUint(velocity.y);
         instances[7u * i + 6u] = word;
@@ -464,14 +464,14 @@ void main() {
         device.bind_storage(2, pool.instances);
         return drawing_time([&] { device.dispatch((kMillion + 127) / 128); });
     };
-    const auto [ours, other] = least(step, bare);
+    const auto [ours, other] = best_of(step, bare);
     constexpr double kEach = 1e9 / static_cast<double>(kMillion);
     bench.add(GateRow{
         "21", "1M moved by the GPU", ours * kEach, other * kEach, "a bare dispatch, same buffers",
         "ns", 1.2});
 }
 
-/// The same million as points of about 2 px, moved and drawn; less a frame without them. A
+/// The same million as points of about 2 px, moved and drawn, minus a frame without them. A
 /// nanosecond each is a millisecond for all.
 void add_million_row(ParticleBench& bench, Renderer& renderer) {
     const RenderView view = make_render_view(

@@ -8,10 +8,10 @@
 
 namespace limn::bench {
 
-/// At most so many runs of each; see repeats_for().
+/// Maximum number of runs of each; see repeats_for().
 inline int max_repeats = 400;
 
-/// Repeats that make the least of them trustworthy, for something done to `count` particles.
+/// Repeats after which the minimum is trustworthy, for something done to `count` particles.
 [[nodiscard]] inline int repeats_for(std::size_t count) {
     const std::size_t wanted = 20'000'000 / std::max<std::size_t>(count, 1);
     return std::min(static_cast<int>(std::clamp<std::size_t>(wanted, 9, 400)), max_repeats);
@@ -28,8 +28,8 @@ double time_of(Run&& run) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Best times of two functions over `count` particles, in turns, each after its untimed preparation
-/// [ns per particle]: other work on the machine disturbs both alike.
+/// Best times of two functions over `count` particles, alternating, each after its untimed
+/// preparation [ns per particle]: so that other work on the machine disturbs both alike.
 template <typename PrepareA, typename A, typename PrepareB, typename B>
 std::pair<double, double>
 race(std::size_t count, PrepareA prepare_a, A a, PrepareB prepare_b, B b) {
@@ -45,7 +45,7 @@ race(std::size_t count, PrepareA prepare_a, A a, PrepareB prepare_b, B b) {
     return {best.first * per_particle, best.second * per_particle};
 }
 
-/// Likewise of one function.
+/// The same for one function.
 template <typename Prepare, typename Run>
 double best_time(std::size_t count, Prepare prepare, Run run) {
     double best = INFINITY;

@@ -7,8 +7,8 @@
 
 namespace limn::bench {
 
-// What `limn bench particles` measures: particles of the engine beside loops that people write by
-// hand, both in this run. Gates are ratios, so that they hold on any machine.
+// What `limn bench particles` measures: particles of the engine against loops written by hand, both
+// in the same run. Gates are ratios, so that they hold on any machine.
 
 /// A ratio that must not exceed its gate.
 struct GateRow {
@@ -24,7 +24,7 @@ struct GateRow {
     [[nodiscard]] bool is_met() const { return ratio() <= limit; }
 };
 
-/// Time per particle of something done to so many of them.
+/// Time per particle at a number of particles.
 struct GrowthPoint {
     std::string curve;
     std::size_t count = 0;

@@ -53,8 +53,8 @@ void add_sort_row(
     bench.add(GateRow{number, name, ours, standard, "std::sort of 64 bits", "ns", limit});
 }
 
-/// 32 bytes each, in the order of the depths: random, and of particles that lie so already but for
-/// neighbors.
+/// Gathers 32 bytes each in the order of depths: a random one, and one in which only neighbors are
+/// swapped.
 void add_gather_rows(ParticleBench& bench) {
     using Instance = std::array<std::uint32_t, 8>;
     std::vector<std::uint32_t> keys = random_keys<std::uint32_t>(kMany);

@@ -14,7 +14,7 @@
 #include <utility>
 
 // Motion, births, deaths, noise and packing of the pools of the CPU. Color and size over the life
-// cost the update nothing: the vertex shader evaluates them from the share of the life.
+// cost the update nothing: the vertex shader evaluates them from the fraction of the life.
 
 namespace limn::bench {
 namespace {
@@ -111,25 +111,27 @@ void add_noise_rows(ParticleBench& bench) {
     constexpr std::size_t kCount = 100000;
     ParticlePool pool = make_pool(kCount);
     ParticlePool bare = make_pool(kCount);
-    const auto stir = [&] { stir_particles(particle_block(pool, 0, kCount), Turbulence{}, 1e-6f); };
+    const auto stir = [&] {
+        apply_turbulence(particle_block(pool, 0, kCount), Turbulence{}, 1e-6f);
+    };
     const auto [stirred, arrays] =
         race(kCount, kUnprepared, stir, kUnprepared, [&] { step_arrays(bare); });
     bench.add(GateRow{"16", "curl noise, 100k", stirred, arrays, "six arrays, gravity", "ns", 8});
     const auto [again, scalar] = race(kCount, kUnprepared, stir, kUnprepared, [&] {
-        stir_particles_scalar(particle_block(bare, 0, kCount), Turbulence{}, 1e-6f);
+        apply_turbulence_scalar(particle_block(bare, 0, kCount), Turbulence{}, 1e-6f);
     });
     bench.add(GateRow{"16", "curl noise, 100k", again, scalar, "without SIMD", "ns", 0.2});
 }
 
-/// An instance of 28 bytes after another, as one writes it first.
+/// Instances of 28 bytes, one after another: the obvious implementation.
 void pack_by_hand(const ParticlePool& pool, float back, std::vector<ParticleInstance>& instances) {
     for (std::size_t i = 0; i < pool.size(); ++i) {
         const float age = pool.age[i] - back;
         const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
-        const float share = std::clamp(age / pool.life[i], 0.0f, 1.0f);
+        const float fraction = std::clamp(age / pool.life[i], 0.0f, 1.0f);
         ParticleInstance& instance = instances[i];
         instance.position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back;
-        instance.look_and_share = static_cast<std::uint32_t>(share * 65535.0f);
+        instance.look_and_life = static_cast<std::uint32_t>(fraction * 65535.0f);
         instance.velocity_xy = glm::packHalf2x16(Vec2(velocity));
         instance.velocity_z_age = glm::packHalf2x16(Vec2(velocity.z, age));
         instance.random = pool.look[i];
@@ -195,7 +197,7 @@ void add_growth(ParticleBench& bench, std::size_t most) {
                                   step_arrays(pool);
                               })});
         bench.add(GrowthPoint{"curl noise", count, best_time(count, kUnprepared, [&] {
-                                  stir_particles(
+                                  apply_turbulence(
                                       particle_block(pool, 0, count), Turbulence{}, 1e-6f);
                               })});
         ParticlePool dying = pool;

@@ -54,7 +54,7 @@ struct Emitters {
     }
 };
 
-/// All born at once, for long.
+/// All born at once, with long lives.
 ParticleEmitter burst_of(std::size_t count) {
     ParticleEmitter emitter;
     emitter.executor = ParticleExecutor::Cpu;
@@ -66,7 +66,7 @@ ParticleEmitter burst_of(std::size_t count) {
     return emitter;
 }
 
-/// Best time of a step of living particles [ns each].
+/// Best time of a step, of living particles only [ns each].
 double
 step_time(std::size_t emitters, std::size_t each, const ParticleMotion& motion, int threads) {
     set_thread_count(threads);
@@ -102,8 +102,8 @@ void add_thread_rows(ParticleBench& bench, int threads) {
         "one thread", "ns", 1 / 1.85});
 }
 
-/// As many births in each of 60 steps, up to a million: what growing costs, beside being born. No
-/// motion, whose cost grows with the pool. Of each step the best of 20 fillings counts.
+/// Equal numbers of births in 60 steps, up to a million: what growing a pool adds to the cost of
+/// births. No motion, whose cost grows with the pool. For each step, the best of 20 fillings.
 void add_filling_rows(ParticleBench& bench) {
     constexpr std::size_t kSteps = 60;
     constexpr std::uint32_t kCapacity = 1000000;
@@ -141,7 +141,7 @@ void add_memory_row(ParticleBench& bench) {
         static_cast<double>(bytes + sizeof(ParticleInstance)), 0, "", "B", 64});
 }
 
-/// Steps whose state differs between one thread and others.
+/// Steps whose state on several threads differs from that on one.
 void add_hash_row(ParticleBench& bench) {
     std::vector<std::uint64_t> expected;
     int differing = 0;
@@ -170,7 +170,7 @@ void add_hash_row(ParticleBench& bench) {
         0, "", "", 0});
 }
 
-/// 20,000 at 60 m/s toward a wall of a millimeter.
+/// 20,000 particles at 60 m/s toward a wall 1 mm thick.
 void add_tunnel_row(ParticleBench& bench) {
     Emitters all;
     ParticleEmitter emitter = burst_of(20000);

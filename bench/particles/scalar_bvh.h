@@ -15,9 +15,9 @@
 
 namespace limn::bench {
 
-// What one would write first to trace segments: two children per node, split by the surface area
-// heuristic over 16 bins, leaves of at most 4 triangles, one box and one triangle at a time, the
-// nearer child first. Triangles after Moeller and Trumbore (1997).
+// The obvious BVH to trace segments: two children per node, split by the surface area heuristic
+// over 16 bins, leaves of at most 4 triangles, one box and one triangle at a time, the nearer child
+// first. Triangles after Moeller and Trumbore (1997).
 
 class ScalarBvh {
   public:
@@ -33,10 +33,10 @@ class ScalarBvh {
         split(0, 0, triangles_.size());
     }
 
-    /// Share of the way, 0 .. 1, or 2 if nothing is hit.
-    [[nodiscard]] float first_share(const Segment& segment) const {
-        const Vec3 way = segment.to - segment.from;
-        const Vec3 inverse = 1.0f / way;
+    /// Fraction of the segment, 0 .. 1, or 2 if nothing is hit.
+    [[nodiscard]] float first_hit_fraction(const Segment& segment) const {
+        const Vec3 path = segment.to - segment.from;
+        const Vec3 inverse = 1.0f / path;
         float best = 2;
         std::uint32_t stack[64];
         std::size_t open = 0;
@@ -49,7 +49,7 @@ class ScalarBvh {
             const Node& node = nodes_[next];
             if (node.count > 0) {
                 for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-                    meet(triangles_[i], segment.from, way, best);
+                    meet(triangles_[i], segment.from, path, best);
                 }
             } else {
                 const float limit = std::min(best, 1.0f);
@@ -107,8 +107,8 @@ class ScalarBvh {
         return near <= std::min(std::min(leave.x, leave.y), std::min(leave.z, limit));
     }
 
-    static void meet(const Triangle& t, const Vec3& from, const Vec3& way, float& best) {
-        const Vec3 p = glm::cross(way, t.edge2);
+    static void meet(const Triangle& t, const Vec3& from, const Vec3& path, float& best) {
+        const Vec3 p = glm::cross(path, t.edge2);
         const float det = glm::dot(t.edge1, p);
         if (det == 0) {
             return;
@@ -120,10 +120,10 @@ class ScalarBvh {
             return;
         }
         const Vec3 q = glm::cross(s, t.edge1);
-        const float v = glm::dot(way, q) * scale;
-        const float share = glm::dot(t.edge2, q) * scale;
-        if (v >= 0 && u + v <= 1 && share >= 0 && share <= 1) {
-            best = std::min(best, share);
+        const float v = glm::dot(path, q) * scale;
+        const float fraction = glm::dot(t.edge2, q) * scale;
+        if (v >= 0 && u + v <= 1 && fraction >= 0 && fraction <= 1) {
+            best = std::min(best, fraction);
         }
     }
 
@@ -178,19 +178,19 @@ class ScalarBvh {
                 }
             }
         }
-        std::size_t middle = first + count / 2;
+        std::size_t median = first + count / 2;
         if (best_axis >= 0) {
             const auto begin = triangles_.begin() + static_cast<std::ptrdiff_t>(first);
             const auto end = begin + static_cast<std::ptrdiff_t>(count);
             const auto cut = std::partition(
                 begin, end, [&](const Triangle& t) { return bin_of(t, best_axis) < best_bin; });
-            middle = static_cast<std::size_t>(cut - triangles_.begin());
+            median = static_cast<std::size_t>(cut - triangles_.begin());
         }
         const std::size_t child = nodes_.size();
         nodes_.resize(child + 2);
         nodes_[node].first = static_cast<std::uint32_t>(child);
-        split(child, first, middle - first);
-        split(child + 1, middle, first + count - middle);
+        split(child, first, median - first);
+        split(child + 1, median, first + count - median);
     }
 
     std::vector<Triangle> triangles_;

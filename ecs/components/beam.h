@@ -26,18 +26,17 @@ struct Beam {
 };
 
 LIMN_FIELDS(Beam) {
-    LIMN_FIELD(active, "whether it is there");
+    LIMN_FIELD(active, "whether it is drawn");
     LIMN_FIELD(to, "the entity where it ends; none: along -z");
     LIMN_FIELD(length, "along -z", "m", 0, 1e5);
     LIMN_FIELD(stops, "along -z: at the first particle_collider");
     LIMN_FIELD(
-        jag,
-        "largest deviation, as a fraction of its length, by midpoint displacement; 0: straight", "",
-        0, 1);
-    LIMN_FIELD(detail, "how often a jagged one is halved", "", 1, 9);
+        jag, "maximum offset as a fraction of its length, by midpoint displacement; 0: straight",
+        "", 0, 1);
+    LIMN_FIELD(detail, "levels of subdivision of a jagged one", "", 1, 9);
     LIMN_FIELD(branches, "of a jagged one", "", 0, 32);
     LIMN_FIELD(rate, "new shapes per second; 0: always the same", "1/s", 0, 1000);
-    LIMN_FIELD(seed, "of its shapes; 0: of its own for each entity");
+    LIMN_FIELD(seed, "of its shapes; 0: a different one for each entity");
     LIMN_FIELD(tile, "length of an image; 0: one over the whole beam", "m", 0, 1e4);
 }
 

@@ -9,7 +9,7 @@ namespace limn {
 
 enum class ForceKind : std::uint8_t {
     Push,     ///< along the local +y axis
-    Attract,  ///< toward the entity, as strong anywhere
+    Attract,  ///< toward the entity, equally strong everywhere
     Spring,   ///< toward the entity, in proportion to the distance
     Whirl,    ///< around the local +y axis
     Wind,     ///< toward a velocity along the local +y axis, as drag does
@@ -34,13 +34,12 @@ LIMN_FIELDS(ForceField) {
     LIMN_FIELD(
         strength,
         "acceleration; of a spring for a meter, of wind for each m/s relative to it; negative: "
-        "the opposite direction",
+        "in the opposite direction",
         "m/s^2", -1e4, 1e4);
     LIMN_FIELD(speed, "of the wind", "m/s", -1000, 1000);
     LIMN_FIELD(
-        radius, "where it has faded, with the square of the distance; 0: everywhere alike", "m", 0,
-        1e5);
-    LIMN_FIELD(frequency, "it swings as a sine does; 0: it is steady", "1/s", 0, 1000);
+        radius, "distance at which it has fallen to 0, quadratically; 0: no falloff", "m", 0, 1e5);
+    LIMN_FIELD(frequency, "of a sine that modulates it; 0: constant", "1/s", 0, 1000);
     LIMN_FIELD(phase, "of the sine", "rad", -1e4, 1e4);
 }
 

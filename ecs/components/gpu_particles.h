@@ -15,23 +15,23 @@
 namespace limn {
 
 // Particles that the GPU moves (particle.gpu-state, particle.circular-list). The systems decide
-// when how many are born and what moves them, and write it down, step by step; the renderer lets
-// the GPU do it (render/particles/gpu_particle_pools.h), whenever it draws, for all steps that it
-// has not done yet. Everyone alive was born in one of the steps that are kept: so the GPU may begin
-// anew at any time. Techniques: particle.circular-list, particle.gpu-init, particle.gpu-state,
-// particle.gpu-update,
+// when and how many are born and what moves them, and record it step by step; whenever the renderer
+// draws, the GPU simulates all recorded steps that it has not done yet
+// (render/particles/gpu_particle_pools.h). Every living particle was born in a step that is still
+// recorded, so the GPU can start over at any time.
+// Techniques: particle.circular-list, particle.gpu-init, particle.gpu-state, particle.gpu-update,
 //     particle.gpu-update-mrt, particle.million
 
 /// What moves all particles of an emitter alike in a step.
 struct ParticleStep {
     Vec3 gravity = {0, 0, 0};  ///< acceleration [m/s^2]
     Vec3 air = {0, 0, 0};      ///< velocity that drag leads to [m/s]
-    float keep = 1;  ///< share of the velocity relative to the air that is left: exp(-drag dt)
+    float keep = 1;  ///< fraction of the velocity relative to the air that is left: exp(-drag dt)
     float dt = 0;    ///< [s]
-    float old_share = 0.5f;    ///< of the step in which the old velocity counts, not the new one
-    bool closed_form = false;  ///< places follow from births and ages
+    float old_weight = 0.5f;  ///< of the old velocity against the new one in the change of position
+    bool closed_form = false;  ///< positions follow from births and ages
 
-    [[nodiscard]] float old_dt() const { return dt * old_share; }
+    [[nodiscard]] float old_dt() const { return dt * old_weight; }
     [[nodiscard]] float new_dt() const { return dt - old_dt(); }
 };
 
@@ -40,7 +40,7 @@ struct Turbulence {
     float strength = 1;  ///< acceleration [m/s^2], about its root mean square
     float size = 1;      ///< extent of a whirl [m]
     Vec3 drift_a = {
-        0, 0, 0};  ///< of the two fields, in whirls: their relative motion renews the whirls
+        0, 0, 0};  ///< of the two fields, in whirls: their relative motion changes the whirls
     Vec3 drift_b = {0, 0, 0};
     std::uint32_t seed = 0;
 };
@@ -78,14 +78,14 @@ struct MotionStep {
     Vortex vortex{};
     Steering steering{};
     std::vector<Force> forces{};  ///< of the fields around
-    float forces_share = 1;
+    float force_scale = 1;
     Vec3 wrap_center = {0, 0, 0};
     Vec3 wrap_size = {0, 0, 0};  ///< as ParticleWrap; 0: none [m]
 };
 
 /// Births at equal intervals.
 struct BirthRun {
-    float first = 0;    ///< instant, as a share 0 .. 1 of the step
+    float first = 0;    ///< instant, as a fraction 0 .. 1 of the step
     float spacing = 0;  ///< likewise
     std::uint32_t count = 0;
 
@@ -94,15 +94,15 @@ struct BirthRun {
     }
 };
 
-/// An emitter's place at the ends of a step.
-struct EmitterPlace {
+/// The transforms of an emitter at both ends of a step.
+struct EmitterPose {
     Affine before;
     Affine now;
 };
 
 enum class GpuColliderKind : std::uint32_t { Plane, Sphere, Box };
 
-/// What the GPU's particles meet in a step, in world space. Meshes, height fields and water are for
+/// What the GPU's particles hit in a step, in world space. Meshes, height fields and water are for
 /// the CPU.
 struct GpuCollider {
     GpuColliderKind kind = GpuColliderKind::Plane;
@@ -116,7 +116,7 @@ struct GpuParticleStep {
     std::uint64_t first = 0;  ///< number of its first birth, of all time
     std::uint32_t count = 0;  ///< births
     std::vector<BirthRun> births{};
-    EmitterPlace place{};
+    EmitterPose pose{};
     Vec3 inherited = {0, 0, 0};  ///< velocity that is added at birth [m/s]
     MotionStep motion{};
     std::vector<GpuCollider> colliders{};  ///< none if its particles do not collide
@@ -128,20 +128,20 @@ struct ParticleCohort {
     double born = 0;          ///< end of that step, on the clock of GpuParticles [s]
 };
 
-/// With a ParticleEmitter that runs on the GPU, instead of a ParticlePool. Of particle n the slot
-/// is n modulo the capacity.
+/// Beside a ParticleEmitter that runs on the GPU, instead of a ParticlePool. Particle n is in slot
+/// n modulo the capacity.
 struct GpuParticles {
     EmitterClock clock{};
     double time = 0;                        ///< of all steps [s]
     std::vector<ParticleCohort> cohorts{};  ///< those that may live, oldest first
-    std::vector<GpuParticleStep> steps{};   ///< the first `forgotten` of them are of no use
-    std::size_t forgotten = 0;
+    std::vector<GpuParticleStep> steps{};   ///< the first `expired` of them are no longer needed
+    std::size_t expired = 0;
     std::uint64_t step = 0;   ///< number of the step after the last of `steps`
     PhiloxCounter counter{};  ///< of the attributes of the oldest particle; its number counts
     PhiloxKey key{};          ///< likewise
 
     [[nodiscard]] std::span<const GpuParticleStep> kept() const {
-        return std::span(steps).subspan(forgotten);
+        return std::span(steps).subspan(expired);
     }
     /// The oldest particle that may be alive.
     [[nodiscard]] std::uint64_t oldest() const {

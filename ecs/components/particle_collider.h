@@ -10,9 +10,9 @@ namespace limn {
 // Techniques: particle.depth-collision
 // Source of particle.depth-collision: depth-buffer collision of GPU particles, as in most engines
 
-/// What particles meet, in the entity's local space; they see nothing else of a level.
+/// A shape that particles collide with, in the entity's local space; nothing else stops them.
 enum class ColliderShape : std::uint8_t {
-    Plane,        ///< solid below the local xz plane, without end
+    Plane,        ///< solid below the local xz plane, unbounded
     Sphere,       ///< of radius size.x
     Box,          ///< of half extents `size`
     Mesh,         ///< the triangles of the entity's mesh, deformed as it is; both of their sides
@@ -36,16 +36,16 @@ LIMN_FIELDS(ParticleCollider) {
     LIMN_FIELD(size, "half extents of a box; its x is the radius of a sphere", "m", 0, 1e5);
     LIMN_FIELD(hollow, "a sphere that is solid outside");
     LIMN_FIELD(
-        ripple, "depth of the dent that a hit at 10 m/s leaves in water_ripples, in proportion",
+        ripple, "depth of the ripple that a hit at 10 m/s leaves in water_ripples, in proportion",
         "m", 0, 1);
-    LIMN_FIELD(ripple_radius, "of that dent", "m", 0.001, 100);
+    LIMN_FIELD(ripple_radius, "of that ripple", "m", 0.001, 100);
 }
 
 /// What a collider does to a particle.
 enum class CollisionAction : std::uint8_t {
     Bounce,
-    Stick,  ///< stays where it hit until its end, even if that moves on
-    Kill,   ///< gives birth to a ParticleSource's particles before, at "hit" and "death"
+    Stick,  ///< stays where it hit until it dies, even if the collider moves away
+    Kill,   ///< after the births of a ParticleSource at "hit" and "death"
 };
 
 /// The emitter's particles collide, whatever their speed (particle.plane-response,
@@ -60,13 +60,13 @@ struct ParticleCollision {
 
 LIMN_FIELDS(ParticleCollision) {
     LIMN_FIELD(action, .doc = "what a hit does", .values = "bounce stick kill");
-    LIMN_FIELD(bounce, "share of the speed toward the surface that is kept, outward", "", 0, 1);
-    LIMN_FIELD(friction, "share of the velocity along the surface that is kept", "", 0, 1);
-    LIMN_FIELD(radius, "of the particle, as far as colliders other than water go", "m", 0, 100);
+    LIMN_FIELD(bounce, "fraction of the speed toward the surface that is kept, outward", "", 0, 1);
+    LIMN_FIELD(friction, "fraction of the velocity along the surface that is kept", "", 0, 1);
+    LIMN_FIELD(radius, "of the particle, for all colliders but water", "m", 0, 100);
     LIMN_FIELD(
         collide_depth,
-        "on the GPU: they also meet what the camera saw in the previous frame, taken to be so "
-        "thick, and nothing that it did not see; to look at only, as it follows the camera; 0: no",
+        "on the GPU: they also collide with the depth of the previous frame, assumed this thick, "
+        "and with nothing outside of it; visual only, as it depends on the camera; 0: no",
         "m", 0, 100);
 }
 

@@ -15,7 +15,7 @@ namespace limn {
 enum class ParticleMeshFacing : std::uint8_t {
     Tumble,    ///< turned at random, about an axis of its own
     Velocity,  ///< its -z axis along the flight, about which it spins
-    Emitter,   ///< at its birth turned and scaled as the emitter, then as Tumble
+    Emitter,   ///< rotated and scaled as the emitter at its birth, then as Tumble
 };
 
 /// The particles of an emitter are drawn as instances of meshes, lit and shadowed as any other:
@@ -35,7 +35,7 @@ struct ParticleMesh {
 };
 
 LIMN_FIELDS(ParticleMesh) {
-    LIMN_FIELD(meshes, "meshes of the level, by name; each particle has one of them");
+    LIMN_FIELD(meshes, "meshes of the level, by name; each particle gets one of them");
     LIMN_FIELD(material, "of all");
     LIMN_FIELD(scale, "of the mesh", "", 0, 1e4);
     LIMN_FIELD(scale_spread, "give or take", "", 0, 1e4);

@@ -18,15 +18,14 @@ enum class BirthSurface : std::uint8_t {
     Volume,  ///< within a closed mesh, as it is deformed and moved in this step, even by volume
 };
 
-/// Particles of the emitter beside it are born on a surface, or in what it encloses, instead of at
-/// its place: dust of a running animal, embers along a rope, the pieces of what bursts and what was
-/// in it (engine.explode, particle.mesh-particles). The emitter's shape lies around each place,
-/// with +y along the normal: that of the triangle's front, up from the path with +z ahead, or away
-/// from `blast`; a piece at `blast` goes anywhere; in a volume +y is the world's. Where seen from
-/// above a mesh is not closed, it has no volume. What cannot be a place, as a triangle without area
-/// or with coordinates that are not finite, is left out; where nothing is left, no particle is
-/// born, and `dropped` of the emitter's clock counts it. On the CPU only, and not with a
-/// ParticleSource.
+/// Particles of the emitter of its entity are born on a surface, or in what it encloses, instead of
+/// at its position: dust of a running animal, embers along a rope, the pieces of what bursts and
+/// what was in it (engine.explode, particle.mesh-particles). The emitter's shape is centered at
+/// each birth, with +y along the normal: that of the triangle's front, up from the path with +z
+/// ahead, or away from `blast`; a piece at `blast` flies in a random direction; in a volume +y is
+/// the world's. Where a mesh is not closed along the vertical, it has no volume. Triangles without
+/// area or with coordinates that are not finite are skipped; if none is left, no particle is born,
+/// and `dropped` of the emitter's clock counts it. On the CPU only, and not with a ParticleSource.
 struct ParticleSurface {
     BirthSurface on = BirthSurface::Mesh;
     Entity entity{};
@@ -45,9 +44,9 @@ LIMN_FIELDS(ParticleSurface) {
         .values = "mesh path pieces volume");
     LIMN_FIELD(entity, "whose mesh_instance, for mesh and volume; none: of the emitter itself");
     LIMN_FIELD(path, "a path of the level, by name, placed as the emitter is");
-    LIMN_FIELD(offset, "of places on a mesh or path, along the normal", "m", -1e3, 1e3);
+    LIMN_FIELD(offset, "of births on a mesh or path, along the normal", "m", -1e3, 1e3);
     LIMN_FIELD(
-        inherit, "share of the velocity of the place that is added, without its deformation", "",
+        inherit, "fraction of the surface's velocity that is added, without its deformation", "",
         -10, 10);
     LIMN_FIELD(blast, "what pieces fly away from, in the emitter's space", "m", -1e5, 1e5);
 }

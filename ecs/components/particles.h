@@ -18,9 +18,9 @@ namespace limn {
 //     ParticleSurface   that they are born on a mesh or along a path (particle_surface.h)
 //     ParticleMotion    what moves them
 //     ParticleCollision what happens where they meet a ParticleCollider (particle_collider.h)
-//     ParticleWrap      that they stay about the camera
+//     ParticleWrap      that they stay around the camera
 //     ParticleLook      how they are drawn
-//     ParticleLight     that they light what is around
+//     ParticleLight     that they light their surroundings
 //     ParticlePool      the living ones, kept by the systems: one array per scalar
 //
 // "x, give or take s" means a value drawn evenly from [x - s, x + s], once per particle.
@@ -46,7 +46,7 @@ enum class EmitterShape : std::uint8_t {
     Torus,  ///< around y: evenly along a circle in xz and over a tube of radius size.y
 };
 
-/// Where they fly at first.
+/// Their initial direction.
 enum class EmitterDirection : std::uint8_t {
     Cone,    ///< within `cone` of local +y, evenly by solid angle
     Radial,  ///< away from the emitter's origin
@@ -66,34 +66,34 @@ LIMN_FIELDS(ParticleBurst) {
     LIMN_FIELD(count, "number of particles", "", 0, 1e6);
     LIMN_FIELD(spread, "give or take", "", 0, 1e6);
     LIMN_FIELD(interval, "until the next one", "s", 0.001, 1e6);
-    LIMN_FIELD(repeats, "how often it comes again");
+    LIMN_FIELD(repeats, "number of repetitions");
 }
 
-/// A value at a share of a time, straight between keys.
+/// A value at a fraction of a time, linear between keys.
 struct CurveKey {
     float at = 0;
     float value = 1;
 };
 
 LIMN_FIELDS(CurveKey) {
-    LIMN_FIELD(at, "share of the life, or of what the curve is about", "", 0, 1);
+    LIMN_FIELD(at, "fraction of the life, or of what the curve runs over", "", 0, 1);
     LIMN_FIELD(value, "factor", "", 0, 1000);
 }
 
-/// Who moves the particles of an emitter. The same happens to them, but for rounding; on the GPU
-/// they are neither saved nor sorted among other emitters' particles, have no sources, surfaces,
-/// drops or lights, meet only planes, spheres and boxes, and the capacity holds those of the
-/// longest lifetime.
+/// What simulates the particles of an emitter. Results are the same but for rounding. On the GPU,
+/// particles are neither saved nor sorted among those of other emitters, have no sources, surfaces,
+/// drops or lights, collide only with planes, spheres and boxes, and occupy the capacity for the
+/// longest possible lifetime.
 enum class ParticleExecutor : std::uint8_t {
     Auto,  ///< the GPU from a capacity of 262,144 on
     Cpu,
     Gpu,
 };
 
-/// Which births the capacity limits (particle.linear-window, particle.circular-list).
+/// What the capacity limits (particle.linear-window, particle.circular-list).
 enum class ParticlePopulation : std::uint8_t {
-    Circular,  ///< those alive: places are used again
-    Linear,    ///< all, ever: of an effect that ends, a window that moves down an array
+    Circular,  ///< living particles: slots are reused
+    Linear,    ///< all births ever: for effects that end; a window that moves along an array
 };
 
 struct ParticleEmitter {
@@ -125,31 +125,33 @@ struct ParticleEmitter {
 };
 
 LIMN_FIELDS(ParticleEmitter) {
-    LIMN_FIELD(active, "whether particles are born; the living ones go on");
+    LIMN_FIELD(active, "whether particles are born; living ones go on either way");
     LIMN_FIELD(
         executor,
-        .doc = "who moves them; on the GPU without sources, surfaces, drops and lights, and only "
-               "planes, spheres and boxes collide",
+        .doc =
+            "what simulates them; on the GPU without sources, surfaces, drops and lights, and only "
+            "planes, spheres and boxes collide",
         .values = "auto cpu gpu");
     LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
-    LIMN_FIELD(rate_spread, "give or take, anew each step", "1/s", 0, 1e7);
+    LIMN_FIELD(rate_spread, "give or take, drawn in each step", "1/s", 0, 1e7);
     LIMN_FIELD(rate_curve, "factor on the rate over the duration; without one, over a second");
     LIMN_FIELD(
         by_screen_area,
-        "rate and spread are multiplied by the share of the image that the shape covers");
+        "rate and spread are multiplied by the fraction of the image that the shape covers");
     LIMN_FIELD(bursts, "many births at one instant");
     LIMN_FIELD(duration, "how long it emits; 0: forever", "s", 0, 1e6);
     LIMN_FIELD(loop, "starts again after the duration, bursts included");
     LIMN_FIELD(
-        prewarm, "how long it has emitted when it starts; without sources, sprays and colliders",
-        "s", 0, 60);
+        prewarm,
+        "how long it has been emitting when it starts; without sources, sprays and colliders", "s",
+        0, 60);
     LIMN_FIELD(
-        capacity, "living particles at most; further births are dropped and counted", "", 0,
-        4194304);
+        capacity, "maximum number of living particles; further births are dropped and counted", "",
+        0, 4194304);
     LIMN_FIELD(
         population, .doc = "what the capacity counts: the living, or with linear all births ever",
         .values = "circular linear");
-    LIMN_FIELD(seed, "random seed; 0: of its own for each entity");
+    LIMN_FIELD(seed, "random seed; 0: a different one for each entity");
     LIMN_FIELD(
         shape, .doc = "where particles are born",
         .values = "point ball sphere disc circle box torus");
@@ -165,7 +167,7 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(speed_spread, "give or take", "m/s", 0, 1e4);
     LIMN_FIELD(
         velocity_spread, "give or take, along each local axis beside the speed", "m/s", 0, 1e4);
-    LIMN_FIELD(inherit, "share of the emitter's own velocity that is added", "", -10, 10);
+    LIMN_FIELD(inherit, "fraction of the emitter's own velocity that is added", "", -10, 10);
     LIMN_FIELD(
         drop_speed, "factor on the speed of drops that a spray source or obstacle throws up", "", 0,
         100);
@@ -181,9 +183,9 @@ enum class ParticleMoment : std::uint8_t {
     Death,
 };
 
-/// Particles of this emitter are born where those of another one are, and only there: rocket and
-/// trail, shell and stars, drop and splash. The emitter's shape lies around the place, turned as
-/// the emitter is, or with +y along the normal of the surface that was hit.
+/// Particles of this emitter are born only at particles of another one: rocket and trail, shell and
+/// stars, drop and splash. The emitter's shape is centered there, rotated as the emitter is, or
+/// with +y along the normal of the surface that was hit.
 struct ParticleSource {
     Entity emitter{};
     ParticleMoment at = ParticleMoment::Death;
@@ -201,15 +203,16 @@ LIMN_FIELDS(ParticleSource) {
         .values = "birth flight hit death");
     LIMN_FIELD(count, "births at a birth, hit or death", "", 0, 1e6);
     LIMN_FIELD(spread, "give or take", "", 0, 1e6);
-    LIMN_FIELD(inherit, "share of that particle's velocity that is added", "", -10, 10);
+    LIMN_FIELD(inherit, "fraction of that particle's velocity that is added", "", -10, 10);
 }
 
-/// How a step turns velocities into places (particle.integrator).
+/// How a step integrates velocities to positions (particle.integrator).
 enum class ParticleIntegrator : std::uint8_t {
     Average,        ///< by the mean of old and new velocity: exact for constant forces
-    ExplicitEuler,  ///< by the old one, as where place and velocity are updated in one pass
+    ExplicitEuler,  ///< by the old one, as when position and velocity are updated in one pass
     SemiImplicit,   ///< by the new one
-    ClosedForm,     ///< not by steps: by the age, under gravity alone (particle.stateless-script)
+    ClosedForm,     ///< from the age instead of by steps, under gravity alone
+                    ///< (particle.stateless-script)
 };
 
 struct ParticleMotion {
@@ -232,7 +235,7 @@ LIMN_FIELDS(ParticleMotion) {
     LIMN_FIELD(gravity, "factor on 9.81 m/s^2 downwards; negative: rises", "", -100, 100);
     LIMN_FIELD(drag, "decay of the velocity relative to the air", "1/s", 0, 1000);
     LIMN_FIELD(wind, "velocity of the air, in world space; needs drag", "m/s", -1000, 1000);
-    LIMN_FIELD(weather, "share of the wind of the resource weather that is added", "", 0, 10);
+    LIMN_FIELD(weather, "fraction of the wind of the resource weather that is added", "", 0, 10);
     LIMN_FIELD(turbulence, "acceleration by curl noise: whirls without sources", "m/s^2", 0, 1e4);
     LIMN_FIELD(turbulence_size, "extent of a whirl", "m", 0.001, 1e4);
     LIMN_FIELD(turbulence_speed, "whirls that come and go in a second", "1/s", 0, 100);
@@ -241,7 +244,7 @@ LIMN_FIELDS(ParticleMotion) {
     LIMN_FIELD(
         orbit,
         "how far directions turn into circles around that axis in 1/60 s; between 0 and 1 it "
-        "brakes",
+        "slows particles down",
         "", 0, 1);
     LIMN_FIELD(brake, "speed that is lost, down to rest", "m/s^2", 0, 1e4);
     LIMN_FIELD(fields, "factor on the forces of each force_field", "", -100, 100);
@@ -252,8 +255,8 @@ LIMN_FIELDS(ParticleMotion) {
         .values = "average explicit_euler semi_implicit closed_form");
 }
 
-/// Particles fill a box about the camera, wherever it goes: who leaves at one side comes in at the
-/// other (engine.space-dust). They do not collide.
+/// Particles fill a box around the camera: those that leave it on one side enter on the other
+/// (engine.space-dust). They do not collide.
 struct ParticleWrap {
     Vec3 size = {20, 20, 20};
 };
@@ -269,56 +272,59 @@ struct ColorKey {
 };
 
 LIMN_FIELDS(ColorKey) {
-    LIMN_FIELD(at, "share of the life", "", 0, 1);
+    LIMN_FIELD(at, "fraction of the life", "", 0, 1);
     LIMN_FIELD(color, .doc = "linear RGB", .min = 0, .max = 1000);
-    LIMN_FIELD(opacity, "0 transparent, 1 opaque in the middle", "", 0, 1);
+    LIMN_FIELD(opacity, "0 transparent, 1 opaque at the center", "", 0, 1);
 }
 
-/// Value at 0 .. 1: straight between keys, which may be in any order. 1 without keys.
+/// Value at 0 .. 1: linear between keys, which may be in any order. 1 without keys.
 [[nodiscard]] float sample_curve(const std::vector<CurveKey>& keys, float at);
 /// Color and opacity likewise; white without keys.
 [[nodiscard]] Vec4 sample_colors(const std::vector<ColorKey>& keys, float at);
 
 enum class ParticleFacing : std::uint8_t {
     Camera,    ///< a disc toward the camera
-    Velocity,  ///< along the flight, as far as it goes in `stretch`
+    Velocity,  ///< along the velocity, as long as the path of `stretch` seconds
     Ground,    ///< flat on the world's xz plane
     Pixels,    ///< a point sprite: `size` in pixels, see `attenuation` (particle.gpu-draw)
-    Point,     ///< a disc drawn as one vertex: cheapest for specks
+    Point,     ///< a disc drawn as one vertex: the cheapest for specks
 };
 
-/// In which order particles cover each other (particle.distance-sort).
+/// The order in which particles cover each other (particle.distance-sort).
 enum class ParticleSort : std::uint8_t {
-    Distance,   ///< from back to front, among those of all emitters
+    Distance,   ///< from back to front, among the particles of all emitters
     Amortized,  ///< on the GPU by four passes a frame; on the CPU as Distance
     Births,     ///< oldest first, the emitter as a whole among the others
-    Weighted,   ///< in none: mixed, the nearer the heavier, as one layer before all others
+    Weighted,   ///< none: averaged with weights that fall with distance, as one layer in front of
+                ///< all others
 };
 
 /// Which frames of its flipbook a particle shows.
 enum class ParticleFrames : std::uint8_t {
     Play,     ///< from the first
-    Shuffle,  ///< from one by chance
-    Pick,     ///< one by chance, for life
+    Shuffle,  ///< from a random one
+    Pick,     ///< a random one for life
 };
 
-/// What is left out before it is drawn, because it is out of view (particle.visibility).
+/// What is culled when it is out of view (particle.visibility).
 enum class ParticleCulling : std::uint8_t {
     Particles,  ///< each by itself
     Bounds,     ///< all, if none is in view
-    Emitter,    ///< all, if the emitter's shape is out of view: cheap, but what flew into view goes
+    Emitter,    ///< all, if the emitter's shape is out of view: cheap, but particles that flew into
+                ///< view vanish
 };
 
-/// How finely particles are drawn.
+/// The resolution that particles are drawn at.
 enum class ParticleResolution : std::uint8_t {
     Full,
-    Half,  ///< a quarter of the pixels, enlarged along depth edges; as one layer in their middle
+    Half,  ///< a quarter of the pixels, upsampled with depth edges kept; as one layer at their
+           ///< median
 };
 
 /// Where the light that a particle scatters is evaluated.
 enum class ParticleLitAt : std::uint8_t {
     Corners,  ///< at each corner of its quad
-    Middle,   ///< once, as the mean of its corners: for what is small in the image
+    Middle,   ///< once, as the mean of its corners: for particles that are small in the image
 };
 
 struct ParticleLook {
@@ -367,31 +373,32 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(columns, "of a flipbook: frames side by side in the image", "", 1, 64);
     LIMN_FIELD(rows, "of a flipbook, the first at the top", "", 1, 64);
     LIMN_FIELD(
-        frames, .doc = "play: from the first; shuffle: from one by chance; pick: one by chance",
+        frames, .doc = "play: from the first; shuffle: from a random one; pick: a random one",
         .values = "play shuffle pick");
-    LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
+    LIMN_FIELD(frame_rate, "frames per second, repeated; 0: once in a life", "1/s", 0, 1000);
     LIMN_FIELD(
         motion,
-        "of a flipbook: how far what is seen moves until the next frame, an image of the same "
+        "of a flipbook: how far its content moves until the next frame, an image of the same "
         "frames that is not sRGB: red to the right, green downward, 128 of 255 at rest; none: "
         "frames cross-fade");
     LIMN_FIELD(
-        motion_strength, "what 255 in that image means, and 1 the other way, as a share of a frame",
+        motion_strength,
+        "what 255 in that image means, and 1 in the opposite direction, as a fraction of a frame",
         "", 0, 1);
     LIMN_FIELD(
         negative_light,
-        "with it the image tells of the light from six sides how much goes to the camera, 1 as a "
+        "with it the image holds how much of the light from six sides goes to the camera, 1 as a "
         "white surface that faces the light: red from the right, green from above, blue from "
         "behind; and this one, of the same frames: from the left, from below, from the camera; "
         "opacity: a factor on the emission. Neither is sRGB; for quads, not for ribbons");
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
-    LIMN_FIELD(size_curve, "factor on the size over the life, drawn at 32 even shares of it");
+    LIMN_FIELD(size_curve, "factor on the size over the life, sampled at 32 equal intervals");
     LIMN_FIELD(
-        colors, "color and opacity over the life, drawn at 32 even shares of it; none: white");
+        colors, "color and opacity over the life, sampled at 32 equal intervals; none: white");
     LIMN_FIELD(
         color_function,
-        "place in `colors`, 0 .. 1, by the age instead of the life; unless base and amplitude are "
+        "position in `colors`, 0 .. 1, by age instead of the life, unless base and amplitude are "
         "0");
     LIMN_FIELD(color_spread, "give or take of red, green and blue, once for each", "", 0, 1000);
     LIMN_FIELD(emission, .doc = "radiance of a white particle by itself", .min = 0, .max = 1e6);
@@ -411,8 +418,8 @@ LIMN_FIELDS(ParticleLook) {
         facing,
         .doc =
             "how the quad is turned; pixels: to the camera, with `size` in pixels; point: a disc "
-            "without an image as one vertex instead of four, for specks of a few pixels: it goes "
-            "with its center and has a largest size, 64 pixels or more",
+            "without an image as one vertex instead of four, for specks of a few pixels: it is "
+            "clipped with its center and has a maximum size, 64 pixels or more",
         .values = "camera velocity ground pixels point");
     LIMN_FIELD(
         attenuation,
@@ -424,20 +431,20 @@ LIMN_FIELDS(ParticleLook) {
                "the GPU; the younger one; weighted: all are mixed without a sort, the nearer the "
                "heavier, at full resolution and in front of those that are sorted",
         .values = "distance amortized births weighted");
-    LIMN_FIELD(stretch, "length of a streak: the way of so much time; facing velocity", "s", 0, 10);
+    LIMN_FIELD(stretch, "length of a streak: its path in this time; facing velocity", "s", 0, 10);
     LIMN_FIELD(
-        camera_streak, "share of the camera's own velocity that streaks show; facing velocity", "",
-        0, 10);
+        camera_streak, "fraction of the camera's own velocity that streaks show; facing velocity",
+        "", 0, 10);
     LIMN_FIELD(turn_spread, "initial angle, give or take", "rad", 0, 3.1416);
     LIMN_FIELD(spin, "rotation", "rad/s", -1000, 1000);
     LIMN_FIELD(spin_spread, "give or take", "rad/s", 0, 1000);
     LIMN_FIELD(
-        tumble, "rotation about the quad's own up, so that it is seen edge-on: leaves", "rad/s", 0,
+        tumble, "rotation about the quad's own up, so that it turns edge-on: leaves", "rad/s", 0,
         1000);
     LIMN_FIELD(softness, "depth over which it fades where it meets a surface", "m", 0, 100);
-    LIMN_FIELD(near_fade, "distance of the camera below which it fades", "m", 0, 1000);
+    LIMN_FIELD(near_fade, "distance of the camera within which it fades", "m", 0, 1000);
     LIMN_FIELD(
-        far_fade, "distance beyond which it is not seen, fading from 0.6 of it; 0: none", "m", 0,
+        far_fade, "distance beyond which it is invisible, fading from 0.6 of it; 0: none", "m", 0,
         1e5);
     LIMN_FIELD(fade, "it fades out over the last seconds of its life", "s", 0, 1e5);
     LIMN_FIELD(
@@ -446,7 +453,7 @@ LIMN_FIELDS(ParticleLook) {
                "if none is in view; all, if the emitter's shape is not, even those that flew into "
                "view",
         .values = "particles bounds emitter");
-    LIMN_FIELD(cull_margin, "by which that is taken larger", "m", 0, 1e5);
+    LIMN_FIELD(cull_margin, "by which the bounds for culling are enlarged", "m", 0, 1e5);
     LIMN_FIELD(
         velocity_cover,
         "opacity times cover above which a pixel moves with it instead of with what is behind, for "
@@ -455,7 +462,7 @@ LIMN_FIELDS(ParticleLook) {
         "", 0, 1);
     LIMN_FIELD(
         shadow,
-        "share of the opacity that casts a shadow, on surfaces and particles, in the first "
+        "fraction of the opacity that casts a shadow, on surfaces and particles, in the first "
         "directional light, or without one in the first spot with a shadow",
         "", 0, 1);
     LIMN_FIELD(
@@ -464,7 +471,7 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(
         resolution,
         .doc = "half: a quarter of the pixels, for smoke that covers much of the image; one layer "
-               "where the middle one of them is in the order",
+               "in the order at their median",
         .values = "full half");
 }
 
@@ -483,28 +490,28 @@ LIMN_FIELDS(ParticleLight) {
     LIMN_FIELD(intensity, "of each", "cd", 0, 1e6);
     LIMN_FIELD(curve, "factor on the intensity over the life");
     LIMN_FIELD(radius, "where its light ends", "m", 0.01, 1e4);
-    LIMN_FIELD(share, "of the particles, 0 .. 1, by chance, that are lights", "", 0, 1);
-    LIMN_FIELD(count, "lights at most, of the oldest particles", "", 0, 1024);
+    LIMN_FIELD(share, "random fraction of the particles that are lights", "", 0, 1);
+    LIMN_FIELD(count, "maximum number of lights, which are the oldest particles", "", 0, 1024);
 }
 
-/// What an emitter knows of its births; kept by the systems.
+/// The state of an emitter's births; kept by the systems.
 struct EmitterClock {
-    std::uint64_t born = 0;     ///< of all time; numbers of the random sequences
-    std::uint64_t dropped = 0;  ///< births for which there was no room
+    std::uint64_t born = 0;     ///< so far; also the number of the next random sequence
+    std::uint64_t dropped = 0;  ///< births over capacity
     double time = 0;            ///< the emitter's own [s]
-    double carry = 0;           ///< a share of a birth that is due
+    double carry = 0;           ///< fraction of the next birth that is due
 };
 
 LIMN_FIELDS(EmitterClock) {
-    LIMN_FIELD(born, "births of all time");
+    LIMN_FIELD(born, "births so far");
     LIMN_FIELD(dropped, "births over capacity");
     LIMN_FIELD(time, "of the emitter", "s");
-    LIMN_FIELD(carry, "share of a birth that is due");
+    LIMN_FIELD(carry, "fraction of the next birth that is due");
 }
 
 /// The particles of an emitter; kept by the systems. World space. Newborns are appended. Where
-/// somebody tells particles by their order (keeps_order in systems/particles/particle_deaths.h),
-/// they are kept oldest first; otherwise the last ones take the places of the dead.
+/// anything depends on their order (keeps_order in systems/particles/particle_deaths.h), they are
+/// kept oldest first; otherwise the last ones fill the slots of the dead.
 struct ParticlePool {
     std::vector<float> x, y, z;        ///< position [m]
     std::vector<float> vx, vy, vz;     ///< velocity [m/s]
@@ -512,8 +519,9 @@ struct ParticlePool {
     std::vector<std::uint32_t> look;   ///< random bits: size, angle, spin
     std::vector<std::uint32_t> stuck;  ///< 1: sticks to a surface; shorter: the rest does not
     EmitterClock clock;
-    std::uint64_t fresh = 0;  ///< of the last ones, how many were born since the dead were removed
-    bool mixed = false;       ///< not oldest first
+    std::uint64_t fresh =
+        0;  ///< number of particles at the end that were born since the dead were removed
+    bool mixed = false;  ///< not oldest first
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };

@@ -12,8 +12,8 @@ namespace limn {
 // here move, and that carries trails, emitters and lights with it.
 // Techniques: particle.projectile, particle.variable-mass
 
-/// Moves its entity, which must not have a parent. With a ParticleCollision it meets what particles
-/// meet, but water; "kill" destroys it with its children, and "stick" ends its flight.
+/// Moves its entity, which must not have a parent. With a ParticleCollision it hits what particles
+/// hit, but not water; "kill" destroys it with its children, and "stick" ends its flight.
 struct PointMass {
     Vec3 velocity = {0, 0, 0};
     float mass = 5;

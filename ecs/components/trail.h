@@ -42,8 +42,8 @@ LIMN_FIELDS(Trail) {
     LIMN_FIELD(
         path, .doc = "what is followed: the entity, each particle, or particles by age",
         .values = "entity particles births");
-    LIMN_FIELD(emitter, "whose particles or, for an entity's path, whose way; none: this entity");
-    LIMN_FIELD(active, "whether it grows; what is there fades all the same");
+    LIMN_FIELD(emitter, "whose particles or, for an entity's path, which entity; none: this one");
+    LIMN_FIELD(active, "whether it grows; existing parts fade either way");
     LIMN_FIELD(
         spacing, "between points, whatever the frame rate; at least a thousandth of the length",
         "m", 0.001, 1e3);
@@ -52,13 +52,13 @@ LIMN_FIELDS(Trail) {
     LIMN_FIELD(jump, "a longer step or, between births, gap breaks it", "m", 0.001, 1e5);
     LIMN_FIELD(
         span,
-        "from edge to edge, in local space: a blade's; 0: as wide as the look's size, toward "
+        "from edge to edge, in local space, as of a blade; 0: as wide as the look's size, facing "
         "the camera",
         "m", -1e3, 1e3);
     LIMN_FIELD(
         tile, "length of an image, births counting as a spacing each; 0: one over the whole trail",
         "m", 0, 1e4);
-    LIMN_FIELD(count, "particles with a trail at most", "", 1, 65536);
+    LIMN_FIELD(count, "maximum number of particles with a trail", "", 1, 65536);
 }
 
 struct TrailPoint {
@@ -108,7 +108,7 @@ struct TrailState {
 };
 
 LIMN_FIELDS(TrailState) {
-    LIMN_FIELD(capacity, "points of a strand at most");
+    LIMN_FIELD(capacity, "maximum number of points of a strand");
     LIMN_FIELD(strands, "unbroken trails");
     LIMN_FIELD(points, "of all strands");
     LIMN_FIELD(free_slots, "slots without a strand");

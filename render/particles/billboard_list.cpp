@@ -17,13 +17,13 @@ void append_billboard(
     const float half_width = half_height * billboard.aspect;
     const Vec3 right = half_width * transform_vector(world, {1, 0, 0});
     const Vec3 up = half_height * transform_vector(world, {0, 1, 0});
-    BillboardPlace place;
-    place.position = transform_point(world, Vec3(0));
-    place.share = evaluate_share(look.color_function, time);
-    place.opacity = evaluate_share(billboard.opacity_function, time);
+    BillboardShading shading;
+    shading.position = transform_point(world, Vec3(0));
+    shading.color_at = evaluate_share(look.color_function, time);
+    shading.opacity = evaluate_share(billboard.opacity_function, time);
     const float extent = glm::length(right) * glm::length(up);
     if (!(half_height > 0 && extent > 0)
-        || !std::isfinite(extent + glm::dot(place.position, Vec3(1)))) {
+        || !std::isfinite(extent + glm::dot(shading.position, Vec3(1)))) {
         return;
     }
     const bool is_composite = billboard.alignment == BillboardAlignment::Composite;
@@ -38,15 +38,15 @@ void append_billboard(
          .alignment = static_cast<float>(alignment),
          .up = up,
          .frame = static_cast<float>(frame)});
-    list.places.push_back(place);
+    list.shadings.push_back(shading);
     if (is_composite) {
         const Vec3 across = half_width * transform_vector(world, {0, 0, -1});
         list.quads.push_back(
             {.right = right,
              .alignment = static_cast<float>(BillboardAlignment::None),
              .up = across});
-        place.is_section = true;
-        list.places.push_back(place);
+        shading.is_section = true;
+        list.shadings.push_back(shading);
     }
 }
 

@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::uint32_t kMaxInset = layout::kInsetSteps / 2 - 1;
 
-/// Of `texels` of `side`: what a bilinear filter reads beside them stays, too.
+/// Inset for `texels` transparent texels of `side`: the one next to the content stays, for bilinear
+/// filtering.
 std::uint32_t inset_of(int texels, int side) {
     const int steps = std::max(texels - 1, 0) * static_cast<int>(layout::kInsetSteps) / side;
     return std::min(static_cast<std::uint32_t>(steps), kMaxInset);

@@ -7,8 +7,8 @@
 
 namespace limn {
 
-// How much of the frames of a flipbook is fully transparent at their sides, so that quads are drawn
-// without it: what they cover, and blend in vain, is most of what sprites cost.
+// The fully transparent margins of the frames of a flipbook, by which quads are trimmed: sprites
+// are bound by fill rate, and blending transparent texels is wasted.
 // After E. Persson, "Particle Trimmer", 2009, with rectangles.
 
 /// In units of 1 / kInsetSteps of the frame, 0 .. kInsetSteps / 2 - 1.
@@ -21,21 +21,22 @@ struct FrameInsets {
     bool operator==(const FrameInsets&) const = default;
 };
 
-/// Of the frame of number `frame`, row by row from the top left, of columns x rows. A texel that a
-/// bilinear filter reads where the frame is not transparent stays. None of images that are not of
-/// format Rgba8, or that `columns` and `rows` do not divide.
+/// Of frame number `frame`, counted row by row from the top left, of columns x rows. All texels
+/// that contribute under bilinear filtering stay. No insets for images that are not of format
+/// Rgba8, or that `columns` and `rows` do not divide.
 [[nodiscard]] FrameInsets
 find_insets(const ImageData& image, std::uint32_t columns, std::uint32_t rows, std::uint32_t frame);
 
-/// As a look record has them (particle_gpu.h): exact in a float.
+/// The encoding of look records (particle_gpu.h): exact in a float.
 [[nodiscard]] float pack_insets(const FrameInsets& insets);
 
 /// Insets of flipbooks, found once for each.
 class FrameInsetTable {
   public:
-    /// Forgets those of other assets.
+    /// Clears the table if the assets are others than before.
     void use_assets(std::uint64_t identity);
-    /// Packed, of each frame; valid until the next call. Empty for more than kMaxInsetFrames.
+    /// Packed insets of each frame; valid until the next call. Empty if there are more frames than
+    /// kMaxInsetFrames.
     [[nodiscard]] const std::vector<float>&
     find(const ImageData& image, ImageId id, std::uint32_t columns, std::uint32_t rows);
 

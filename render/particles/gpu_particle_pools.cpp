@@ -7,6 +7,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/shaders/particle_gpu.h"
+#include "render/shaders/view_gpu.h"
 
 #include <algorithm>
 #include <bit>
@@ -21,13 +22,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kStepsUnit = 0;
-constexpr unsigned kSeenDepthUnit = 1;
-constexpr unsigned kViewBinding = 0;
-constexpr unsigned kStateBinding = 0;
-constexpr unsigned kBitsBinding = 1;
-constexpr unsigned kInstancesBinding = 2;
-
 float word(std::uint64_t bits) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
 }
@@ -37,10 +31,10 @@ Vec4 response_texel(const ParticleCollision* collision) {
     if (collision == nullptr) {
         return Vec4(0);
     }
-    const auto share = [](float value) { return std::clamp(finite_or(value, 0), 0.0f, 1.0f); };
+    const auto clamped = [](float value) { return std::clamp(finite_or(value, 0), 0.0f, 1.0f); };
     const auto action = static_cast<std::uint32_t>(collision->action) + 1;
     return {
-        share(collision->bounce), share(collision->friction),
+        clamped(collision->bounce), clamped(collision->friction),
         std::max(finite_or(collision->radius, 0), 0.0f), word(action)};
 }
 
@@ -61,7 +55,7 @@ void pack_emitter(
     texels.push_back(response_texel(collision));
 }
 
-/// Texels of what belongs to a step, counted from the first of their kind.
+/// The first texels of what belongs to a step, each relative to the first of its kind.
 struct StepParts {
     std::uint32_t run = 0;
     std::uint32_t force = 0;
@@ -75,10 +69,10 @@ void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<
         word(step.first), word(step.count), word(first.run), word(step.births.size()));
     texels.emplace_back(motion.step.gravity * dt, dt);
     texels.emplace_back(motion.step.air, motion.step.keep);
-    for (const Affine* const place : {&step.place.before, &step.place.now}) {
-        texels.insert(texels.end(), std::begin(place->row), std::end(place->row));
+    for (const Affine* const world : {&step.pose.before, &step.pose.now}) {
+        texels.insert(texels.end(), std::begin(world->row), std::end(world->row));
     }
-    texels.emplace_back(step.inherited, motion.step.old_share);
+    texels.emplace_back(step.inherited, motion.step.old_weight);
     texels.emplace_back(motion.turbulence.drift_a, motion.turbulence.strength * dt);
     texels.emplace_back(motion.turbulence.drift_b, 1 / motion.turbulence.size);
     texels.emplace_back(motion.vortex.origin, motion.vortex.around * dt);
@@ -96,7 +90,7 @@ load_update(gpu::Device& device, std::vector<gpu::ShaderDefine> defines) {
         {.compute = "particle_update.comp", .defines = std::move(defines)});
 }
 
-/// Whether gravity and drag alone move particles in a step.
+/// Whether a step has only gravity and drag.
 bool is_plain(const GpuParticleStep& step) {
     const MotionStep& motion = step.motion;
     const bool steers = motion.steering.orbit > 0 || motion.steering.loss > 0;
@@ -118,12 +112,13 @@ void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
     pool.done = 0;
 }
 
-/// From the oldest particle to the oldest that is moved: one whose number the stride divides.
+/// Offset from the oldest particle to the oldest simulated one, whose number is a multiple of the
+/// stride.
 std::uint32_t offset_of(const GpuParticlePool& pool) {
     return (0u - pool.first) & (pool.stride - 1);
 }
 
-/// How many of the `count` oldest are moved.
+/// How many of the `count` oldest particles are simulated.
 std::uint32_t moved_of(std::uint64_t count, const GpuParticlePool& pool) {
     const std::uint64_t offset = offset_of(pool);
     return count > offset
@@ -131,16 +126,16 @@ std::uint32_t moved_of(std::uint64_t count, const GpuParticlePool& pool) {
                : 0;
 }
 
-/// Those that are moved, numbered without gaps.
+/// The simulated particles, numbered without gaps.
 ParticleWindow sort_window(const GpuParticlePool& pool) {
     return {(pool.first + offset_of(pool)) / pool.stride, pool.count};
 }
 
 }  // namespace
 
-std::uint32_t particle_stride(float share) {
+std::uint32_t particle_stride(float fraction) {
     std::uint32_t stride = 1;
-    while (stride < 1024 && static_cast<float>(stride) * share < 1) {
+    while (stride < 1024 && static_cast<float>(stride) * fraction < 1) {
         stride *= 2;
     }
     return stride;
@@ -172,10 +167,10 @@ std::vector<Vec4> pack_particle_steps(
     }
     layout.forces = static_cast<int>(texels.size());
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
-        const float share = step.motion.forces_share * step.motion.step.dt;
+        const float scale = step.motion.force_scale * step.motion.step.dt;
         for (const Force& one : step.motion.forces) {
             texels.emplace_back(one.origin, word(static_cast<std::uint32_t>(one.kind)));
-            texels.emplace_back(one.axis, one.strength * share);
+            texels.emplace_back(one.axis, one.strength * scale);
             texels.emplace_back(one.speed, one.radius, 0.0f, 0.0f);
         }
     }
@@ -207,7 +202,7 @@ void GpuParticlePools::begin_frame(const World& world) {
     }
 }
 
-void GpuParticlePools::forget_unused() {
+void GpuParticlePools::drop_unused() {
     std::erase_if(pools_, [](const auto& pool) { return !pool.second->used; });
 }
 
@@ -223,21 +218,21 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
     return true;
 }
 
-bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
-    if (programs_.seen_old == nullptr) {
-        const Result<const gpu::Program*> births = load_update(device, {{"SEEN_DEPTH"}});
-        const Result<const gpu::Program*> old = load_update(device, {{"SEEN_DEPTH"}, {"OLD"}});
+bool GpuParticlePools::can_collide_with_depth(gpu::Device& device) {
+    if (programs_.depth_old == nullptr) {
+        const Result<const gpu::Program*> births = load_update(device, {{"DEPTH_COLLISION"}});
+        const Result<const gpu::Program*> old = load_update(device, {{"DEPTH_COLLISION"}, {"OLD"}});
         if (!births || !old) {
             log_error("{}", (births ? old : births).error().message);
             return false;
         }
-        programs_.seen_births = *births;
-        programs_.seen_old = *old;
+        programs_.depth_births = *births;
+        programs_.depth_old = *old;
     }
     return true;
 }
 
-bool GpuParticlePools::meets_depth() const {
+bool GpuParticlePools::collides_with_depth() const {
     return std::any_of(pools_.begin(), pools_.end(), [](const auto& pool) {
         return pool.second->collide_depth > 0;
     });
@@ -253,29 +248,30 @@ void GpuParticlePools::add(
     }
     GpuParticlePool& pool = *found;
     const std::uint64_t window = particles.clock.born - particles.oldest();
-    // A smaller capacity than there are particles counts when those have died.
+    // A capacity below the number of particles takes effect when enough of them have died.
     const auto slots =
         static_cast<std::uint32_t>(std::max<std::uint64_t>(emitter.capacity, window));
     const std::uint64_t first_kept = particles.step - particles.kept().size();
     if (pool.capacity != std::max(slots, 1u) || pool.done > particles.step || pool.done < first_kept
         || stride < pool.stride) {
-        make_buffers(slots, pool);  // and all steps again
+        make_buffers(slots, pool);  // all recorded steps are simulated again
     }
     pool.stride = stride;
     pool.steps.upload(
         *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
-    const std::span<const GpuParticleStep> to_do =
+    const std::span<const GpuParticleStep> pending =
         particles.kept().last(static_cast<std::size_t>(pool.layout.steps));
     pool.done = particles.step;
     pool.used = true;
     pool.look = look;
     pool.first = static_cast<std::uint32_t>(particles.oldest());
     pool.count = moved_of(window, pool);
-    const std::uint64_t born_before = to_do.empty() ? particles.clock.born : to_do.front().first;
+    const std::uint64_t born_before =
+        pending.empty() ? particles.clock.born : pending.front().first;
     pool.old = moved_of(std::max(born_before, particles.oldest()) - particles.oldest(), pool);
     pool.plain.reset();
-    if (to_do.size() == 1 && is_plain(to_do.front())) {
-        pool.plain = to_do.front().motion.step;
+    if (pending.size() == 1 && is_plain(pending.front())) {
+        pool.plain = pending.front().motion.step;
     }
     if (!particles.kept().empty()) {
         const ParticleStep& step = particles.kept().back().motion.step;
@@ -284,22 +280,24 @@ void GpuParticlePools::add(
     }
     const bool closed_form = pool.closed_form;
     const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
-    pool.collide_depth = depth > 0 && !closed_form && can_meet_depth(*frame.device) ? depth : 0.0f;
+    pool.collide_depth =
+        depth > 0 && !closed_form && can_collide_with_depth(*frame.device) ? depth : 0.0f;
     pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
         plan_particle_sort(sort_window(pool), *sort_passes, pool.sort);
     }
 }
 
-/// Those born before the steps to do, and those born in them.
+/// Dispatches the update of the particles born before the steps to simulate, and of those born
+/// during them.
 void GpuParticlePools::move(
-    gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const {
-    const bool meets = seen && pool.collide_depth > 0;
-    const bool is_plain_step = pool.plain.has_value() && !meets;
-    pool.steps.bind(device, kStepsUnit);
-    device.bind_storage(kStateBinding, pool.state);
-    device.bind_storage(kBitsBinding, pool.bits);
-    device.bind_storage(kInstancesBinding, pool.instances);
+    gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const {
+    const bool collides = has_depth && pool.collide_depth > 0;
+    const bool is_plain_step = pool.plain.has_value() && !collides;
+    pool.steps.bind(device, layout::kParticleStepsUnit);
+    device.bind_storage(layout::kParticleStateBinding, pool.state);
+    device.bind_storage(layout::kParticleBitsBinding, pool.bits);
+    device.bind_storage(layout::kParticleInstancesBinding, pool.instances);
     const auto dispatch = [&](const gpu::Program& program, std::uint32_t begin, std::uint32_t end,
                               std::uint32_t first_slot) {
         if (begin >= end) {
@@ -323,29 +321,29 @@ void GpuParticlePools::move(
         program.set("thickness", pool.collide_depth);
         if (pool.plain) {
             const ParticleStep& step = *pool.plain;
-            const float old_way = step.dt * step.old_share;
+            const float old_dt = step.dt * step.old_weight;
             const Vec3 added = step.air + (step.gravity * step.dt - step.air) * step.keep;
             program.set("added_dt", Vec4(added, step.dt));
             program.set("kept", step.keep);
-            program.set("ways", Vec2(old_way, step.dt - old_way));
+            program.set("velocity_dt", Vec2(old_dt, step.dt - old_dt));
         }
         device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
     };
     const gpu::Program* const old = is_plain_step ? programs_.plain
-                                    : meets       ? programs_.seen_old
+                                    : collides    ? programs_.depth_old
                                                   : programs_.old;
-    // The slots are a ring: what lies beyond its end is at its beginning.
+    // The slots are a ring: indices beyond its end wrap to its beginning.
     const std::uint32_t first_slot = pool.first % pool.capacity + offset_of(pool);
     const std::uint32_t room = pool.capacity - std::min(first_slot, pool.capacity);
     const std::uint32_t wrap = room / pool.stride + (room % pool.stride > 0 ? 1 : 0);
     const auto dispatch_parts = [&](const gpu::Program& program, std::uint32_t begin,
                                     std::uint32_t end) {
-        const std::uint32_t middle = std::clamp(wrap, begin, end);
-        dispatch(program, begin, middle, first_slot);
-        dispatch(program, middle, end, first_slot - pool.capacity);
+        const std::uint32_t ring_end = std::clamp(wrap, begin, end);
+        dispatch(program, begin, ring_end, first_slot);
+        dispatch(program, ring_end, end, first_slot - pool.capacity);
     };
     dispatch_parts(*old, 0, pool.old);
-    dispatch_parts(*(meets ? programs_.seen_births : programs_.births), pool.old, pool.count);
+    dispatch_parts(*(collides ? programs_.depth_births : programs_.births), pool.old, pool.count);
 }
 
 void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
@@ -361,20 +359,22 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
             writes.emplace_back(graph.import("particles", *buffer));
         }
     }
-    const SeenDepth seen = view.seen;
+    const PreviousDepth depth = view.depth;
     std::vector<Use> reads;
-    if (seen.depth != nullptr) {
-        reads.push_back(sampled(graph.import("seen depth", *seen.depth), kSeenDepthUnit));
+    if (depth.depth != nullptr) {
+        reads.push_back(
+            sampled(graph.import("previous depth", *depth.depth), layout::kPreviousDepthUnit));
     }
     graph.add_pass(
-        "move particles", reads, writes, [this, back = view.back, seen](PassContext& context) {
+        "move particles", reads, writes, [this, back = view.back, depth](PassContext& context) {
             gpu::Device& device = context.device();
-            if (seen.depth != nullptr) {
+            if (depth.depth != nullptr) {
                 device.bind_uniforms(
-                    kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
+                    layout::kViewBinding, depth.camera.buffer, depth.camera.offset,
+                    depth.camera.size);
             }
             for (const auto& [entity, pool] : pools_) {
-                move(device, *pool, back, seen.depth != nullptr);
+                move(device, *pool, back, depth.depth != nullptr);
             }
         });
     for (const auto& [entity, found] : pools_) {

@@ -7,7 +7,7 @@
 #include "render/gpu/buffer_texture.h"
 #include "render/gpu/program.h"
 #include "render/particles/gpu_particle_sort.h"
-#include "render/particles/seen_depth.h"
+#include "render/particles/previous_depth.h"
 
 #include <cstdint>
 #include <map>
@@ -22,17 +22,16 @@ struct ParticleEmitter;
 class World;
 
 // Particles that the GPU moves (particle.gpu-state, particle.gpu-update): for each emitter a ring
-// of slots, 36 bytes each, that particle_update.comp brings up to date with the steps that the
-// systems have written down (systems/particles/gpu_particle_system.h), and a list of what to draw,
-// oldest first.
+// of slots, 36 bytes each, to which particle_update.comp applies the steps that the systems have
+// recorded (systems/particles/gpu_particle_system.h), and a list of instances to draw, oldest
+// first.
 //
-// Where a million are too many, every `stride`th by its number is moved and drawn, the others are
-// as if they were not there. A larger stride leaves some of those that were moved; for a smaller
-// one all steps that are kept are done again.
+// To scale the cost down, only every `stride`th particle by number is simulated and drawn. A larger
+// stride keeps a subset of those; for a smaller one all recorded steps are simulated again.
 
-/// Where the parts of the texels of steps begin.
+/// Layout of the texels of steps.
 struct ParticleStepTexels {
-    int steps = 0;      ///< how many
+    int steps = 0;      ///< number of steps
     int runs = 0;       ///< texel of the first run of births
     int forces = 0;     ///< texel of the first force
     int colliders = 0;  ///< texel of the first collider
@@ -45,38 +44,38 @@ struct GpuParticlePool {
     BufferTexture steps = BufferTexture("particle steps", GL_RGBA32F);
     BufferTexture texels = BufferTexture("particles", GL_R32UI);  ///< of `instances`
     std::uint32_t capacity = 0;
-    std::uint64_t done = 0;  ///< number of the first step that is not done
+    std::uint64_t done = 0;  ///< number of the first step that is not simulated yet
 
     // Of this frame.
     bool used = false;
     std::uint32_t look = 0;
     std::uint32_t stride = 1;  ///< a power of two
     std::uint32_t first = 0;   ///< number of the oldest particle, low word
-    std::uint32_t count = 0;   ///< to move and draw
+    std::uint32_t count = 0;   ///< number of particles to move and draw
     ParticleStepTexels layout{};
     bool sorted = false;
     GpuParticleSort sort{};
-    bool closed_form = false;  ///< states are those of birth
+    bool closed_form = false;  ///< states are those at birth
     Vec3 gravity = {0, 0, 0};  ///< of the last step [m/s^2]
-    std::uint32_t old = 0;     ///< of `count`, born before the steps to do
-    /// The one step to do, if nothing but gravity and drag moves them in it.
+    std::uint32_t old = 0;     ///< number of particles born before the steps to simulate
+    /// The step to simulate, if it is the only one and has only gravity and drag.
     std::optional<ParticleStep> plain{};
     float collide_depth = 0;  ///< as ParticleCollision::collide_depth
 };
 
-/// The stride that leaves `share` of the particles, or less: 1 .. 1024.
-[[nodiscard]] std::uint32_t particle_stride(float share);
+/// The smallest power of two, up to 1024, that leaves at most this fraction of the particles.
+[[nodiscard]] std::uint32_t particle_stride(float fraction);
 
-/// When and from where they are seen.
+/// The time and the camera that particles are drawn for.
 struct GpuParticleView {
-    float back = 0;             ///< before the end of the last step [s]
+    float back = 0;             ///< time before the end of the last step [s]
     Vec3 eye = {0, 0, 0};       ///< [m]
     Vec3 forward = {0, 0, -1};  ///< unit
-    SeenDepth seen{};           ///< what those with a collide_depth meet
+    PreviousDepth depth{};      ///< for particles with a collide_depth
 };
 
-/// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
-/// beyond. `collision`: null: they do not collide.
+/// Packs the recorded steps from number `from` on into texels, laid out as in particle_gpu.h.
+/// `collision` is null if the particles do not collide.
 [[nodiscard]] std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const ParticleCollision* collision,
     const GpuParticles& particles, std::uint64_t from, ParticleStepTexels& layout);
@@ -85,22 +84,22 @@ class GpuParticlePools {
   public:
     [[nodiscard]] static Result<GpuParticlePools> create(gpu::Device& device);
 
-    /// Before those of a frame are added: forgets all pools of another world, or of one that was
-    /// loaded anew.
+    /// Before the emitters of a frame are added: drops all pools if the world is another one or was
+    /// reloaded.
     void begin_frame(const World& world);
-    /// An emitter's particles, every `stride`th, drawn with the look of this number. `sort_passes`:
-    /// none: as they were born; 0: sorted; otherwise so many passes of a sort.
+    /// Adds every `stride`th particle of an emitter, drawn with look number `look`. `sort_passes`:
+    /// none: in the order of births; 0: a whole sort; otherwise that many passes of a sort.
     void
     add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
         const GpuParticles& particles, std::uint32_t look,
         std::optional<std::uint32_t> sort_passes = std::nullopt,
         const ParticleCollision* collision = nullptr, std::uint32_t stride = 1);
-    /// After they have been added: forgets all others.
-    void forget_unused();
-    /// Adds the passes that move and sort them, unless someone has in this frame.
+    /// After all emitters have been added: drops the pools of others.
+    void drop_unused();
+    /// Adds the passes that move and sort the particles; only the first call in a frame counts.
     void update(FrameGraph& graph, const GpuParticleView& view);
-    /// Whether some of this frame meet what the camera saw.
-    [[nodiscard]] bool meets_depth() const;
+    /// Whether some particles of this frame collide with the depth of the previous frame.
+    [[nodiscard]] bool collides_with_depth() const;
 
     [[nodiscard]] const std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>>& pools() const {
         return pools_;
@@ -108,18 +107,18 @@ class GpuParticlePools {
 
   private:
     bool can_sort(gpu::Device& device);
-    bool can_meet_depth(gpu::Device& device);
+    bool can_collide_with_depth(gpu::Device& device);
 
-    /// For those born in the steps to do; those born before; those that meet what was seen,
-    /// likewise, loaded when there are some; those of a plain step.
+    /// Programs for particles born during the steps to simulate and for those born before; the same
+    /// with depth collision, loaded when first needed; and for plain steps.
     struct Programs {
         const gpu::Program* births = nullptr;
         const gpu::Program* old = nullptr;
-        const gpu::Program* seen_births = nullptr;
-        const gpu::Program* seen_old = nullptr;
+        const gpu::Program* depth_births = nullptr;
+        const gpu::Program* depth_old = nullptr;
         const gpu::Program* plain = nullptr;
     };
-    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const;
+    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const;
 
     Programs programs_{};
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted

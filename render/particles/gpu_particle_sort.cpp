@@ -16,9 +16,6 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kEntriesBinding = 0;
-constexpr unsigned kSortedInstancesBinding = 1;
-constexpr unsigned kSortedBinding = 2;
 constexpr std::uint32_t kSortGroup = 512;  // invocations of a work group
 constexpr std::uint32_t kLocal = 1024;     // entries that a work group sorts by itself
 
@@ -27,7 +24,7 @@ void make_sort_buffers(std::uint32_t size, GpuParticleSort& sort) {
         entries =
             gpu::Buffer("particle order", size * sizeof(std::uint64_t), gpu::BufferUse::GpuOnly);
     }
-    // Those that have died during a sort keep their places until the next one.
+    // Particles that have died during a sort keep their slots in the order until the next sort.
     sort.instances = gpu::Buffer(
         "sorted particles", std::size_t{2} * size * layout::kParticleWords * sizeof(std::uint32_t),
         gpu::BufferUse::GpuOnly);
@@ -37,7 +34,7 @@ void make_sort_buffers(std::uint32_t size, GpuParticleSort& sort) {
     sort.shown.reset();
 }
 
-/// A whole sort: passes within a work group's entries are done at once.
+/// A whole sort; consecutive passes within the entries of a work group are one dispatch.
 void sort_all(gpu::Device& device, const ParticleSortPrograms& programs, std::uint32_t size) {
     const auto sort_local = [&](std::uint32_t run, std::uint32_t last_run) {
         device.use(*programs.local);
@@ -75,10 +72,9 @@ void sort_some(
 
 ParticleSortView
 predict_sort_view(const ParticleSortView& previous, const ParticleSortView& now, float frames) {
-    constexpr float kMaxMove = 10;      // a frame [m]; more is a cut, as is_cut() has it
-    constexpr float kMinCosine = 0.5f;  // of its turn
-    constexpr float kMaxTurn =
-        0.15f;  // that is expected [rad]: who looks around soon stops, by eye
+    constexpr float kMaxMove = 10;      // in a frame [m]; more is a cut, as in is_cut()
+    constexpr float kMinCosine = 0.5f;  // of the turn in a frame
+    constexpr float kMaxTurn = 0.15f;   // to extrapolate [rad]: turns soon stop, by eye
     const Vec3 move = now.eye - previous.eye;
     if (!(glm::length(move) <= kMaxMove && glm::dot(previous.forward, now.forward) >= kMinCosine)) {
         return now;
@@ -143,8 +139,8 @@ void run_particle_sort(
     const bool ended = sort.next_pass == 0;
     const int sorted = ended ? 1 - sort.current : sort.current;
     device.storage_barrier();  // after the particles have moved
-    device.bind_storage(kEntriesBinding, sort.entries[sorted]);
-    device.bind_storage(kSortedInstancesBinding, instances);
+    device.bind_storage(layout::kSortEntriesBinding, sort.entries[sorted]);
+    device.bind_storage(layout::kSortInstancesBinding, instances);
     if (plan.read_keys) {
         device.use(*programs.keys);
         programs.keys->set("count", now.count);
@@ -160,8 +156,8 @@ void run_particle_sort(
     } else {
         sort_some(device, programs, plan);
     }
-    device.bind_storage(kEntriesBinding, sort.entries[1 - sort.current]);
-    device.bind_storage(kSortedBinding, sort.instances);
+    device.bind_storage(layout::kSortEntriesBinding, sort.entries[1 - sort.current]);
+    device.bind_storage(layout::kSortedInstancesBinding, sort.instances);
     device.use(*programs.gather);
     programs.gather->set("count", now.count);
     programs.gather->set("sorted_count", sort.shown->count);

@@ -19,16 +19,16 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxPoint = 4;     // [px] across, above which a disc is drawn as a quad
+constexpr float kMaxPoint = 4;     // diameter above which a disc is drawn as a quad [px]
 constexpr float kHighestWave = 5;  // above the rest level of water [m]
 
 std::uint32_t look_of(const ParticleInstance& instance) {
-    return instance.look_and_share >> 16;
+    return instance.look_and_life >> 16;
 }
 
-/// Among the visible instances at half the resolution, the index of the middle one in the order; 0
+/// Among the visible instances at half the resolution, the index of the median in the order; 0
 /// if there are none.
-std::size_t find_middle_half(const ParticleScene& scene, const std::vector<std::uint8_t>& visible) {
+std::size_t find_median_half(const ParticleScene& scene, const std::vector<std::uint8_t>& visible) {
     const auto is_visible_half = [&](std::size_t i) {
         return visible[i] != 0 && scene.layers[look_of(scene.sorted[i])] == LookLayer::Half;
     };
@@ -77,7 +77,7 @@ void append_instance(
     SpriteDraw& draw = list.draws.back();
     const float scale = layer == SpriteLayer::Half ? 0.5f : 1.0f;
     const float texels = scene.extents[look].texels;
-    const float pixels = scale * least_pixels(instance, record, camera);
+    const float pixels = scale * min_diameter(instance, record, camera);
     const bool is_small_disc = texels == 0 && record[2].y == 0 && pixels > 0 && pixels <= kMaxPoint;
     draw.magnified = draw.magnified && (texels == 0 || pixels > 0.999f * texels);
     if (draw.shape == SpriteShape::SmallDisc && !is_small_disc) {
@@ -92,7 +92,8 @@ void append_instance(
 LightBounds
 window_of(const RenderView& view, const ParticleInstance& instance, const LookRecord& look) {
     const bool is_bounded = std::isfinite(bounds_of(instance, look).min.x);
-    return light_bounds(view, instance.position, is_bounded ? reach_of(instance, look) : INFINITY);
+    return light_bounds(
+        view, instance.position, is_bounded ? corner_radius(instance, look) : INFINITY);
 }
 
 /// Below the rest level of some water, wherever its waves are.
@@ -123,8 +124,8 @@ Bounds find_ground(const RenderItems& items, std::span<const DrawnWater> waters)
     return ground;
 }
 
-/// Whether the ray eye + t to, t >= `near`, meets the box.
-bool meets(const Bounds& box, const Vec3& eye, const Vec3& to, float near) {
+/// Whether the ray eye + t to, t >= `near`, intersects the box.
+bool intersects(const Bounds& box, const Vec3& eye, const Vec3& to, float near) {
     float far = INFINITY;
     for (int i = 0; i < 3; ++i) {
         if (to[i] == 0) {
@@ -139,8 +140,8 @@ bool meets(const Bounds& box, const Vec3& eye, const Vec3& to, float near) {
     return near <= far;
 }
 
-/// Whether some of the ground may be behind a particle.
-bool is_before(
+/// Whether the ground may be behind a particle.
+bool may_be_before_ground(
     const Bounds& ground, const Vec3& eye, const ParticleInstance& instance,
     const LookExtent& extent) {
     const Vec3 to = instance.position - eye;
@@ -149,15 +150,15 @@ bool is_before(
     if (extent.culling != ParticleCulling::Particles || !(away > radius)) {
         return true;
     }
-    // As wide as what it hides at the far end of the ground.
+    // Grown by the radius of the particle's projection at the far end of the ground.
     const Vec3 farthest = glm::max(glm::abs(ground.min - eye), glm::abs(ground.max - eye));
     const float width = radius * glm::length(farthest) / std::sqrt(square(away) - square(radius));
-    return meets({ground.min - width, ground.max + width}, eye, to, 1 - radius / away);
+    return intersects({ground.min - width, ground.max + width}, eye, to, 1 - radius / away);
 }
 
-/// What of the particles is seen through water from above: what is in it, and only before the
-/// ground, since water without ground behind it hides all that is in it. Nothing if the camera is
-/// in the water, too.
+/// Which particles are visible through water from above: those in it, and only in front of the
+/// ground, since water without ground behind it hides all that is in it. None if the camera is in
+/// the water, too.
 class UnderwaterTest {
   public:
     UnderwaterTest(const ParticleScene& scene, const FrameData& frame, const ViewData& view)
@@ -169,13 +170,14 @@ class UnderwaterTest {
         }
     }
 
-    /// Whether anything may be seen.
+    /// Whether any may be visible.
     [[nodiscard]] bool can_see() const { return can_see_; }
     [[nodiscard]] bool can_see(const ParticleInstance& instance) const {
         return can_see_
                && (warm_up_
                    || (is_under_water(scene_.waters, instance.position)
-                       && is_before(ground_, eye_, instance, scene_.extents[look_of(instance)])));
+                       && may_be_before_ground(
+                           ground_, eye_, instance, scene_.extents[look_of(instance)])));
     }
 
   private:
@@ -194,7 +196,7 @@ void sort_into_layers(
         list.indices[layer].clear();
         list.underwater[layer].clear();
     }
-    const std::size_t middle = scene.has_halves ? find_middle_half(scene, list.visible) : 0;
+    const std::size_t median = scene.has_halves ? find_median_half(scene, list.visible) : 0;
     for (std::uint32_t i = 0; i < scene.sorted.size(); ++i) {
         if (list.visible[i] == 0) {
             continue;
@@ -202,7 +204,7 @@ void sort_into_layers(
         const LookLayer look_layer = scene.layers[look_of(scene.sorted[i])];
         const SpriteLayer layer = look_layer == LookLayer::Half       ? SpriteLayer::Half
                                   : look_layer == LookLayer::Weighted ? SpriteLayer::Weighted
-                                  : i < middle                        ? SpriteLayer::Behind
+                                  : i < median                        ? SpriteLayer::Behind
                                                                       : SpriteLayer::Front;
         list.indices[static_cast<std::size_t>(layer)].push_back(i);
         if (underwater.can_see(scene.sorted[i])) {
@@ -238,7 +240,8 @@ draw_of_pool(const ParticleScene& scene, const GpuParticlePool& pool, SpriteLaye
         .pool = &pool};
 }
 
-/// What blended surfaces hide, points in front of them among it, is drawn by the rasterizer.
+/// Splats are composited without regard to blended surfaces: with one in view, points are
+/// rasterized.
 bool can_show_splats(const ViewData& view) {
     return view.is(kMainViews) && !is_clipped(view)
            && view.data.get<InstanceList>().blended.empty();
@@ -270,7 +273,7 @@ void find_weighted_bounds(
     }
     for (const auto& [entity, pool] : gpu.pools()) {
         if (scene.layers[pool->look] == LookLayer::Weighted) {
-            grow(list.weighted_bounds, scene.extents[pool->look].ways);
+            grow(list.weighted_bounds, scene.extents[pool->look].travel);
         }
     }
 }
@@ -303,8 +306,8 @@ void list_draws(
         const bool is_underwater = layer == SpriteLayer::Underwater;
         list.begin[i] = list.draws.size();
         if (is_underwater) {
-            // One layer after the other, as above water: sorted among each other, they would take
-            // turns in binding images and programs.
+            // One layer after another, as above water: sorted together, draws would alternate
+            // between images and programs.
             for (const std::vector<std::uint32_t>& indices : list.underwater) {
                 append_instances(layer, indices);
             }

@@ -18,14 +18,14 @@ struct GpuParticlePool;
 struct ParticleScene;
 struct ViewData;
 
-// What a view draws of all particles, as one list: layer by layer, and within a layer from back to
-// front. Particles that follow one another are one draw if one program draws them with the same
-// texture arrays. Those that the GPU moves come last in their layer.
+// The particle draws of a view, as one list: layer by layer, and within a layer from back to front.
+// Consecutive particles are one draw call if they share a program and texture arrays. Pools that
+// the GPU moves come last in their layer.
 
 /// In the order in which they are drawn.
 enum class SpriteLayer : std::uint8_t {
-    Underwater,  ///< seen through a water surface, before the water: drawn again above it
-    Behind,      ///< at full resolution, farther than the middle one of Half
+    Underwater,  ///< visible through a water surface: drawn before the water, and again after it
+    Behind,      ///< at full resolution, farther than the median of Half
     Half,        ///< at half the resolution, as one image
     Front,       ///< at full resolution
     Weighted,    ///< blended without an order, as one image
@@ -33,8 +33,8 @@ enum class SpriteLayer : std::uint8_t {
 };
 inline constexpr std::size_t kSpriteLayers = 6;
 
-/// What the GPU draws of a particle. A disc of a few pixels whose light does not vary over it is
-/// drawn as a point, unless it follows something that needs a quad.
+/// The primitive of a draw. Discs of a few pixels whose light does not vary over them are drawn as
+/// points, unless their draw also has particles that need a quad.
 enum class SpriteShape : std::uint8_t { Quad, SmallDisc, Point };
 inline constexpr std::size_t kSpriteShapes = 3;
 
@@ -72,7 +72,7 @@ struct LayeredDraws {
     }
 };
 
-/// Lists what the view may see.
+/// Lists the draws of what may be visible in the view.
 void list_draws(
     const ParticleScene& scene, const GpuParticlePools& gpu, const FrameData& frame,
     const ViewData& view, LayeredDraws& list);

@@ -15,17 +15,18 @@ namespace {
 
 constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
 
-/// False where the box, `margin` larger, is outside one of the planes. NaN counts as inside.
-bool may_be_in_view(const Frustum& frustum, const Vec3& middle, const Vec3& half, float margin) {
+/// False if the box, grown by `margin`, is outside one of the planes. NaN counts as inside.
+bool may_be_in_view(const Frustum& frustum, const Vec3& center_ws, const Vec3& half, float margin) {
     return std::none_of(
         std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
             const Vec3 normal = Vec3(plane);
-            const float reach = glm::dot(glm::abs(normal), half) + margin * glm::length(normal);
-            return glm::dot(normal, middle) + plane.w < -reach;
+            const float radius_along =
+                glm::dot(glm::abs(normal), half) + margin * glm::length(normal);
+            return glm::dot(normal, center_ws) + plane.w < -radius_along;
         });
 }
 
-/// With planes of unit normals.
+/// Scales the planes to unit normals.
 Frustum normalized(Frustum frustum) {
     for (Vec4& plane : frustum.planes) {
         plane /= std::max(glm::length(Vec3(plane)), 1e-30f);
@@ -33,11 +34,11 @@ Frustum normalized(Frustum frustum) {
     return frustum;
 }
 
-/// Likewise of a ball; `frustum` is normalized.
-bool may_be_in_view(const Frustum& frustum, const Vec3& middle, float radius) {
+/// The same for a sphere; `frustum` must be normalized.
+bool may_be_in_view(const Frustum& frustum, const Vec3& center_ws, float radius) {
     return std::none_of(
         std::begin(frustum.planes), std::end(frustum.planes),
-        [&](const Vec4& plane) { return glm::dot(Vec3(plane), middle) + plane.w < -radius; });
+        [&](const Vec4& plane) { return glm::dot(Vec3(plane), center_ws) + plane.w < -radius; });
 }
 
 }  // namespace
@@ -58,12 +59,11 @@ Bounds shape_bounds(const ParticleEmitter& emitter, const Affine& world) {
     return transform_bounds(world, {-half, half});
 }
 
-/// Where its particles get at their first speed.
-Bounds bounds_of_ways(const ParticleEmitter& emitter, const Affine& world) {
+Bounds travel_bounds(const ParticleEmitter& emitter, const Affine& world) {
     const float speed = std::abs(emitter.speed) + emitter.speed_spread;
-    const float way = speed * (emitter.life + emitter.life_spread);
+    const float travel = speed * (emitter.life + emitter.life_spread);
     const Bounds shape = shape_bounds(emitter, world);
-    return {shape.min - way, shape.max + way};
+    return {shape.min - travel, shape.max + travel};
 }
 
 Bounds bounds_of(std::span<const ParticleInstance> instances) {
@@ -81,9 +81,9 @@ Bounds bounds_of(const ParticleInstance& instance, const LookRecord& look) {
                          || facing == static_cast<float>(ParticleFacing::Ground)
                          || facing == static_cast<float>(ParticleFacing::Point);
     const Vec3& p = instance.position;
-    const float reach = reach_of(instance, look);
-    const bool is_finite = std::isfinite(p.x + p.y + p.z + reach);
-    return is_quad && is_finite ? Bounds{p - reach, p + reach} : kAnywhere;
+    const float radius = corner_radius(instance, look);
+    const bool is_finite = std::isfinite(p.x + p.y + p.z + radius);
+    return is_quad && is_finite ? Bounds{p - radius, p + radius} : kAnywhere;
 }
 
 bool is_group_in_view(const LookExtent& extent, const Frustum& frustum) {
@@ -115,30 +115,30 @@ void cull_particles(
     const Frustum planes = normalized(frustum);
     visible.resize(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        const std::uint32_t look = instances[i].look_and_share >> 16;
+        const std::uint32_t look = instances[i].look_and_life >> 16;
         const LookExtent& extent = extents[look];
         if (extent.culling != ParticleCulling::Particles) {
             visible[i] = group_visible[look];
             continue;
         }
-        const Vec3& place = instances[i].position;
-        visible[i] = may_be_in_view(planes, place, extent.radius);
-        if (visible[i] == 0 && extent.stretch > 0) {  // speeds of few are unpacked
+        const Vec3& position = instances[i].position;
+        visible[i] = may_be_in_view(planes, position, extent.radius);
+        if (visible[i] == 0 && extent.stretch > 0) {  // the few that need it unpack their speed
             const float speed = glm::length(Vec3(instances[i].motion()));
-            visible[i] = may_be_in_view(planes, place, extent.radius + extent.stretch * speed);
+            visible[i] = may_be_in_view(planes, position, extent.radius + extent.stretch * speed);
         }
     }
 }
 
 void order_by_distance(
-    std::span<const ParticleInstance> instances, std::span<const std::optional<Vec3>> places,
+    std::span<const ParticleInstance> instances, std::span<const std::optional<Vec3>> positions,
     const Vec3& eye, const Vec3& forward, DistanceOrder& order) {
     order.keys.resize(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        const std::uint32_t look = instances[i].look_and_share >> 16;
-        const Vec3 place =
-            look < places.size() && places[look] ? *places[look] : instances[i].position;
-        order.keys[i] = depth_key(glm::dot(place - eye, forward));
+        const std::uint32_t look = instances[i].look_and_life >> 16;
+        const Vec3 position =
+            look < positions.size() && positions[look] ? *positions[look] : instances[i].position;
+        order.keys[i] = depth_key(glm::dot(position - eye, forward));
     }
     order.indices.resize(instances.size());
     std::iota(order.indices.begin(), order.indices.end(), 0u);

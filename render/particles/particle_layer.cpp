@@ -2,6 +2,7 @@
 
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
+#include "render/shaders/particle_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -11,11 +12,7 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kLayerUnit = 0;
-constexpr unsigned kLayerSceneDepthUnit = 4;
-constexpr unsigned kLayerDepthUnit = 1;
-
-/// Pixels of the layer, with those that filters read.
+/// Sets the scissor to the window in the layer's pixels, with a border that filters read.
 void set_layer_scissor(gpu::Device& device, const LightBounds& window) {
     constexpr int kBorder = 2;
     const int x = std::max(window.x / 2 - kBorder, 0);
@@ -41,7 +38,7 @@ ParticleLayer begin_particle_layer(
         window, create_target(graph, "particles.layer depth", GL_DEPTH_COMPONENT32F, size),
         create_target(graph, "particles.layer", view.frame->radiance_format, size)};
     graph.add_pass(
-        "particles.layer depth", {sampled(view.gbuffer.depth, kLayerSceneDepthUnit)},
+        "particles.layer depth", {sampled(view.gbuffer.depth, layout::kParticleDepthUnit)},
         {discarded(layer.depth)}, [&programs, window](PassContext& context) {
             set_layer_scissor(context.device(), window);
             context.device().use(
@@ -57,8 +54,9 @@ void end_particle_layer(
     ViewData& view) {
     graph.add_pass(
         "particles.enlarge",
-        {sampled(layer.radiance, kLayerUnit), sampled(layer.depth, kLayerDepthUnit),
-         sampled(view.gbuffer.depth, kLayerSceneDepthUnit)},
+        {sampled(layer.radiance, layout::kParticleLayerUnit),
+         sampled(layer.depth, layout::kParticleLayerDepthUnit),
+         sampled(view.gbuffer.depth, layout::kParticleDepthUnit)},
         {view.radiance}, [&programs, &view, window = layer.window](PassContext& context) {
             context.device().set_scissor(window.x, window.y, window.width, window.height);
             gpu::PipelineState state = gpu::kFullscreenState;

@@ -10,20 +10,19 @@ class Device;
 class Program;
 }  // namespace gpu
 
-// A layer of half the width and height over the scene, for what is soft and covers much. Its depth
-// is that in the middle of each four pixels where they are of one surface, else the nearest and the
-// farthest of them, in turn like the squares of a chessboard. Enlarged, a pixel lies between its
-// four nearest texels, without those that are of another surface, so that the layer neither spills
-// over edges nor leaves a rim (Cantlay, "High-Speed, Off-Screen Particles", GPU Gems 3, 2007;
-// nearest-depth filter of Jansen and Bavoil, "Fast Rendering of Opacity-Mapped Particles Using
-// DirectX 11 Tessellation and Mixed Resolutions", 2011). Four pixels count as one
-// surface where depth changes between them about as much as beside them, four texels where they are
-// alike, or in one plane with the pixel: as ground at a shallow angle is.
+// A layer of half the width and height over the scene, for soft particles that cover much of the
+// image. Its depth is that at the center of each 2 x 2 pixels if they are on one surface, else the
+// nearest or the farthest of them, in a checkerboard. It is upsampled bilinearly, without texels on
+// another surface than the pixel, so that the layer neither bleeds over edges nor leaves a halo
+// (Cantlay, "High-Speed, Off-Screen Particles", GPU Gems 3, 2007; nearest-depth filter of Jansen
+// and Bavoil, "Fast Rendering of Opacity-Mapped Particles Using DirectX 11 Tessellation and Mixed
+// Resolutions", 2011). Four pixels are on one surface if the depth changes between them about as
+// much as next to them; four texels, if their depths are similar or in one plane with the pixel, as
+// on ground at a grazing angle.
 
 struct ParticleLayer {
-    LightBounds
-        window;       ///< of the view's pixels: outside, it has nothing and its depth is undefined
-    TextureId depth;  ///< D32F, as Gbuffer::depth
+    LightBounds window;  ///< pixels of the view, outside of which it is empty, its depth undefined
+    TextureId depth;     ///< D32F, as Gbuffer::depth
     TextureId radiance;  ///< premultiplied, opacity in a; the pass that draws it clears it
 };
 
@@ -33,11 +32,11 @@ struct ParticleLayerPrograms {
 };
 [[nodiscard]] Result<ParticleLayerPrograms> create_particle_layer_programs(gpu::Device& device);
 
-/// Adds the pass that makes its depth from that of the view, for what is drawn within `window`.
+/// Adds the pass that downsamples the view's depth within `window`.
 [[nodiscard]] ParticleLayer begin_particle_layer(
     FrameGraph& graph, const ParticleLayerPrograms& programs, ViewData& view,
     const LightBounds& window);
-/// Adds the pass that lays it over the view's radiance.
+/// Adds the pass that upsamples and composites the layer over the view's radiance.
 void end_particle_layer(
     FrameGraph& graph, const ParticleLayerPrograms& programs, const ParticleLayer& layer,
     ViewData& view);

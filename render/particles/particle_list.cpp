@@ -10,15 +10,16 @@ namespace limn {
 namespace {
 
 /// 0 for NaN.
-float to_share(float value) {
+float clamp_fraction(float value) {
     return std::min(std::max(0.0f, value), 1.0f);
 }
 
-/// Factors on the optical depth of red, green and blue; on the opacity.
+/// Factors on the optical depth of red, green and blue; factor on the opacity.
 Vec4 shadow_texel(const ParticleLook& look) {
     const Vec3& tint = look.shadow_tint;
     return {
-        to_share(tint.x), to_share(tint.y), to_share(tint.z), to_share(look.shadow) * look.cover};
+        clamp_fraction(tint.x), clamp_fraction(tint.y), clamp_fraction(tint.z),
+        clamp_fraction(look.shadow) * look.cover};
 }
 
 }  // namespace
@@ -34,21 +35,21 @@ LookRecord make_look_record(const ParticleLook& look, const LookLayers& layers) 
     record[layout::kLookMore] = {
         static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
     record[layout::kLookMore + 1] = {look.attenuation, look.fade};
-    const PeriodicFunction& place = look.color_function;
+    const PeriodicFunction& color_at = look.color_function;
     record[layout::kLookMore + 2] = {
-        static_cast<float>(place.wave), place.base, place.amplitude, place.phase};
-    record[layout::kLookMore + 3] = {place.frequency, look.color_spread};
+        static_cast<float>(color_at.wave), color_at.base, color_at.amplitude, color_at.phase};
+    record[layout::kLookMore + 3] = {color_at.frequency, look.color_spread};
     record[layout::kLookShadow] = shadow_texel(look);
     // A streak is blurred already.
     const bool is_streak = look.facing == ParticleFacing::Velocity && look.stretch != 0;
     record[layout::kLookMotion] = {
         static_cast<float>(layers.motion), look.motion_strength,
-        is_streak ? 1.0f : to_share(look.velocity_cover),
+        is_streak ? 1.0f : clamp_fraction(look.velocity_cover),
         static_cast<float>(layers.negative_light)};
-    record[layout::kLookFocus].x = to_share(look.velocity_cover);
-    const bool in_middle = look.lit_at == ParticleLitAt::Middle && look.lit > 0
+    record[layout::kLookFocus].x = clamp_fraction(look.velocity_cover);
+    const bool at_center = look.lit_at == ParticleLitAt::Middle && look.lit > 0
                            && layers.negative_light < 0 && !is_point(record);
-    record[layout::kLookFocus].y = in_middle ? 1.0f : 0.0f;
+    record[layout::kLookFocus].y = at_center ? 1.0f : 0.0f;
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
@@ -65,10 +66,10 @@ bool is_point(const LookRecord& look) {
                || facing == static_cast<float>(ParticleFacing::Pixels));
 }
 
-/// On the diameter, at its share of the life.
+/// Factor on the diameter at its fraction of the life.
 float size_factor(const ParticleInstance& instance, const LookRecord& look) {
-    const float share = static_cast<float>(instance.look_and_share & 0xffffu) / 65535.0f;
-    const float at = share * static_cast<float>(layout::kLookSamples - 1);
+    const float fraction = static_cast<float>(instance.look_and_life & 0xffffu) / 65535.0f;
+    const float at = fraction * static_cast<float>(layout::kLookSamples - 1);
     const auto i = std::min(static_cast<std::uint32_t>(at), layout::kLookSamples - 2);
     const auto sample = [&](std::uint32_t n) {
         return look[layout::kLookSizes + n / 4][static_cast<int>(n % 4)];
@@ -76,24 +77,24 @@ float size_factor(const ParticleInstance& instance, const LookRecord& look) {
     return glm::mix(sample(i), sample(i + 1), at - static_cast<float>(i));
 }
 
-bool is_lit_in_middle(const LookRecord& look) {
+bool is_lit_at_center(const LookRecord& look) {
     return look[layout::kLookFocus].y > 0;
 }
 
 bool is_lit_at_corners(const LookRecord& look) {
-    return look[2].y > 0 && !is_lit_in_middle(look);
+    return look[2].y > 0 && !is_lit_at_center(look);
 }
 
 bool moves_pixels(const LookRecord& look) {
     return look[2].z > look[layout::kLookMotion].z;  // no opacity is above 1
 }
 
-float reach_of(const ParticleInstance& instance, const LookRecord& look) {
+float corner_radius(const ParticleInstance& instance, const LookRecord& look) {
     const float size = (look[0].x + look[0].y) * size_factor(instance, look);
     return 0.7072f * size;  // half the diagonal of the quad, however it is turned
 }
 
-float least_pixels(
+float min_diameter(
     const ParticleInstance& instance, const LookRecord& look, const RenderView& view) {
     const float facing = look[2].w;
     const bool in_pixels = facing == static_cast<float>(ParticleFacing::Pixels);
@@ -103,13 +104,13 @@ float least_pixels(
     }
     const float size = (look[0].x - look[0].y) * size_factor(instance, look);
     const Affine& camera = view.world_from_camera;
-    const Vec3 to_middle = instance.position - transform_point(camera, Vec3(0));
+    const Vec3 to_center = instance.position - transform_point(camera, Vec3(0));
     if (in_pixels) {
         const Vec4& fall = look[layout::kLookMore + 1];
-        const float away = glm::length(to_middle);
+        const float away = glm::length(to_center);
         return size / std::sqrt(std::max(fall.x + away * (fall.y + away * fall.z), 1e-12f));
     }
-    const float ahead = glm::dot(to_middle, transform_vector(camera, Vec3(0, 0, -1)));
+    const float ahead = glm::dot(to_center, transform_vector(camera, Vec3(0, 0, -1)));
     return size * static_cast<float>(view.height)
            / (2 * view.tangent.y * std::max(ahead, view.near));
 }

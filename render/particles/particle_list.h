@@ -22,9 +22,9 @@ static_assert(sizeof(ParticleInstance) == 4 * layout::kParticleWords);
 /// The record of a look in particle_gpu.h.
 using LookRecord = std::array<Vec4, layout::kLookTexels>;
 
-/// Of the texture arrays that the images of a look are in; -1: none.
+/// Layers of the texture arrays that hold the images of a look; -1: none.
 struct LookLayers {
-    int image = -1;  ///< a soft disc without
+    int image = -1;  ///< -1: a soft disc
     int motion = -1;
     int negative_light = -1;
 };
@@ -33,28 +33,28 @@ struct LookLayers {
 /// Whether it is drawn as points: discs that face the camera, of a size in pixels or of specks.
 [[nodiscard]] bool is_point(const LookRecord& look);
 
-/// Whether a look scatters light that is evaluated once a particle, or at the corners of quads.
-[[nodiscard]] bool is_lit_in_middle(const LookRecord& look);
+/// Whether a look scatters light that is evaluated once per particle, or at the corners of quads.
+[[nodiscard]] bool is_lit_at_center(const LookRecord& look);
 [[nodiscard]] bool is_lit_at_corners(const LookRecord& look);
 
 /// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
 [[nodiscard]] bool moves_pixels(const LookRecord& look);
 
-/// Appends the particles that exist `back` seconds before the end of the step, where they are then.
-/// Streaks show velocities relative to `observer` [m/s].
+/// Appends the particles as they are `back` seconds before the end of the step, without those not
+/// born by then. Streaks show velocities relative to `observer` [m/s].
 void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
     std::vector<ParticleInstance>& instances, const Vec3& observer = {0, 0, 0});
 
-/// Distance of its corners from its middle [m] at most, if its size is in meters and it is no
-/// streak.
-[[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
+/// Upper bound of the distance of its corners from its center [m], if its size is in meters and it
+/// is no streak.
+[[nodiscard]] float corner_radius(const ParticleInstance& instance, const LookRecord& look);
 
-/// Diameter of its quad in the image at least [px]; 0 where it may be seen at an angle.
+/// Lower bound of the diameter of its quad in the image [px]; 0 if it may be tilted.
 [[nodiscard]] float
-least_pixels(const ParticleInstance& instance, const LookRecord& look, const RenderView& view);
+min_diameter(const ParticleInstance& instance, const LookRecord& look, const RenderView& view);
 
-/// Where the images of a look are, in ImagePool; 0: it has none.
+/// The texture arrays of ImagePool that hold the images of a look; 0: none.
 struct ParticleArrays {
     std::uint32_t images = 0;
     std::uint32_t motions = 0;
@@ -63,12 +63,12 @@ struct ParticleArrays {
     bool operator==(const ParticleArrays&) const = default;
 };
 
-/// What some look has: definitions of lib/sprite.glsl.
+/// Features that at least one look uses: definitions of lib/sprite.glsl.
 struct SpriteFeatures {
     bool images = false;
-    bool flipbooks = false;  ///< that go from frame to frame
-    bool motions = false;    ///< with a motion map
-    bool six_way = false;    ///< with images of the light from six sides
+    bool flipbooks = false;  ///< that blend from frame to frame
+    bool motions = false;    ///< motion maps
+    bool six_way = false;    ///< images of the light from six sides
 
     SpriteFeatures& operator|=(const SpriteFeatures& more) {
         images = images || more.images;
@@ -88,12 +88,12 @@ struct SpriteFeatures {
 class GpuParticlePools;
 struct GpuParticleView;
 
-/// All that is drawn, for effects that draw it once more; published in collect(), until the end of
-/// the frame.
+/// All particles of a frame, for effects that draw them again, as shadows; published in collect(),
+/// valid until the end of the frame.
 struct ParticleSprites {
-    std::span<const ParticleInstance> instances;  ///< but for those that the GPU moves
-    GpuParticlePools* gpu = nullptr;              ///< those; update() them before they are read
-    const GpuParticleView* gpu_view = nullptr;    ///< for that
+    std::span<const ParticleInstance> instances;  ///< without those that the GPU moves
+    GpuParticlePools* gpu = nullptr;              ///< those: update() before they are read
+    const GpuParticleView* gpu_view = nullptr;    ///< argument of update()
     std::span<const LookRecord> looks;
     std::span<const ParticleArrays> arrays;  ///< of each look
     SpriteFeatures features{};

@@ -14,9 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 
-// Packs from `first` on up to where a particle is not born yet; returns how many.
+// Packs from `first` on until a particle is not born yet; returns how many it has packed.
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR  // no SIMD
 
 std::size_t
 pack_particles_vector(const ParticlePool&, const ParticlePacking&, std::size_t, ParticleInstance*) {
@@ -61,9 +61,9 @@ std::size_t pack_particles_vector(
             break;
         }
         const F life = hn::Max(hn::LoadU(df, &pool.life[i]), hn::Set(df, 1e-6f));
-        const F share = hn::Min(hn::Max(hn::Div(age, life), zero), hn::Set(df, 1.0f));
+        const F fraction = hn::Min(hn::Max(hn::Div(age, life), zero), hn::Set(df, 1.0f));
         const P steps = hn::PromoteTo(
-            dp, hn::BitCast(dw, hn::ConvertTo(di, hn::Mul(share, hn::Set(df, 65535.0f)))));
+            dp, hn::BitCast(dw, hn::ConvertTo(di, hn::Mul(fraction, hn::Set(df, 65535.0f)))));
         const F vx = hn::LoadU(df, &pool.vx[i]);
         const F vy = hn::LoadU(df, &pool.vy[i]);
         const F vz = hn::LoadU(df, &pool.vz[i]);
@@ -99,10 +99,9 @@ namespace {
 
 HWY_EXPORT(pack_particles_vector);
 
-constexpr std::size_t kGroup =
-    64;  // particles that are tested one by one after one that is not born
+constexpr std::size_t kScalarRun = 64;  // particles packed one by one where one is not born yet
 
-/// Appends those of [first, last) that are born; returns how many there are then.
+/// Appends those of [first, last) that are born; returns the new number of instances.
 std::size_t pack_each(
     const ParticlePool& pool, const ParticlePacking& packing, std::size_t first, std::size_t last,
     std::size_t packed, std::span<ParticleInstance> out) {
@@ -112,10 +111,10 @@ std::size_t pack_each(
             continue;  // not born yet
         }
         const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
-        const float share = std::min(std::max(age / std::max(pool.life[i], 1e-6f), 0.0f), 1.0f);
+        const float fraction = std::min(std::max(age / std::max(pool.life[i], 1e-6f), 0.0f), 1.0f);
         out[packed++] = {
             .position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * packing.back,
-            .look_and_share = packing.look << 16 | static_cast<std::uint32_t>(share * 65535.0f),
+            .look_and_life = packing.look << 16 | static_cast<std::uint32_t>(fraction * 65535.0f),
             .velocity_xy = glm::packHalf2x16(Vec2(velocity) - Vec2(packing.observer)),
             .velocity_z_age = glm::packHalf2x16(Vec2(velocity.z - packing.observer.z, age)),
             .random = pool.look[i]};
@@ -137,7 +136,7 @@ std::size_t pack_particles(
             HWY_DYNAMIC_DISPATCH(pack_particles_vector)(pool, packing, i, out.data() + packed);
         i += run;
         packed += run;
-        const std::size_t last = std::min(i + kGroup, pool.size());
+        const std::size_t last = std::min(i + kScalarRun, pool.size());
         packed = pack_each(pool, packing, i, last, packed, out);
         i = last;
     }

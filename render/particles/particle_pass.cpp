@@ -11,6 +11,7 @@
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/particles/particle_weighted.h"
+#include "render/shaders/particle_gpu.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -26,24 +27,13 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kImagesUnit = 0;
-constexpr unsigned kMotionsUnit = 1;
-constexpr unsigned kParticlesUnit = 2;
-constexpr unsigned kLooksUnit = 3;
-constexpr unsigned kSceneDepthUnit = 4;
-constexpr unsigned kRibbonsUnit = 8;
-constexpr unsigned kVeilUnit = 23;
-constexpr unsigned kNegativeLightsUnit = 27;
-constexpr unsigned kBillboardsUnit = 26;
-constexpr unsigned kMiddleLightUnit = 28;
-constexpr unsigned kMiddleLightBinding = 0;
 constexpr int kLightGroup = 64;  // invocations of a work group
 
-/// Surrounds the image with as much on each side, so that quads which its border cuts are not
-/// clipped: one of them would send its neighbors through llvmpipe's slow clipper. Returns the
-/// extent of the image as a share of the viewport's.
+/// Makes the viewport three times as wide and high as the image, so that quads across its border
+/// need no clipping: a single one sends its neighbors through llvmpipe's slow clipper. Returns the
+/// extent of the image as a fraction of the viewport's.
 float set_wide_viewport(PassContext& context) {
-    constexpr int kMaxViewport = 16384;  // that every OpenGL 4.5 has
+    constexpr int kMaxViewport = 16384;  // that OpenGL 4.5 guarantees
     const IVec2 size = context.size();
     if (3 * std::max(size.x, size.y) > kMaxViewport) {
         return 1;
@@ -55,7 +45,7 @@ float set_wide_viewport(PassContext& context) {
 /// How a layer is drawn.
 struct SpriteLayerRow {
     const char* pass;
-    const char* pass_behind;  ///< of what is behind blended surfaces
+    const char* pass_behind;  ///< the pass behind blended surfaces
     float resolution = 1;     ///< as a fraction of the view's
 };
 constexpr std::array<SpriteLayerRow, kSpriteLayers> kSpriteLayerRows = {{
@@ -71,12 +61,12 @@ const SpriteLayerRow& layer_row(SpriteLayer layer) {
     return kSpriteLayerRows[static_cast<std::size_t>(layer)];
 }
 
-/// Other draws would evaluate the six sides in vain.
+/// Whether the draw needs the variant that evaluates light from six sides.
 bool is_six_way_draw(const SpriteDraw& draw) {
     return draw.arrays.negative_lights != 0 && draw.shape == SpriteShape::Quad;
 }
 
-/// Features of the looks that may be in the layer: others would cost each of its pixels fetches.
+/// Features of the looks in the layer: unused ones would cost fetches at every pixel.
 const SpriteFeatures& features_of(const ParticleScene& scene, SpriteLayer layer) {
     const auto of = [&](LookLayer look_layer) -> const SpriteFeatures& {
         return scene.layer_features[static_cast<std::size_t>(look_layer)];
@@ -96,8 +86,8 @@ const SpriteFeatures& features_of(const ParticleScene& scene, SpriteLayer layer)
     return scene.features;
 }
 
-/// The same draw as it may be in another frame, in which its particles are larger, in other images
-/// or not lit.
+/// Variants of a draw that other frames may need, to compile them at the warm-up: with other sizes,
+/// other images, or unlit.
 std::vector<SpriteDraw> alternatives_of(const SpriteDraw& draw) {
     SpriteDraw other = draw;
     other.shape = draw.shape == SpriteShape::Quad ? SpriteShape::SmallDisc : SpriteShape::Quad;
@@ -115,14 +105,14 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
         SpritePrograms(device), ProgramVariants(device, {.compute = "particle_light.comp"}),
         ProgramVariants::of_meshes(device, "depth_first.frag"), create_particle_splats(device)};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
-    // As of materials: between mip levels only where that costs nothing.
+    // As for materials: trilinear only where that is free.
     const GLenum minify =
         device.caps().software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
     effect.image_sampler =
         gpu::Sampler("particle images", {.minify = minify, .wrap = GL_CLAMP_TO_EDGE});
     effect.finest_sampler =
         gpu::Sampler("finest particle images", {.minify = GL_LINEAR, .wrap = GL_CLAMP_TO_EDGE});
-    effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
+    effect.depth_copy = LIMN_TRY(load_fullscreen(device, "previous_depth.frag"));
     return effect;
 }
 
@@ -137,7 +127,7 @@ void ParticleEffect::collect(FrameData& frame) {
         .back = particle_lag(frame),
         .eye = transform_point(camera, Vec3(0)),
         .forward = transform_vector(camera, Vec3(0, 0, -1)),
-        .seen = gpu.meets_depth() ? recall_depth(seen_depth, frame) : SeenDepth{}};
+        .depth = gpu.collides_with_depth() ? recall_depth(previous_depth, frame) : PreviousDepth{}};
     auto& sprites = frame.data.publish<ParticleSprites>();
     sprites.instances = scene.instances;
     sprites.gpu = &gpu;
@@ -209,8 +199,8 @@ void ParticleEffect::draw_front(FrameGraph& graph, const FrameData& frame, ViewD
     if (view.camera.lens.aperture_radius > 0 && scene.focused) {
         add_lens_depth(graph, view);
     }
-    if (view.is(kMainViews) && gpu.meets_depth()) {
-        remember_depth(graph, *depth_copy, view, seen_depth);
+    if (view.is(kMainViews) && gpu.collides_with_depth()) {
+        remember_depth(graph, *depth_copy, view, previous_depth);
     }
 }
 
@@ -281,12 +271,12 @@ void ParticleEffect::add_sprites(
     std::span<const Use> targets) {
     add_light(graph, view);
     std::vector<Use> reads =
-        lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+        lighting_reads(view, {depth_tested(depth), sampled(depth, layout::kParticleDepthUnit)});
     if (const auto& particles = view.data.get<ViewParticles>(); particles.is_lit) {
         reads.emplace_back(graph.import("particles.light", particles.light));
     }
     if (side.veil) {
-        reads.push_back(sampled(*side.veil, kVeilUnit));
+        reads.push_back(sampled(*side.veil, layout::kParticleVeilUnit));
     }
     add_pool_reads(graph, reads);
     graph.add_pass(
@@ -301,10 +291,10 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
         view.data.get<ViewParticles>().list.of(SpriteLayer::Splats);
     std::size_t count = 0;
     float brightest = 0;
-    std::vector<Use> reads = {sampled(view.gbuffer.depth, kSceneDepthUnit)};
+    std::vector<Use> reads = {sampled(view.gbuffer.depth, layout::kParticleDepthUnit)};
     for (const SpriteDraw& draw : draws) {
         count += draw.pool->count;
-        brightest = std::max(brightest, brightest_of(scene.looks[draw.pool->look]));
+        brightest = std::max(brightest, max_light(scene.looks[draw.pool->look]));
         reads.emplace_back(graph.import("particles", draw.pool->instances));
     }
     if (brightest <= 0) {
@@ -316,10 +306,10 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
         layer_row(SpriteLayer::Splats).pass, std::span<const Use>(reads), writes,
         [this, &view, program, draws](PassContext& context) {
             bind_view(context, view);
-            look_texels.bind(context.device(), kLooksUnit);
+            look_texels.bind(context.device(), layout::kLooksUnit);
             for (const SpriteDraw& draw : draws) {
                 if (program != nullptr && draw.count > 0) {
-                    draw.pool->texels.bind(context.device(), kParticlesUnit);
+                    draw.pool->texels.bind(context.device(), layout::kParticlesUnit);
                     draw_particle_splats(context, *program, splats, *draw.pool);
                 }
             }
@@ -327,13 +317,13 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
     add_particle_sums(graph, splats, view);
 }
 
-// ---- light of those that are lit in the middle ----
+// ---- light of particles that are lit at their centers ----
 
-/// Once a view, before any are drawn.
+/// Once per view, before the first draw.
 void ParticleEffect::add_light(FrameGraph& graph, ViewData& view) {
     auto& particles = view.data.publish<ViewParticles>();  // as prepare() left it
     const std::size_t count = particles.list.instances.size();
-    if (particles.is_lit || !scene.lit_in_middle) {
+    if (particles.is_lit || !scene.lit_at_center) {
         return;
     }
     particles.is_lit = true;
@@ -359,19 +349,19 @@ void ParticleEffect::evaluate_light(PassContext& context, const ViewData& view) 
     const int count = static_cast<int>(particles.list.instances.size());
     gpu::Device& device = context.device();
     bind_lighting(context, view);
-    particles.texels.bind(device, kParticlesUnit);
-    look_texels.bind(device, kLooksUnit);
-    device.bind_storage(kMiddleLightBinding, particles.light);
+    particles.texels.bind(device, layout::kParticlesUnit);
+    look_texels.bind(device, layout::kLooksUnit);
+    device.bind_storage(layout::kCenterLightBinding, particles.light);
     device.use(*program);
     program->set("count", count);
     device.dispatch(static_cast<std::uint32_t>((count + kLightGroup - 1) / kLightGroup));
 }
 
-// ---- motion and depth of the pixels that they cover ----
+// ---- velocity and depth of covered pixels ----
 
 void ParticleEffect::add_velocity(FrameGraph& graph, ViewData& view) {
     std::vector<Use> reads = {
-        depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)};
+        depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, layout::kParticleDepthUnit)};
     add_pool_reads(graph, reads);
     const Use writes[] = {view.gbuffer.velocity};
     graph.add_pass(
@@ -429,7 +419,7 @@ void ParticleEffect::draw_layer(
         const SpriteShape shape = draw.shape;
         Variant variant = view.lighting.variant;
         variant.add_if(draw.lit && shape != SpriteShape::SmallDisc, "LIT");
-        variant.add_if(scene.lit_in_middle && shape == SpriteShape::Quad, "LIT_MIDDLE");
+        variant.add_if(scene.lit_at_center && shape == SpriteShape::Quad, "LIT_CENTER");
         variant.add_if(is_six_way_draw(draw), "SIX_WAY");
         variant.add_if(is_weighted, "WEIGHTED");
         variant.add_if(veiled, "VEILED");
@@ -448,7 +438,7 @@ void ParticleEffect::draw_layer(
 }
 
 void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
-    // Frames between steps show particles on straight lines, from the velocity of the step's end.
+    // Between steps, particles are drawn on straight lines along the velocity at the step's end.
     const float step = particle_step(*view.frame);
     const float back = particle_lag(*view.frame);
     const RenderView& camera = view.camera;
@@ -488,17 +478,19 @@ void ParticleEffect::bind_images(
     const ImagePool& pool = view.frame->materials->images();
     const gpu::Sampler& sampler = magnified ? finest_sampler : image_sampler;
     if (scene.features.images) {
-        device.bind_texture(kImagesUnit, pool.array(arrays.images), &sampler);
+        device.bind_texture(layout::kSpriteImagesUnit, pool.array(arrays.images), &sampler);
     }
     if (scene.features.motions) {
-        device.bind_texture(kMotionsUnit, pool.array(arrays.motions), &finest_sampler);
+        device.bind_texture(
+            layout::kSpriteMotionsUnit, pool.array(arrays.motions), &finest_sampler);
     }
     if (arrays.negative_lights != 0) {
-        device.bind_texture(kNegativeLightsUnit, pool.array(arrays.negative_lights), &sampler);
+        device.bind_texture(
+            layout::kNegativeLightsUnit, pool.array(arrays.negative_lights), &sampler);
     }
 }
 
-/// `use(draw)` uses the program for it and returns it, or null.
+/// Calls `use(draw)` to bind the program of a draw; it returns the program, or null.
 template <typename Use>
 void ParticleEffect::draw_sprites(
     PassContext& context, const ViewData& view, std::span<const SpriteDraw> draws, float resolution,
@@ -507,11 +499,11 @@ void ParticleEffect::draw_sprites(
     const float framed = set_wide_viewport(context);
     const auto& particles = view.data.get<ViewParticles>();
     if (particles.is_lit) {
-        particles.light_texels.bind(device, kMiddleLightUnit);
+        particles.light_texels.bind(device, layout::kCenterLightUnit);
     }
-    look_texels.bind(device, kLooksUnit);
-    ribbon_texels.bind(device, kRibbonsUnit);
-    billboard_texels.bind(device, kBillboardsUnit);
+    look_texels.bind(device, layout::kLooksUnit);
+    ribbon_texels.bind(device, layout::kRibbonPointsUnit);
+    billboard_texels.bind(device, layout::kBillboardQuadsUnit);
     const gpu::Program* program = nullptr;
     std::optional<SpriteDraw> last;
     const auto draw_one = [&](const SpriteDraw& draw) {
@@ -522,7 +514,7 @@ void ParticleEffect::draw_sprites(
             (pool == nullptr ? particles.texels
              : pool->sorted  ? pool->sort.texels
                              : pool->texels)
-                .bind(device, kParticlesUnit);
+                .bind(device, layout::kParticlesUnit);
         }
         program = same_program ? program : use(draw);
         last = draw;

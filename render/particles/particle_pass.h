@@ -18,7 +18,7 @@ namespace limn {
 
 // Draws the particles of all emitters, back to front, as quads that are lit at their corners or
 // once (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
-// among them, as quads that share their corners (engine.trail).
+// among them, as quads with common corners (engine.trail).
 //
 // Reads    depth, light clusters, environment, InstanceList; ParticlePool, Trail, Beam, Billboard
 //          with ParticleLook
@@ -31,29 +31,28 @@ namespace limn {
 //          particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
-// and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
-// format. Each view has one list of draws (layered_draws.h) without what it does not see; of
-// particles on the GPU, emitters are left out as a whole. Particles at half the resolution are
-// sorted among themselves, in one image (particle_layer.h); those in front of its middle are drawn
-// after it. Weighted ones (particle_weighted.h) are one image in front of all that are sorted.
-// Where blended surfaces are visible, all layers above water are drawn twice: pixels behind the
-// nearest blended surface before it, and the others after all of them; so particles between two of
-// these surfaces are seen through both. Ribbons, billboards and sprites share a program because
-// they share draws: a program for each would be a draw for every few segments of a ribbon among
-// sparks.
+// and smoke that hides it are sorted together, and batched into one draw call unless images differ
+// in size or format. Each view has a culled list of draws (layered_draws.h); particles on the GPU
+// are culled by emitter. Particles at half the resolution are sorted among themselves, in one image
+// (particle_layer.h); full-resolution ones in front of its median are drawn after it. Weighted
+// ones (particle_weighted.h) are one image in front of all that are sorted. If blended surfaces are
+// visible, all layers above water are drawn twice: pixels behind the nearest blended surface before
+// the surfaces, and the others after all of them; so particles between two of these surfaces are
+// visible through both. Ribbons, billboards and sprites share a program so that they can be
+// batched: otherwise every few segments of a ribbon among sparks would be a draw call.
 
 struct ParticleEffect {
     struct ViewParticles {
         LayeredDraws list{};
         BufferTexture texels = BufferTexture("particles in view", GL_R32UI);  ///< of its instances
-        gpu::Buffer light{};       ///< vec4 of each instance, of those that are lit in the middle
+        gpu::Buffer light{};       ///< a vec4 per instance, written for those lit at their centers
         std::size_t capacity = 0;  ///< of `light`
         bool is_lit = false;       ///< the pass that writes it has been added
         BufferTexture light_texels = BufferTexture("light of particles", GL_RGBA32F);
         ParticleEffect* effect = nullptr;
     };
 
-    /// On which side of the blended surfaces.
+    /// Which side of the blended surfaces is drawn.
     struct Side {
         std::optional<TextureId> veil{};  ///< depth of the nearest blended surface; none: all
         bool behind = false;
@@ -71,7 +70,7 @@ struct ParticleEffect {
     const gpu::Program* depth_copy = nullptr;
     gpu::Sampler image_sampler = {};
     gpu::Sampler finest_sampler = {};  ///< without mip levels
-    DepthMemory seen_depth = {};       ///< while some on the GPU meet what the camera sees
+    DepthMemory previous_depth = {};   ///< kept while some particles on the GPU collide with it
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
     BufferTexture billboard_texels = BufferTexture("billboards", GL_RGBA32F);
@@ -83,9 +82,9 @@ struct ParticleEffect {
     void draw_shared(FrameGraph& graph, const FrameData& frame);
     /// The layer Underwater.
     void draw_underwater(FrameGraph& graph, ViewData& view);
-    /// What is behind blended surfaces.
+    /// All layers above water, behind blended surfaces.
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
-    /// The rest, after these.
+    /// The rest, after the blended surfaces.
     void draw_front(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
   private:
@@ -124,8 +123,8 @@ struct ParticlesInFront {
     std::optional<TextureId> veil{};  ///< depth of the nearest blended surface, if one is visible
 };
 
-/// Particles in water, seen from above it: brighter by what the water pass will absorb between
-/// them and the ground. Not in water without ground.
+/// Particles in water, visible from above: brightened by what the water pass will absorb between
+/// them and the ground. None are visible in water without ground.
 struct ParticlesUnderWaterEffect {
     [[nodiscard]] static Result<ParticlesUnderWaterEffect>
     create(gpu::Device&, const RenderSettings&) {

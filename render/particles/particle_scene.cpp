@@ -25,10 +25,10 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
-constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
+constexpr std::uint32_t kSortPasses = 4;    // per frame of an amortized sort (Latta 2004)
+constexpr std::uint32_t kMaxLooks = 65536;  // that 16 bits of an instance can index
 
-/// As an entity is seen; none without a transform.
+/// The transform of an entity in this frame; none without one.
 std::optional<Affine> pose_of(const World& world, Entity entity, float alpha) {
     const auto* const now = world.find<WorldTransform>(entity);
     const auto* const before = world.find<PreviousWorldTransform>(entity);
@@ -38,19 +38,19 @@ std::optional<Affine> pose_of(const World& world, Entity entity, float alpha) {
     return world_at(world.find_resource<StepJumps>(), entity, *now, before, {alpha, alpha});
 }
 
-std::optional<Vec3> place_of(const World& world, Entity entity, float alpha) {
+std::optional<Vec3> position_of(const World& world, Entity entity, float alpha) {
     const std::optional<Affine> pose = pose_of(world, entity, alpha);
     return pose ? std::optional(transform_point(*pose, Vec3(0))) : std::nullopt;
 }
 
-/// What only adds light needs no weights.
+/// Looks that only add light need no weights.
 LookLayer layer_of(const ParticleLook& look) {
     return look.sort == ParticleSort::Weighted && look.cover > 0 ? LookLayer::Weighted
            : look.resolution == ParticleResolution::Half         ? LookLayer::Half
                                                                  : LookLayer::Full;
 }
 
-/// Passes of a sort on the GPU a frame, 0: all; none for particles that need no order.
+/// Passes per frame of a sort on the GPU, 0: all; none for particles that need no order.
 std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
     if (look.sort == ParticleSort::Births || look.sort == ParticleSort::Weighted
         || look.cover <= 0) {
@@ -59,7 +59,7 @@ std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
     return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
 }
 
-/// One for `stride` particles: their area in one.
+/// The look of one particle that stands for `stride`: with their total area.
 ParticleLook enlarged(ParticleLook look, std::uint32_t stride) {
     const float factor = std::sqrt(static_cast<float>(stride));
     look.size *= factor;
@@ -77,7 +77,7 @@ void append_births_of(
         return;
     }
     const bool grows = settings != nullptr && settings->active && settings->rate > 0;
-    const std::optional<Vec3> head = place_of(world, emitter, alpha);
+    const std::optional<Vec3> head = position_of(world, emitter, alpha);
     append_births(trail, *pool, back, grows && head ? &*head : nullptr, ribbons);
 }
 
@@ -85,7 +85,8 @@ void clear_insets(LookRecord& record) {
     std::fill_n(record.begin() + layout::kLookInsets, layout::kMaxInsetFrames / 4, Vec4(0));
 }
 
-/// Instead of in the middle. What is different at the corners is meant for those of the whole quad.
+/// Lights the look at the corners instead of the center. Insets are cleared, because light is
+/// interpolated between the corners of the whole quad.
 void light_at_corners(LookRecord& record) {
     record[layout::kLookFocus].y = 0;
     const bool is_six_way = record[layout::kLookMotion].w >= 0;
@@ -102,14 +103,14 @@ void set_insets(const std::vector<float>& insets, LookRecord& record) {
     if (moves_in_frame) {
         clear_insets(record);
     }
-    if (!is_lit_in_middle(record)) {
+    if (!is_lit_at_center(record)) {
         light_at_corners(record);
     }
 }
 
 std::uint32_t add_look(
     const FrameData& frame, const ParticleLook& look, ParticleScene& scene,
-    std::optional<Vec3> place = std::nullopt) {
+    std::optional<Vec3> position = std::nullopt) {
     const bool has_image = frame.assets->images.size() > look.image.index;
     const ImageLayer image = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
     const ImageLayer motion = frame.materials->images().find(look.motion);
@@ -127,7 +128,7 @@ std::uint32_t add_look(
         {.images = image.array,
          .motions = has_motion ? motion.array : 0,
          .negative_lights = is_six_way ? negative.array : 0});
-    scene.places.push_back(place);
+    scene.positions.push_back(position);
     scene.extents.push_back(make_look_extent(look));
     scene.extents.back().texels = 0;
     if (has_image) {
@@ -141,7 +142,7 @@ std::uint32_t add_look(
     scene.layers.push_back(layer_of(look));
     scene.has_halves = scene.has_halves || scene.layers.back() == LookLayer::Half;
     scene.has_weighted = scene.has_weighted || scene.layers.back() == LookLayer::Weighted;
-    scene.lit_in_middle = scene.lit_in_middle || is_lit_in_middle(scene.looks.back());
+    scene.lit_at_center = scene.lit_at_center || is_lit_at_center(scene.looks.back());
     const SpriteFeatures features = {
         .images = has_image,
         .flipbooks = look.frames != ParticleFrames::Pick && (look.columns > 1 || look.rows > 1),
@@ -155,7 +156,7 @@ std::uint32_t add_look(
     return static_cast<std::uint32_t>(scene.looks.size() - 1);
 }
 
-/// What bends the ways of an emitter's particles, gusts apart.
+/// Records the acceleration that bends the paths of an emitter's particles, without gusts.
 void add_pull(const World& world, Entity emitter, std::uint32_t look, ParticleScene& scene) {
     if (const auto* const motion = world.find<ParticleMotion>(emitter)) {
         constexpr float kGravity = 9.81f;  // [m/s^2]
@@ -176,11 +177,11 @@ void collect_ribbons(const FrameData& frame, float back, float step, ParticleSce
         scene.extents[index] = {};
         clear_insets(scene.looks[index]);  // its image repeats
         for (const std::uint32_t before : scene.ribbons.segments) {
-            const Vec3 middle = 0.5f
+            const Vec3 center = 0.5f
                                 * (scene.ribbons.points[before + 1].position
                                    + scene.ribbons.points[before + 2].position);
             scene.instances.push_back(
-                {.position = middle, .look_and_share = index << 16, .velocity_xy = before});
+                {.position = center, .look_and_life = index << 16, .velocity_xy = before});
         }
         scene.ribbons.segments.clear();
     };
@@ -225,7 +226,7 @@ void collect_billboards(const FrameData& frame, float back, ParticleScene& scene
         scene.looks.pop_back();
         scene.arrays.pop_back();
         scene.layers.pop_back();
-        scene.places.pop_back();
+        scene.positions.pop_back();
         scene.extents.pop_back();
         return index - 1;
     };
@@ -243,11 +244,11 @@ void collect_billboards(const FrameData& frame, float back, ParticleScene& scene
         const double time = std::max(billboard.time - static_cast<double>(back), 0.0);
         append_billboard(billboard, look, *pose, time, random, scene.billboards);
         for (std::size_t i = first; i < scene.billboards.quads.size(); ++i) {
-            const BillboardPlace& place = scene.billboards.places[i];
+            const BillboardShading& shading = scene.billboards.shadings[i];
             BillboardQuad& quad = scene.billboards.quads[i];
             quad.velocity = velocity;
             ParticleLook section_look = look;
-            if (place.is_section) {
+            if (shading.is_section) {
                 section_look.image = billboard.section;
                 section_look.columns = section_look.rows = 1;
             }
@@ -257,17 +258,18 @@ void collect_billboards(const FrameData& frame, float back, ParticleScene& scene
                 scene.extents[index].radius,
                 glm::length(quad.right) + glm::length(quad.up) + look.cull_margin);
             scene.instances.push_back(
-                {.position = place.position,
-                 .look_and_share = index << 16 | static_cast<std::uint32_t>(place.share * 65535.0f),
+                {.position = shading.position,
+                 .look_and_life =
+                     index << 16 | static_cast<std::uint32_t>(shading.color_at * 65535.0f),
                  .velocity_xy = static_cast<std::uint32_t>(i),
-                 .velocity_z_age = std::bit_cast<std::uint32_t>(std::max(place.opacity, 0.0f)),
+                 .velocity_z_age = std::bit_cast<std::uint32_t>(std::max(shading.opacity, 0.0f)),
                  .random = random});
         }
     });
     scene.has_billboards = !scene.billboards.quads.empty();
 }
 
-/// For a warm-up, whose image nobody sees: a particle for each program that some look needs.
+/// For a warm-up, whose image is not shown: appends a particle for each program that a look needs.
 void append_one_of_each(ParticleScene& scene) {
     std::set<std::tuple<LookLayer, bool, bool, bool>> made;
     for (std::uint32_t i = 0; i < scene.looks.size(); ++i) {
@@ -279,7 +281,7 @@ void append_one_of_each(ParticleScene& scene) {
         if (is_new) {
             auto& target =
                 scene.layers[i] == LookLayer::Weighted ? scene.weighted : scene.instances;
-            target.emplace_back().look_and_share = i << 16;
+            target.emplace_back().look_and_life = i << 16;
         }
     }
 }
@@ -287,18 +289,18 @@ void append_one_of_each(ParticleScene& scene) {
 void clear(ParticleScene& scene) {
     scene.looks.clear();
     scene.arrays.clear();
-    scene.places.clear();
+    scene.positions.clear();
     scene.layers.clear();
     scene.instances.clear();
     scene.weighted.clear();
     scene.ribbons.clear();
     scene.billboards.quads.clear();
-    scene.billboards.places.clear();
+    scene.billboards.shadings.clear();
     scene.extents.clear();
     scene.waters.clear();
     scene.features = {};
     scene.layer_features = {};
-    scene.lit_in_middle = scene.soft = scene.moving = scene.focused = false;
+    scene.lit_at_center = scene.soft = scene.moving = scene.focused = false;
     scene.has_ribbons = scene.has_billboards = scene.has_halves = scene.has_weighted = false;
 }
 
@@ -318,11 +320,11 @@ void collect_pools(const FrameData& frame, float back, float step, ParticleScene
             const bool is_ribbon =
                 trail != nullptr && trail->path == TrailPath::Births && trail->emitter.is_null();
             if (scene.looks.size() < kMaxLooks && !is_ribbon) {
-                std::optional<Vec3> place;
+                std::optional<Vec3> position;
                 if (look.sort == ParticleSort::Births) {
-                    place = place_of(world, entity, alpha);
+                    position = position_of(world, entity, alpha);
                 }
-                const std::uint32_t index = add_look(frame, look, scene, place);
+                const std::uint32_t index = add_look(frame, look, scene, position);
                 auto& target =
                     scene.layers[index] == LookLayer::Weighted ? scene.weighted : scene.instances;
                 const std::size_t first = target.size();
@@ -337,7 +339,7 @@ void collect_pools(const FrameData& frame, float back, float step, ParticleScene
         });
 }
 
-/// Of those that the GPU moves, looks alone.
+/// Particles that the GPU moves: only their looks are added to the scene.
 void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleScene& scene) {
     const World& world = *frame.world;
     const float alpha = frame.camera.alpha;
@@ -362,17 +364,17 @@ void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleScene& s
                 }
                 const std::optional<Affine> pose = pose_of(world, entity, alpha);
                 if (scene.layers[index] == LookLayer::Weighted && pose) {
-                    scene.extents[index].ways = bounds_of_ways(emitter, *pose);
+                    scene.extents[index].travel = travel_bounds(emitter, *pose);
                 }
             }
         });
-    gpu.forget_unused();
+    gpu.drop_unused();
 }
 
 void order(const RenderView& camera, ParticleScene& scene) {
     const Affine& pose = camera.world_from_camera;
     order_by_distance(
-        scene.instances, scene.places, transform_point(pose, Vec3(0)),
+        scene.instances, scene.positions, transform_point(pose, Vec3(0)),
         transform_vector(pose, Vec3(0, 0, -1)), scene.order);
     scene.sorted.clear();
     for (const std::uint32_t i : scene.order.indices) {

@@ -21,10 +21,10 @@ class GpuParticlePools;
 class World;
 struct FrameData;
 
-// What of a world is drawn as particles: ParticlePool, Trail, Beam and Billboard with their
-// ParticleLook, collected once a frame, whatever the number of views (layered_draws.h).
+// All that is drawn as particles: ParticlePool, Trail, Beam and Billboard with their ParticleLook,
+// collected once per frame for all views (layered_draws.h).
 
-/// What the particles of a look are drawn into.
+/// The target that the particles of a look are drawn into.
 enum class LookLayer : std::uint8_t { Full, Half, Weighted };
 inline constexpr std::size_t kLookLayers = 3;
 
@@ -36,21 +36,21 @@ struct DrawnWater {
 /// Keeps its memory from frame to frame.
 struct ParticleScene {
     std::vector<LookRecord> looks = {};
-    std::vector<ParticleArrays> arrays = {};       ///< of each look
-    std::vector<LookLayer> layers = {};            ///< of each look
-    std::vector<LookExtent> extents = {};          ///< of each look
-    std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
+    std::vector<ParticleArrays> arrays = {};          ///< of each look
+    std::vector<LookLayer> layers = {};               ///< of each look
+    std::vector<LookExtent> extents = {};             ///< of each look
+    std::vector<std::optional<Vec3>> positions = {};  ///< of each look, for order_by_distance()
     RibbonList ribbons = {};
     BillboardList billboards = {};
     std::vector<ParticleInstance> weighted = {};   ///< not sorted
     std::vector<ParticleInstance> instances = {};  ///< those that are sorted, then `weighted`
-    std::vector<ParticleInstance> sorted = {};     ///< likewise, from back to front
+    std::vector<ParticleInstance> sorted = {};     ///< the same from back to front, then `weighted`
     DistanceOrder order = {};
     std::vector<DrawnWater> waters = {};
-    FrameInsetTable insets = {};                                  ///< from frame to frame
+    FrameInsetTable insets = {};                                  ///< kept from frame to frame
     SpriteFeatures features = {};                                 ///< of all looks
     std::array<SpriteFeatures, kLookLayers> layer_features = {};  ///< of those of a LookLayer
-    bool lit_in_middle = false;
+    bool lit_at_center = false;
     bool soft = false;     ///< some fade where they meet a surface
     bool moving = false;   ///< some look may cover enough to move pixels
     bool focused = false;  ///< some look may cover enough for the lens to focus on
@@ -60,8 +60,8 @@ struct ParticleScene {
     bool has_weighted = false;
 };
 
-/// Sorted as the camera of the frame sees them. Those that the GPU moves go to `gpu`, which begins
-/// a frame; their looks are among `scene.looks`.
+/// Collects and sorts particles for the camera of the frame. Those that the GPU moves are added to
+/// `gpu`, which begins a frame; their looks are in `scene.looks`.
 void collect_particles(FrameData& frame, GpuParticlePools& gpu, ParticleScene& scene);
 
 /// Length of a step [s].
@@ -69,7 +69,7 @@ void collect_particles(FrameData& frame, GpuParticlePools& gpu, ParticleScene& s
 /// Time of the frame before the end of the last step [s].
 [[nodiscard]] float particle_lag(const FrameData& frame);
 
-/// Of an entity in the last step [m/s]; 0 where it jumped.
+/// Velocity of an entity in the last step [m/s]; 0 if it jumped.
 [[nodiscard]] Vec3 entity_velocity(const World& world, Entity entity, float step);
 
 }  // namespace limn

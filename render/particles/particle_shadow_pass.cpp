@@ -4,6 +4,7 @@
 #include "render/gpu/device.h"
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
+#include "render/shaders/particle_gpu.h"
 #include "render/shadow/shadow_view.h"
 
 #include <glm/geometric.hpp>
@@ -19,19 +20,11 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kShadowImagesUnit = 0;
-constexpr unsigned kShadowMotionsUnit = 1;
-constexpr unsigned kShadowParticlesUnit = 2;
-constexpr unsigned kShadowLooksUnit = 3;
-constexpr unsigned kMapsUnit = 30;
-constexpr unsigned kRecordUnit = 31;
 constexpr int kShadowSide = 128;     // of the maps [texels]
 constexpr int kLayers = 3;           // two of coefficients, one of tints
 constexpr float kMinExtent = 1e-3f;  // of what the maps cover [m]
 constexpr float kShadowBorder =
-    2.0f / kShadowSide;  // that stays empty, so that nothing is smeared beyond the map
-constexpr unsigned kRangesBinding = 0;
-constexpr unsigned kRecordBinding = 1;
+    2.0f / kShadowSide;         // kept empty around the casters, as a fraction of the map
 constexpr int kInSunlight = 1;  // values of PARTICLE_SHADOWS
 constexpr int kInSpotlight = 2;
 
@@ -41,15 +34,15 @@ std::uint32_t ordered(float x) {
     return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
 }
 
-void grow(ShadowRange& range, float middle, float radius) {
-    range.low = std::min(range.low, middle - radius);
-    range.high = std::max(range.high, middle + radius);
+void grow(ShadowRange& range, float center, float radius) {
+    range.low = std::min(range.low, center - radius);
+    range.high = std::max(range.high, center + radius);
 }
 float extent(const ShadowRange& range) {
     return std::max(range.high - range.low, kMinExtent);
 }
 
-/// Row of an affine map: 0 at `range.low` along `axis`, 1 at its end.
+/// Row of an affine map: 0 at `range.low` along `axis`, 1 at `range.high`.
 Vec4 row_along(const Vec3& axis, const ShadowRange& range) {
     return Vec4(axis, -range.low) / extent(range);
 }
@@ -71,9 +64,9 @@ bool can_cast(const LookRecord& look) {
 }
 
 void bind_particle_shadow(PassContext& context, const ParticleShadowEffect& effect) {
-    context.device().bind_texture(kMapsUnit, effect.maps);
+    context.device().bind_texture(layout::kParticleOpacityUnit, effect.maps);
     (effect.gpu_casters.empty() ? effect.record : effect.fitted)
-        .bind(context.device(), kRecordUnit);
+        .bind(context.device(), layout::kParticleShadowUnit);
 }
 
 }  // namespace
@@ -86,9 +79,9 @@ view_from_sun(std::uint32_t record, const Vec3& axis, std::span<const ShadowBall
     ShadowRange t;
     ShadowRange depth;
     for (const ShadowBall& ball : balls) {
-        grow(s, glm::dot(ball.middle, view.right), ball.radius);
-        grow(t, glm::dot(ball.middle, view.up), ball.radius);
-        grow(depth, glm::dot(ball.middle, axis), ball.radius);
+        grow(s, glm::dot(ball.center, view.right), ball.radius);
+        grow(t, glm::dot(ball.center, view.up), ball.radius);
+        grow(depth, glm::dot(ball.center, axis), ball.radius);
     }
     view.ranges = {s, t, depth};
     if (!balls.empty()) {
@@ -108,10 +101,10 @@ ParticleShadowView view_from_spot(const ShadowedLight& spot, std::span<const Sha
     ParticleShadowView view;
     set_axes(view, spot.axis, spot.right);
     view.origin = spot.position;
-    view.reach = spot.radius;
+    view.spot_range = spot.radius;
     ShadowRange depth;
     for (const ShadowBall& ball : balls) {
-        const float ahead = glm::dot(ball.middle - spot.position, spot.axis);
+        const float ahead = glm::dot(ball.center - spot.position, spot.axis);
         if (ahead + ball.radius > 0 && ahead - ball.radius < spot.radius) {
             grow(depth, ahead, ball.radius);
         }
@@ -178,10 +171,10 @@ void ParticleShadowEffect::request_views(FrameData& frame) {
     }
     light = in_spot ? kInSpotlight : kInSunlight;
     for (const ParticleInstance& instance : sprites->instances) {
-        const std::uint32_t number = instance.look_and_share >> 16;
+        const std::uint32_t number = instance.look_and_life >> 16;
         const LookRecord& look = sprites->looks[number];
-        const ShadowBall ball = {instance.position, reach_of(instance, look)};
-        const float sum = ball.middle.x + ball.middle.y + ball.middle.z + ball.radius;
+        const ShadowBall ball = {instance.position, corner_radius(instance, look)};
+        const float sum = ball.center.x + ball.center.y + ball.center.z + ball.radius;
         if (!can_cast(look) || ball.radius <= 0 || !std::isfinite(sum)) {
             continue;
         }
@@ -211,7 +204,7 @@ bool ParticleShadowEffect::prepare(const FrameData&, ViewData& drawn_view) {
     return light != 0;
 }
 
-/// Widens the ranges of the view to what the GPU has moved, and makes a record of them.
+/// Widens the ranges of the view to the casters that the GPU moves, and writes the record for them.
 void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleSprites& sprites) {
     sprites.gpu->update(graph, *sprites.gpu_view);
     std::uint32_t words[6];
@@ -235,17 +228,17 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
             program.set("light_up", view.up);
             program.set("light_axis", view.axis);
             program.set("origin", view.origin);
-            program.set("reach", view.reach);
-            device.bind_storage(kRangesBinding, ranges);
+            program.set("spot_range", view.spot_range);
+            device.bind_storage(layout::kShadowRangesBinding, ranges);
         };
         begin(*find_ranges);
-        sprites.look_texels->bind(device, kShadowLooksUnit);
+        sprites.look_texels->bind(device, layout::kLooksUnit);
         for (const GpuShadowCaster& caster : gpu_casters) {
-            constexpr std::uint32_t kMaxGroups = 16;  // whose invocations take several in turn
+            constexpr std::uint32_t kMaxGroups = 16;  // whose invocations loop over particles
             const std::uint32_t groups = std::min(
                 (caster.pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup,
                 kMaxGroups);
-            caster.pool->texels.bind(device, kShadowParticlesUnit);
+            caster.pool->texels.bind(device, layout::kParticlesUnit);
             find_ranges->set("count", caster.pool->count);
             find_ranges->set("stride", groups * layout::kParticleGroup);
             device.dispatch(groups);
@@ -254,8 +247,8 @@ void ParticleShadowEffect::fit_to_gpu_casters(FrameGraph& graph, const ParticleS
         begin(*write_record);
         write_record->set("border", kShadowBorder);
         write_record->set("min_extent", kMinExtent);
-        record.bind(device, kRecordUnit);
-        device.bind_storage(kRecordBinding, fitted_record);
+        record.bind(device, layout::kParticleShadowUnit);
+        device.bind_storage(layout::kShadowRecordBinding, fitted_record);
         device.dispatch(1);
     });
 }
@@ -296,17 +289,17 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
         {.depth = {.test = false, .write = false}, .blend = gpu::kBlendAdd, .cull = GL_NONE}});
     program->set("light_right", view.right);
     program->set("light_up", view.up);
-    (gpu_casters.empty() ? record : fitted).bind(device, kRecordUnit);
-    sprites.look_texels->bind(device, kShadowLooksUnit);
+    (gpu_casters.empty() ? record : fitted).bind(device, layout::kParticleShadowUnit);
+    sprites.look_texels->bind(device, layout::kLooksUnit);
     const auto bind_images = [&](const ParticleArrays& arrays) {
         if (sprites.features.images) {
-            device.bind_texture(kShadowImagesUnit, images.array(arrays.images));
+            device.bind_texture(layout::kSpriteImagesUnit, images.array(arrays.images));
         }
         if (sprites.features.motions) {
-            device.bind_texture(kShadowMotionsUnit, images.array(arrays.motions));
+            device.bind_texture(layout::kSpriteMotionsUnit, images.array(arrays.motions));
         }
     };
-    texels.bind(device, kShadowParticlesUnit);
+    texels.bind(device, layout::kParticlesUnit);
     for (const ShadowCasters& run : runs) {
         program->set("first", run.first);
         bind_images(run.arrays);
@@ -315,7 +308,7 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
     program->set("first", 0);
     for (const GpuShadowCaster& caster : gpu_casters) {
         bind_images(caster.arrays);
-        caster.pool->texels.bind(device, kShadowParticlesUnit);
+        caster.pool->texels.bind(device, layout::kParticlesUnit);
         device.draw_quads(static_cast<int>(caster.pool->count));
     }
 }

@@ -24,16 +24,16 @@ namespace limn {
 //          lib/particle_shadow.glsl in lit shaders
 //
 // Only one light is shadowed: the first directional one, or without any the first spot with a
-// Shadow. The map fits what casts. Each particle is a slab as thick as its diameter that faces the
-// light; the tint of the shadow is the mean along each ray.
+// Shadow. The map is fitted to the casters. Each particle is a slab that faces the light, as thick
+// as its diameter; the tint of the shadow is the mean along each ray.
 
-/// What casts: a ball about a particle [m].
+/// Bounding sphere of a caster [m].
 struct ShadowBall {
-    Vec3 middle;
+    Vec3 center;
     float radius = 0;
 };
 
-/// From where to where something extends along an axis [m]; nothing: low > high.
+/// Interval along an axis [m]; empty if low > high.
 struct ShadowRange {
     float low = INFINITY;
     float high = -INFINITY;
@@ -46,27 +46,27 @@ struct ParticleShadowView {
     Vec3 up = {0, 1, 0};                  ///< unit, along its t
     Vec3 axis = {0, 0, -1};               ///< unit, where the light goes
     Vec3 origin = {0, 0, 0};              ///< of depths
-    float reach = -1;                     ///< of a spot [m]; < 0: the sun
+    float spot_range = -1;                ///< of a spot [m]; < 0: the sun
     std::array<ShadowRange, 3> ranges{};  ///< of s (the sun's), t (likewise) and depth
 };
 
-/// Particles one after another that cast, with images of the same texture arrays.
+/// Consecutive casters with images in the same texture arrays.
 struct ShadowCasters {
     ParticleArrays arrays{};
     int first = 0;
     int count = 0;
 };
 
-/// Particles on the GPU that cast.
+/// Casters that the GPU moves.
 struct GpuShadowCaster {
     const GpuParticlePool* pool = nullptr;
     ParticleArrays arrays{};
 };
 
-/// Of directional light `record` that travels along `axis` (unit): as large as the balls need.
+/// The view of directional light `record` that travels along `axis` (unit), fitted to the balls.
 [[nodiscard]] ParticleShadowView
 view_from_sun(std::uint32_t record, const Vec3& axis, std::span<const ShadowBall> balls);
-/// Of a spot: its whole cone, as deep as the balls need.
+/// The view of a spot: its whole cone, with the range of depths fitted to the balls.
 [[nodiscard]] ParticleShadowView
 view_from_spot(const ShadowedLight& spot, std::span<const ShadowBall> balls);
 
@@ -92,7 +92,7 @@ struct ParticleShadowEffect {
     [[nodiscard]] static Result<ParticleShadowEffect>
     create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
-    void request_views(FrameData& frame);  // needs none, but all that was collected
+    void request_views(FrameData& frame);  // requests none: called after all collect()
     bool prepare(const FrameData& frame, ViewData& view);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);

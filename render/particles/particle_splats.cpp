@@ -3,6 +3,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/particles/gpu_particle_pools.h"
+#include "render/shaders/fullscreen_gpu.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,9 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kSumsBinding = 0;
-constexpr unsigned kRadianceImage = 0;
-constexpr unsigned kAddGroup = 64;  // pixels of a row
-constexpr float kMaxSteps =
-    1 << 17;  // that a point adds to a pixel; less if there are more than 32,768
-constexpr float kLargestSum = 4.29e9f;  // a little less than a word holds
+constexpr unsigned kAddGroup = 64;    // pixels of a row
+constexpr float kMaxSteps = 1 << 17;  // units per point and pixel; less for more than 32,768 points
+constexpr float kLargestSum = 4.29e9f;  // a little less than the maximum of 32 bits
 
 bool is_positive(float x) {
     return x > 0 && std::isfinite(x);
@@ -40,21 +38,21 @@ bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look) {
     return !pool.sorted && is_point(look) && lit == 0 && cover == 0 && softness == 0;
 }
 
-float brightest_of(const LookRecord& look) {
-    Vec4 most = {0, 0, 0, 0};
+float max_light(const LookRecord& look) {
+    Vec4 top = {0, 0, 0, 0};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
-        most = glm::max(most, look[layout::kLookColors + i]);
+        top = glm::max(top, look[layout::kLookColors + i]);
     }
     const Vec4& varied = look[layout::kLookMore + 3];
-    const float color = std::max({most.x + varied.y, most.y + varied.z, most.z + varied.w});
-    const float brightest = look[2].x * color * most.w;
+    const float color = std::max({top.x + varied.y, top.y + varied.z, top.z + varied.w});
+    const float brightest = look[2].x * color * top.w;
     return is_positive(brightest) ? brightest : 0;
 }
 
 const gpu::Program* begin_particle_splats(
     ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest) {
-    const float share = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
-    splats.max_amount = std::max(std::min(kMaxSteps, share) - 1, 1.0f);  // rounding may add one
+    const float largest = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
+    splats.max_amount = std::max(std::min(kMaxSteps, largest) - 1, 1.0f);  // rounding may add one
     splats.unit = brightest > 0 ? splats.max_amount / brightest : 1;
     const IVec2 size = view.size();
     const std::size_t words =
@@ -71,7 +69,7 @@ void draw_particle_splats(
     const GpuParticlePool& pool) {
     gpu::Device& device = context.device();
     device.use(program);
-    device.bind_storage(kSumsBinding, splats.sums);
+    device.bind_storage(layout::kSplatSumsBinding, splats.sums);
     program.set("count", static_cast<int>(pool.count));
     program.set("unit", splats.unit);
     program.set("max_amount", splats.max_amount);
@@ -89,8 +87,8 @@ void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view
             return;
         }
         context.device().use(*program);
-        context.bind_storage(kSumsBinding, sums);
-        context.bind_image(kRadianceImage, radiance, GL_READ_WRITE);
+        context.bind_storage(layout::kSplatSumsBinding, sums);
+        context.bind_image(layout::kTargetImage, radiance, GL_READ_WRITE);
         program->set("unit", splats.unit);
         const gpu::Texture& target = context.texture(radiance);
         context.device().dispatch(

@@ -15,12 +15,12 @@ class Program;
 struct GpuParticlePool;
 
 // Points that the GPU moves and that only add light, drawn by a compute shader instead of the
-// rasterizer, which takes several times as long where triangles and points have a few pixels
-// (M. Schütz, B. Kerbl, M. Wimmer, "Rendering Point Clouds with Compute Shaders and Vertex Order
-// Optimization", 2021). Each adds its light to integer sums of the pixels that it covers, so that
-// the image does not depend on the order; then the sums are added to the radiance. What is between
-// two integers is rounded to either, at random by its distance: a million faint ones count in full.
-// A unit of the sums is so large that all points together fit, even at one place.
+// rasterizer, which takes several times as long for primitives of a few pixels (M. Schütz,
+// B. Kerbl, M. Wimmer, "Rendering Point Clouds with Compute Shaders and Vertex Order Optimization",
+// 2021). Each point adds its light to integer sums of the pixels that it covers by atomics, so that
+// the image does not depend on the order; then the sums are added to the radiance. Amounts are
+// rounded stochastically, so that a million faint points count in full. The unit of the sums is
+// chosen so that all points together do not overflow, even at one pixel.
 
 struct ParticleSplats {
     ProgramVariants splat;
@@ -32,22 +32,24 @@ struct ParticleSplats {
 
 [[nodiscard]] ParticleSplats create_particle_splats(gpu::Device& device);
 
-/// Whether this pool may be drawn so, in views that nothing hides but what is opaque.
+/// Whether this pool may be drawn as splats, in views without blended surfaces.
 [[nodiscard]] bool can_be_splats(const GpuParticlePool& pool, const LookRecord& look);
 
-/// The most light that a point of this look adds to a pixel.
-[[nodiscard]] float brightest_of(const LookRecord& look);
+/// The maximum light that a point of this look adds to a pixel.
+[[nodiscard]] float max_light(const LookRecord& look);
 
-/// Before those of a view are added: `count` in all, brightest_of() them. Null: does not compile.
+/// Before the splats of a view: `count` is their number, `brightest` the maximum of max_light().
+/// Null if the program does not compile.
 [[nodiscard]] const gpu::Program* begin_particle_splats(
     ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest);
 
-/// With that program, and with the view, its depth (unit 4), particles and looks bound.
+/// Draws a pool with that program. The view, its depth (kParticleDepthUnit), particles and looks
+/// must be bound.
 void draw_particle_splats(
     PassContext& context, const gpu::Program& program, const ParticleSplats& splats,
     const GpuParticlePool& pool);
 
-/// Adds the pass that adds what was drawn to the view's radiance.
+/// Adds the pass that adds the sums to the view's radiance.
 void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view);
 
 }  // namespace limn

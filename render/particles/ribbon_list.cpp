@@ -10,12 +10,12 @@
 namespace limn {
 namespace {
 
-constexpr float kSamePlace = 1e-4f;    // points as near are one [m]
-constexpr float kSharpTurn = 0.6f;     // [rad], about: gets a join
-constexpr float kSmoothTurn = 0.1f;    // [rad]: gets none
-constexpr float kBranchSpread = 0.4f;  // of lightning's branches, by eye
+constexpr float kSamePosition = 1e-4f;  // distance below which points are merged [m]
+constexpr float kSharpTurn = 0.6f;      // above about this a turn gets a join [rad]
+constexpr float kSmoothTurn = 0.1f;     // below about this it gets none [rad]
+constexpr float kBranchSpread = 0.4f;   // of lightning's branches, by eye
 
-/// Whether a miter would be long, or edges on the inside of the turn would cross.
+/// Whether a miter would be too long, or the inner edges of the turn would cross.
 bool is_sharp(const Vec3& before, const Vec3& point, const Vec3& after, float width) {
     const float came = glm::distance(before, point);
     const float goes = glm::distance(point, after);
@@ -26,22 +26,24 @@ bool is_sharp(const Vec3& before, const Vec3& point, const Vec3& after, float wi
 RibbonPoint mix_points(const RibbonPoint& a, const RibbonPoint& b, float t) {
     return {
         a.position + (b.position - a.position) * t, a.u + (b.u - a.u) * t,
-        a.span + (b.span - a.span) * t, a.share + (b.share - a.share) * t};
+        a.span + (b.span - a.span) * t, a.curve_at + (b.curve_at - a.curve_at) * t};
 }
 
-/// Adds a point, or where the ribbon ends before it, its end. Returns whether it goes on.
+/// Adds a point, or the end of the ribbon if that is before it. Returns whether the ribbon
+/// continues.
 bool add_point(std::vector<RibbonPoint>& strip, const RibbonPoint& point) {
-    if (point.share < 1 || strip.empty()) {
+    if (point.curve_at < 1 || strip.empty()) {
         strip.push_back(point);
-        return point.share < 1;
+        return point.curve_at < 1;
     }
     const RibbonPoint& last = strip.back();
-    strip.push_back(mix_points(last, point, (1 - last.share) / (point.share - last.share)));
+    strip.push_back(
+        mix_points(last, point, (1 - last.curve_at) / (point.curve_at - last.curve_at)));
     return false;
 }
 
-/// Texture coordinates from distances: of the distance since the birth of the trail, so that they
-/// stay with its points, or of the whole ribbon.
+/// Turns distances into texture coordinates: with a tile, measured from the birth of the trail, so
+/// that the texture stays with its points; else the image spans the whole ribbon.
 void set_texture(std::vector<RibbonPoint>& strip, double head, float tile) {
     if (tile > 0) {
         const double turns = std::fmod(head / static_cast<double>(tile), 1024.0);
@@ -68,7 +70,7 @@ void append_strand(
     const RibbonPoint head = {
         then.position + (now.position - then.position) * at, 0,
         then.span + (now.span - then.span) * at, std::max(now.age - back, 0.0f) / life};
-    if (!(head.share < 1)) {
+    if (!(head.curve_at < 1)) {
         return;
     }
     float behind = 0;
@@ -88,8 +90,8 @@ void append_strand(
         } else {
             behind += spacing;
         }
-        const float share = std::max({age / life, behind / length, head.share});
-        if (!add_point(list.strip, {point.position, behind, point.span, share})) {
+        const float curve_at = std::max({age / life, behind / length, head.curve_at});
+        if (!add_point(list.strip, {point.position, behind, point.span, curve_at})) {
             break;
         }
     }
@@ -97,13 +99,13 @@ void append_strand(
     list.add_strip();
 }
 
-/// A ribbon along `points`, from `share` of the curves on.
-void add_line(const std::vector<Vec3>& points, float share, float tile, RibbonList& list) {
+/// Adds a ribbon along `points`, from position `curve_at` on the curves to 1.
+void add_line(const std::vector<Vec3>& points, float curve_at, float tile, RibbonList& list) {
     float along = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         along += i > 0 ? glm::distance(points[i - 1], points[i]) : 0.0f;
         const float at = static_cast<float>(i) / static_cast<float>(points.size() - 1);
-        list.strip.push_back({points[i], along, Vec3(0), share + (1 - share) * at});
+        list.strip.push_back({points[i], along, Vec3(0), curve_at + (1 - curve_at) * at});
     }
     set_texture(list.strip, 0, tile);
     list.add_strip();
@@ -120,7 +122,7 @@ void RibbonList::clear() {
 void RibbonList::add_strip() {
     const auto end =
         std::unique(strip.begin(), strip.end(), [](const RibbonPoint& a, const RibbonPoint& b) {
-            return !(glm::distance(a.position, b.position) > kSamePlace);
+            return !(glm::distance(a.position, b.position) > kSamePosition);
         });
     strip.erase(end, strip.end());
     if (strip.size() >= 2) {
@@ -167,15 +169,15 @@ void append_births(
             continue;
         }
         const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
-        const Vec3 place = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back;
+        const Vec3 position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back;
         if (!list.strip.empty()
-            && !(glm::distance(place, list.strip.back().position) <= trail.jump)) {
+            && !(glm::distance(position, list.strip.back().position) <= trail.jump)) {
             end_strip();
         }
         const double along = (first + static_cast<double>(i)) * spacing;
         travelled = list.strip.empty() ? along : travelled;
-        const float share = std::clamp(age / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
-        list.strip.push_back({place, static_cast<float>(travelled - along), Vec3(0), share});
+        const float curve_at = std::clamp(age / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
+        list.strip.push_back({position, static_cast<float>(travelled - along), Vec3(0), curve_at});
     }
     end_strip();
 }
@@ -196,14 +198,14 @@ void append_beam(
     for (std::uint32_t i = 0; jagged && i < beam.branches; ++i) {
         const auto pieces = static_cast<std::uint32_t>(list.bolt.size() - 1);
         const std::uint32_t fork = 1 + random.below(std::max(pieces - 1, 1u));
-        const float share = static_cast<float>(fork) / static_cast<float>(pieces);
+        const float curve_at = static_cast<float>(fork) / static_cast<float>(pieces);
         const Vec3 aside = {random.normal(), random.normal(), random.normal()};
         const Vec3 tip = list.bolt[fork]
-                         + random.uniform(0.1f, 0.35f) * (1 - share)
+                         + random.uniform(0.1f, 0.35f) * (1 - curve_at)
                                * ((end - start) + kBranchSpread * length * aside);
         make_bolt(
             list.bolt[fork], tip, beam.jag, std::max(beam.detail, 2u) - 2, random, list.branch);
-        add_line(list.branch, share, beam.tile, list);
+        add_line(list.branch, curve_at, beam.tile, list);
     }
 }
 

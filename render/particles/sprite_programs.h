@@ -13,10 +13,10 @@ class Device;
 class Program;
 }  // namespace gpu
 
-/// What particles are drawn for.
+/// The output that particles are drawn into.
 enum class SpritePass : std::uint8_t {
     Color,
-    Velocity,   ///< motion of the pixels that they cover
+    Velocity,   ///< of the pixels that they cover
     LensDepth,  ///< depth of the pixels that they cover, for the lens to focus on
 };
 inline constexpr std::size_t kSpritePasses = 3;
@@ -26,7 +26,7 @@ class SpritePrograms {
   public:
     explicit SpritePrograms(gpu::Device& device);
 
-    /// Null if it does not compile. The definitions of the pass and of the shape are added.
+    /// Null if it does not compile. Adds the definitions of the pass and of the shape.
     [[nodiscard]] const gpu::Program* find(SpritePass pass, SpriteShape shape, Variant variant);
 
   private:

@@ -1,10 +1,10 @@
-// A particle as a quad of what its image shows: a sprite, a billboard or a segment of a ribbon, which may follow one
-// another in one draw. Definitions: those of lib/particle_corner.glsl, and
+// A particle as a quad: a sprite, a billboard or a segment of a ribbon, in any sequence within one draw call. Definitions:
+// those of lib/particle_corner.glsl, and
 //   RIBBONS     some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 // Techniques: engine.particle-cpu, engine.particle-params, particle.gpu-draw
 #version 450
-#define UNMASKED  // shadow masks are of the surfaces behind
+#define UNMASKED  // shadow masks hold the shadows of the surfaces behind
 #define VARYING out
 #include "lib/particle.glsl"
 #include "lib/particle_varyings.glsl"
@@ -41,6 +41,6 @@ void main() {
     ParticleCorner c = corner_of_shape(p, look, gl_VertexID & 3);
     write_corner(p, look, c, index);
     if (c.is_hidden) {
-        gl_Position = vec4(0.0, 0.0, 0.5, 1.0);  // without area: outside the image, it would have to be clipped
+        gl_Position = vec4(0.0, 0.0, 0.5, 1.0);  // degenerate rather than outside the image, where it would be clipped
     }
 }

@@ -1,11 +1,11 @@
 // A step of a particle among planes, spheres and boxes: swept from contact to contact as in
 // systems/particles/particle_collision.cpp, in single precision. Included by particle_update.comp. Definition:
-//   SEEN_DEPTH  particles also meet what the camera saw in the previous frame
+//   DEPTH_COLLISION  particles also collide with the depth of the previous frame
 
 const uint kColliderPlane = 0u, kColliderSphere = 1u, kColliderBox = 2u;
 const uint kBounce = 1u, kStick = 2u, kKill = 3u;  // of the emitter; 0: does not collide
 const float kSkin = 1e-4;       // distance kept from surfaces [m]
-const float kRestSpeed = 0.2;   // slower toward the surface: no rebound [m/s]
+const float kRestSpeed = 0.2;   // impact speed below which there is no rebound [m/s]
 const int kMaxBounces = 8;
 
 struct GpuCollider {
@@ -16,7 +16,7 @@ struct GpuCollider {
 };
 
 struct Touch {
-    float share;  // of the way; > 1: none
+    float fraction;  // of the path; > 1: none
     vec3 normal;
 };
 
@@ -44,41 +44,41 @@ Touch touch_plane(GpuCollider plane, vec3 from, vec3 delta, float radius) {
 Touch touch_sphere(GpuCollider sphere, vec3 from, vec3 delta, float radius) {
     bool hollow = sphere.b.x != 0.0;
     float side = hollow ? -1.0 : 1.0;
-    float reach = sphere.a.w + side * radius;
+    float grown = sphere.a.w + side * radius;
     vec3 start = from - sphere.a.xyz;
     float a = dot(delta, delta);
     float b = dot(start, delta);
-    float c = dot(start, start) - reach * reach;
+    float c = dot(start, start) - grown * grown;
     float root = b * b - a * c;
-    if (!(reach > 0.0 && c * side >= 0.0) || (!hollow && !(root > 0.0 && b < 0.0))) {
+    if (!(grown > 0.0 && c * side >= 0.0) || (!hollow && !(root > 0.0 && b < 0.0))) {
         return Touch(2.0, vec3(0.0));
     }
-    float share = hollow && b <= 0.0 ? (sqrt(root) - b) / a : side * c / (sqrt(root) - side * b);
-    return Touch(share <= 1.0 ? share : 2.0, side * normalize(start + share * delta));
+    float fraction = hollow && b <= 0.0 ? (sqrt(root) - b) / a : side * c / (sqrt(root) - side * b);
+    return Touch(fraction <= 1.0 ? fraction : 2.0, side * normalize(start + fraction * delta));
 }
 
 Touch touch_box(GpuCollider box, vec3 from, vec3 delta, float radius) {
     vec3 start = to_box(box, from, 1.0);
-    vec3 way = to_box(box, delta, 0.0);
+    vec3 path = to_box(box, delta, 0.0);
     float enter = -1e30;
     float leave = 1e30;
     vec3 normal = vec3(0.0);
     for (int axis = 0; axis < 3; ++axis) {
-        float reach = box.half_size[axis] + radius;
-        if (way[axis] == 0.0) {
-            if (abs(start[axis]) >= reach) {
+        float grown = box.half_size[axis] + radius;
+        if (path[axis] == 0.0) {
+            if (abs(start[axis]) >= grown) {
                 return Touch(2.0, vec3(0.0));
             }
             continue;
         }
-        float toward = way[axis] > 0.0 ? reach : -reach;
-        float in_at = (-toward - start[axis]) / way[axis];
+        float toward = path[axis] > 0.0 ? grown : -grown;
+        float in_at = (-toward - start[axis]) / path[axis];
         if (in_at > enter) {
             enter = in_at;
             normal = vec3(0.0);
             normal[axis] = -sign(toward);
         }
-        leave = min(leave, (toward - start[axis]) / way[axis]);
+        leave = min(leave, (toward - start[axis]) / path[axis]);
     }
     bool meets = enter >= 0.0 && enter <= 1.0 && enter <= leave;
     return Touch(meets ? enter : 2.0, from_box(box, normal));
@@ -92,19 +92,19 @@ Touch touch(GpuCollider collider, vec3 from, vec3 delta, float radius) {
                                             : touch_box(collider, from, delta, radius);
 }
 
-// Outward normal and depth > 0 of who is inside.
-vec4 find_exit(GpuCollider collider, vec3 place, float radius) {
+// Outward normal and penetration depth: > 0 inside.
+vec4 find_exit(GpuCollider collider, vec3 position, float radius) {
     if (collider.kind == kColliderPlane) {
-        return vec4(collider.a.xyz, collider.a.w + radius - dot(collider.a.xyz, place));
+        return vec4(collider.a.xyz, collider.a.w + radius - dot(collider.a.xyz, position));
     }
     if (collider.kind == kColliderSphere) {
-        vec3 delta = place - collider.a.xyz;
+        vec3 delta = position - collider.a.xyz;
         float distance_ = length(delta);
         vec3 outward = distance_ > 0.0 ? delta / distance_ : vec3(0.0, 1.0, 0.0);
         return collider.b.x != 0.0 ? vec4(-outward, distance_ - max(collider.a.w - radius, 0.0))
                                    : vec4(outward, collider.a.w + radius - distance_);
     }
-    vec3 local = to_box(collider, place, 1.0);
+    vec3 local = to_box(collider, position, 1.0);
     vec3 inside = collider.half_size + radius - abs(local);
     int nearest = inside.x < inside.y ? (inside.z < inside.x ? 2 : 0) : (inside.z < inside.y ? 2 : 1);
     vec3 normal = vec3(0.0);
@@ -112,74 +112,75 @@ vec4 find_exit(GpuCollider collider, vec3 place, float radius) {
     return vec4(from_box(collider, normal), inside[nearest]);
 }
 
-#ifdef SEEN_DEPTH
-#include "particle_seen.glsl"
+#ifdef DEPTH_COLLISION
+#include "particle_depth_collision.glsl"
 #endif
 
 Touch first_touch(int first_collider, int collider_count, vec3 from, vec3 delta, float radius) {
     Touch nearest = Touch(2.0, vec3(0.0));
     for (int i = 0; i < collider_count; ++i) {
         Touch one = touch(read_collider(first_collider + i * int(kColliderTexels)), from, delta, radius);
-        if (one.share < nearest.share) {
+        if (one.fraction < nearest.fraction) {
             nearest = one;
         }
     }
-#ifdef SEEN_DEPTH
-    Touch seen = touch_seen(from, delta, radius);
-    if (seen.share < nearest.share) {
-        nearest = seen;
+#ifdef DEPTH_COLLISION
+    Touch by_depth = touch_depth(from, delta, radius);
+    if (by_depth.fraction < nearest.fraction) {
+        nearest = by_depth;
     }
 #endif
     return nearest;
 }
 
-// Takes a particle at `place` on its way `to` out of what it is in. Whether it was in it, by more than rounding.
-bool leave(vec4 way_out, inout vec3 place, inout vec3 to, inout vec3 velocity) {
-    if (way_out.w <= 0.0) {
+// Pushes a particle that moves from `position` to `to` out of a solid. Returns whether it was inside by more than rounding.
+bool leave(vec4 exit_plane, inout vec3 position, inout vec3 to, inout vec3 velocity) {
+    if (exit_plane.w <= 0.0) {
         return false;
     }
-    vec3 way = to - place;
-    place += (way_out.w + 0.5 * kSkin) * way_out.xyz;
-    bool is_inside = way_out.w > 0.5 * kSkin;
+    vec3 path = to - position;
+    position += (exit_plane.w + 0.5 * kSkin) * exit_plane.xyz;
+    bool is_inside = exit_plane.w > 0.5 * kSkin;
     if (is_inside) {
-        velocity -= min(dot(velocity, way_out.xyz), 0.0) * way_out.xyz;
-        way -= min(dot(way, way_out.xyz), 0.0) * way_out.xyz;
+        velocity -= min(dot(velocity, exit_plane.xyz), 0.0) * exit_plane.xyz;
+        path -= min(dot(path, exit_plane.xyz), 0.0) * exit_plane.xyz;
     }
-    to = place + way;
+    to = position + path;
     return is_inside;
 }
 
-// From `start` to where the step has moved it, in `dt` seconds. `response`: bounce, friction, radius, action (word).
+// Resolves the collisions of a particle that a step of `dt` seconds has moved from `start`. `response`: bounce, friction,
+// radius, action (word).
 void collide(inout Particle p, vec3 start, float dt, int first_collider, int collider_count, vec4 response) {
     uint action = floatBitsToUint(response.w);
     bool stops = action != kBounce;
-    vec3 place = start;
-    vec3 to = p.place;
+    vec3 position = start;
+    vec3 to = p.position;
     bool stopped = false;
-    float reach = response.z + 0.5 * kSkin;
+    float grown = response.z + 0.5 * kSkin;
     for (int i = 0; i < collider_count && !stopped; ++i) {
-        vec4 way_out = find_exit(read_collider(first_collider + i * int(kColliderTexels)), place, reach);
-        stopped = leave(way_out, place, to, p.velocity) && stops;
+        vec4 exit_plane = find_exit(read_collider(first_collider + i * int(kColliderTexels)), position, grown);
+        stopped = leave(exit_plane, position, to, p.velocity) && stops;
     }
-#ifdef SEEN_DEPTH
-    stopped = stopped || (leave(find_seen_exit(place, reach), place, to, p.velocity) && stops);
+#ifdef DEPTH_COLLISION
+    stopped = stopped || (leave(find_depth_exit(position, grown), position, to, p.velocity) && stops);
 #endif
     float time = dt;
     for (int bounce = 0; !stopped; ++bounce) {
-        Touch found = first_touch(first_collider, collider_count, place, to - place, response.z);
-        if (found.share > 1.0) {
-            place = to;
+        Touch found = first_touch(first_collider, collider_count, position, to - position, response.z);
+        if (found.fraction > 1.0) {
+            position = to;
             break;
         }
-        place += found.share * (to - place) + kSkin * found.normal;
+        position += found.fraction * (to - position) + kSkin * found.normal;
         float toward = -dot(p.velocity, found.normal);
         stopped = stops || bounce + 1 >= kMaxBounces;
         vec3 across = -toward * found.normal;
         p.velocity = response.y * (p.velocity - across) - (toward < kRestSpeed ? 0.0 : response.x) * across;
-        time *= 1.0 - found.share;
-        to = place + time * p.velocity;
+        time *= 1.0 - found.fraction;
+        to = position + time * p.velocity;
     }
-    p.place = place;
+    p.position = position;
     if (stopped) {
         p.velocity = vec3(0.0);
         p.life = action == kKill ? min(p.life, p.age) : action == kStick ? -p.life : p.life;

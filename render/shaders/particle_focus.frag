@@ -1,5 +1,5 @@
-// Depth of pixels that particles cover, for the lens: where their opacity is above what the look states. Definitions:
-// those of lib/sprite.glsl.
+// Depth of pixels that particles cover, for depth of field: where their opacity is above the threshold of the look.
+// Definitions: those of lib/sprite.glsl.
 // Techniques: particle.depth-of-field
 #version 450
 #define VARYING in
@@ -7,9 +7,9 @@
 #include "lib/sprite.glsl"
 
 void main() {
-    vec2 place = sprite_place(corner);
-    vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
-    if (light.a * s.a * blend.x <= 1.0) {  // blend.x: 1 / the least opacity that counts
+    vec2 position = sprite_position(corner);
+    vec4 s = sprite_at(position, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
+    if (light.a * s.a * blend.x <= 1.0) {  // blend.x: 1 / the threshold
         discard;
     }
 }

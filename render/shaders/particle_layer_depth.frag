@@ -1,16 +1,17 @@
-// Of each four pixels the depth in their middle where they are of one surface, else the nearest and the farthest, in turn
-// (render/particles/particle_layer.h).
+// Downsamples the depth: of each 2 x 2 pixels the depth at their center if they are on one surface, else the nearest or the
+// farthest in a checkerboard (render/particles/particle_layer.h).
 #version 450
+#include "particle_gpu.h"
 
-layout(binding = 4) uniform sampler2D scene_depth;
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
 
 // Depths about a corner of four pixels: upper left, upper right, lower right, lower left.
 vec4 depths_about(ivec2 corner) {
     return textureGather(scene_depth, vec2(corner) / vec2(textureSize(scene_depth, 0)));
 }
 
-// Whether it changes from b to c about as much as before and after: depths are near / distance, linear in the image on
-// planes.
+// Whether the depth changes from b to c about as much as before and after. Depths are near / distance, which is linear in
+// the image on planes.
 bool is_smooth(float a, float b, float c, float d) {
     return abs(c - b) <= 2.0 * min(abs(b - a), abs(d - c)) + 0.01 * min(b, c);
 }

@@ -1,4 +1,4 @@
-// Light that particles scatter whose look is lit in the middle, evaluated once for each. Definitions: those of
+// The light that particles whose look is lit at the center scatter, evaluated once per particle. Definitions: those of
 // lib/lighting.glsl.
 // Techniques: particle.lit-in-middle
 #version 450
@@ -11,8 +11,8 @@
 #include "lib/view.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) writeonly buffer Light {
-    vec4 middle_light[];  // radiance of a white particle
+layout(std430, binding = kCenterLightBinding) writeonly buffer Light {
+    vec4 center_light[];  // radiance of a white particle
 };
 
 uniform int count;
@@ -41,10 +41,10 @@ void main() {
     }
     float size = size_of(p, shape);
     Quad quad = quad_of(p, shape, streak, tumble, int(glow.w), size);
-    vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
-    vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
-    float ahead = max(middle.w, view.camera_ws.w);
+    vec4 clip = view.clip_from_world * vec4(p.position, 1.0);
+    vec2 pixel = (clip.xy / max(clip.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
+    float ahead = max(clip.w, view.camera_ws.w);
     vec3 light =
         scattered_light(p.position, corner_normals(p.position, quad), streak.w, 0.5 * size, pixel, ahead);
-    middle_light[index] = vec4(glow.y * light, 0.0);
+    center_light[index] = vec4(glow.y * light, 0.0);
 }

@@ -2,13 +2,13 @@
 #version 450
 #include "lib/particle.glsl"
 
-layout(binding = 31) uniform samplerBuffer particle_shadow;  // ParticleShadowRecord
+layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;  // ParticleShadowRecord
 uniform int first;         // of the particles to draw
 uniform vec3 light_right;  // unit, along the map's columns and rows
 uniform vec3 light_up;
 
 layout(location = 0) out vec2 corner;
-layout(location = 1) flat out vec4 slab;  // opacity, depth, thickness (shares of the range), progress of the flipbook
+layout(location = 1) flat out vec4 slab;  // opacity, depth, thickness (fractions of the range), progress of the flipbook
 layout(location = 2) flat out vec4 frames;
 layout(location = 3) flat out vec3 next_frame;  // its offset; layer of the image
 layout(location = 4) flat out vec3 tint;
@@ -22,9 +22,9 @@ void main() {
     float angle = angle_of(p, shape, look_texel(p.look, 1u));
     corner = corner_of(gl_VertexID & 3);
     vec2 turned = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * corner;
-    vec4 place = vec4(p.position + 0.5 * size * (turned.x * light_right + turned.y * light_up), 1.0);
-    vec2 st = vec2(dot(texelFetch(particle_shadow, 0), place), dot(texelFetch(particle_shadow, 1), place));
-    float q = dot(texelFetch(particle_shadow, 3), place);
+    vec4 position = vec4(p.position + 0.5 * size * (turned.x * light_right + turned.y * light_up), 1.0);
+    vec2 st = vec2(dot(texelFetch(particle_shadow, 0), position), dot(texelFetch(particle_shadow, 1), position));
+    float q = dot(texelFetch(particle_shadow, 3), position);
     gl_Position = vec4(2.0 * st - q, 0.0, q);
 
     vec4 opacity = look_texel(p.look, kLookShadow);

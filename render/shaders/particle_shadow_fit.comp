@@ -1,5 +1,5 @@
-// Fits the maps of particle shadows to what the GPU has moved (render/particles/particle_shadow_pass.h). Definition:
-//   RECORD  the rows of the maps, by one invocation; else the ranges of places of an emitter's particles
+// Fits the maps of particle shadows to casters that the GPU moves (render/particles/particle_shadow_pass.h). Definition:
+//   RECORD  the rows of the maps, by one invocation; else the ranges of positions of an emitter's particles
 // Techniques: particle.gpu-shadow
 #version 450
 #include "lib/particle.glsl"
@@ -7,7 +7,7 @@
 layout(local_size_x = 128) in;  // kParticleGroup
 
 // Lowest and highest of s, t and depth [m], as words that are ordered as the floats are.
-layout(std430, binding = 0) buffer Ranges {
+layout(std430, binding = kShadowRangesBinding) buffer Ranges {
     uint lowest[3];
     uint highest[3];
 };
@@ -16,7 +16,7 @@ uniform vec3 light_right;  // unit, along the map's columns and rows, and where 
 uniform vec3 light_up;
 uniform vec3 light_axis;
 uniform vec3 origin;  // of depths
-uniform float reach;  // of a spot [m]; < 0: the sun
+uniform float spot_range;  // of a spot [m]; < 0: the sun
 
 uint ordered(float x) {
     uint bits = floatBitsToUint(x);
@@ -27,11 +27,11 @@ float from_ordered(uint word) {
 }
 
 #ifdef RECORD
-layout(std430, binding = 1) writeonly buffer Record {
+layout(std430, binding = kShadowRecordBinding) writeonly buffer Record {
     vec4 rows[];  // ParticleShadowRecord
 };
-layout(binding = 31) uniform samplerBuffer particle_shadow;  // of a spot all but what follows from depths
-uniform float border;      // around what casts, as a share of the map
+layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;  // the record to fit: of a spot, rows 0, 1, 3 stay
+uniform float border;      // around the casters, as a fraction of the map
 uniform float min_extent;  // [m]
 
 // Row of an affine map from low to high along `axis`.
@@ -46,11 +46,11 @@ void main() {
     vec3 low = vec3(from_ordered(lowest[0]), from_ordered(lowest[1]), from_ordered(lowest[2]));
     vec3 high = vec3(from_ordered(highest[0]), from_ordered(highest[1]), from_ordered(highest[2]));
     bool none = low.z > high.z;
-    vec3 rim = border * max(high - low, vec3(min_extent));
-    bool is_spot = reach >= 0.0;
+    vec3 margin = border * max(high - low, vec3(min_extent));
+    bool is_spot = spot_range >= 0.0;
     vec4 row3 = is_spot ? texelFetch(particle_shadow, 3) : vec4(0.0, 0.0, 0.0, 1.0);
-    rows[0] = is_spot ? texelFetch(particle_shadow, 0) : row_along(light_right, low.x - rim.x, high.x + rim.x);
-    rows[1] = is_spot ? texelFetch(particle_shadow, 1) : row_along(light_up, low.y - rim.y, high.y + rim.y);
+    rows[0] = is_spot ? texelFetch(particle_shadow, 0) : row_along(light_right, low.x - margin.x, high.x + margin.x);
+    rows[1] = is_spot ? texelFetch(particle_shadow, 1) : row_along(light_up, low.y - margin.y, high.y + margin.y);
     rows[2] = row_along(light_axis, low.z + dot(light_axis, origin), high.z + dot(light_axis, origin));
     rows[3] = row3;
     rows[4] = vec4(none ? -1.0 : texelFetch(particle_shadow, 4).z, 1.0 / max(high.z - low.z, min_extent), 0.0, 0.0);
@@ -65,13 +65,13 @@ void main() {
     for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
         Particle p = read_particle(int(i));
         float radius = 0.7072 * size_of(p, look_texel(p.look, 0u));
-        vec3 way = p.position - origin;
-        vec3 place = vec3(dot(p.position, light_right), dot(p.position, light_up), dot(way, light_axis));
-        bool casts = !p.is_dead && radius > 0.0 && abs(place.x + place.y + place.z + radius) < 1e20;
-        bool lit = reach < 0.0 || (place.z + radius > 0.0 && place.z - radius < reach);
+        vec3 offset = p.position - origin;
+        vec3 position = vec3(dot(p.position, light_right), dot(p.position, light_up), dot(offset, light_axis));
+        bool casts = !p.is_dead && radius > 0.0 && abs(position.x + position.y + position.z + radius) < 1e20;
+        bool lit = spot_range < 0.0 || (position.z + radius > 0.0 && position.z - radius < spot_range);
         if (casts && lit) {
-            low = min(low, place - radius);
-            high = max(high, place + radius);
+            low = min(low, position - radius);
+            high = max(high, position + radius);
         }
     }
     if (low.z <= high.z) {

@@ -2,7 +2,7 @@
 //   KEYS    writes an entry for each particle, and fills up with entries that come last
 //   PASS    one pass of the bitonic sort, an invocation for each pair
 //   LOCAL   all passes of the runs `run` .. `last_run` whose partners are less than 1,024 apart, in shared memory
-//   none    writes the particles in their order
+//   none    gathers the particles in sorted order
 // Techniques: particle.bitonic-sort, particle.distance-sort, particle.sort-amortised
 #version 450
 #include "lib/numbers.glsl"
@@ -10,17 +10,17 @@
 
 layout(local_size_x = 512) in;  // kSortGroup
 
-// Of each, the key and the number in the order of births, counted from the oldest when keys were read.
-layout(std430, binding = 0) buffer Entries {
+// Of each particle, the key and the index by birth, counted from the oldest at the time the keys were read.
+layout(std430, binding = kSortEntriesBinding) buffer Entries {
     uvec2 entries[];
 };
 #if defined(KEYS) || !(defined(PASS) || defined(LOCAL))
-layout(std430, binding = 1) readonly buffer Instances {
+layout(std430, binding = kSortInstancesBinding) readonly buffer Instances {
     uint instances[];
 };
 #endif
 #if !(defined(KEYS) || defined(PASS) || defined(LOCAL))
-layout(std430, binding = 2) writeonly buffer Sorted {
+layout(std430, binding = kSortedInstancesBinding) writeonly buffer Sorted {
     uint in_order[];
 };
 #endif
@@ -32,8 +32,8 @@ uniform vec3 forward;
 uniform uint run;
 uniform uint partner;
 uniform uint last_run;
-uniform uint sorted_count;  // particles when keys were read
-uniform uint died;          // of them since, oldest first
+uniform uint sorted_count;  // particles at the time the keys were read
+uniform uint died;          // number of those that have died since, the oldest
 uniform uint total;         // particles to write
 
 const uint kDead = 0xfffffffeu;  // after all others
@@ -49,9 +49,9 @@ uint depth_key(float depth) {
     return ~bits;
 }
 
-// Along the view, rounded as on the CPU: equally far particles must stay equal.
-float depth_of(vec3 place) {
-    vec3 away = place - eye;
+// Along the view axis, with the rounding of the CPU, so that equal depths stay equal.
+float depth_of(vec3 position) {
+    vec3 away = position - eye;
     precise float depth = away.x * forward.x + away.y * forward.y + away.z * forward.z;
     return depth;
 }
@@ -66,9 +66,9 @@ void main() {
     uint key = kPad;
     if (i < count) {
         uint word = kParticleWords * i;
-        vec3 place = uintBitsToFloat(uvec3(instances[word], instances[word + 1u], instances[word + 2u]));
+        vec3 position = uintBitsToFloat(uvec3(instances[word], instances[word + 1u], instances[word + 2u]));
         bool is_dead = unpackHalf2x16(instances[word + 5u]).y < 0.0;
-        key = is_dead ? kDead : min(depth_key(depth_of(place)), kDead - 1u);
+        key = is_dead ? kDead : min(depth_key(depth_of(position)), kDead - 1u);
     }
     if (i < size) {
         entries[i] = uvec2(key, i);
@@ -114,12 +114,12 @@ void main() {
     if (i >= total) {
         return;
     }
-    // Those born since are last, in the order of births.
+    // Particles born since then are last, in the order of births.
     uint index = (i < sorted_count ? entries[i].y : i) - died;
-    bool is_there = index < count;  // and not less than 0
+    bool exists = index < count;  // false below 0, too, which wraps
     for (uint word = 0u; word < kParticleWords; ++word) {
         uint absent = word == 5u ? kDeadAge : 0u;
-        in_order[kParticleWords * i + word] = is_there ? instances[kParticleWords * index + word] : absent;
+        in_order[kParticleWords * i + word] = exists ? instances[kParticleWords * index + word] : absent;
     }
 }
 #endif

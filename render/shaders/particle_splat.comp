@@ -1,5 +1,5 @@
-// Discs that only add light, one invocation each: adds theirs to the sums of the pixels that they cover. The sums are
-// integers, so that they do not depend on the order (render/particles/particle_splats.h).
+// Splats discs that only add light, one per invocation, into sums at the pixels that they cover. The sums are integers, so
+// that they do not depend on the order (render/particles/particle_splats.h).
 // Techniques: particle.gpu-draw
 #version 450
 #include "lib/particle.glsl"
@@ -9,29 +9,29 @@
 #include "lib/particle_point.glsl"
 
 layout(local_size_x = 128) in;  // kParticleGroup
-layout(binding = 4) uniform sampler2D scene_depth;
-layout(std430, binding = 0) buffer Sums {
+layout(binding = kParticleDepthUnit) uniform sampler2D scene_depth;
+layout(std430, binding = kSplatSumsBinding) buffer Sums {
     uint sums[];  // of red, green and blue of each pixel
 };
 
 uniform int count;
 uniform float unit;  // of radiance, in the sums
-uniform float max_amount;  // that a disc adds to a pixel, in units of the sums
+uniform float max_amount;  // of a disc at a pixel, in units of the sums
 
 struct Disc {
-    vec2 middle;   // [px]
+    vec2 center;   // [px]
     float radius;  // [px]
     float depth;
-    vec3 light;    // in the middle
+    vec3 light;    // at its center
     uint random;   // bits
 };
 
-const float kLargest = 4.0;  // radius of those that one invocation draws alone [px]
+const float kLargest = 4.0;  // radius up to which a disc is drawn by one invocation; larger ones by the whole group [px]
 
 shared Disc large[128];
 shared uint large_count;
 
-// Radius 0: it is not seen.
+// Of radius 0 if it is not visible.
 Disc disc_of(Particle p) {
     vec4 glow = look_texel(p.look, 2u);
     float away = distance(p.position, view.camera_ws.xyz);
@@ -40,27 +40,27 @@ Disc disc_of(Particle p) {
     vec4 color = color_from(p, away);
     color.a *= point_opacity(diameter);
     vec4 clip = view.clip_from_world * vec4(p.position, 1.0);
-    bool is_seen = !p.is_dead && size > 0.0 && color.a > 0.0 && clip.w > 0.0 && clip.z <= clip.w;
+    bool is_visible = !p.is_dead && size > 0.0 && color.a > 0.0 && clip.w > 0.0 && clip.z <= clip.w;
     vec3 light = color.rgb * (glow.x * color.a * (1.0 - fog_before(p.position).a));
-    return Disc((clip.xy / clip.w * 0.5 + 0.5) * view.size.xy, is_seen ? max(0.5 * diameter, 0.5) : 0.0,
+    return Disc((clip.xy / clip.w * 0.5 + 0.5) * view.size.xy, is_visible ? max(0.5 * diameter, 0.5) : 0.0,
                 clip.z / clip.w, light, p.random);
 }
 
-// Pixels whose centers are in the square about it: the first, and the one after the last.
+// Pixels whose centers are in the disc's bounding square: the first, and one past the last.
 ivec4 pixels_of(Disc disc) {
-    vec2 low = clamp(ceil(disc.middle - disc.radius - 0.5), vec2(0.0), view.size.xy);
-    vec2 high = clamp(ceil(disc.middle + disc.radius - 0.5), vec2(0.0), view.size.xy);
+    vec2 low = clamp(ceil(disc.center - disc.radius - 0.5), vec2(0.0), view.size.xy);
+    vec2 high = clamp(ceil(disc.center + disc.radius - 0.5), vec2(0.0), view.size.xy);
     return ivec4(low, high);
 }
 
 void add(Disc disc, ivec2 pixel) {
-    vec2 place = (vec2(pixel) + 0.5 - disc.middle) / disc.radius;
-    float inside = max(1.0 - dot(place, place), 0.0);
+    vec2 offset = (vec2(pixel) + 0.5 - disc.center) / disc.radius;
+    float inside = max(1.0 - dot(offset, offset), 0.0);
     if (inside <= 0.0 || texelFetch(scene_depth, pixel, 0).r > disc.depth) {
         return;
     }
     uint bits = uint(pixel.x) * 0x9e3779b9u + uint(pixel.y);
-    float chance = 0.5 + 0.5 * random_share(disc.random ^ bits, 0u);
+    float chance = 0.5 + 0.5 * random_signed(disc.random ^ bits, 0u);
     uvec3 amount = uvec3(min(disc.light * (inside * inside * unit), vec3(max_amount)) + chance);
     int first = 3 * (pixel.y * int(view.size.x) + pixel.x);
     for (int i = 0; i < 3; ++i) {

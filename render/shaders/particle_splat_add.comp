@@ -2,9 +2,10 @@
 // lib/radiance_image.glsl.
 #version 450
 #include "lib/radiance_image.glsl"
+#include "particle_gpu.h"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) buffer Sums {
+layout(std430, binding = kSplatSumsBinding) buffer Sums {
     uint sums[];  // of red, green and blue of each pixel
 };
 

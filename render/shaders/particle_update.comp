@@ -1,8 +1,8 @@
-// Births and motion of particles, one invocation each: all steps since it last ran (particle.gpu-init,
-// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definitions: that of
-// particle_collide.glsl, and, for what most of them need, as a software OpenGL runs both sides of every condition,
-//   OLD    all were born before these steps
-//   PLAIN  with OLD: one step, under gravity and drag alone
+// Births and motion of particles, one per invocation: all steps since it last ran (particle.gpu-init, particle.gpu-update).
+// The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definitions: that of particle_collide.glsl,
+// and, for the common cases, because a software OpenGL executes both sides of every branch,
+//   OLD    all particles were born before these steps
+//   PLAIN  with OLD: a single step with only gravity and drag
 // Techniques: engine.particle-params, particle.circular-list, particle.forces, particle.gpu-init,
 //     particle.gpu-state, particle.gpu-update, particle.gpu-update-mrt, particle.million,
 //     particle.stateless-script
@@ -13,37 +13,37 @@
 
 layout(local_size_x = 128) in;  // kParticleGroup
 #ifndef PLAIN
-layout(binding = 0) uniform samplerBuffer steps;
+layout(binding = kParticleStepsUnit) uniform samplerBuffer steps;
 #endif
-layout(std430, binding = 0) buffer State {
-    vec4 state[];  // of each slot: place, age; velocity, lifetime
+layout(std430, binding = kParticleStateBinding) buffer State {
+    vec4 state[];  // of each slot: position, age; velocity, lifetime
 };
-layout(std430, binding = 1) buffer Bits {
+layout(std430, binding = kParticleBitsBinding) buffer Bits {
     uint bits[];  // of each slot: random
 };
-layout(std430, binding = 2) writeonly buffer Instances {
-    uint instances[];  // of each particle that is moved, oldest first: as particle.vert reads them
+layout(std430, binding = kParticleInstancesBinding) writeonly buffer Instances {
+    uint instances[];  // of each simulated particle, oldest first: as particle.vert reads them
 };
 
 uniform uint first;       // number of the oldest particle, low word
-uniform uint begin;       // of those to move, from the oldest of them on
-uniform uint end;         // one after the last
-uniform uint stride;      // every so many are moved
-uniform uint offset;      // from the oldest particle to the oldest that is moved
-uniform uint first_slot;  // of the oldest that is moved, in this round of the ring: it wraps
-uniform int step_count;   // steps to do
+uniform uint begin;       // first particle to move: index among the simulated ones, from the oldest on
+uniform uint end;         // one past the last
+uniform uint stride;      // only every stride-th particle is simulated
+uniform uint offset;      // from the oldest particle to the oldest simulated one
+uniform uint first_slot;  // of the oldest simulated one, on this lap around the ring: may wrap below 0
+uniform int step_count;   // steps to simulate
 uniform int runs;         // texel of the first run of births
 uniform int forces;       // texel of the first force of a field
 uniform int colliders;    // texel of the first collider
 uniform uint look;
-uniform int closed_form;  // states are those of birth
+uniform int closed_form;  // states are those at birth
 uniform vec3 gravity;
 #ifdef PLAIN
-uniform vec4 added_dt;  // to the share of the velocity that is kept; length of the step
-uniform float kept;
-uniform vec2 ways;      // time at the old velocity and at the new one [s]
+uniform vec4 added_dt;     // velocity that is added [m/s], step [s]
+uniform float kept;        // fraction of the velocity that is kept
+uniform vec2 velocity_dt;  // time at the old velocity and at the new one [s]
 #endif
-uniform float back;       // how long before the end of the last step the particles are seen [s]
+uniform float back;       // time of drawing before the end of the last step [s]
 
 const float kPi = 3.14159265358979;
 // As in particle_kernels.cpp.
@@ -54,10 +54,10 @@ const uint kPoint = 0u, kBall = 1u, kSphere = 2u, kDisc = 3u, kCircle = 4u, kBox
 const uint kRadial = 1u;
 
 struct Particle {
-    vec3 place;
+    vec3 position;
     float age;
     vec3 velocity;
-    float life;  // negative: of one that sticks
+    float life;  // negative: sticks to a surface
     uint look_bits;
 };
 
@@ -67,7 +67,7 @@ void move(inout Particle p) {
     if (p.life > 0.0) {  // does not stick
         vec3 old = p.velocity;
         p.velocity = old * kept + added_dt.xyz;
-        p.place += old * ways.x + p.velocity * ways.y;
+        p.position += old * velocity_dt.x + p.velocity * velocity_dt.y;
     }
     p.age += added_dt.w;
 }
@@ -96,11 +96,11 @@ uint next_word(inout Random random) {
     --random.left;
     return word;
 }
-float next_share(inout Random random) {
+float next_fraction(inout Random random) {
     return unit_float(next_word(random));
 }
 float next_signed(inout Random random) {
-    return -1.0 + 2.0 * next_share(random);
+    return -1.0 + 2.0 * next_fraction(random);
 }
 
 vec3 next_vector(inout Random random) {
@@ -115,21 +115,21 @@ const float kMinKept = 0.37;
 
 vec3 sample_direction(inout Random random) {
     float y = next_signed(random);
-    float angle = 2.0 * kPi * next_share(random);
+    float angle = 2.0 * kPi * next_fraction(random);
     float radius = sqrt(max(1.0 - y * y, 0.0));
     return vec3(radius * cos(angle), y, radius * sin(angle));
 }
 
 vec3 sample_shape(uint shape, vec3 size, inout Random random) {
     if (shape == kTorus) {
-        float radius = size.y * sqrt(next_share(random));
-        float turn = 2.0 * kPi * next_share(random);
-        float angle = 2.0 * kPi * next_share(random);
+        float radius = size.y * sqrt(next_fraction(random));
+        float turn = 2.0 * kPi * next_fraction(random);
+        float angle = 2.0 * kPi * next_fraction(random);
         vec2 tube = radius * vec2(cos(turn), sin(turn));
         return vec3((size.x + tube.x) * cos(angle), tube.y, (size.z + tube.x) * sin(angle));
     }
     if (shape == kBall) {
-        float radius = pow(next_share(random), 1.0 / 3.0);
+        float radius = pow(next_fraction(random), 1.0 / 3.0);
         return size * (sample_direction(random) * radius);
     }
     if (shape == kSphere) {
@@ -138,12 +138,12 @@ vec3 sample_shape(uint shape, vec3 size, inout Random random) {
         return size * (used == direction ? direction : used / max(length(used), 1e-15));
     }
     if (shape == kDisc) {
-        float radius = sqrt(next_share(random));
-        float angle = 2.0 * kPi * next_share(random);
+        float radius = sqrt(next_fraction(random));
+        float angle = 2.0 * kPi * next_fraction(random);
         return size * vec3(radius * cos(angle), 0.0, radius * sin(angle));
     }
     if (shape == kCircle) {
-        float angle = 2.0 * kPi * next_share(random);
+        float angle = 2.0 * kPi * next_fraction(random);
         return size * vec3(cos(angle), 0.0, sin(angle));
     }
     if (shape == kBox) {
@@ -155,8 +155,8 @@ vec3 sample_shape(uint shape, vec3 size, inout Random random) {
 }
 
 vec3 sample_cone(float lowest, inout Random random) {
-    float y = 1.0 - next_share(random) * (1.0 - lowest);
-    float angle = 2.0 * kPi * next_share(random);
+    float y = 1.0 - next_fraction(random) * (1.0 - lowest);
+    float angle = 2.0 * kPi * next_fraction(random);
     float radius = sqrt(max(1.0 - y * y, 0.0));
     return vec3(radius * cos(angle), y, radius * sin(angle));
 }
@@ -164,7 +164,7 @@ vec3 sample_cone(float lowest, inout Random random) {
 struct Rows {
     vec4 row[3];
 };
-Rows place_at(int texel, float at) {
+Rows pose_at(int texel, float at) {
     Rows rows;
     for (int i = 0; i < 3; ++i) {
         vec4 a = texelFetch(steps, texel + 3 + i);
@@ -176,20 +176,20 @@ vec3 transform_vector(Rows m, vec3 v) {
     return vec3(dot(m.row[0].xyz, v), dot(m.row[1].xyz, v), dot(m.row[2].xyz, v));
 }
 
-// Takes a newborn back by the share `at` of a step, on the way along which gravity and drag will bring it here.
+// As Rewind of birth_attributes.h: moves a newborn back in time by the fraction `at` of a step.
 void rewind(inout Particle p, float at, int texel) {
     vec4 push = texelFetch(steps, texel + 1);
     vec4 air = texelFetch(steps, texel + 2);
-    float old_share = texelFetch(steps, texel + 9).w;
+    float old_weight = texelFetch(steps, texel + 9).w;
     vec3 now = p.velocity;
     float ahead = at * push.w;
     p.velocity = air.xyz + (now - air.xyz) * pow(max(air.w, kMinKept), -at) - push.xyz * at;
-    p.place -= (p.velocity * old_share + now * (1.0 - old_share)) * ahead;
+    p.position -= (p.velocity * old_weight + now * (1.0 - old_weight)) * ahead;
     p.age = -ahead;
 }
 
 // Particle `number` (low word), the birth `index` of the step at `texel`.
-Particle give_birth(uint number, uint index, int texel, uvec4 births) {
+Particle draw_birth(uint number, uint index, int texel, uvec4 births) {
     vec4 run = vec4(0.0);
     for (uint i = 0u; i < births.w; ++i) {
         run = texelFetch(steps, runs + int(births.z + i));
@@ -206,12 +206,12 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     vec4 size_speed = texelFetch(steps, 2);
     vec4 rest = texelFetch(steps, 3);
     Random random = Random(uvec4(0u, number, seed.zw), seed.xy, uvec4(0u), 0u);
-    Rows place = place_at(texel, at);
+    Rows pose = pose_at(texel, at);
     vec3 local = sample_shape(floatBitsToUint(form.y), size_speed.xyz, random);
     bool is_radial = floatBitsToUint(form.z) == kRadial;
     vec3 direction =
         is_radial && local != vec3(0.0) ? normalize(local) : sample_cone(is_radial ? -1.0 : form.w, random);
-    vec3 aim = transform_vector(place, direction);
+    vec3 aim = transform_vector(pose, direction);
     float length_of_aim = length(aim);
     aim = length_of_aim > 0.0 ? aim / length_of_aim : vec3(0.0, 1.0, 0.0);
 
@@ -225,17 +225,17 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
         local += size_spread * next_vector(random);
     }
     if (velocity_spread != vec3(0.0)) {
-        p.velocity += transform_vector(place, velocity_spread * next_vector(random));
+        p.velocity += transform_vector(pose, velocity_spread * next_vector(random));
     }
-    p.place = transform_vector(place, local) + vec3(place.row[0].w, place.row[1].w, place.row[2].w);
+    p.position = transform_vector(pose, local) + vec3(pose.row[0].w, pose.row[1].w, pose.row[2].w);
     if (closed_form != 0) {
         p.age = -at * texelFetch(steps, texel + 1).w;
     } else {
         rewind(p, at, texel);
     }
-    float sum = dot(p.place + p.velocity, vec3(1.0)) + p.life;
-    if (!is_finite(sum) || abs(sum) >= 1e30) {  // settings beyond reason: it is never seen
-        p.place = vec3(0.0);
+    float sum = dot(p.position + p.velocity, vec3(1.0)) + p.life;
+    if (!is_finite(sum) || abs(sum) >= 1e30) {  // by extreme settings: never visible
+        p.position = vec3(0.0);
         p.velocity = vec3(0.0);
         p.life = 0.0;
     }
@@ -279,13 +279,13 @@ vec3 noise_gradient(vec3 at, uint seed) {
     return vec3(mix(dx0, dx1, w.z), mix(x10 - x00, x11 - x01, w.z), mix(x01, x11, w.y) - mix(x00, x10, w.y)) * slope;
 }
 
-void stir(inout Particle p, int texel) {
+void apply_turbulence(inout Particle p, int texel) {
     vec4 a = texelFetch(steps, texel + 10);
     if (a.w != 0.0) {
         vec4 b = texelFetch(steps, texel + 11);
         uint seed = floatBitsToUint(texelFetch(steps, texel + 14).z);
-        vec3 place = p.place * b.w;
-        p.velocity += cross(noise_gradient(place + a.xyz, seed), noise_gradient(place + b.xyz, seed ^ kSeedB))
+        vec3 scaled = p.position * b.w;
+        p.velocity += cross(noise_gradient(scaled + a.xyz, seed), noise_gradient(scaled + b.xyz, seed ^ kSeedB))
                       * (a.w * kCurlScale);
     }
 }
@@ -293,11 +293,11 @@ void stir(inout Particle p, int texel) {
 const uint kPush = 0u, kAttract = 1u, kSpring = 2u, kWhirl = 3u, kWind = 4u;
 
 // As acceleration() in force_fields.cpp, times dt.
-vec3 push_of(int texel, Particle p) {
+vec3 force_push(int texel, Particle p) {
     vec4 origin = texelFetch(steps, texel);
     vec4 axis = texelFetch(steps, texel + 1);
     vec4 rest = texelFetch(steps, texel + 2);
-    vec3 offset = p.place - origin.xyz;
+    vec3 offset = p.position - origin.xyz;
     float distance2 = dot(offset, offset);
     float strength = axis.w * (rest.y > 0.0 ? max(1.0 - distance2 / (rest.y * rest.y), 0.0) : 1.0);
     uint kind = floatBitsToUint(origin.w);
@@ -312,38 +312,38 @@ vec3 push_of(int texel, Particle p) {
     }
     if (kind == kWhirl) {
         vec3 tangent = cross(axis.xyz, offset);
-        float reach = length(tangent);
-        return reach > 0.0 ? strength / reach * tangent : vec3(0.0);
+        float radius = length(tangent);
+        return radius > 0.0 ? strength / radius * tangent : vec3(0.0);
     }
     return strength * (rest.x * axis.xyz - p.velocity);
 }
 
-void push(inout Particle p, int texel) {
+void apply_forces(inout Particle p, int texel) {
     int count = int(floatBitsToUint(texelFetch(steps, texel + 16).w));
     int first_force = forces + int(floatBitsToUint(texelFetch(steps, texel + 15).w));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < count; ++i) {
-        sum += push_of(first_force + i * int(kForceTexels), p);
+        sum += force_push(first_force + i * int(kForceTexels), p);
     }
     p.velocity += sum;
 }
 
-void whirl_and_steer(inout Particle p, int texel) {
+void apply_vortex_and_steering(inout Particle p, int texel) {
     vec4 origin = texelFetch(steps, texel + 12);
     vec4 axis = texelFetch(steps, texel + 13);
     vec4 steering = texelFetch(steps, texel + 14);
-    vec3 offset = p.place - origin.xyz;
+    vec3 offset = p.position - origin.xyz;
     vec3 tangent = cross(axis.xyz, offset);
-    float reach = length(tangent);
-    if (reach > 0.0) {
-        p.velocity += (origin.w * tangent - axis.w * (offset - dot(offset, axis.xyz) * axis.xyz)) / reach;
+    float radius = length(tangent);
+    if (radius > 0.0) {
+        p.velocity += (origin.w * tangent - axis.w * (offset - dot(offset, axis.xyz) * axis.xyz)) / radius;
     }
     if (steering.x > 0.0 || steering.y > 0.0) {
         float speed = length(p.velocity);
-        float orbit = reach > 0.0 ? steering.x : 0.0;
+        float orbit = radius > 0.0 ? steering.x : 0.0;
         float left = max(speed - steering.y, 0.0);
         p.velocity = (speed > 0.0 ? (1.0 - orbit) * left / speed : 0.0) * p.velocity
-                     + (reach > 0.0 ? orbit * left / reach : 0.0) * tangent;
+                     + (radius > 0.0 ? orbit * left / radius : 0.0) * tangent;
     }
 }
 
@@ -358,26 +358,27 @@ void move(inout Particle p, int texel) {
         return;
     }
     vec4 air = texelFetch(steps, texel + 2);
-    float old_share = texelFetch(steps, texel + 9).w;
+    float old_weight = texelFetch(steps, texel + 9).w;
     vec3 start = p.velocity;
-    vec3 start_place = p.place;
-    stir(p, texel);
-    push(p, texel);
-    whirl_and_steer(p, texel);
-    vec3 old = old_share == 1.0 ? start : p.velocity;
+    vec3 start_position = p.position;
+    apply_turbulence(p, texel);
+    apply_forces(p, texel);
+    apply_vortex_and_steering(p, texel);
+    vec3 old = old_weight == 1.0 ? start : p.velocity;
     p.velocity = air.xyz + (p.velocity + push_dt.xyz - air.xyz) * air.w;
-    p.place += old * (push_dt.w * old_share) + p.velocity * (push_dt.w - push_dt.w * old_share);
+    p.position += old * (push_dt.w * old_weight) + p.velocity * (push_dt.w - push_dt.w * old_weight);
     p.age += push_dt.w;
     vec3 box = texelFetch(steps, texel + 16).xyz;
-    vec3 turns = floor((p.place - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
-    p.place -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));
-    uvec4 met = floatBitsToUint(texelFetch(steps, texel + 17));
-    bool collides = met.y > 0u;
-#ifdef SEEN_DEPTH
+    vec3 turns = floor((p.position - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
+    p.position -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));
+    uvec4 obstacles = floatBitsToUint(texelFetch(steps, texel + 17));  // first collider, number of them
+    bool collides = obstacles.y > 0u;
+#ifdef DEPTH_COLLISION
     collides = collides || thickness > 0.0;
 #endif
     if (collides) {
-        collide(p, start_place, push_dt.w, colliders + int(met.x), int(met.y), texelFetch(steps, 6));
+        collide(
+            p, start_position, push_dt.w, colliders + int(obstacles.x), int(obstacles.y), texelFetch(steps, 6));
     }
 }
 
@@ -389,9 +390,9 @@ void main() {
         return;
     }
     uint slot = first_slot + moved * stride;
-    vec4 place_age = state[2u * slot];
+    vec4 position_age = state[2u * slot];
     vec4 velocity_life = state[2u * slot + 1u];
-    Particle p = Particle(place_age.xyz, place_age.w, velocity_life.xyz, velocity_life.w, bits[slot]);
+    Particle p = Particle(position_age.xyz, position_age.w, velocity_life.xyz, velocity_life.w, bits[slot]);
 #ifdef PLAIN
     move(p);
 #else
@@ -405,13 +406,13 @@ void main() {
             continue;  // not born yet
         }
         if (since >= 0) {
-            p = give_birth(number, uint(since), texel, births);
+            p = draw_birth(number, uint(since), texel, births);
         }
 #endif
         move(p, texel);
     }
 #endif
-    state[2u * slot] = vec4(p.place, p.age);
+    state[2u * slot] = vec4(p.position, p.age);
     state[2u * slot + 1u] = vec4(p.velocity, p.life);
 #ifndef OLD
     bits[slot] = p.look_bits;
@@ -420,19 +421,19 @@ void main() {
     float age = p.age - back;
     float life = abs(p.life);
     bool is_alive = p.age < life && age >= 0.0;
-    float share = clamp(age / max(life, 1e-6), 0.0, 1.0);
-    vec3 place = p.place - p.velocity * back;
+    float fraction = clamp(age / max(life, 1e-6), 0.0, 1.0);
+    vec3 position = p.position - p.velocity * back;
 #ifndef PLAIN
     if (closed_form != 0) {
-        place = p.place + (p.velocity + 0.5 * gravity * age) * age;
+        position = p.position + (p.velocity + 0.5 * gravity * age) * age;
         p.velocity += gravity * age;
     }
 #endif
     uint word = kParticleWords * moved;
-    instances[word] = floatBitsToUint(place.x);
-    instances[word + 1u] = floatBitsToUint(place.y);
-    instances[word + 2u] = floatBitsToUint(place.z);
-    instances[word + 3u] = look << 16 | uint(share * 65535.0);
+    instances[word] = floatBitsToUint(position.x);
+    instances[word + 1u] = floatBitsToUint(position.y);
+    instances[word + 2u] = floatBitsToUint(position.z);
+    instances[word + 3u] = look << 16 | uint(fraction * 65535.0);
     instances[word + 4u] = packHalf2x16(p.velocity.xy);
     instances[word + 5u] = is_alive ? packHalf2x16(vec2(p.velocity.z, age)) : kDeadAge;
     instances[word + 6u] = p.look_bits;

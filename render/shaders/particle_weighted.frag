@@ -2,9 +2,10 @@
 // Techniques: particle.weighted-blended
 #version 450
 #include "lib/radiance.glsl"
+#include "particle_gpu.h"
 
-layout(binding = 0) uniform sampler2D sum;
-layout(binding = 1) uniform sampler2D kept;
+layout(binding = kWeightedSumUnit) uniform sampler2D sum;
+layout(binding = kWeightedKeptUnit) uniform sampler2D kept;
 
 layout(location = 0) out vec4 radiance;
 

@@ -1,6 +1,6 @@
 #include "systems/particles/beam_system.h"
 
-#include "systems/particles/collider_reach.h"
+#include "systems/particles/collider_bounds.h"
 
 #include <cmath>
 #include <optional>
@@ -9,14 +9,14 @@ namespace limn {
 namespace {
 
 Vec3 first_hit(const ColliderSet& solid, const Vec3& from, const Vec3& to) {
-    float share = 1;
+    float fraction = 1;
     for (std::size_t i = 0; i < solid.colliders.size(); ++i) {
-        if (may_touch(solid.reach[i], from, to, 0, 0)) {
+        if (may_touch(solid.bounds[i], from, to, 0, 0)) {
             const std::optional<Contact> contact = first_contact(solid.colliders[i], from, to);
-            share = contact ? std::min(share, contact->share) : share;
+            fraction = contact ? std::min(fraction, contact->fraction) : fraction;
         }
     }
-    return from + (to - from) * share;
+    return from + (to - from) * fraction;
 }
 
 bool is_finite(const Vec3& v) {
@@ -30,15 +30,15 @@ void add_beam_states(Query<const Beam, Without<BeamState>> beams, Commands comma
 }
 
 void update_beams(
-    Query<const Beam, const WorldTransform, BeamState> beams, Query<const WorldTransform> places,
-    Res<const ParticleObstacles> obstacles) {
-    beams.each([&](const Beam& beam, const WorldTransform& place, BeamState& state) {
+    Query<const Beam, const WorldTransform, BeamState> beams,
+    Query<const WorldTransform> transforms, Res<const ParticleObstacles> obstacles) {
+    beams.each([&](const Beam& beam, const WorldTransform& transform, BeamState& state) {
         const bool was_shown = state.shown;
-        const auto* const target = places.find<const WorldTransform>(beam.to);
-        const Vec3 axis = normalize_or(transform_vector(place.world, {0, 0, -1}), {0, 0, -1});
+        const auto* const target = transforms.find<const WorldTransform>(beam.to);
+        const Vec3 axis = normalize_or(transform_vector(transform.world, {0, 0, -1}), {0, 0, -1});
         state.previous_start = state.start;
         state.previous_end = state.end;
-        state.start = transform_point(place.world, Vec3(0));
+        state.start = transform_point(transform.world, Vec3(0));
         state.end = target != nullptr ? transform_point(target->world, Vec3(0))
                                       : state.start + beam.length * axis;
         state.shown = beam.active && (target != nullptr || beam.to.is_null())

@@ -15,7 +15,7 @@ void add_beam_states(Query<const Beam, Without<BeamState>> beams, Commands comma
 
 /// Finds the ends of all beams. After update_transforms and find_particle_obstacles.
 void update_beams(
-    Query<const Beam, const WorldTransform, BeamState> beams, Query<const WorldTransform> places,
-    Res<const ParticleObstacles> obstacles);
+    Query<const Beam, const WorldTransform, BeamState> beams,
+    Query<const WorldTransform> transforms, Res<const ParticleObstacles> obstacles);
 
 }  // namespace limn

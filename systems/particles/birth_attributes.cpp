@@ -1,7 +1,7 @@
 #include "systems/particles/birth_attributes.h"
 
 #include "systems/particles/birth_constants.h"
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 
 #include <glm/geometric.hpp>
 
@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-constexpr float kMinKept = 0.37f;  // for which drag is taken back [1/e]
+constexpr float kMinKept = 0.37f;  // fraction of the velocity, down to which drag is undone [1/e]
 
 /// Unit, uniform by area.
 Vec3 sample_direction(Random& random) {
@@ -40,8 +40,8 @@ Vec3 random_vector(Random& random) {
 
 }  // namespace
 
-TurnPoint turn_point(float share) {
-    const float turned = 4.0f * share;
+TurnPoint turn_point(float fraction) {
+    const float turned = 4.0f * fraction;
     const float quarters = std::floor(turned + 0.5f);
     const float x = (turned - quarters) * births::kQuarterTurn;
     const float x2 = x * x;
@@ -72,7 +72,7 @@ float cube_root(float x) {
     return y;
 }
 
-float exp_of_share(float x) {
+float exp_of_fraction(float x) {
     const float r = 0.5f * x;
     float sum = births::kExp[0];
     for (int i = 1; i < births::kExpTerms; ++i) {
@@ -150,7 +150,7 @@ draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& ran
     born.velocity = aim * spread(emitter.speed, emitter.speed_spread, random);
     born.life = spread(emitter.life, emitter.life_spread, random);
     born.look = random.word();
-    // Last, so that whoever has none gets the same numbers as ever.
+    // Drawn last, so that emitters without spreads get the same numbers as before there were any.
     if (emitter.size_spread != Vec3(0)) {
         born.local += emitter.size_spread * random_vector(random);
     }
@@ -166,8 +166,8 @@ Rewind::Rewind(const ParticleStep& its_step)
 void Rewind::apply(float at, Vec3& position, Vec3& velocity) const {
     const Vec3 now = velocity;
     const float time = at * step.dt;
-    velocity = step.air + (now - step.air) * exp_of_share(at * drag) - step.gravity * time;
-    position -= (velocity * step.old_share + now * (1 - step.old_share)) * time;
+    velocity = step.air + (now - step.air) * exp_of_fraction(at * drag) - step.gravity * time;
+    position -= (velocity * step.old_weight + now * (1 - step.old_weight)) * time;
 }
 
 bool Newborn::is_finite() const {
@@ -176,7 +176,7 @@ bool Newborn::is_finite() const {
 
 Newborn draw_birth(const BirthDraw& draw, float at, std::uint64_t number) {
     Random random = attributes_random(draw.seed, draw.subject, number);
-    const Affine world = draw.moves ? mix_places(draw.place, at) : draw.place.now;
+    const Affine world = draw.moves ? interpolate_pose(draw.pose, at) : draw.pose.now;
     const BirthAttributes attributes = draw_attributes(*draw.emitter, world, random);
     Newborn born = {
         transform_point(world, attributes.local), attributes.velocity + draw.added,

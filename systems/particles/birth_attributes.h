@@ -9,22 +9,22 @@
 
 namespace limn {
 
-// What is drawn for one birth: place, velocity, life and look. These plain functions are the
-// reference of birth_kernels.h, which draws many births at once and gets the same bits. Therefore
-// angles, roots and powers are polynomials of our own: those of the C library differ from one
-// version to the next.
+// What is drawn at random for one birth: position, velocity, life and look. These plain functions
+// are the reference of birth_kernels.h, which draws many births at once and gets the same bits.
+// Therefore angles, roots and powers are polynomials of our own: those of the C library differ from
+// one version to the next.
 
 /// Cosine and sine.
 struct TurnPoint {
     float cosine;
     float sine;
 };
-/// Of 2 pi `share`, 0 <= share <= 1, within 2e-7.
-[[nodiscard]] TurnPoint turn_point(float share);
+/// Of 2 pi `fraction`, 0 <= fraction <= 1, within 2e-7.
+[[nodiscard]] TurnPoint turn_point(float fraction);
 /// Cube root of 0 <= x <= 1, within 2e-7 of it; below 1e-13 for 0.
 [[nodiscard]] float cube_root(float x);
 /// exp(x) for 0 <= x <= 1, within 4e-7 of it.
-[[nodiscard]] float exp_of_share(float x);
+[[nodiscard]] float exp_of_fraction(float x);
 
 /// A point of the emitter's shape in local space (particle.generation-shape).
 [[nodiscard]] Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random);
@@ -32,14 +32,14 @@ struct TurnPoint {
 [[nodiscard]] Vec3 sample_cone(float cone, Random& random);
 /// The lowest y of those directions.
 [[nodiscard]] float lowest_of_cone(float cone);
-/// The angle that counts: a direction away from the shape's middle has none.
+/// The angle of the cone of directions; 0 for directions away from the center of the shape.
 [[nodiscard]] float cone_of(const ParticleEmitter& emitter);
 
 /// mean +- width
 [[nodiscard]] float spread(float mean, float width, Random& random);
 
 struct BirthAttributes {
-    Vec3 local;     ///< place in the emitter's space
+    Vec3 local;     ///< position in the emitter's space
     Vec3 velocity;  ///< in world space
     float life;
     std::uint32_t look;
@@ -47,12 +47,13 @@ struct BirthAttributes {
 [[nodiscard]] BirthAttributes
 draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& random);
 
-/// How newborns are taken back by a part of a step, on the way along which gravity and drag will
-/// bring them here. Otherwise all births of a step would fall as far, and jets break into clumps.
+/// Moves newborns back in time by a fraction of a step, along the path on which gravity and drag
+/// will bring them here. Otherwise all births of a step would fall equally far, and jets would
+/// break into clumps.
 struct Rewind {
     explicit Rewind(const ParticleStep& step);
 
-    /// By the share `at` of the step.
+    /// By the fraction `at` of the step.
     void apply(float at, Vec3& position, Vec3& velocity) const;
 
     ParticleStep step;
@@ -73,7 +74,7 @@ struct Newborn {
 /// What the births of an emitter in a step have in common.
 struct BirthDraw {
     const ParticleEmitter* emitter;
-    EmitterPlace place;
+    EmitterPose pose;
     bool moves;  ///< whether the ends of that differ
     Rewind rewind;
     Vec3 added;  ///< to all velocities [m/s]
@@ -81,7 +82,7 @@ struct BirthDraw {
     std::uint64_t subject;
 };
 
-/// The birth `number` of the emitter, at the share `at` of the step.
+/// The birth `number` of the emitter, at the fraction `at` of the step.
 [[nodiscard]] Newborn draw_birth(const BirthDraw& draw, float at, std::uint64_t number);
 
 }  // namespace limn

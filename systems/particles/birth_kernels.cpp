@@ -1,7 +1,7 @@
 #include "systems/particles/birth_kernels.h"
 
 #include "systems/particles/birth_constants.h"
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 
 #include <algorithm>
 #include <limits>
@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 namespace {
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR  // no SIMD
 
 std::size_t draw_births_vector(
     const BirthDraw&, const BirthRun&, std::uint32_t, std::size_t, std::uint64_t,
@@ -45,10 +45,10 @@ HWY_INLINE V constant(float value) {
     return hn::Set(d, value);
 }
 
-/// Random of as many births as there are lanes, numbered in a row. Of the 64 bits of a lane of L,
-/// only the lower half counts: Philox multiplies 32 bits to 64, in the even and the odd lanes
-/// apart. Eight words at a time, which is what most births take: two blocks of four, whose rounds
-/// do not wait for each other.
+/// Random for as many consecutive births as there are lanes. Of the 64 bits of a lane of L, only
+/// the lower half counts: Philox multiplies 32 bits to 64, separately in the even and the odd
+/// lanes. It draws eight words at a time, which is what most births need: two blocks of four, whose
+/// rounds do not depend on each other.
 class LaneRandom {
   public:
     HWY_INLINE LaneRandom(const Random& first, U numbers)
@@ -166,7 +166,7 @@ HWY_INLINE V3 normalize_or(const V3& a, const V3& fallback) {
 struct Row {
     V x, y, z, w;
 };
-struct Place {
+struct AffineRows {
     Row row[3];
 };
 HWY_INLINE Row row_at(const Vec4& before, const Vec4& now, bool moves, V at) {
@@ -181,22 +181,22 @@ HWY_INLINE V transform(const Row& row, const V3& v, V w) {
     return hn::Add(
         hn::Add(hn::Mul(row.x, v.x), hn::Mul(row.y, v.y)), hn::Add(hn::Mul(row.z, v.z), w));
 }
-HWY_INLINE V3 transform_point(const Place& place, const V3& v) {
+HWY_INLINE V3 transform_point(const AffineRows& affine, const V3& v) {
     return {
-        transform(place.row[0], v, place.row[0].w), transform(place.row[1], v, place.row[1].w),
-        transform(place.row[2], v, place.row[2].w)};
+        transform(affine.row[0], v, affine.row[0].w), transform(affine.row[1], v, affine.row[1].w),
+        transform(affine.row[2], v, affine.row[2].w)};
 }
-HWY_INLINE V3 transform_vector(const Place& place, const V3& v) {
+HWY_INLINE V3 transform_vector(const AffineRows& affine, const V3& v) {
     const V zero = hn::Zero(d);
     return {
-        transform(place.row[0], v, hn::Mul(place.row[0].w, zero)),
-        transform(place.row[1], v, hn::Mul(place.row[1].w, zero)),
-        transform(place.row[2], v, hn::Mul(place.row[2].w, zero))};
+        transform(affine.row[0], v, hn::Mul(affine.row[0].w, zero)),
+        transform(affine.row[1], v, hn::Mul(affine.row[1].w, zero)),
+        transform(affine.row[2], v, hn::Mul(affine.row[2].w, zero))};
 }
 
 /// Cosine and sine.
-HWY_INLINE V2 turn_point(V share) {
-    const V turned = hn::Mul(constant(4.0f), share);
+HWY_INLINE V2 turn_point(V turn) {
+    const V turned = hn::Mul(constant(4.0f), turn);
     const V quarters = hn::Floor(hn::Add(turned, constant(0.5f)));
     const V x = hn::Mul(hn::Sub(turned, quarters), constant(births::kQuarterTurn));
     const V x2 = hn::Mul(x, x);
@@ -233,7 +233,7 @@ HWY_INLINE V cube_root(V x) {
     return y;
 }
 
-HWY_INLINE V exp_of_share(V x) {
+HWY_INLINE V exp_of_fraction(V x) {
     const V r = hn::Mul(constant(0.5f), x);
     V sum = constant(births::kExp[0]);
     for (int i = 1; i < births::kExpTerms; ++i) {
@@ -319,13 +319,13 @@ struct Lanes {
     U look;
 };
 
-/// False where not all lanes can be drawn alike.
+/// False if the lanes need different branches, or if one is not finite.
 HWY_INLINE bool
 draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes& born) {
     const ParticleEmitter& emitter = *draw.emitter;
     const ParticleStep& step = draw.rewind.step;
-    const EmitterPlace& ends = draw.place;
-    const Place world = {
+    const EmitterPose& ends = draw.pose;
+    const AffineRows world = {
         {row_at(ends.before.row[0], ends.now.row[0], draw.moves, at),
          row_at(ends.before.row[1], ends.now.row[1], draw.moves, at),
          row_at(ends.before.row[2], ends.now.row[2], draw.moves, at)}};
@@ -333,12 +333,12 @@ draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes&
     V3 local = sample_shape(emitter.shape, emitter.size, random);
     V3 direction;
     const V zero = hn::Zero(d);
-    const auto in_middle =
+    const auto at_center =
         hn::And(hn::And(hn::Eq(local.x, zero), hn::Eq(local.y, zero)), hn::Eq(local.z, zero));
-    if (emitter.direction != EmitterDirection::Radial || hn::AllTrue(d, in_middle)) {
+    if (emitter.direction != EmitterDirection::Radial || hn::AllTrue(d, at_center)) {
         const V y = hn::Sub(constant(1.0f), hn::Mul(random.uniform(), constant(1.0f - lowest)));
         direction = direction_at(y, random);
-    } else if (hn::AllFalse(d, in_middle)) {
+    } else if (hn::AllFalse(d, at_center)) {
         direction = scale(local, hn::Div(constant(1.0f), hn::Sqrt(dot(local))));
     } else {
         return false;
@@ -361,11 +361,11 @@ draw_lanes(const BirthDraw& draw, float lowest, V at, LaneRandom& random, Lanes&
     const V time = hn::Mul(at, constant(step.dt));
     const V3 air = splat(step.air);
     const float drag = draw.rewind.drag;
-    const V undo = drag > 0 ? exp_of_share(hn::Mul(at, constant(drag))) : constant(1.0f);
+    const V undo = drag > 0 ? exp_of_fraction(hn::Mul(at, constant(drag))) : constant(1.0f);
     born.velocity =
         subtract(add(air, scale(subtract(now, air), undo)), scale(splat(step.gravity), time));
     const V3 mean = add(
-        scale(born.velocity, constant(step.old_share)), scale(now, constant(1 - step.old_share)));
+        scale(born.velocity, constant(step.old_weight)), scale(now, constant(1 - step.old_weight)));
     born.position = subtract(transform_point(world, local), scale(mean, time));
     born.age = hn::Neg(time);
 
@@ -438,13 +438,13 @@ HWY_EXPORT(draw_births_vector);
 std::size_t draw_births(
     const BirthDraw& draw, const BirthRun& run, std::uint32_t first, std::size_t count,
     std::uint64_t number, const BirthColumns& out) {
-    // Lanes count 32 bits up, and instants are floats of signed ones.
+    // Lanes count the numbers in 32 bits, and convert indices to floats as signed ones.
     constexpr std::uint64_t kNumbers = std::uint64_t{1} << 32;
     constexpr std::uint64_t kInstants = std::uint64_t{1} << 31;
     const std::uint64_t instants = first < kInstants ? kInstants - first : 0;
-    const std::uint64_t most = std::min({count, kNumbers - number % kNumbers, instants});
+    const std::uint64_t limit = std::min({count, kNumbers - number % kNumbers, instants});
     return HWY_DYNAMIC_DISPATCH(draw_births_vector)(
-        draw, run, first, static_cast<std::size_t>(most), number, out);
+        draw, run, first, static_cast<std::size_t>(limit), number, out);
 }
 
 }  // namespace limn

@@ -7,10 +7,10 @@
 
 namespace limn {
 
-// Many births at once (Highway, dispatched at run time): every lane draws the numbers of another
-// birth, Philox included, with the operations of draw_birth in the same order.
+// Many births at once by SIMD (Highway, dispatched at run time): each lane is a birth, Philox
+// included, with the operations of draw_birth in the same order.
 
-/// Where the attributes of newborns go.
+/// Where the attributes of newborns are written.
 struct BirthColumns {
     float* x;
     float* y;
@@ -24,8 +24,9 @@ struct BirthColumns {
 };
 
 /// Writes the births first .. first + count - 1 of `run`, numbered from `number` on. Returns how
-/// many: fewer where the next one's position or life is not finite or, of those that fly away from
-/// a shape's middle, just there, and where no vector is full; draw_birth continues.
+/// many it has written: it stops before a vector in which a position or life is not finite, or in
+/// which some but not all radial births are exactly at the shape's center, and possibly before a
+/// vector that is not full; draw_birth continues there.
 std::size_t draw_births(
     const BirthDraw& draw, const BirthRun& run, std::uint32_t first, std::size_t count,
     std::uint64_t number, const BirthColumns& out);

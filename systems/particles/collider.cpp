@@ -17,17 +17,17 @@ namespace {
 
 using Dvec3 = glm::dvec3;
 
-/// A way to be tested, in double precision: shares are then exact to the rounding of a position.
-struct Way {
+/// The path to test, in double precision, so that fractions are as exact as rounded positions.
+struct Sweep {
     Dvec3 from;
     Dvec3 delta;
     double radius;
 
-    [[nodiscard]] Dvec3 at(double share) const { return from + share * delta; }
+    [[nodiscard]] Dvec3 at(double fraction) const { return from + fraction * delta; }
 };
 
 struct Touch {
-    double share;
+    double fraction;
     Dvec3 point;
     Dvec3 normal;
 };
@@ -39,57 +39,58 @@ Vec3 unit_normal(const PlaneCollider& plane) {
 // ---- first contact
 // -------------------------------------------------------------------------------
 
-std::optional<Touch> touch(const PlaneCollider& plane, const Way& way) {
+std::optional<Touch> touch(const PlaneCollider& plane, const Sweep& sweep) {
     const Dvec3 normal(unit_normal(plane));
-    const double before = glm::dot(normal, way.from) - double{plane.offset} - way.radius;
-    const double change = glm::dot(normal, way.delta);
+    const double before = glm::dot(normal, sweep.from) - double{plane.offset} - sweep.radius;
+    const double change = glm::dot(normal, sweep.delta);
     if (!(before >= 0 && before + change < 0)) {
         return {};
     }
-    const double share = before / -change;
-    return Touch{share, way.at(share), normal};
+    const double fraction = before / -change;
+    return Touch{fraction, sweep.at(fraction), normal};
 }
 
 /// Solves |from + t delta - center| = radius in the forms that do not cancel.
-std::optional<Touch> touch(const SphereCollider& sphere, const Way& way) {
+std::optional<Touch> touch(const SphereCollider& sphere, const Sweep& sweep) {
     const double side = sphere.inverted ? -1 : 1;
-    const double radius = double{sphere.radius} + side * way.radius;
-    const Dvec3 from = way.from - Dvec3(sphere.center);
-    const double a = glm::dot(way.delta, way.delta);
-    const double b = glm::dot(from, way.delta);
+    const double radius = double{sphere.radius} + side * sweep.radius;
+    const Dvec3 from = sweep.from - Dvec3(sphere.center);
+    const double a = glm::dot(sweep.delta, sweep.delta);
+    const double b = glm::dot(from, sweep.delta);
     const double c = glm::dot(from, from) - radius * radius;
     const double root = b * b - a * c;
     const bool outside = c * side >= 0;
     if (!(radius > 0 && outside) || (!sphere.inverted && !(root > 0 && b < 0))) {
         return {};
     }
-    const double share = sphere.inverted && b <= 0 ? (std::sqrt(root) - b) / a
-                                                   : side * c / (std::sqrt(root) - side * b);
-    if (!(share <= 1)) {
+    const double fraction = sphere.inverted && b <= 0 ? (std::sqrt(root) - b) / a
+                                                      : side * c / (std::sqrt(root) - side * b);
+    if (!(fraction <= 1)) {
         return {};
     }
-    return Touch{share, way.at(share), side * glm::normalize(from + share * way.delta)};
+    return Touch{
+        fraction, sweep.at(fraction), side * glm::normalize(from + fraction * sweep.delta)};
 }
 
-struct BoxPlace {
+struct BoxFrame {
     glm::dmat3 axes;  ///< of the box, in world space
     Dvec3 center;
 };
 
-BoxPlace box_pose(const BoxCollider& box) {
+BoxFrame box_frame(const BoxCollider& box) {
     const Mat4 m = to_mat4(box.world_from_box);
     return {glm::dmat3(Mat3(m)), Dvec3(m[3])};
 }
 
-std::optional<Touch> touch(const BoxCollider& box, const Way& way) {
-    const BoxPlace place = box_pose(box);
-    const Dvec3 from = (way.from - place.center) * place.axes;  // by the transpose
-    const Dvec3 delta = way.delta * place.axes;
+std::optional<Touch> touch(const BoxCollider& box, const Sweep& sweep) {
+    const BoxFrame frame = box_frame(box);
+    const Dvec3 from = (sweep.from - frame.center) * frame.axes;  // by the transpose
+    const Dvec3 delta = sweep.delta * frame.axes;
     double enter = -std::numeric_limits<double>::infinity();
     double leave = std::numeric_limits<double>::infinity();
     int entered = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const double half = double{box.half[axis]} + way.radius;
+        const double half = double{box.half[axis]} + sweep.radius;
         if (delta[axis] == 0) {
             if (std::abs(from[axis]) >= half) {
                 return {};
@@ -107,7 +108,7 @@ std::optional<Touch> touch(const BoxCollider& box, const Way& way) {
     if (!(enter >= 0 && enter <= 1 && enter <= leave)) {
         return {};
     }
-    return Touch{enter, way.at(enter), -std::copysign(1.0, delta[entered]) * place.axes[entered]};
+    return Touch{enter, sweep.at(enter), -std::copysign(1.0, delta[entered]) * frame.axes[entered]};
 }
 
 /// The bilinear surface of a cell, as a function of the grid coordinates within it, 0 .. 1.
@@ -141,7 +142,7 @@ Patch patch_at(const HeightCollider& field, int i, int j, double radius) {
     return patch;
 }
 
-/// Where a s^2 + b s + c, c >= 0, becomes negative; NaN: nowhere.
+/// The smallest s >= 0 at which a s^2 + b s + c, c >= 0, becomes negative; NaN if it never does.
 double falls_below_zero(double a, double b, double c) {
     const double root = std::sqrt(b * b - 4 * a * c);
     if (b < 0) {
@@ -150,8 +151,9 @@ double falls_below_zero(double a, double b, double c) {
     return a < 0 ? -(b + root) / (2 * a) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Walks the cells below the way; in each, height above the surface is a quadratic of the share.
-std::optional<Touch> touch(const HeightCollider& field, const Way& way) {
+/// Walks the cells below the sweep; in each, the height above the surface is quadratic in the
+/// fraction of the path.
+std::optional<Touch> touch(const HeightCollider& field, const Sweep& sweep) {
     LIMN_CHECK(field.heights.size() >= static_cast<std::size_t>(field.width * field.depth));
     if (field.width < 2 || field.depth < 2) {
         return {};
@@ -159,26 +161,26 @@ std::optional<Touch> touch(const HeightCollider& field, const Way& way) {
     const double cells[2] = {field.width - 1.0, field.depth - 1.0};
     double from[2];
     double delta[2];
-    double share = 0;
+    double fraction = 0;
     double end = 1;
     for (int k = 0; k < 2; ++k) {
-        from[k] = (way.from[2 * k] - double{field.origin[2 * k]}) / double{field.cell[k]};
-        delta[k] = way.delta[2 * k] / double{field.cell[k]};
+        from[k] = (sweep.from[2 * k] - double{field.origin[2 * k]}) / double{field.cell[k]};
+        delta[k] = sweep.delta[2 * k] / double{field.cell[k]};
         if (delta[k] != 0) {
             const double a = -from[k] / delta[k];
             const double b = (cells[k] - from[k]) / delta[k];
-            share = std::max(share, std::min(a, b));
+            fraction = std::max(fraction, std::min(a, b));
             end = std::min(end, std::max(a, b));
         } else if (!(from[k] >= 0 && from[k] <= cells[k])) {
             return {};
         }
     }
-    if (!(share <= end)) {
+    if (!(fraction <= end)) {
         return {};
     }
     int cell[2];
     for (int k = 0; k < 2; ++k) {
-        cell[k] = static_cast<int>(std::clamp(from[k] + share * delta[k], 0.0, cells[k] - 1));
+        cell[k] = static_cast<int>(std::clamp(from[k] + fraction * delta[k], 0.0, cells[k] - 1));
     }
     for (bool first = true;; first = false) {
         double next = end;
@@ -187,34 +189,36 @@ std::optional<Touch> touch(const HeightCollider& field, const Way& way) {
             if (delta[k] != 0) {
                 const double border = (cell[k] + (delta[k] > 0 ? 1 : 0) - from[k]) / delta[k];
                 if (border < next) {
-                    next = std::max(border, share);
+                    next = std::max(border, fraction);
                     crossed = k;
                 }
             }
         }
-        const Patch patch = patch_at(field, cell[0], cell[1], way.radius);
-        const double x = from[0] + share * delta[0] - cell[0];
-        const double z = from[1] + share * delta[1] - cell[1];
-        const double above = way.at(share).y - patch.at(x, z);
+        const Patch patch = patch_at(field, cell[0], cell[1], sweep.radius);
+        const double x = from[0] + fraction * delta[0] - cell[0];
+        const double z = from[1] + fraction * delta[1] - cell[1];
+        const double above = sweep.at(fraction).y - patch.at(x, z);
         if (first && above < 0) {
             return {};  // starts below
         }
-        // Below where the cell begins, but not where the last one ended: rounding, or radius.
-        const double fall = above < 0 ? 0.0
-                                      : falls_below_zero(
-                                          -patch.twist * delta[0] * delta[1],
-                                          way.delta.y - (patch.along_x + patch.twist * z) * delta[0]
-                                              - (patch.along_z + patch.twist * x) * delta[1],
-                                          above);
-        if (share + fall <= next) {
+        // May be below the surface where this cell begins, though not where the previous one ended:
+        // by rounding, or because the radius raises each cell differently.
+        const double fall = above < 0
+                                ? 0.0
+                                : falls_below_zero(
+                                    -patch.twist * delta[0] * delta[1],
+                                    sweep.delta.y - (patch.along_x + patch.twist * z) * delta[0]
+                                        - (patch.along_z + patch.twist * x) * delta[1],
+                                    above);
+        if (fraction + fall <= next) {
             return Touch{
-                share + fall, way.at(share + fall),
+                fraction + fall, sweep.at(fraction + fall),
                 patch.normal(x + fall * delta[0], z + fall * delta[1])};
         }
         if (crossed < 0) {
             return {};
         }
-        share = next;
+        fraction = next;
         cell[crossed] += delta[crossed] > 0 ? 1 : -1;
         if (cell[crossed] < 0 || cell[crossed] >= static_cast<int>(cells[crossed])) {
             return {};
@@ -222,33 +226,34 @@ std::optional<Touch> touch(const HeightCollider& field, const Way& way) {
     }
 }
 
-/// Looks 4 radii further: up to 75 degrees from the normal the ball touches before its center
-/// comes that near.
-std::optional<Touch> touch(const MeshCollider& mesh, const Way& way) {
-    const double length = glm::length(way.delta);
+/// Extends the segment by 4 radii, which finds every triangle that the ball touches up to 75
+/// degrees from the normal.
+std::optional<Touch> touch(const MeshCollider& mesh, const Sweep& sweep) {
+    const double length = glm::length(sweep.delta);
     if (mesh.bvh == nullptr || length == 0) {
         return {};
     }
-    const double beyond = 1 + 4 * way.radius / length;
-    const MeshHit hit = first_hit(*mesh.bvh, {Vec3(way.from), Vec3(way.at(beyond))});
+    const double beyond = 1 + 4 * sweep.radius / length;
+    const MeshHit hit = first_hit(*mesh.bvh, {Vec3(sweep.from), Vec3(sweep.at(beyond))});
     if (hit.triangle == kNoTriangle) {
         return {};
     }
     Dvec3 normal(hit.normal);
-    double speed = glm::dot(normal, way.delta);
+    double speed = glm::dot(normal, sweep.delta);
     if (speed > 0) {
         normal = -normal;
         speed = -speed;
     }
-    const double before = double{hit.share} * beyond * -speed;  // distance from the plane
-    if (before < way.radius) {
-        return Touch{0, way.from + (way.radius - before) * normal, normal};
+    const double before = double{hit.fraction} * beyond * -speed;  // distance from the plane
+    if (before < sweep.radius) {
+        return Touch{0, sweep.from + (sweep.radius - before) * normal, normal};
     }
-    const double share = way.radius > 0 ? (before - way.radius) / -speed : double{hit.share};
-    if (!(share <= 1)) {
+    const double fraction =
+        sweep.radius > 0 ? (before - sweep.radius) / -speed : double{hit.fraction};
+    if (!(fraction <= 1)) {
         return {};
     }
-    return Touch{share, way.at(share), normal};
+    return Touch{fraction, sweep.at(fraction), normal};
 }
 
 // ---- pushing out
@@ -280,8 +285,8 @@ std::optional<Exit> find_exit(const SphereCollider& sphere, const Dvec3& p, doub
 }
 
 std::optional<Exit> find_exit(const BoxCollider& box, const Dvec3& p, double radius) {
-    const BoxPlace place = box_pose(box);
-    const Dvec3 local = (p - place.center) * place.axes;
+    const BoxFrame frame = box_frame(box);
+    const Dvec3 local = (p - frame.center) * frame.axes;
     double depth = std::numeric_limits<double>::infinity();
     int nearest = 1;
     for (const int axis : {1, 0, 2}) {  // from the center, up
@@ -291,7 +296,7 @@ std::optional<Exit> find_exit(const BoxCollider& box, const Dvec3& p, double rad
             nearest = axis;
         }
     }
-    const Dvec3 normal = std::copysign(1.0, local[nearest]) * place.axes[nearest];
+    const Dvec3 normal = std::copysign(1.0, local[nearest]) * frame.axes[nearest];
     return Exit{p + depth * normal, normal, depth};
 }
 
@@ -317,16 +322,16 @@ std::optional<Exit> find_exit(const MeshCollider&, const Dvec3&, double) {
 
 std::optional<Contact>
 first_contact(const Collider& collider, const Vec3& from, const Vec3& to, float radius) {
-    const Way way = {Dvec3(from), Dvec3(to) - Dvec3(from), std::max(double{radius}, 0.0)};
+    const Sweep sweep = {Dvec3(from), Dvec3(to) - Dvec3(from), std::max(double{radius}, 0.0)};
     if (!is_finite(from) || !is_finite(to) || from == to) {
         return {};
     }
     const auto found =
-        std::visit([&way](const auto& shape) { return touch(shape, way); }, collider);
+        std::visit([&sweep](const auto& shape) { return touch(shape, sweep); }, collider);
     if (!found) {
         return {};
     }
-    return Contact{static_cast<float>(found->share), Vec3(found->point), Vec3(found->normal)};
+    return Contact{static_cast<float>(found->fraction), Vec3(found->point), Vec3(found->normal)};
 }
 
 std::optional<Escape>

@@ -9,9 +9,9 @@
 
 namespace limn {
 
-// Static surfaces that particles meet, as points or as balls of a given radius. Planes, spheres,
-// boxes and height fields are solid and are met from outside only; meshes are sheets with two
-// sides. All is evaluated in double precision and rounded once.
+// Static surfaces that particles hit, as points or as balls of a given radius. Planes, spheres,
+// boxes and height fields are solid and are hit from outside only; meshes are two-sided sheets.
+// Everything is evaluated in double precision and rounded once.
 
 /// Solid where dot(unit normal, x) < offset [m].
 struct PlaneCollider {
@@ -22,7 +22,7 @@ struct PlaneCollider {
 struct SphereCollider {
     Vec3 center = Vec3(0);
     float radius = 1;       ///< [m], >= 0
-    bool inverted = false;  ///< solid outside: a hollow
+    bool inverted = false;  ///< hollow: solid outside
 };
 
 struct BoxCollider {
@@ -31,9 +31,9 @@ struct BoxCollider {
 };
 
 /// Solid below the bilinear surface over a grid: terrain, or water sampled by the caller. Point
-/// (i, j) has index j * width + i and is at origin + (i cell.x, heights[index], j cell.y). Nothing
-/// beyond its edges: who comes from there under the surface is not held, but pushed up later. The
-/// normal is that of the bilinear surface: differences across the cell.
+/// (i, j) has index j * width + i and is at origin + (i cell.x, heights[index], j cell.y). There is
+/// nothing beyond its edges: a particle that enters below the surface from there is not stopped,
+/// but pushed up later. The normal is that of the bilinear surface: differences across the cell.
 struct HeightCollider {
     Vec3 origin = Vec3(0);
     Vec2 cell = Vec2(1);               ///< along x and z [m], > 0
@@ -51,18 +51,18 @@ using Collider =
     std::variant<PlaneCollider, SphereCollider, BoxCollider, HeightCollider, MeshCollider>;
 
 struct Contact {
-    float share = 0;        ///< of the way, 0 .. 1
+    float fraction = 0;     ///< of the path, 0 .. 1
     Vec3 point = Vec3(0);   ///< the particle's center then
-    Vec3 normal = Vec3(0);  ///< unit, against the way
+    Vec3 normal = Vec3(0);  ///< unit, against the motion
 };
 
-/// Where a particle of radius `radius` >= 0 [m] on the way from `from` to `to` first touches.
-/// Exact for points. With a radius: planes and spheres grow by it, exactly; boxes keep sharp
-/// corners; height fields are raised by radius / cos(slope) in each cell; of meshes, the plane of
-/// the triangle that the center would meet is moved along its normal (found up to 75 degrees from
+/// The first contact of a particle of radius `radius` >= 0 [m] that moves from `from` to `to`.
+/// Exact for points. With a radius: planes and spheres grow by it, exactly; boxes grow but keep
+/// sharp corners; height fields are raised by radius / cos(slope) in each cell; of meshes, the
+/// plane of the triangle that the center would hit is moved along its normal (up to 75 degrees from
 /// the normal: at more grazing angles, and at edges, the center comes nearer, but never crosses).
-/// A cell of a height field is met exactly where the quadratic of its bilinear patch along the way
-/// vanishes. None if the way starts inside a solid, has no length or is not finite.
+/// In a cell of a height field, the contact is the exact root of the quadratic of its bilinear
+/// patch along the path. None if the path starts inside a solid, has no length or is not finite.
 [[nodiscard]] std::optional<Contact>
 first_contact(const Collider& collider, const Vec3& from, const Vec3& to, float radius = 0);
 
@@ -73,13 +73,13 @@ struct Escape {
     float depth = 0;        ///< [m], > 0; vertical for height fields
 };
 
-/// To the nearest place outside; straight up for height fields and from the center of a sphere.
+/// To the nearest position outside; straight up for height fields and from the center of a sphere.
 /// None if the particle is outside, or inside by no more than `tolerance` [m]. Meshes have no
 /// inside.
 [[nodiscard]] std::optional<Escape>
 find_escape(const Collider& collider, const Vec3& position, float radius, float tolerance = 0);
 
-/// That place, or `position` if it is outside. Twice is once, but for rounding.
+/// That position, or `position` if it is outside. Idempotent but for rounding.
 [[nodiscard]] Vec3 push_out(const Collider& collider, const Vec3& position, float radius = 0);
 
 }  // namespace limn

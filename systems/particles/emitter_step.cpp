@@ -35,7 +35,7 @@ EntitySet find_parents(const ParticleFollowers& followers) {
     return parents;
 }
 
-/// Emitters whose particles are looked at one after another: parents, and those with trails.
+/// Emitters whose particles are identified by their order: parents, and those with trails.
 EntitySet find_followed(const ParticleFollowers& followers, const EntitySet& parents) {
     EntitySet followed = parents;
     followers.trails.each([&](Entity entity, const Trail& trail) {
@@ -54,14 +54,14 @@ bool is_independent(const EmitterRow& row, const EntitySet& parents, bool may_hi
            && row.source == nullptr && row.surface == nullptr && !parents.contains(row.entity);
 }
 
-/// For followers that have begun to look at the order since the last step.
+/// For followers that depend on the order only since this step.
 void restore_order_if_needed(const EmitterRow& row) {
     if (row.pool->mixed && keeps_order(row.order)) {
         restore_order(*row.pool);
     }
 }
 
-/// Lists the children and finds their parents, but for those that would be their own.
+/// Lists the children and finds their parents; none is its own parent.
 void link_children(EmitterSteps& steps) {
     for (std::uint32_t i = 0; i < steps.others.size(); ++i) {
         EmitterStep& child = steps.others[i];
@@ -93,7 +93,7 @@ void add_births(const EmitterStep& step, float dt, Random random, const StepCont
     const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
     find_births(emitter, step.rate_scale, dt, room, random, pool.clock, births);
     add_particles(
-        emitter, step.place, step.motion.step, surface_of(step), context.seed, step.row.subject(),
+        emitter, step.pose, step.motion.step, surface_of(step), context.seed, step.row.subject(),
         births, pool);
 }
 
@@ -114,9 +114,9 @@ EmitterStep
 make_emitter_step(const EmitterRow& row, const MotionStep& motion, const StepContext& context) {
     EmitterStep step;
     step.row = row;
-    step.place = place_of(*row.now, *row.previous);
+    step.pose = emitter_pose(*row.now, *row.previous);
     step.motion = motion;
-    step.rate_scale = seen_share(*row.emitter, row.now->world, context.eye);
+    step.rate_scale = screen_coverage(*row.emitter, row.now->world, context.eye);
     return step;
 }
 
@@ -161,8 +161,8 @@ EmitterSteps find_emitter_steps(
             make_emitter_step(row, find_emitter_motion(motion, wrap, now.world, context), context);
         if (surface != nullptr) {
             step.surface = find_surface_source(
-                *surface, mesh, entity, step.place, surfaces.meshes, surfaces.poses,
-                surfaces.morphs, *surfaces.assets);
+                *surface, mesh, entity, step.pose, surfaces.meshes, surfaces.poses, surfaces.morphs,
+                *surfaces.assets);
         }
         steps.others.push_back(std::move(step));
     });

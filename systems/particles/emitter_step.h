@@ -31,7 +31,7 @@ using EmitterQuery = Query<
     Optional<const ParticleCollision>, Optional<const ParticleWrap>, Optional<const ParticleLook>,
     Optional<const ParticleLight>, ParticlePool>;
 
-/// Who refers to the particles of an emitter, as one parameter of a system.
+/// The components that refer to the particles of an emitter, as one parameter of a system.
 struct ParticleFollowers {
     Query<const ParticleSource> sources;
     Query<const Trail> trails;
@@ -40,7 +40,7 @@ template <>
 struct SystemParam<ParticleFollowers>
     : ParamGroup<ParticleFollowers, Query<const ParticleSource>, Query<const Trail>> {};
 
-/// Surfaces that particles are born on, likewise.
+/// Surfaces that particles are born on, as one parameter of a system.
 struct BirthSurfaces {
     MeshQuery meshes;
     Query<const Pose> poses;
@@ -63,7 +63,7 @@ struct EmitterRow {
     const ParticleSource* source = nullptr;
     const ParticleSurface* surface = nullptr;
     const ParticleMesh* mesh = nullptr;
-    const ParticleCollision* collision = nullptr;  ///< null of particles that wrap
+    const ParticleCollision* collision = nullptr;  ///< null if particles wrap
     const ParticleWrap* wrap = nullptr;
     ParticlePool* pool = nullptr;
     OrderedBy order{};
@@ -73,10 +73,10 @@ struct EmitterRow {
 
 inline constexpr std::uint32_t kNoParent = 0xffffffff;
 
-/// An emitter with all that its step needs, and what comes of that.
+/// An emitter with the inputs and results of its step.
 struct EmitterStep {
     EmitterRow row{};
-    EmitterPlace place{};
+    EmitterPose pose{};
     MotionStep motion{};
     SurfaceSource surface{};
     float rate_scale = 1;
@@ -93,7 +93,7 @@ struct EmitterStep {
 [[nodiscard]] EmitterStep
 make_emitter_step(const EmitterRow& row, const MotionStep& motion, const StepContext& context);
 
-/// The emitters of a step by the way they are simulated.
+/// The emitters of a step, grouped by how they are simulated.
 struct EmitterSteps {
     /// Few particles that hit nothing, and that no other emitter depends on.
     std::vector<EmitterRow> independent{};
@@ -101,7 +101,7 @@ struct EmitterSteps {
     std::vector<std::uint32_t> children{};  ///< of `others`, those with a ParticleSource
 };
 
-/// `may_hit`: there is something that particles may hit.
+/// `may_hit`: whether there is anything that particles may hit.
 [[nodiscard]] EmitterSteps find_emitter_steps(
     EmitterQuery& emitters, const ParticleFollowers& followers, const BirthSurfaces& surfaces,
     bool may_hit, const StepContext& context);
@@ -110,7 +110,7 @@ struct EmitterSteps {
 /// prewarming. None if it has a ParticleSource.
 void emit_particles(EmitterStep& step, const StepContext& context);
 
-/// Removes the dead particles from `first` on, in order if anyone looks at that.
+/// Removes the dead particles from `first` on; keeps the order if something depends on it.
 void remove_dead(const EmitterRow& row, std::size_t first);
 
 }  // namespace limn

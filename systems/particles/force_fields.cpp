@@ -33,8 +33,8 @@ find_forces(const Query<const ForceField, const WorldTransform>& fields, double 
     return forces;
 }
 
-Vec3 acceleration(const Force& force, const Vec3& place, const Vec3& velocity) {
-    const Vec3 offset = place - force.origin;
+Vec3 acceleration(const Force& force, const Vec3& position, const Vec3& velocity) {
+    const Vec3 offset = position - force.origin;
     const float distance2 = glm::dot(offset, offset);
     float strength = force.strength;
     if (force.radius > 0) {
@@ -49,8 +49,8 @@ Vec3 acceleration(const Force& force, const Vec3& place, const Vec3& velocity) {
         return -strength * offset;
     case ForceKind::Whirl: {
         const Vec3 tangent = glm::cross(force.axis, offset);
-        const float reach = glm::length(tangent);
-        return reach > 0 ? (strength / reach) * tangent : Vec3(0);
+        const float radius = glm::length(tangent);
+        return radius > 0 ? (strength / radius) * tangent : Vec3(0);
     }
     case ForceKind::Wind:
         return strength * (force.speed * force.axis - velocity);
@@ -58,18 +58,18 @@ Vec3 acceleration(const Force& force, const Vec3& place, const Vec3& velocity) {
     return Vec3(0);
 }
 
-void push_particles(
-    const ParticleBlock& block, std::span<const Force> forces, float share, float dt) {
+void apply_forces(
+    const ParticleBlock& block, std::span<const Force> forces, float scale, float dt) {
     for (std::size_t i = 0; i < block.count; ++i) {
-        const Vec3 place = {block.x[i], block.y[i], block.z[i]};
+        const Vec3 position = {block.x[i], block.y[i], block.z[i]};
         const Vec3 velocity = {block.vx[i], block.vy[i], block.vz[i]};
         Vec3 sum(0);
         for (const Force& force : forces) {
-            sum += acceleration(force, place, velocity);
+            sum += acceleration(force, position, velocity);
         }
-        block.vx[i] += sum.x * (share * dt);
-        block.vy[i] += sum.y * (share * dt);
-        block.vz[i] += sum.z * (share * dt);
+        block.vx[i] += sum.x * (scale * dt);
+        block.vy[i] += sum.y * (scale * dt);
+        block.vz[i] += sum.z * (scale * dt);
     }
 }
 

@@ -11,15 +11,14 @@
 
 namespace limn {
 
-/// All ForceFields at an instant [s], in world space. Their directions do not scale.
+/// All ForceFields at `time` [s], in world space. The scale of their entities does not count.
 [[nodiscard]] std::vector<Force>
 find_forces(const Query<const ForceField, const WorldTransform>& fields, double time);
 
-/// Acceleration by one of them [m/s^2] at a place, of a particle with this velocity.
-[[nodiscard]] Vec3 acceleration(const Force& force, const Vec3& place, const Vec3& velocity);
+/// Acceleration of a particle [m/s^2] by one of them.
+[[nodiscard]] Vec3 acceleration(const Force& force, const Vec3& position, const Vec3& velocity);
 
-/// v += share * dt * the sum of all accelerations.
-void push_particles(
-    const ParticleBlock& block, std::span<const Force> forces, float share, float dt);
+/// v += scale * dt * the sum of all accelerations.
+void apply_forces(const ParticleBlock& block, std::span<const Force> forces, float scale, float dt);
 
 }  // namespace limn

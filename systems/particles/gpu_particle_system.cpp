@@ -1,6 +1,6 @@
 #include "systems/particles/gpu_particle_system.h"
 
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 #include "systems/particles/particle_births.h"
 
 #include <glm/geometric.hpp>
@@ -19,13 +19,14 @@
 namespace limn {
 namespace {
 
-constexpr double kMemory = 60;  // for which steps are kept, if particles live so long [s]
+constexpr double kMemory = 60;  // how long steps are kept, if particles live that long [s]
 
-/// Forgets whom the end of the step to come finds dead, and the steps that nobody needs.
-void forget_old(const ParticleEmitter& emitter, float dt, GpuParticles& particles) {
+/// Drops the cohorts whose particles will all be dead at the end of the coming step, and the steps
+/// that no living particle was born in.
+void drop_expired(const ParticleEmitter& emitter, float dt, GpuParticles& particles) {
     const auto longest = static_cast<double>(
         finite_or(emitter.life, 0) + std::abs(finite_or(emitter.life_spread, 0)));
-    const double end = particles.time;  // a step late, so that rounding buries nobody alive
+    const double end = particles.time;  // a step late: rounding must not drop living particles
     const auto alive = std::find_if(
         particles.cohorts.begin(), particles.cohorts.end(),
         [&](const ParticleCohort& cohort) { return end - cohort.born <= longest; });
@@ -39,20 +40,20 @@ void forget_old(const ParticleEmitter& emitter, float dt, GpuParticles& particle
             static_cast<double>(particles.steps[particles.steps.size() - 1 - kept].motion.step.dt);
         ++kept;
     }
-    particles.forgotten = particles.steps.size() - kept;
-    if (particles.forgotten > kept) {
+    particles.expired = particles.steps.size() - kept;
+    if (particles.expired > kept) {
         const auto begin = particles.steps.begin();
-        particles.steps.erase(begin, begin + static_cast<std::ptrdiff_t>(particles.forgotten));
-        particles.forgotten = 0;
+        particles.steps.erase(begin, begin + static_cast<std::ptrdiff_t>(particles.expired));
+        particles.expired = 0;
     }
 }
 
-/// Writes a step down, with its births.
-void add_step(
+/// Records a step with its births.
+void record_step(
     const ParticleEmitter& emitter, float scale, GpuParticleStep step, Random random,
     GpuParticles& particles) {
     const float dt = step.motion.step.dt;
-    forget_old(emitter, dt, particles);
+    drop_expired(emitter, dt, particles);
     const std::uint64_t window = particles.clock.born - particles.oldest();
     const std::size_t room = birth_room(emitter, window, particles.clock);
     step.first = particles.clock.born;
@@ -137,21 +138,21 @@ void record_gpu_particles(
                       GpuParticles& particles) {
         const std::uint64_t subject = subject_of(emitter, entity);
         GpuParticleStep step;
-        step.place = place_of(now, previous);
-        step.inherited = inherited_velocity(emitter, step.place, context.dt);
+        step.pose = emitter_pose(now, previous);
+        step.inherited = inherited_velocity(emitter, step.pose, context.dt);
         step.motion = find_emitter_motion(motion, wrap, now.world, context);
         if (collision != nullptr && wrap == nullptr && !step.motion.step.closed_form) {
             step.colliders = colliders;
         }
-        const float scale = seen_share(emitter, now.world, context.eye);
+        const float scale = screen_coverage(emitter, now.world, context.eye);
         if (is_unused(particles.clock)) {
             for (int i = 0; i < prewarm_steps(emitter, context.dt); ++i) {
                 const Random random = prewarm_random(context.seed, subject, i);
-                add_step(emitter, scale, step, random, particles);
+                record_step(emitter, scale, step, random, particles);
             }
         }
         const Random random = births_random(context.seed, subject, context.time.frame);
-        add_step(emitter, scale, step, random, particles);
+        record_step(emitter, scale, step, random, particles);
         const Random oldest = attributes_random(context.seed, subject, particles.oldest());
         particles.counter = oldest.counter();
         particles.key = oldest.key();

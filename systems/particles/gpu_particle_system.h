@@ -12,13 +12,13 @@
 
 namespace limn {
 
-/// Adds GpuParticles to every emitter that runs on the GPU and has none, and takes them from
-/// others.
+/// Adds GpuParticles to every emitter that runs on the GPU and has none, and removes them from
+/// all others.
 void add_gpu_particles(
     Query<const ParticleEmitter, Without<GpuParticles>> bare,
     Query<const ParticleEmitter, const GpuParticles> emitters, Commands commands);
 
-/// Writes down a step. After update_transforms and find_particle_obstacles.
+/// Records a step. After update_transforms and find_particle_obstacles.
 void record_gpu_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,

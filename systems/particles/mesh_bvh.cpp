@@ -32,7 +32,7 @@ using Dvec3 = glm::dvec3;
 inline constexpr int kMaxDepth = 32;
 inline constexpr std::size_t kStack = 7 * 2 * kMaxDepth + 8;
 
-/// Relative error of shares and sheared coordinates.
+/// Relative error of fractions and sheared coordinates.
 inline constexpr float kRounding = 1e-6f;
 
 /// A segment as the tests read it. Boxes are padded by what rounding may displace a triangle as
@@ -41,13 +41,13 @@ struct Ray {
     float from[3];
     int axis[3];         ///< permutes x, y, z: the last one is the longest of the direction
     float shear[2];      ///< turns the direction into the last axis
-    float scale;         ///< to shares
+    float scale;         ///< to fractions
     int near_side[3];    ///< the side of a box that is met first: 0 minimum, 1 maximum
     float origin[2][3];  ///< for the near side, the far side
     float inverse[3];    ///< 1 / direction, finite
 };
 
-/// Whether there is something to trace.
+/// Whether the segment is finite and long enough to trace.
 HWY_INLINE bool is_traceable(const Segment& segment) {
     const Vec3 from = glm::abs(segment.from);
     const Vec3 size = glm::abs(segment.to - segment.from);
@@ -57,36 +57,36 @@ HWY_INLINE bool is_traceable(const Segment& segment) {
            && longest >= 1e-30f;
 }
 
-HWY_INLINE float padding(const Segment& segment, float reach) {
+HWY_INLINE float padding(const Segment& segment, float largest) {
     const Vec3 from = glm::abs(segment.from);
-    return kRounding * (std::max(std::max(from.x, from.y), from.z) + reach);
+    return kRounding * (std::max(std::max(from.x, from.y), from.z) + largest);
 }
 
 /// Of a traceable segment.
 inline Ray make_ray(const Segment& segment, float pad) {
-    const Vec3 way = segment.to - segment.from;
-    const Vec3 size = glm::abs(way);
+    const Vec3 delta = segment.to - segment.from;
+    const Vec3 size = glm::abs(delta);
     const int longest = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     Ray ray;
     ray.axis[0] = (longest + 1) % 3;
     ray.axis[1] = (longest + 2) % 3;
     ray.axis[2] = longest;
-    ray.scale = 1.0f / way[longest];
-    ray.shear[0] = way[ray.axis[0]] / way[longest];
-    ray.shear[1] = way[ray.axis[1]] / way[longest];
+    ray.scale = 1.0f / delta[longest];
+    ray.shear[0] = delta[ray.axis[0]] / delta[longest];
+    ray.shear[1] = delta[ray.axis[1]] / delta[longest];
     for (int i = 0; i < 3; ++i) {
-        const bool down = std::signbit(way[i]);
+        const bool down = std::signbit(delta[i]);
         ray.from[i] = segment.from[i];
         ray.near_side[i] = down ? 1 : 0;
         ray.origin[0][i] = segment.from[i] + (down ? -pad : pad);
         ray.origin[1][i] = segment.from[i] + (down ? pad : -pad);
-        ray.inverse[i] = 1.0f / (down ? std::min(way[i], -1e-30f) : std::max(way[i], 1e-30f));
+        ray.inverse[i] = 1.0f / (down ? std::min(delta[i], -1e-30f) : std::max(delta[i], 1e-30f));
     }
     return ray;
 }
 
-/// A segment on its way through the tree: most short ones meet few boxes, which their own box finds
-/// out, so that the ray is made when it is needed first.
+/// A segment that traverses the tree. Most segments are so short that overlap with their bounding
+/// box already rejects nearly all nodes, so the ray is set up only when first needed.
 struct Path {
     const Segment& segment;
     float pad;
@@ -95,8 +95,8 @@ struct Path {
     Ray its_ray;
     bool has_ray = false;
 
-    Path(const Segment& its_segment, float reach)
-        : segment(its_segment), pad(padding(its_segment, reach)),
+    Path(const Segment& its_segment, float largest)
+        : segment(its_segment), pad(padding(its_segment, largest)),
           low(glm::min(segment.from, segment.to) - pad),
           high(glm::max(segment.from, segment.to) + pad) {}
     const Ray& ray() {
@@ -108,9 +108,9 @@ struct Path {
     }
 };
 
-/// The test of triangle `lane`, with exact signs: products of floats are exact in double. The
-/// share, or NaN if it is not hit. For rays through an edge as far as float can tell.
-inline float exact_share(const MeshBvh::Leaf& leaf, std::size_t lane, const Ray& ray) {
+/// Tests triangle `lane` with exact signs (products of floats are exact in double), for rays that
+/// in single precision pass through an edge. Returns the fraction, or NaN if it is not hit.
+inline float exact_fraction(const MeshBvh::Leaf& leaf, std::size_t lane, const Ray& ray) {
     float p[3][3];
     for (int corner = 0; corner < 3; ++corner) {
         float* const q = p[corner];
@@ -135,7 +135,7 @@ inline float exact_share(const MeshBvh::Leaf& leaf, std::size_t lane, const Ray&
         (u * double{p[0][2]} + v * double{p[1][2]} + w * double{p[2][2]}) / sum);
 }
 
-/// So that misses of the cache overlap.
+/// So that cache misses overlap.
 template <typename T>
 inline void prefetch(const T& object) {
     const auto* const bytes = reinterpret_cast<const unsigned char*>(&object);
@@ -153,7 +153,7 @@ namespace limn::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using mesh_bvh::Ray;
 
-/// Calls hit(lane, near) for each child whose box the path may meet within `limit`.
+/// Calls hit(lane, near) for each child whose box the path may intersect within `limit`.
 template <typename Hit>
 HWY_INLINE void meet_boxes(const MeshBvh::Node& node, mesh_bvh::Path& path, float limit, Hit hit) {
     const hn::CappedTag<float, MeshBvh::kChildren> d;
@@ -166,7 +166,7 @@ HWY_INLINE void meet_boxes(const MeshBvh::Node& node, mesh_bvh::Path& path, floa
         const auto overlaps = hn::And(hn::And(overlap(0), overlap(1)), overlap(2));
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, overlaps, bits);
-        if ((bits[0] & (bits[0] - 1)) == 0) {  // at most one: not worth the test that orders them
+        if ((bits[0] & (bits[0] - 1)) == 0) {  // at most one: no need to order by distance
             if (bits[0] != 0) {
                 hit(first + static_cast<std::size_t>(std::countr_zero(bits[0])), 0.0f);
             }
@@ -200,7 +200,7 @@ HWY_INLINE void meet_boxes(const MeshBvh::Node& node, mesh_bvh::Path& path, floa
     }
 }
 
-/// Calls hit(lane, share) for each triangle that the ray meets.
+/// Calls hit(lane, fraction) for each triangle that the ray intersects.
 template <typename Hit>
 HWY_INLINE void meet_triangles(const MeshBvh::Leaf& leaf, const Ray& ray, Hit hit) {
     const hn::CappedTag<float, MeshBvh::kTriangles> d;
@@ -244,9 +244,9 @@ HWY_INLINE void meet_triangles(const MeshBvh::Leaf& leaf, const Ray& ray, Hit hi
         const V sum = hn::Add(hn::Add(u, v), w);
         const V scaled = hn::Add(hn::Add(hn::Mul(u, az), hn::Mul(v, bz)), hn::Mul(w, cz));
         const V farthest = hn::Max(hn::Max(hn::Abs(az), hn::Abs(bz)), hn::Abs(cz));
-        HWY_ALIGN float shares[MeshBvh::kTriangles];
+        HWY_ALIGN float fractions[MeshBvh::kTriangles];
         HWY_ALIGN float slack[MeshBvh::kTriangles];
-        hn::StoreU(hn::Div(scaled, sum), d, shares);
+        hn::StoreU(hn::Div(scaled, sum), d, fractions);
         hn::StoreU(hn::Mul(rounding, farthest), d, slack);
         std::uint8_t bits[8] = {};
         std::uint8_t edges[8] = {};
@@ -254,11 +254,11 @@ HWY_INLINE void meet_triangles(const MeshBvh::Leaf& leaf, const Ray& ray, Hit hi
         hn::StoreMaskBits(d, on_edge, edges);
         for (unsigned left = bits[0]; left != 0; left &= left - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-            const float share = ((edges[0] >> lane) & 1u) != 0
-                                    ? mesh_bvh::exact_share(leaf, first + lane, ray)
-                                    : shares[lane];
-            if (share >= -slack[lane] && share <= 1 + slack[lane]) {
-                hit(first + lane, std::clamp(share, 0.0f, 1.0f));
+            const float fraction = ((edges[0] >> lane) & 1u) != 0
+                                       ? mesh_bvh::exact_fraction(leaf, first + lane, ray)
+                                       : fractions[lane];
+            if (fraction >= -slack[lane] && fraction <= 1 + slack[lane]) {
+                hit(first + lane, std::clamp(fraction, 0.0f, 1.0f));
             }
         }
     }
@@ -272,8 +272,8 @@ HWY_INLINE MeshHit trace(const MeshBvh& bvh, const Segment& segment) {
     if (bvh.nodes.empty() || !mesh_bvh::is_traceable(segment)) {
         return {};
     }
-    mesh_bvh::Path path(segment, bvh.reach);
-    MeshHit best = {.share = 1};
+    mesh_bvh::Path path(segment, bvh.largest);
+    MeshHit best = {.fraction = 1};
     const MeshBvh::Leaf* best_leaf = nullptr;
     std::size_t best_lane = 0;
     Open stack[mesh_bvh::kStack];
@@ -281,15 +281,16 @@ HWY_INLINE MeshHit trace(const MeshBvh& bvh, const Segment& segment) {
     std::size_t open = 1;
     while (open > 0) {
         const Open next = stack[--open];
-        if (next.near > best.share * (1 + mesh_bvh::kRounding)) {
+        if (next.near > best.fraction * (1 + mesh_bvh::kRounding)) {
             continue;
         }
         if ((next.child & MeshBvh::kLeafBit) != 0) {
             const MeshBvh::Leaf& leaf = bvh.leaves[next.child & ~MeshBvh::kLeafBit];
-            meet_triangles(leaf, path.ray(), [&](std::size_t lane, float share) {
+            meet_triangles(leaf, path.ray(), [&](std::size_t lane, float fraction) {
                 const std::uint32_t triangle = leaf.triangle[lane];
-                if (share < best.share || (share == best.share && triangle < best.triangle)) {
-                    best = {.share = share, .triangle = triangle};
+                if (fraction < best.fraction
+                    || (fraction == best.fraction && triangle < best.triangle)) {
+                    best = {.fraction = fraction, .triangle = triangle};
                     best_leaf = &leaf;
                     best_lane = lane;
                 }
@@ -298,7 +299,7 @@ HWY_INLINE MeshHit trace(const MeshBvh& bvh, const Segment& segment) {
         }
         const MeshBvh::Node& node = bvh.nodes[next.child];
         const std::size_t begin = open;
-        meet_boxes(node, path, best.share, [&](std::size_t lane, float near) {
+        meet_boxes(node, path, best.fraction, [&](std::size_t lane, float near) {
             std::size_t at = open++;  // nearest last
             for (; at > begin && stack[at - 1].near < near; --at) {
                 stack[at] = stack[at - 1];
@@ -379,7 +380,7 @@ Bounds bounds_of(std::span<const Item> items) {
     return bounds;
 }
 
-/// The area that a leaf of all this would have, times its groups of triangles.
+/// SAH cost: the surface area times the number of leaves that the triangles fill.
 float cost_of(const Bin& bin) {
     const std::size_t groups = (bin.count + MeshBvh::kTriangles - 1) / MeshBvh::kTriangles;
     return half_area(bin.bounds) * static_cast<float>(groups);
@@ -433,8 +434,8 @@ Cut find_cut(std::span<const Item> items, const Bounds& centers) {
     return best;
 }
 
-/// Splits where tracing is expected to be cheapest; in half where all centers are the same, or
-/// where bins have cut off little for many levels.
+/// Splits where the SAH cost is least; in halves if all centers coincide, or below kMaxDepth, where
+/// binning has cut off too little.
 std::pair<Range, Range> split(const Range& range, int depth) {
     Bounds centers;
     for (const Item& item : range.items) {
@@ -443,11 +444,11 @@ std::pair<Range, Range> split(const Range& range, int depth) {
     std::size_t first = range.items.size() / 2;
     const Cut cut = depth < mesh_bvh::kMaxDepth ? find_cut(range.items, centers) : Cut{};
     if (cut.axis >= 0) {
-        const auto middle =
+        const auto median =
             std::partition(range.items.begin(), range.items.end(), [&](const Item& item) {
                 return bin_of(item, centers, cut.axis) < cut.bin;
             });
-        first = static_cast<std::size_t>(middle - range.items.begin());
+        first = static_cast<std::size_t>(median - range.items.begin());
     }
     const std::span<Item> a = range.items.first(first);
     const std::span<Item> b = range.items.subspan(first);
@@ -533,13 +534,14 @@ Bounds bounds_of(const MeshBvh::Node& node) {
     return bounds;
 }
 
-/// 10 bits per axis of the place within `bounds`, interleaved.
+/// 10 bits per axis of the position within `bounds`, interleaved.
 std::uint32_t morton_code(const Vec3& p, const Bounds& bounds) {
     std::uint32_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const float share =
+        const float fraction =
             (p[axis] - bounds.min[axis]) / (bounds.max[axis] - bounds.min[axis]) * 1024.0f;
-        std::uint32_t bits = share >= 1 ? static_cast<std::uint32_t>(std::min(share, 1023.0f)) : 0;
+        std::uint32_t bits =
+            fraction >= 1 ? static_cast<std::uint32_t>(std::min(fraction, 1023.0f)) : 0;
         bits = (bits | bits << 16) & 0x030000ffu;
         bits = (bits | bits << 8) & 0x0300f00fu;
         bits = (bits | bits << 4) & 0x030c30c3u;
@@ -600,8 +602,8 @@ void refit_mesh_bvh(
     }
     if (!bvh.nodes.empty()) {
         const Bounds all = bounds_of(bvh.nodes[0]);
-        const Vec3 reach = glm::max(glm::abs(all.min), glm::abs(all.max));
-        bvh.reach = is_empty(all) ? 0.0f : std::max({reach.x, reach.y, reach.z});
+        const Vec3 size = glm::max(glm::abs(all.min), glm::abs(all.max));
+        bvh.largest = is_empty(all) ? 0.0f : std::max({size.x, size.y, size.z});
     }
 }
 

@@ -10,15 +10,15 @@
 
 namespace limn {
 
-// Where short segments, the paths of particles, first meet a triangle mesh: a bounding volume
+// First hits of short segments, the paths of particles, on a triangle mesh: a bounding volume
 // hierarchy with eight children per node, built by the surface area heuristic over 16 bins per axis
 // (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), directly with
 // eight children (Wald, Benthin and Boulos 2008). Children and triangles are tested with SIMD.
 //
 // Watertight (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013): a segment
-// never slips between triangles that share an edge or a vertex. Shares are tested with a tolerance
-// of their rounding errors, so that it does not slip between two segments with a common end either.
-// Triangles have two sides. Both results and their bits are the same on every machine.
+// never slips between triangles that share an edge or a vertex. Fractions are tested with a
+// tolerance for rounding, so that nothing slips between two segments with a common end either.
+// Triangles are two-sided. Results are bit-identical on every machine.
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
@@ -28,7 +28,7 @@ struct Segment {
 };
 
 struct MeshHit {
-    float share = 0;                       ///< of the way, 0 .. 1
+    float fraction = 0;                    ///< of the segment, 0 .. 1
     std::uint32_t triangle = kNoTriangle;  ///< indices[3 * triangle ...]; kNoTriangle: none hit
     Vec3 normal = Vec3(0);                 ///< unit; counterclockwise triangles face it
 };
@@ -50,7 +50,7 @@ struct MeshBvh {
     };
     std::vector<Node> nodes{};
     std::vector<Leaf> leaves{};
-    float reach = 0;  ///< largest absolute coordinate
+    float largest = 0;  ///< absolute coordinate
 };
 
 /// Three indices per triangle. Leaves out triangles without area, with coordinates that are not
@@ -59,16 +59,16 @@ struct MeshBvh {
 [[nodiscard]] MeshBvh
 build_mesh_bvh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 
-/// Follows moved vertices: the same tree with new bounds, slower the more triangles have changed
-/// places. `indices` must be those it was built from. Triangles that were left out stay so.
+/// Refits the same tree to moved vertices; tracing is slower the more triangles have moved relative
+/// to each other. `indices` must be those it was built from. Triangles that were left out stay so.
 void refit_mesh_bvh(
     MeshBvh& bvh, std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
 
-/// The first triangle on the way, of equally near ones that with the smallest index. None for
-/// segments that are not finite or shorter than 1e-30.
+/// The first triangle along the segment; of equally near ones, that with the smallest index. None
+/// for segments that are not finite or shorter than 1e-30.
 [[nodiscard]] MeshHit first_hit(const MeshBvh& bvh, const Segment& segment);
 
-/// Memory of first_hits: keep it from frame to frame.
+/// Scratch memory of first_hits: keep it from frame to frame.
 struct SegmentBatch {
     std::vector<std::uint32_t> keys{};
     std::vector<std::uint32_t> order{};
@@ -76,7 +76,7 @@ struct SegmentBatch {
 };
 
 /// hits[i] = first_hit(bvh, segments[i]), with equal bits, in the order of the Morton codes of
-/// their middles: neighbors read the same nodes. Both spans have the same size.
+/// their midpoints: neighbors read the same nodes. Both spans have the same size.
 void first_hits(
     const MeshBvh& bvh, std::span<const Segment> segments, std::span<MeshHit> hits,
     SegmentBatch& batch);

@@ -16,12 +16,12 @@ namespace limn {
 namespace {
 
 constexpr int kMaxSide = 64;
-constexpr std::size_t kMaxCellsOfATriangle = 8;  // on average
+constexpr std::size_t kMaxCellsPerTriangle = 8;  // on average
 constexpr int kTries = 64;
 
 using Triangle = std::array<Vec3, 3>;
 
-/// False if it is none.
+/// False if an index is beyond the positions, or a corner is not finite.
 bool find_triangle(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices, std::size_t i,
     Triangle& corners) {
@@ -52,8 +52,8 @@ Box box_of(const Triangle& corners) {
     return box;
 }
 
-int cell_of(float place, float low, float cell, int side) {
-    const float at = cell > 0 ? (place - low) / cell : 0;
+int cell_of(float coordinate, float low, float cell, int side) {
+    const float at = cell > 0 ? (coordinate - low) / cell : 0;
     return static_cast<int>(std::clamp(at, 0.0f, static_cast<float>(side - 1)));
 }
 
@@ -83,7 +83,8 @@ void for_triangles(
     }
 }
 
-/// The finest grid, up to one cell for two triangles, in which they are not over too many cells.
+/// Chooses the finest grid, of at most one cell per two triangles, in which a triangle is not over
+/// too many cells, and counts the triangles of each cell.
 void choose_cells(
     std::span<const Vec3> positions, std::span<const std::uint32_t> indices, const Box& bounds,
     MeshVolume& volume) {
@@ -103,7 +104,7 @@ void choose_cells(
                 ++all;
             });
         });
-        if (volume.side == 1 || all <= kMaxCellsOfATriangle * count) {
+        if (volume.side == 1 || all <= kMaxCellsPerTriangle * count) {
             volume.triangles.resize(all);
             break;
         }
@@ -113,7 +114,7 @@ void choose_cells(
     }
 }
 
-/// -1, 0 or 1: how the triangle turns around the column at x, z.
+/// Winding number of the triangle's projection around x, z: -1, 0 or 1.
 int turns_around(const Triangle& corners, double x, double z) {
     int turns = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -123,7 +124,7 @@ int turns_around(const Triangle& corners, double x, double z) {
         if ((static_cast<double>(from.z) > z) == rises) {
             continue;
         }
-        // From the lower end, whichever way the triangle takes it: both its triangles agree.
+        // Always from the end of smaller z: both triangles of an edge get the same result.
         const glm::dvec3 a(rises ? from : to);
         const glm::dvec3 b(rises ? to : from);
         if (x < a.x + (z - a.z) / (b.z - a.z) * (b.x - a.x)) {
@@ -133,7 +134,7 @@ int turns_around(const Triangle& corners, double x, double z) {
     return turns;
 }
 
-/// Of the triangle's plane at x, z; it is not upright there.
+/// Height of the triangle's plane at x, z.
 double height_at(const Triangle& corners, double x, double z) {
     const glm::dvec3 a(corners[0]);
     const glm::dvec3 u = glm::dvec3(corners[1]) - a;
@@ -217,8 +218,8 @@ std::optional<Vec3> draw_in_volume(
     const MeshVolume& volume, std::span<const Vec3> positions,
     std::span<const std::uint32_t> indices, Random& random) {
     for (int i = 0; i < kTries; ++i) {
-        const double share = volume.sums.back() * static_cast<double>(random.uniform());
-        const auto found = std::upper_bound(volume.sums.begin(), volume.sums.end(), share);
+        const double wanted = volume.sums.back() * static_cast<double>(random.uniform());
+        const auto found = std::upper_bound(volume.sums.begin(), volume.sums.end(), wanted);
         const auto last = static_cast<std::ptrdiff_t>(volume.sums.size()) - 1;
         const auto cell = static_cast<std::size_t>(std::min(found - volume.sums.begin(), last));
         const std::size_t side = static_cast<std::size_t>(volume.side);

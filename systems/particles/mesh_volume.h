@@ -10,17 +10,17 @@
 
 namespace limn {
 
-// Points within a closed mesh, even by volume, by rejection. The mesh is seen from above through a
-// grid of cells; over each cell a box reaches from the lowest to the highest of its triangles. A
-// point is drawn evenly from all boxes, and kept if it is inside: if the triangles above it
-// enclose it (nonzero winding along +y, so that bodies that overlap are one). A column whose
-// triangles do not close is left out. An edge that two triangles share belongs to exactly one of
-// them, as seen from above, so that a closed mesh is closed in every column.
+// Random points within a closed mesh, uniform by volume, by rejection sampling. The mesh is
+// projected vertically onto a grid of cells; over each cell a box extends from the lowest to the
+// highest of its triangles. A point is drawn uniformly from all boxes, and accepted if its winding
+// number along +y is not 0, so that overlapping bodies are one. Columns in which the triangles are
+// not closed are left out. In the projection, an edge that two triangles share belongs to exactly
+// one of them, so that a closed mesh is closed in every column.
 //
 // Filling takes a pass over the triangles, a point some tens of nanoseconds per triangle over its
-// cell: meshes that are deformed anew in each step need no hierarchy.
+// cell: meshes that deform in every step need no hierarchy.
 
-/// Of a mesh: keep it for its memory.
+/// The grid of a mesh: keep it from step to step to reuse its memory.
 struct MeshVolume {
     int side = 0;                        ///< cells along x and z
     Vec3 low = {0, 0, 0};                ///< of the mesh [m]
@@ -41,8 +41,8 @@ bool fill_mesh_volume(
     const MeshVolume& volume, std::span<const Vec3> positions,
     std::span<const std::uint32_t> indices, const Vec3& point);
 
-/// None after 64 points that were not inside: the mesh encloses nothing, or less than a twentieth
-/// of its boxes and chance was against it. fill_mesh_volume has returned true.
+/// None after 64 rejected points: the mesh encloses nothing, or so little of its boxes (less than
+/// about a twentieth) that chance may miss it. fill_mesh_volume must have returned true.
 [[nodiscard]] std::optional<Vec3> draw_in_volume(
     const MeshVolume& volume, std::span<const Vec3> positions,
     std::span<const std::uint32_t> indices, Random& random);

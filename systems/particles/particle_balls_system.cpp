@@ -17,10 +17,10 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kMaxNear = 64;  // of one ball that are tested, so that a crowd ends
-constexpr float kReach = 1.1f;          // of the radius: whom a push may bring together
-constexpr int kPasses = 12;             // over all pairs: as far as a push goes in a step
-constexpr float kBallRestSpeed = 0.2f;  // slower toward each other there is no rebound [m/s]
+constexpr std::uint32_t kMaxNear = 64;  // neighbors tested per ball: bounds the cost of a crowd
+constexpr float kPairRadius = 1.1f;     // of the radius: pairs that pushes may bring into contact
+constexpr int kPasses = 12;             // over all pairs: how many balls far a push spreads
+constexpr float kBallRestSpeed = 0.2f;  // below this approach speed there is no rebound [m/s]
 constexpr int kCellBits = 21;           // of each axis in a key
 constexpr std::int64_t kLastCell = (std::int64_t{1} << kCellBits) - 2;
 
@@ -74,25 +74,26 @@ void accelerate(ParticlePool& pool, std::size_t i, const Vec3& change) {
     pool.vz[i] += change.z;
 }
 
-/// Of a change of a pair: half each, or all of it for who does not stick to a surface.
-struct Shares {
+/// How the displacement of a pair is distributed: half each, or all of it to the one that does not
+/// stick to a surface.
+struct MassWeights {
     float a = 0.5f;
     float b = 0.5f;
 };
 
-Shares shares_of(const ParticlePool& pool, const BallPair& pair) {
+MassWeights weights_of(const ParticlePool& pool, const BallPair& pair) {
     const auto is_free = [&](std::uint32_t i) {
         return i >= pool.stuck.size() || pool.stuck[i] == 0;
     };
     const float a = is_free(pair.a) ? 1.0f : 0.0f;
     const float b = is_free(pair.b) ? 1.0f : 0.0f;
-    return a + b > 0 ? Shares{a / (a + b), b / (a + b)} : Shares{0, 0};
+    return a + b > 0 ? MassWeights{a / (a + b), b / (a + b)} : MassWeights{0, 0};
 }
 
-/// The places of a pool, moved until nobody overlaps, or nearly.
-class Places {
+/// The positions of a pool, which passes move apart until almost no balls overlap.
+class BallPositions {
   public:
-    Places(const ParticleBalls& balls, const BallWalls& walls, const ParticlePool& pool)
+    BallPositions(const ParticleBalls& balls, const BallWalls& walls, const ParticlePool& pool)
         : radius_(balls.radius), walls_(walls), pool_(pool), x_(pool.x), y_(pool.y), z_(pool.z) {}
 
     [[nodiscard]] Vec3 at(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
@@ -107,19 +108,19 @@ class Places {
         Random random(pool_.look[pair.a], pool_.look[pair.b], name_hash("particle balls"), 0);
         return random.direction();
     }
-    /// Whether they overlapped.
+    /// Returns whether they overlapped.
     bool push_apart(const BallPair& pair) {
         const float overlap = 2 * radius_ - glm::distance(at(pair.a), at(pair.b));
         if (overlap > 0) {
             const Vec3 axis = axis_of(pair);
-            const Shares shares = shares_of(pool_, pair);
-            move(pair.a, (-overlap * shares.a) * axis);
-            move(pair.b, (overlap * shares.b) * axis);
+            const MassWeights weights = weights_of(pool_, pair);
+            move(pair.a, (-overlap * weights.a) * axis);
+            move(pair.b, (overlap * weights.b) * axis);
         }
         return overlap > 0;
     }
-    /// Walls hold whoever has been pushed into them since the last call.
-    void meet_walls() {
+    /// Stops balls at the walls that they have been pushed into since the last call.
+    void collide_with_walls() {
         if (walls_.solid == nullptr || walls_.solid->colliders.empty()) {
             return;
         }
@@ -151,17 +152,17 @@ class Places {
     }
 
   private:
-    void move(std::uint32_t i, const Vec3& way) {
-        x_[i] += way.x;
-        y_[i] += way.y;
-        z_[i] += way.z;
+    void move(std::uint32_t i, const Vec3& offset) {
+        x_[i] += offset.x;
+        y_[i] += offset.y;
+        z_[i] += offset.z;
     }
 
     float radius_;
     BallWalls walls_;
     const ParticlePool& pool_;
     std::vector<float> x_, y_, z_;
-    std::vector<float> held_x_, held_y_, held_z_;  // after the last call of meet_walls
+    std::vector<float> held_x_, held_y_, held_z_;  // after the last call of collide_with_walls
     std::vector<float> vx_, vy_, vz_;
     std::vector<std::uint8_t> marks_;
     std::vector<ParticleHit> hits_;
@@ -174,20 +175,20 @@ void find_ball_pairs(const ParticlePool& pool, float radius, std::vector<BallPai
     const float width = 2 * radius;
     const std::vector<Keyed> sorted = sort_by_cell(pool, width);
     const std::size_t count = sorted.size();
-    // Of the cells around, half: own cell and the next one in z, then rows of three along z.
+    // Half of the neighbor cells: the own cell and the next one in z, then rows of three along z.
     constexpr std::uint64_t kRows[] = {
         key_of(0, 1, 0), key_of(1, 0, 0) - key_of(0, 1, 0), key_of(1, 0, 0),
         key_of(1, 0, 0) + key_of(0, 1, 0)};
     std::array<std::size_t, std::size(kRows)> begins{};
     for (std::size_t i = 0; i < count; ++i) {
         const Keyed& one = sorted[i];
-        const Vec3 place = ball_center(pool, one.index);
+        const Vec3 center = ball_center(pool, one.index);
         std::uint32_t tested = 0;
         const auto test_from = [&](std::size_t first, std::uint64_t last_key) {
             for (std::size_t j = first; j < count && sorted[j].key <= last_key && tested < kMaxNear;
                  ++j) {
                 ++tested;
-                const Vec3 offset = ball_center(pool, sorted[j].index) - place;
+                const Vec3 offset = ball_center(pool, sorted[j].index) - center;
                 if (glm::dot(offset, offset) < width * width) {
                     pairs.push_back({one.index, sorted[j].index});
                 }
@@ -195,12 +196,12 @@ void find_ball_pairs(const ParticlePool& pool, float radius, std::vector<BallPai
         };
         test_from(i + 1, one.key + 1);
         for (std::size_t row = 0; row < begins.size(); ++row) {
-            const std::uint64_t middle = one.key + kRows[row];
+            const std::uint64_t center_key = one.key + kRows[row];
             std::size_t& begin = begins[row];
-            while (begin < count && sorted[begin].key < middle - 1) {
+            while (begin < count && sorted[begin].key < center_key - 1) {
                 ++begin;
             }
-            test_from(begin, middle + 1);
+            test_from(begin, center_key + 1);
         }
     }
 }
@@ -211,49 +212,49 @@ void collide_balls(
         return;
     }
     std::vector<BallPair> pairs;
-    find_ball_pairs(pool, kReach * balls.radius, pairs);
+    find_ball_pairs(pool, kPairRadius * balls.radius, pairs);
     if (pairs.empty()) {
         return;
     }
-    Places places(balls, walls, pool);
+    BallPositions positions(balls, walls, pool);
     std::vector<std::uint8_t> touched(pairs.size(), 0);
     for (int pass = 0; pass < kPasses; ++pass) {
         for (std::size_t k = 0; k < pairs.size(); ++k) {
-            // To and fro, so that nobody is always first.
+            // Alternating order, so that no pair is favored.
             const std::size_t i = pass % 2 == 0 ? k : pairs.size() - 1 - k;
-            if (places.push_apart(pairs[i])) {
+            if (positions.push_apart(pairs[i])) {
                 touched[i] = 1;
             }
         }
-        places.meet_walls();
+        positions.collide_with_walls();
     }
-    std::vector<float> approach;  // before that
+    std::vector<float> approach;  // speeds before the collision
     approach.reserve(pairs.size());
     for (const BallPair& pair : pairs) {
-        approach.push_back(
-            glm::dot(velocity_of(pool, pair.a) - velocity_of(pool, pair.b), places.axis_of(pair)));
+        approach.push_back(glm::dot(
+            velocity_of(pool, pair.a) - velocity_of(pool, pair.b), positions.axis_of(pair)));
     }
     for (std::uint32_t i = 0; i < pool.size(); ++i) {
-        const Vec3 push = places.at(i) - ball_center(pool, i);
+        const Vec3 push = positions.at(i) - ball_center(pool, i);
         accelerate(pool, i, push / dt);
         pool.x[i] += push.x;
         pool.y[i] += push.y;
         pool.z[i] += push.z;
     }
-    // They part as fast as they bounce, however far they have been pushed.
+    // The separation speed follows from the bounce alone, not from the distance pushed.
     const float bounce = std::clamp(finite_or(balls.bounce, 0), 0.0f, 1.0f);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (touched[i] == 0) {
             continue;
         }
         const BallPair& pair = pairs[i];
-        const Vec3 axis = places.axis_of(pair);
+        const Vec3 axis = positions.axis_of(pair);
         const float parting = glm::dot(velocity_of(pool, pair.b) - velocity_of(pool, pair.a), axis);
         const float wanted =
             approach[i] > kBallRestSpeed ? bounce * approach[i] : std::max(-approach[i], 0.0f);
-        const Shares shares = shares_of(pool, pair);
-        accelerate(pool, pair.a, ((parting - wanted) * shares.a) * axis);
-        accelerate(pool, pair.b, ((wanted - parting) * shares.b) * axis);
+        const MassWeights weights = weights_of(pool, pair);
+        accelerate(pool, pair.a, ((parting - wanted) * weights.a) * axis);
+        accelerate(pool, pair.b, ((wanted - parting) * weights.b) * axis);
     }
 }
 

@@ -14,12 +14,12 @@
 namespace limn {
 
 // Particles that collide with each other (particle.interparticle; after Kipfer, Segal and
-// Westermann, "UberFlow", 2004): they are sorted by the cells of a grid as wide as a ball, so that
-// whoever touches a ball is in one of the 27 cells around it. Pairs are moved apart by half of
-// their overlap each, pair by pair, a few times, with walls in between; then they part by their
-// share of the speed at which they met (Mueller et al., "Detailed Rigid Body Simulation with
-// Extended Position Based Dynamics", 2020). So heaps rest, and overlaps do not explode. Momentum is
-// kept; of two that meet, with a bounce of 1, energy too.
+// Westermann, "UberFlow", 2004): they are sorted by the cells of a grid whose cells are as wide as
+// a ball, so that all that touch a ball are in the 27 cells around it. In several passes, each pair
+// is moved apart by half of its overlap each, and colliders are resolved after each pass; then
+// pairs separate at a fraction of their approach speed (Mueller et al., "Detailed Rigid Body
+// Simulation with Extended Position Based Dynamics", 2020). So heaps come to rest, and overlaps do
+// not explode. Momentum is conserved; in a collision of two with a bounce of 1, energy too.
 
 /// Two particles of a pool, by index.
 struct BallPair {
@@ -27,18 +27,18 @@ struct BallPair {
     std::uint32_t b = 0;
 };
 
-/// Pairs nearer than 2 `radius` [m], each once, at most 64 for each particle as its first. In an
-/// order that depends on the places alone.
+/// Pairs closer than 2 `radius` [m], each once. Each particle is tested against at most 64 of those
+/// after it in the order of cells. The order of pairs depends on the positions alone.
 void find_ball_pairs(const ParticlePool& pool, float radius, std::vector<BallPair>& pairs);
 
-/// What holds the balls of an emitter. Of its meshes, planes and so on, not of water.
+/// The solid colliders that balls may not be pushed into: all but water.
 struct BallWalls {
     const ColliderSet* solid = nullptr;
-    float radius = 0;  ///< of a ball before a wall: ParticleCollision::radius [m]
+    float radius = 0;  ///< of a ball against walls: ParticleCollision::radius [m]
 };
 
-/// Lets those of a pool collide that touch now, at the end of a step of `dt` [s]. Particles that
-/// stick to a surface do not move.
+/// Resolves the collisions of particles of a pool that touch at the end of a step of `dt` [s].
+/// Particles that stick to a surface do not move.
 void collide_balls(
     const ParticleBalls& balls, const BallWalls& walls, float dt, ParticlePool& pool);
 

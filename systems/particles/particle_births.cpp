@@ -2,7 +2,7 @@
 
 #include "systems/particles/birth_attributes.h"
 #include "systems/particles/birth_kernels.h"
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 
 #include <glm/geometric.hpp>
 
@@ -18,12 +18,12 @@ namespace limn {
 namespace {
 
 constexpr float kAspect = 16.0f / 9.0f;
-constexpr double kMostBirths = 1e12;  // of a cause in a step or a second, so that sums stay finite
-constexpr double kSlack =
-    1e-5;  // of a birth: 600 per second are 10 in each step of 1/60 s, as far as floats know
-constexpr double kMinDuration = 1e-3;  // [s] of an emitter that starts again
+constexpr double kMaxBirths = 1e12;  // of a burst or per second, so that sums stay finite
+// Of a birth: 600 per second are 10 in each step of 1/60 s, in spite of rounding.
+constexpr double kSlack = 1e-5;
+constexpr double kMinDuration = 1e-3;  // [s] of an emitter that loops
 
-/// Once for all particles that it may hold: what is not used yet costs address space alone.
+/// Reserves the whole capacity at once: unused memory only costs address space.
 void reserve(ParticlePool& pool, std::size_t count) {
     for (auto* column :
          {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
@@ -50,7 +50,7 @@ class NewParticles {
     NewParticles& operator=(const NewParticles&) = delete;
     ~NewParticles() { resize(size_); }
 
-    /// Unless its place or life is not finite.
+    /// Unless its position or life is not finite.
     void add(const Newborn& born) {
         if (!born.is_finite()) {
             return;
@@ -102,7 +102,7 @@ class NewParticles {
     std::size_t size_;
 };
 
-/// The same scale, at another place and turned otherwise.
+/// The same scale, with another position and rotation.
 Affine turned_to(const Affine& world, const Vec3& position, const Quat& turn) {
     const Vec3 size = {
         glm::length(transform_vector(world, {1, 0, 0})),
@@ -111,22 +111,23 @@ Affine turned_to(const Affine& world, const Vec3& position, const Quat& turn) {
     return affine_from(position, turn, size);
 }
 
-bool is_moving(const EmitterPlace& place) {
-    return !std::equal(std::begin(place.now.row), std::end(place.now.row), place.before.row);
+bool is_moving(const EmitterPose& pose) {
+    return !std::equal(std::begin(pose.now.row), std::end(pose.now.row), pose.before.row);
 }
 
-/// A birth on a surface. `draw.added` is not added but the surface's own velocity.
+/// A birth on a surface. The surface's own velocity is added instead of `draw.added`.
 std::optional<Newborn> draw_birth_on(
     const SurfaceSource& surface, const SurfaceTable& table, const BirthDraw& draw, float at,
     std::uint64_t number) {
     Random random = attributes_random(draw.seed, draw.subject, number);
-    Random places = surface_random(draw.seed, draw.subject, number);
+    Random surface_numbers = surface_random(draw.seed, draw.subject, number);
     const float dt = draw.rewind.step.dt;
-    const std::optional<SurfacePoint> point = surface_point(surface, table, number, at, dt, places);
+    const std::optional<SurfacePoint> point =
+        surface_point(surface, table, number, at, dt, surface_numbers);
     if (!point) {
         return std::nullopt;
     }
-    const Affine world = turned_to(mix_places(draw.place, at), point->position, point->turn);
+    const Affine world = turned_to(interpolate_pose(draw.pose, at), point->position, point->turn);
     const BirthAttributes attributes = draw_attributes(*draw.emitter, world, random);
     const Vec3 added = point->velocity * finite_or(surface.surface->inherit, 0);
     Newborn born = {
@@ -146,12 +147,12 @@ double interval_of(const ParticleBurst& burst) {
 double first_repeat(const ParticleBurst& burst, double begin) {
     return std::max(std::ceil((begin - static_cast<double>(burst.time)) / interval_of(burst)), 0.0);
 }
-/// When that is, after `begin` [s].
+/// When it is due, after `begin` [s].
 double time_of_repeat(const ParticleBurst& burst, double repeat, double begin) {
     return static_cast<double>(burst.time) + repeat * interval_of(burst) - begin;
 }
 
-/// One piece of a step, without a restart of the emitter within it.
+/// A part of a step within which the emitter does not restart.
 struct Piece {
     double begin;  ///< of the emitter's time [s]
     double length;
@@ -168,7 +169,7 @@ class Births {
         if (!(rate > 0)) {
             return;
         }
-        rate = std::min(rate, kMostBirths);
+        rate = std::min(rate, kMaxBirths);
         const double due = clock_.carry + rate * piece.length;
         const double whole = std::floor(due + kSlack);
         add(piece.offset + (1 - clock_.carry) / rate, 1 / rate, whole);
@@ -182,7 +183,7 @@ class Births {
                 break;
             }
             const auto asked = static_cast<double>(spread(burst.count, burst.spread, random));
-            add(piece.offset + at, 0, std::min(std::round(asked), kMostBirths));
+            add(piece.offset + at, 0, std::min(std::round(asked), kMaxBirths));
         }
     }
 
@@ -247,7 +248,7 @@ void find_births(
         const Piece piece = {
             clock.time, std::min(left, std::max(rest, 0.0)), static_cast<double>(dt) - left};
         if (emitter.active) {
-            // Of its middle: exact for straight lines.
+            // At its midpoint: exact for straight lines.
             const double period = duration > 0 ? duration : 1.0;
             const double at = std::fmod((piece.begin + 0.5 * piece.length) / period, 1.0);
             const float factor = sample_curve(emitter.rate_curve, static_cast<float>(at));
@@ -262,24 +263,25 @@ void find_births(
     }
 }
 
-float screen_share(float radius, float distance, float fov_y) {
+float screen_coverage(float radius, float distance, float fov_y) {
     if (!(distance > radius)) {
         return 1;
     }
     // A disc of this radius in an image plane of height 2 tan(fov / 2).
-    const float seen = radius / std::sqrt(distance * distance - radius * radius);
+    const float projected = radius / std::sqrt(distance * distance - radius * radius);
     const float half_height = std::tan(0.5f * fov_y);
-    return std::min(kPi * seen * seen / (4.0f * half_height * half_height * kAspect), 1.0f);
+    return std::min(
+        kPi * projected * projected / (4.0f * half_height * half_height * kAspect), 1.0f);
 }
 
-Vec3 inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& place, float dt) {
+Vec3 inherited_velocity(const ParticleEmitter& emitter, const EmitterPose& pose, float dt) {
     const auto origin = [](const Affine& world) { return transform_point(world, Vec3(0)); };
-    const Vec3 moved = (origin(place.now) - origin(place.before)) / dt;
+    const Vec3 moved = (origin(pose.now) - origin(pose.before)) / dt;
     return moved * finite_or(emitter.inherit, 0);
 }
 
 void add_particles(
-    const ParticleEmitter& emitter, const EmitterPlace& place, const ParticleStep& step,
+    const ParticleEmitter& emitter, const EmitterPose& pose, const ParticleStep& step,
     const SurfaceSource* surface, std::uint64_t seed, std::uint64_t subject,
     const std::vector<BirthRun>& births, ParticlePool& pool) {
     std::size_t count = 0;
@@ -289,7 +291,7 @@ void add_particles(
     if (count == 0) {
         return;
     }
-    const Vec3 inherited = inherited_velocity(emitter, place, step.dt);
+    const Vec3 inherited = inherited_velocity(emitter, pose, step.dt);
     thread_local SurfaceTable table;  // its memory is reused
     if (surface != nullptr && !fill_surface_table(*surface, table)) {
         pool.clock.dropped += count;
@@ -297,8 +299,8 @@ void add_particles(
     }
     make_room(emitter, count, pool);
     NewParticles particles(pool, count);
-    const BirthDraw draw = {&emitter,  place, is_moving(place), Rewind(step),
-                            inherited, seed,  subject};
+    const BirthDraw draw = {&emitter,  pose, is_moving(pose), Rewind(step),
+                            inherited, seed, subject};
     for (const BirthRun& run : births) {
         if (surface == nullptr) {
             particles.add(draw, run);
@@ -322,13 +324,13 @@ void add_spawns(
     NewParticles particles(pool, spawns.size());
     for (const ParticleSpawn& spawn : spawns) {
         Random random = attributes_random(seed, subject, pool.clock.born++);
-        const Affine place = spawn.axis == Vec3(0)
+        const Affine shape = spawn.axis == Vec3(0)
                                  ? world
                                  : turned_to(world, Vec3(0), Quat(Vec3(0, 1, 0), spawn.axis));
-        const BirthAttributes attributes = draw_attributes(emitter, place, random);
+        const BirthAttributes attributes = draw_attributes(emitter, shape, random);
         const Vec3 velocity = attributes.velocity + spawn.velocity;
         const Vec3 position =
-            spawn.position + transform_vector(place, attributes.local) + velocity * spawn.age;
+            spawn.position + transform_vector(shape, attributes.local) + velocity * spawn.age;
         particles.add({position, velocity, spawn.age, attributes.life, attributes.look});
     }
 }

@@ -18,41 +18,42 @@ namespace limn {
 // When and where particles are born. All random numbers are keyed by the emitter and the number of
 // the birth, so they depend neither on the frame rate nor on what else is born.
 
-/// How many more may be born where `window` count as alive (particle.linear-window).
+/// How many more particles the capacity admits while `window` of them count as alive
+/// (particle.linear-window).
 [[nodiscard]] std::size_t
 birth_room(const ParticleEmitter& emitter, std::uint64_t window, const EmitterClock& clock);
 
-/// Whether a step has no births for sure: then find_births would only advance the clock by `dt`.
+/// Whether a step certainly has no births: then find_births would only advance the clock by `dt`.
 [[nodiscard]] bool
 has_no_births(const ParticleEmitter& emitter, float dt, const EmitterClock& clock);
 
 /// The births of a step: those of the rate in equal intervals that go on across steps, then those
-/// of bursts. Advances the clock. `random` decides the spreads; `scale` is a factor on the rate. At
+/// of bursts. Advances the clock. `random` is for the spreads; `scale` is a factor on the rate. At
 /// most `room` births; the others are added to `clock.dropped`.
 void find_births(
     const ParticleEmitter& emitter, float scale, float dt, std::size_t room, Random& random,
     EmitterClock& clock, std::vector<BirthRun>& births);
 
-/// Share 0 .. 1 of an image of 16 : 9 that a ball covers in its middle, seen from `distance` with
-/// the vertical field of view `fov_y` [rad]; 1 from inside.
-[[nodiscard]] float screen_share(float radius, float distance, float fov_y);
+/// Fraction 0 .. 1 of a 16 : 9 image that a ball in its center covers at `distance`, with the
+/// vertical field of view `fov_y` [rad]; 1 from inside.
+[[nodiscard]] float screen_coverage(float radius, float distance, float fov_y);
 
 /// Adds a particle for every drop that waves have thrown up in this step (water.crest-spray,
-/// water.impact-spray), at any instant of it; lifetimes are the emitter's. At most up to its
-/// capacity.
+/// water.impact-spray), at a random instant of the step; lifetimes are the emitter's. Drops over
+/// capacity are counted in `clock.dropped`.
 void add_drops(
     const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, const ParticleStep& step,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool);
 
-/// The share of the emitter's own velocity that is added at birth [m/s].
+/// The part of the emitter's own velocity that is added at birth [m/s].
 [[nodiscard]] Vec3
-inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& place, float dt);
+inherited_velocity(const ParticleEmitter& emitter, const EmitterPose& pose, float dt);
 
-/// Adds a particle for every birth, at the emitter's place of that instant, as far back on its way
-/// as a whole step will bring it forward; on `surface` unless it is null. Where nothing can be born
-/// there, the births are added to `clock.dropped`.
+/// Adds a particle for every birth, where the emitter is at that instant, or on `surface` unless it
+/// is null. Particles are moved back in time, so that a whole step brings them to where they should
+/// be. If nothing can be born on the surface, the births are added to `clock.dropped`.
 void add_particles(
-    const ParticleEmitter& emitter, const EmitterPlace& place, const ParticleStep& step,
+    const ParticleEmitter& emitter, const EmitterPose& pose, const ParticleStep& step,
     const SurfaceSource* surface, std::uint64_t seed, std::uint64_t subject,
     const std::vector<BirthRun>& births, ParticlePool& pool);
 

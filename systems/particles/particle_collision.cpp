@@ -15,12 +15,12 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kCollisionBlock = 512;  // particles that are tested before some of them move
+constexpr std::size_t kCollisionBlock = 512;  // particles per broad phase
 
-/// What a particle may meet; `reach` is empty where nothing is known.
+/// What a particle may hit; `bounds` is empty if they are not known.
 struct Obstacles {
     std::span<const Collider> colliders;
-    std::span<const ColliderReach> reach;
+    std::span<const ColliderBounds> bounds;
 };
 
 struct Step {
@@ -39,10 +39,10 @@ struct NumberedContact {
 bool is_far_from_obstacle(
     const Obstacles& obstacles, std::size_t i, const Vec3& from, const Vec3& to, float radius,
     float skin) {
-    return !obstacles.reach.empty() && !may_touch(obstacles.reach[i], from, to, radius, skin);
+    return !obstacles.bounds.empty() && !may_touch(obstacles.bounds[i], from, to, radius, skin);
 }
 
-/// Of the contacts with all colliders the first.
+/// The first contact with any collider.
 std::optional<NumberedContact>
 nearest_contact(const Obstacles& obstacles, const Vec3& from, const Vec3& to, float radius) {
     std::optional<NumberedContact> nearest;
@@ -52,14 +52,14 @@ nearest_contact(const Obstacles& obstacles, const Vec3& from, const Vec3& to, fl
         }
         const std::optional<Contact> contact =
             first_contact(obstacles.colliders[i], from, to, radius);
-        if (contact && (!nearest || contact->share < nearest->contact.share)) {
+        if (contact && (!nearest || contact->fraction < nearest->contact.fraction)) {
             nearest = {*contact, static_cast<std::uint32_t>(i)};
         }
     }
     return nearest;
 }
 
-/// Moves to `to` if nothing is between.
+/// Moves to `to` if no collider is in between.
 void move_if_clear(Vec3& position, const Vec3& to, const Obstacles& obstacles, float radius) {
     if (!nearest_contact(obstacles, position, to, radius)) {
         position = to;
@@ -80,7 +80,7 @@ CollisionResult follow(
     const float skin = skin_of(step.from, step.to, options.skin);
     Vec3 to = step.to;
 
-    // Inside, or so near that rounding decides: out, which is no bounce.
+    // If it starts inside, or so near that rounding decides, it is pushed out without a bounce.
     for (std::size_t i = 0; i < obstacles.colliders.size(); ++i) {
         if (is_far_from_obstacle(obstacles, i, now.position, now.position, step.radius, skin)) {
             continue;
@@ -91,7 +91,7 @@ CollisionResult follow(
             continue;
         }
         const bool inside = out->depth > 0.5f * skin;
-        Vec3 way = to - now.position;
+        Vec3 path = to - now.position;
         move_if_clear(now.position, out->point + 0.5f * skin * out->normal, obstacles, step.radius);
         if (inside && stops) {
             hit(static_cast<std::uint32_t>(i), now.position, out->normal, now.velocity);
@@ -101,9 +101,9 @@ CollisionResult follow(
         }
         if (inside) {
             now.velocity -= std::min(glm::dot(now.velocity, out->normal), 0.0f) * out->normal;
-            way -= std::min(glm::dot(way, out->normal), 0.0f) * out->normal;
+            path -= std::min(glm::dot(path, out->normal), 0.0f) * out->normal;
         }
-        to = now.position + way;
+        to = now.position + path;
     }
 
     float time = step.dt;
@@ -128,7 +128,7 @@ CollisionResult follow(
         }
         now.velocity = respond(
             now.velocity, contact.normal, {rests ? 0.0f : response.bounce, response.friction});
-        const float left = 1 - contact.share;
+        const float left = 1 - contact.fraction;
         time *= left;
         to = now.position
              + (options.mode == CollisionOptions::Mode::Time
@@ -195,9 +195,9 @@ CollisionResult move_with_collisions(
 
 void set_colliders(ColliderSet& set, std::span<const Collider> colliders) {
     set.colliders.assign(colliders.begin(), colliders.end());
-    set.reach.clear();
+    set.bounds.clear();
     for (const Collider& collider : colliders) {
-        set.reach.push_back(find_reach(collider));
+        set.bounds.push_back(find_collider_bounds(collider));
     }
 }
 
@@ -206,9 +206,9 @@ void collide_particles(
     const SurfaceResponse& response, const CollisionOptions& options,
     std::vector<ParticleHit>& hits) {
     check_sizes(particles);
-    LIMN_CHECK(set.reach.size() == set.colliders.size());
+    LIMN_CHECK(set.bounds.size() == set.colliders.size());
     const CollidingParticles& p = particles;
-    const ParticleWays ways = {
+    const ParticlePaths paths = {
         .x0 = p.x0,
         .y0 = p.y0,
         .z0 = p.z0,
@@ -218,12 +218,12 @@ void collide_particles(
         .radius = p.radius,
         .one_radius = options.radius,
         .skin = options.skin};
-    const Obstacles obstacles = {set.colliders, set.reach};
-    std::array<std::uint32_t, kCollisionBlock + kReachRoom> near;
+    const Obstacles obstacles = {set.colliders, set.bounds};
+    std::array<std::uint32_t, kCollisionBlock + kCandidatePadding> near;
     for (std::size_t first = 0; first < p.x.size(); first += kCollisionBlock) {
         const std::size_t count = std::min(kCollisionBlock, p.x.size() - first);
         begin_marks(p, first, count);
-        const std::size_t near_count = find_near(ways, first, count, set.reach, near.data());
+        const std::size_t near_count = find_near(paths, first, count, set.bounds, near.data());
         for (const std::uint32_t i : std::span(near).first(near_count)) {
             if (p.marks[i] != 0) {
                 continue;

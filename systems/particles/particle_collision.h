@@ -1,7 +1,7 @@
 #pragma once
 
 #include "systems/particles/collider.h"
-#include "systems/particles/collider_reach.h"
+#include "systems/particles/collider_bounds.h"
 
 #include <cstdint>
 #include <span>
@@ -15,8 +15,8 @@ namespace limn {
 
 /// Response of a surface, each 0 .. 1, clamped (table 8.1).
 struct SurfaceResponse {
-    float bounce = 0.3f;    ///< share of the normal speed kept, outward; "bump"
-    float friction = 0.8f;  ///< share of the tangential velocity *kept*: 1 is frictionless
+    float bounce = 0.3f;    ///< fraction of the normal speed kept, outward; "bump"
+    float friction = 0.8f;  ///< fraction of the tangential velocity *kept*: 1 is frictionless
 };
 
 /// friction v_t - bounce v_n for a velocity toward the surface; others are unchanged. Never faster
@@ -32,14 +32,14 @@ enum class ContactAction : std::uint8_t {
 };
 
 struct CollisionOptions {
-    /// What a contact leaves: the rest of the time, at the new speed, or the rest of the length as
-    /// in the book, which is as long however much speed was lost.
+    /// What is left to move after a contact: the rest of the time at the new speed; or, as in the
+    /// book, the rest of the path's length, whatever speed was lost.
     enum class Mode : std::uint8_t { Time, Length };
 
-    int max_bounces = 8;      ///< after this many the particle stops where it is
+    int max_bounces = 8;      ///< in a step; then the particle stops
     float skin = 1e-4f;       ///< distance kept from surfaces [m]; more far from the origin
     float radius = 0;         ///< of the particle [m]
-    float rest_speed = 0.2f;  ///< slower toward the surface: no rebound and no hit [m/s]
+    float rest_speed = 0.2f;  ///< slower impacts neither rebound nor count as hits [m/s]
     Mode mode = Mode::Time;
     ContactAction action = ContactAction::Bounce;
 };
@@ -50,11 +50,11 @@ struct CollisionResult {
     int contacts = 0;
 };
 
-/// Moves a particle by velocity * dt, dt >= 0 [s], responding to each contact on the way. Each
-/// straight piece has been tested against all colliders, so that a particle that is outside stays
-/// outside, at any speed and however thin the wall. One that starts inside a solid is pushed out,
-/// and loses its speed into it, but does not bounce. If position, velocity or dt is not finite, it
-/// stays and stops.
+/// Moves a particle by velocity * dt, dt >= 0 [s], responding to each contact along the path. Each
+/// straight part of the path is tested against all colliders, so that a particle that is outside
+/// stays outside, at any speed and however thin the wall. One that starts inside a solid is pushed
+/// out and loses its speed toward the inside, but does not bounce. If position, velocity or dt is
+/// not finite, it stays and stops.
 [[nodiscard]] CollisionResult move_with_collisions(
     const Vec3& position, const Vec3& velocity, float dt, std::span<const Collider> colliders,
     const SurfaceResponse& response, const CollisionOptions& options = {});
@@ -67,7 +67,7 @@ inline constexpr std::uint8_t kParticleKilled = 4;  ///< by ContactAction::Kill
 /// A step of particles, an array per scalar, all of the same size.
 struct CollidingParticles {
     std::span<const float> x0{}, y0{}, z0{};  ///< where the step began [m]
-    std::span<float> x{}, y{}, z{};           ///< where it ends if nothing is in the way [m]
+    std::span<float> x{}, y{}, z{};           ///< where it ends if there is no contact [m]
     std::span<float> vx{}, vy{}, vz{};        ///< then [m/s]
     std::span<const float> radius{};          ///< [m]; empty: CollisionOptions::radius for all
     std::span<std::uint8_t> marks{};          ///< see collide_particles
@@ -82,23 +82,24 @@ struct ParticleHit {
     Vec3 velocity = Vec3(0);  ///< before the hit [m/s]
 };
 
-/// Colliders and what is needed to leave out quickly those that a particle cannot touch.
+/// Colliders, with bounds that quickly reject those that a particle cannot touch.
 struct ColliderSet {
     std::vector<Collider> colliders{};
-    std::vector<ColliderReach> reach{};  ///< of each
+    std::vector<ColliderBounds> bounds{};  ///< of each
 };
 
-/// Call it when colliders or heights have changed: takes as long as reading all heights.
+/// Must be called when colliders or heights have changed; it reads all heights.
 void set_colliders(ColliderSet& set, std::span<const Collider> colliders);
 
-/// As move_with_collisions, for each particle, along the given way first. Those that touch nothing
-/// keep position and velocity. Writes each mark, and appends the hits in the order of particles,
-/// for each as they happen; touches slower than rest_speed are no hits. A particle that starts
-/// inside a solid counts as hit by the actions Stick and Kill only.
+/// As move_with_collisions for each particle, along the given path until the first contact. Those
+/// that touch nothing keep position and velocity. Writes each mark, and appends the hits in the
+/// order of particles, those of one particle in the order of time; contacts slower than rest_speed
+/// are no hits. That a particle starts inside a solid counts as a hit for the actions Stick and
+/// Kill only.
 ///
-/// Particles that `marks` has as stuck or killed stay so, where they started, at rest: marks must
-/// be 0 at first. Particles do not influence each other: ranges may be processed in any order and
-/// in blocks of any size, with the same bits on every machine. Allocates only to grow `hits`.
+/// Particles already marked as stuck or killed stay where they started, at rest: marks must be 0
+/// at first. Particles do not influence each other: ranges may be processed in any order and in
+/// blocks of any size, with the same bits on every machine. Allocates only to grow `hits`.
 void collide_particles(
     const CollidingParticles& particles, float dt, const ColliderSet& set,
     const SurfaceResponse& response, const CollisionOptions& options,

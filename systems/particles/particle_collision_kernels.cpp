@@ -113,9 +113,9 @@ HWY_INLINE void respond_lanes(
     write(p.vz.data(), v.z, normal.z);
 }
 
-/// Calls touch(i) for those whole vectors for which may_touch(i). Few do: their velocities, which
-/// are not read otherwise, are on the way before the first one is needed. Returns how many
-/// particles the whole vectors have.
+/// Calls touch(i) for those whole vectors for which may_touch(i). Few may: their velocities, which
+/// are not read otherwise, are prefetched before the first one is needed. Returns the number of
+/// particles in whole vectors.
 template <typename MayTouch, typename Touch>
 HWY_INLINE std::size_t each_touched(const ParticleColumns& p, MayTouch may_touch, Touch touch) {
     constexpr std::size_t kBlock = 2048;
@@ -189,8 +189,8 @@ sphere_vector(const ParticleColumns& p, const Sphere& sphere, const Response& re
         V3 outward = {
             hn::Mul(offset.x, scale), hn::IfThenElse(off_center, hn::Mul(offset.y, scale), one),
             hn::Mul(offset.z, scale)};
-        const auto write = [&](float* to, V component, V middle, V along) HWY_ATTR {
-            const V out = hn::Add(middle, hn::Mul(radius, along));
+        const auto write = [&](float* to, V component, V origin, V along) HWY_ATTR {
+            const V out = hn::Add(origin, hn::Mul(radius, along));
             hn::StoreU(hn::IfThenElse(inside, out, component), d, to + i);
         };
         write(p.px.data(), at.x, center.x, outward.x);
@@ -203,8 +203,8 @@ sphere_vector(const ParticleColumns& p, const Sphere& sphere, const Response& re
     });
 }
 
-/// No surface is higher, rounding included; NaN, which nothing is below, does not count. Unbounded
-/// where looking at all points would take longer than it saves.
+/// An upper bound of the surface, rounding included; NaN does not count, since nothing is below it.
+/// Infinity if reading all points would take longer than it saves.
 HWY_INLINE float find_highest(const Field& field, std::size_t particles) {
     const std::size_t lanes = hn::Lanes(d);
     if (particles < field.heights.size() || field.heights.size() < lanes) {
@@ -224,7 +224,8 @@ HWY_INLINE float find_highest(const Field& field, std::size_t particles) {
     return hn::GetLane(hn::MaxOfLanes(d, highest)) + field.origin.y + kRounding * size;
 }
 
-/// The heights around each cell. Copying pairs of neighbors takes half the time of four gathers.
+/// The heights at the corners of each lane's cell. Copying pairs of neighbors takes half the time
+/// of four gathers.
 HWY_INLINE void
 load_corners(const Field& field, hn::Vec<Ints> index, V& h00, V& h10, V& h01, V& h11) {
     HWY_ALIGN std::int32_t first[hn::MaxLanes(d)];

@@ -7,9 +7,10 @@
 
 namespace limn {
 
-// Collision after a step, for many particles: those found inside a solid are put on its surface and
-// respond to it (Latta, "Building a Million Particle System", GDC 2004). Cheap, but a particle that
-// crosses a thin solid within one step is not seen; move_with_collisions sees it. Each kernel has a
+// Discrete collision after a step, for many particles: those found inside a solid are put on its
+// surface and respond to it (Latta, "Building a Million Particle System", GDC 2004). Cheap, but a
+// particle that crosses a thin solid within one step is missed; move_with_collisions, which is
+// continuous, misses none. Each kernel has a
 // SIMD version for the machine's widest vectors (Highway, dispatched at run time) and a plain C++
 // one, `_scalar`, which also handles the remainder. Both perform the same operations in the same
 // order, without fused multiply-add, so results are bit-identical on every machine.
@@ -20,8 +21,8 @@ struct ParticleColumns {
     std::span<float> vx, vy, vz;
 };
 
-/// As push_out and respond do, with the particles' radius [m] >= 0. Those outside are not written
-/// unless a neighbor is inside, NaN is nowhere inside.
+/// As push_out and respond, for particles of `radius` >= 0 [m]. Those outside are rewritten only
+/// if one in the same vector is inside. NaN is never inside.
 void collide_plane(
     const ParticleColumns& particles, const PlaneCollider& plane, const SurfaceResponse& response,
     float radius = 0);

@@ -10,9 +10,9 @@
 namespace limn {
 namespace {
 
-constexpr float kDry = 1e-3f;  // kept above water by what bounces off or sticks [m]
+constexpr float kWaterSkin = 1e-3f;  // distance above water of what bounces off or sticks [m]
 
-/// A particle of a block that would enter water, if nothing solid is before it.
+/// A particle of a block that enters water, unless it hits something solid before.
 struct Entry {
     std::uint32_t particle = 0;  ///< within the block
     WaterContact contact;
@@ -61,15 +61,16 @@ void begin_paths(ParticlePool& pool, std::uint32_t first, std::uint32_t count, P
         .marks = std::span(paths.marks).first(count),
         .first = first};
     int axis = 0;
-    for (const std::span<float> place : {paths.particles.x, paths.particles.y, paths.particles.z}) {
-        std::copy(place.begin(), place.end(), paths.start[axis++].begin());
+    for (const std::span<float> axis_values :
+         {paths.particles.x, paths.particles.y, paths.particles.z}) {
+        std::copy(axis_values.begin(), axis_values.end(), paths.start[axis++].begin());
     }
     for (std::size_t i = 0; i < count && first + i < pool.stuck.size(); ++i) {
         paths.marks[i] = pool.stuck[first + i] != 0 ? kParticleStuck : 0;
     }
 }
 
-/// Ends the ways of those that would enter water at its surface.
+/// Ends the paths of those that would enter water at the surface.
 void stop_at_water(
     const Paths& paths, std::span<const ParticleWater> waters, std::vector<Entry>& entries) {
     for (std::uint32_t i = 0; i < paths.particles.x.size(); ++i) {
@@ -83,7 +84,7 @@ void stop_at_water(
     }
 }
 
-/// What the water does to those that met nothing solid before.
+/// The response of those that hit nothing solid before the water.
 void hit_water(
     Paths& paths, const ParticleCollision& collision, const ParticleSurroundings& around, float dt,
     std::span<const Entry> entries, std::vector<ParticleHit>& hits) {
@@ -100,8 +101,8 @@ void hit_water(
         if (collision.action == CollisionAction::Bounce) {
             after = respond(velocity, contact.normal, {collision.bounce, collision.friction});
         }
-        const float rest = (1 - contact.share) * dt;
-        paths.move(i, contact.point + kDry * contact.normal + rest * after, after);
+        const float rest = (1 - contact.fraction) * dt;
+        paths.move(i, contact.point + kWaterSkin * contact.normal + rest * after, after);
         paths.marks[i] = collision.action == CollisionAction::Kill    ? kParticleKilled
                          : collision.action == CollisionAction::Stick ? kParticleStuck
                                                                       : kParticleHit;
@@ -159,7 +160,7 @@ find_particle_waters(WaterQuery& waters, const Query<const ParticleCollider>& co
     return found;
 }
 
-void add_dents(
+void add_ripples(
     std::span<const ParticleHit> hits, const ParticleSurroundings& around,
     Query<RippleState>& ripples) {
     const std::size_t solids = around.solid->colliders.size();
@@ -170,7 +171,7 @@ void add_dents(
         const ParticleWater& water = around.waters[hit.collider - solids];
         RippleState* const state = ripples.find<RippleState>(water.surface.entity);
         if (state != nullptr && water.ripple > 0) {
-            state->impulses.push_back(make_dent(water, hit.point, hit.velocity));
+            state->impulses.push_back(make_ripple_impulse(water, hit.point, hit.velocity));
         }
     }
 }

@@ -18,9 +18,9 @@
 
 namespace limn {
 
-// What particles meet on their way through a step, solid or water, and what comes of it.
+// What particles hit during a step, solid or water, and how they respond.
 
-/// Most particles that move as one piece of work.
+/// Maximum number of particles that move as one piece of work.
 inline constexpr std::uint32_t kParticleBlock = 1024;
 
 /// What particles hit, as one parameter of a system.
@@ -35,7 +35,8 @@ struct SystemParam<ContactSurfaces> : ParamGroup<
                                           ContactSurfaces, Res<const ParticleObstacles>, WaterQuery,
                                           Query<const ParticleCollider>, Query<RippleState>> {};
 
-/// Everything that colliding particles may meet. Hits name a collider, or after those a water.
+/// Everything that particles may hit. The index of a hit is that of a collider, or after those of a
+/// body of water.
 struct ParticleSurroundings {
     const ColliderSet* solid = nullptr;
     std::span<const ParticleWater> waters;
@@ -50,12 +51,12 @@ struct ParticleSurroundings {
     const ParticleSurroundings& around, ParticlePool& pool, std::uint32_t first,
     std::uint32_t count, std::vector<ParticleHit>& hits);
 
-/// Water with a ParticleCollider of that shape.
+/// The bodies of water that have a ParticleCollider of shape Water.
 [[nodiscard]] std::vector<ParticleWater>
 find_particle_waters(WaterQuery& waters, const Query<const ParticleCollider>& colliders);
 
-/// Dents in the water where particles have hit it.
-void add_dents(
+/// Ripples on the water where particles have hit it.
+void add_ripples(
     std::span<const ParticleHit> hits, const ParticleSurroundings& around,
     Query<RippleState>& ripples);
 

@@ -18,9 +18,9 @@ HWY_BEFORE_NAMESPACE();
 
 namespace limn::HWY_NAMESPACE {
 
-// The first two return how many particles their whole vectors have.
+// The first two return the number of particles in whole vectors.
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR  // no SIMD
 
 std::size_t
 find_dead_vector(const float*, const float*, std::size_t, std::uint32_t*, std::size_t&) {
@@ -41,8 +41,8 @@ using Words = hn::RebindToUnsigned<Floats>;
 constexpr Floats d;
 constexpr Words du;
 
-/// Writes the indices of the dead to `dead`, where a vector more may be written, and adds up how
-/// many they are.
+/// Writes the indices of the dead to `dead`, which has room for another vector, and adds their
+/// number to `found`.
 std::size_t find_dead_vector(
     const float* age, const float* life, std::size_t count, std::uint32_t* dead,
     std::size_t& found) {
@@ -59,7 +59,7 @@ std::size_t find_dead_vector(
     return i;
 }
 
-/// Who lives of whole vectors, as bits in `alive`: one mask after another, each in whole bytes.
+/// Writes a mask of the living for each whole vector to `alive`, each mask in whole bytes.
 std::size_t
 find_alive_vector(const float* age, const float* life, std::size_t count, std::uint8_t* alive) {
     const std::size_t n = hn::Lanes(d);
@@ -71,8 +71,9 @@ find_alive_vector(const float* age, const float* life, std::size_t count, std::u
     return i;
 }
 
-/// Moves those of `count` values, whole vectors, that live to `to`, at or before `from`; returns
-/// how many. Compress and store: CompressStore is ten times as slow on some processors.
+/// Compacts `count` values, whole vectors: moves those of the living to `to`, at or before `from`,
+/// and returns their number. Compress and store, because CompressStore is ten times as slow on some
+/// processors.
 std::size_t compact_vector(
     const std::uint32_t* from, std::size_t count, const std::uint8_t* alive, std::uint32_t* to) {
     const std::size_t n = hn::Lanes(d);
@@ -133,7 +134,8 @@ void copy_word(std::uint32_t* to, const std::uint32_t* from) {
     std::memcpy(to, from, sizeof(*to));  // most are floats
 }
 
-/// Particles whose columns are treated one after another: who of them lives is found once.
+/// Particles per block: the dead of a block are found once, then its columns are compacted one
+/// after another.
 constexpr std::size_t kBlock = 16384;
 constexpr std::size_t kMaxLanes = 64;  // of the widest vectors of words
 
@@ -197,7 +199,7 @@ std::size_t remove_dead_scalar(ParticlePool& pool, std::size_t first) {
 std::size_t remove_dead_in_order(ParticlePool& pool, std::size_t first) {
     const Columns columns = columns_of(pool);
     std::array<std::uint8_t, kBlock + 8> masks;  // 8 more, which may be loaded and stored
-    std::array<bool, kBlock> lives;              // of those beyond whole vectors
+    std::array<bool, kBlock> lives;              // of the remainder beyond whole vectors
     std::size_t kept = first;
     for (std::size_t begin = first; begin < pool.size(); begin += kBlock) {
         const std::size_t count = std::min(pool.size() - begin, kBlock);

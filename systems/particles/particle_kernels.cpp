@@ -24,8 +24,8 @@ inline constexpr std::uint32_t kHashZ = 0xcb1ab31fu;
 inline constexpr std::uint32_t kHashMix = 0x7feb352du;
 inline constexpr std::uint32_t kSeedB = 0x68bc21ebu;  // of the second field of curl noise
 
-// Added to whole numbers up to 2^22 it leaves them in the lowest bits of the sum. Beyond, where
-// floats have no fraction to speak of, the lattice is another one.
+// Added to whole numbers up to 2^22, it leaves them in the lowest bits of the sum. Beyond, where
+// floats have next to no fraction, the lattice is a different one.
 inline constexpr float kWhole = 0x1.8p23f;
 inline constexpr auto kWholeBits = std::bit_cast<std::uint32_t>(kWhole);
 
@@ -45,12 +45,12 @@ namespace limn::HWY_NAMESPACE {
 
 // Each returns the number of particles processed; the scalar version handles the remainder.
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR  // no SIMD
 
 std::size_t move_particles_vector(const ParticleBlock&, const ParticleStep&, std::size_t&) {
     return 0;
 }
-std::size_t stir_particles_vector(const ParticleBlock&, const Turbulence&, float) {
+std::size_t apply_turbulence_vector(const ParticleBlock&, const Turbulence&, float) {
     return 0;
 }
 std::size_t wrap_axis_vector(float*, std::size_t, float, float) {
@@ -93,9 +93,9 @@ HWY_INLINE std::size_t each_whole_vector(D tag, std::size_t i, std::size_t count
 }
 
 /// Calls run(tag, first, count) for whole vectors, ever narrower ones, then for a part of the
-/// narrowest if that can be loaded without touching what is behind it. Parts of wide vectors would
-/// wait for stores to what is behind them, and small pools lie close to each other. Returns how
-/// many elements that were.
+/// narrowest if masked loads do not fault. Partial wide vectors would stall on recent stores to the
+/// memory behind them, and small pools lie close to each other. Returns the number of elements
+/// processed.
 template <typename Run>
 HWY_INLINE std::size_t each_vector(std::size_t count, Run run) {
     constexpr hn::CappedTag<float, 4> d4;
@@ -122,14 +122,14 @@ HWY_INLINE void move_axis(
         const auto relative = hn::Sub(hn::Add(old, hn::Set(tag, push)), hn::Set(tag, air));
         const auto next = hn::Add(hn::Set(tag, air), hn::Mul(relative, hn::Set(tag, keep)));
         store_part(tag, next, v + i, n);
-        const auto way =
+        const auto moved =
             hn::Add(hn::Mul(old, hn::Set(tag, old_dt)), hn::Mul(next, hn::Set(tag, new_dt)));
-        store_part(tag, hn::Add(load_part(tag, x + i, n), way), x + i, n);
+        store_part(tag, hn::Add(load_part(tag, x + i, n), moved), x + i, n);
     });
 }
 
-/// Axis after axis: arrays that begin at the same offset of a page, as large ones do, would
-/// displace each other from the cache if all were walked at once.
+/// One axis after another: arrays that begin at the same offset in a page, as large ones do, would
+/// evict each other from the cache if all were walked at once.
 std::size_t
 move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::size_t& dead) {
     const Vec3 push = step.gravity * step.dt;
@@ -142,7 +142,7 @@ move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::siz
             const auto age = hn::Add(load_part(tag, b.age + i, n), hn::Set(tag, step.dt));
             store_part(tag, age, b.age + i, n);
             const auto old = hn::Ge(age, load_part(tag, b.life + i, n));
-            // Lanes behind the end do not count.
+            // Lanes beyond the end do not count.
             found +=
                 hn::CountTrue(tag, n < hn::Lanes(tag) ? hn::And(old, hn::FirstN(tag, n)) : old);
         });
@@ -158,15 +158,15 @@ HWY_INLINE V lattice_value(U x, U y, U z) {
     return hn::ConvertTo(d, hn::BitCast(di, h));
 }
 
-/// Along an axis: lattice points before and behind, times the multiplier; quintic weight of the
-/// one behind, and a thirtieth of its slope.
+/// Along an axis: the lattice points below and above, times the multiplier; the quintic weight of
+/// the upper one, and a thirtieth of the derivative of that.
 struct Axis {
     U low, high;
     V weight, slope;
 };
-HWY_INLINE Axis axis_at(V place, std::uint32_t multiplier) {
-    const V cell = hn::Floor(place);
-    const V t = hn::Sub(place, cell);
+HWY_INLINE Axis axis_at(V coordinate, std::uint32_t multiplier) {
+    const V cell = hn::Floor(coordinate);
+    const V t = hn::Sub(coordinate, cell);
     const U step = hn::Set(du, multiplier);
     const U moved = hn::BitCast(du, hn::Add(cell, hn::Set(d, particles::kWhole)));
     const U low = hn::Mul(hn::Sub(moved, hn::Set(du, particles::kWholeBits)), step);
@@ -220,21 +220,21 @@ HWY_INLINE V cross_axis(V ay, V az, V by, V bz) {
     return hn::Sub(hn::Mul(ay, bz), hn::Mul(az, by));
 }
 
-std::size_t stir_particles_vector(const ParticleBlock& b, const Turbulence& t, float dt) {
+std::size_t apply_turbulence_vector(const ParticleBlock& b, const Turbulence& t, float dt) {
     const std::size_t n = hn::Lanes(d);
     const V per_size = hn::Set(d, 1.0f / t.size);
     const V scale = hn::Set(d, particles::raw_curl_scale(t) * dt);
-    const auto place = [&](const float* x, float drift) {
+    const auto scaled = [&](const float* x, float drift) {
         return hn::Add(hn::Mul(hn::LoadU(d, x), per_size), hn::Set(d, drift));
     };
     std::size_t i = 0;
     for (; i + n <= b.count; i += n) {
         const Gradient p = raw_gradient(
-            place(b.x + i, t.drift_a.x), place(b.y + i, t.drift_a.y), place(b.z + i, t.drift_a.z),
-            t.seed);
+            scaled(b.x + i, t.drift_a.x), scaled(b.y + i, t.drift_a.y),
+            scaled(b.z + i, t.drift_a.z), t.seed);
         const Gradient q = raw_gradient(
-            place(b.x + i, t.drift_b.x), place(b.y + i, t.drift_b.y), place(b.z + i, t.drift_b.z),
-            t.seed ^ particles::kSeedB);
+            scaled(b.x + i, t.drift_b.x), scaled(b.y + i, t.drift_b.y),
+            scaled(b.z + i, t.drift_b.z), t.seed ^ particles::kSeedB);
         add_to(b.vx + i, hn::Mul(cross_axis(p.y, p.z, q.y, q.z), scale));
         add_to(b.vy + i, hn::Mul(cross_axis(p.z, p.x, q.z, q.x), scale));
         add_to(b.vz + i, hn::Mul(cross_axis(p.x, p.y, q.x, q.y), scale));
@@ -244,14 +244,14 @@ std::size_t stir_particles_vector(const ParticleBlock& b, const Turbulence& t, f
 
 std::size_t wrap_axis_vector(float* x, std::size_t count, float center, float size) {
     const std::size_t n = hn::Lanes(d);
-    const V middle = hn::Set(d, center);
+    const V origin = hn::Set(d, center);
     const V extent = hn::Set(d, size);
     const V per_size = hn::Set(d, 1.0f / size);
     const V half = hn::Set(d, 0.5f);
     std::size_t i = 0;
     for (; i + n <= count; i += n) {
         const V old = hn::LoadU(d, x + i);
-        const V turns = hn::Floor(hn::Add(hn::Mul(hn::Sub(old, middle), per_size), half));
+        const V turns = hn::Floor(hn::Add(hn::Mul(hn::Sub(old, origin), per_size), half));
         hn::StoreU(hn::Sub(old, hn::Mul(turns, extent)), d, x + i);
     }
     return i;
@@ -266,7 +266,7 @@ HWY_AFTER_NAMESPACE();
 namespace limn {
 
 HWY_EXPORT(move_particles_vector);
-HWY_EXPORT(stir_particles_vector);
+HWY_EXPORT(apply_turbulence_vector);
 HWY_EXPORT(wrap_axis_vector);
 
 namespace {
@@ -282,9 +282,9 @@ struct Axis {
     std::uint32_t low, high;
     float weight, slope;
 };
-Axis axis_at(float place, std::uint32_t multiplier) {
-    const float cell = std::floor(place);
-    const float t = place - cell;
+Axis axis_at(float coordinate, std::uint32_t multiplier) {
+    const float cell = std::floor(coordinate);
+    const float t = coordinate - cell;
     const auto moved = std::bit_cast<std::uint32_t>(cell + particles::kWhole);
     const std::uint32_t low = (moved - particles::kWholeBits) * multiplier;
     const float t2 = t * t;
@@ -345,14 +345,14 @@ ParticleBlock particle_block(ParticlePool& pool, std::size_t first, std::size_t 
 std::size_t move_particles_scalar(const ParticleBlock& b, const ParticleStep& step) {
     const Vec3 push = step.gravity * step.dt;
     std::size_t dead = 0;
-    float* const places[] = {b.x, b.y, b.z};
+    float* const positions[] = {b.x, b.y, b.z};
     float* const speeds[] = {b.vx, b.vy, b.vz};
     for (int axis = 0; axis < 3; ++axis) {
         for (std::size_t i = 0; i < b.count; ++i) {
             const float old = speeds[axis][i];
             const float next = step.air[axis] + (old + push[axis] - step.air[axis]) * step.keep;
             speeds[axis][i] = next;
-            places[axis][i] = places[axis][i] + (old * step.old_dt() + next * step.new_dt());
+            positions[axis][i] = positions[axis][i] + (old * step.old_dt() + next * step.new_dt());
         }
     }
     for (std::size_t i = 0; i < b.count; ++i) {
@@ -376,9 +376,9 @@ namespace {
 
 /// Of two raw gradients.
 Vec3 raw_curl(const Vec3& at, const Turbulence& t) {
-    const Vec3 place = at * (1.0f / t.size);
-    const Vec3 p = raw_gradient(place + t.drift_a, t.seed);
-    const Vec3 q = raw_gradient(place + t.drift_b, t.seed ^ particles::kSeedB);
+    const Vec3 scaled = at * (1.0f / t.size);
+    const Vec3 p = raw_gradient(scaled + t.drift_a, t.seed);
+    const Vec3 q = raw_gradient(scaled + t.drift_b, t.seed ^ particles::kSeedB);
     return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
 }
 
@@ -388,7 +388,7 @@ Vec3 curl_noise(const Vec3& at, const Turbulence& turbulence) {
     return raw_curl(at, turbulence) * particles::raw_curl_scale(turbulence);
 }
 
-void stir_particles_scalar(const ParticleBlock& b, const Turbulence& turbulence, float dt) {
+void apply_turbulence_scalar(const ParticleBlock& b, const Turbulence& turbulence, float dt) {
     const float scale = particles::raw_curl_scale(turbulence) * dt;
     for (std::size_t i = 0; i < b.count; ++i) {
         const Vec3 push = raw_curl({b.x[i], b.y[i], b.z[i]}, turbulence) * scale;
@@ -398,28 +398,28 @@ void stir_particles_scalar(const ParticleBlock& b, const Turbulence& turbulence,
     }
 }
 
-void stir_particles(const ParticleBlock& block, const Turbulence& turbulence, float dt) {
-    const std::size_t done = HWY_DYNAMIC_DISPATCH(stir_particles_vector)(block, turbulence, dt);
-    stir_particles_scalar(block.from(done), turbulence, dt);
+void apply_turbulence(const ParticleBlock& block, const Turbulence& turbulence, float dt) {
+    const std::size_t done = HWY_DYNAMIC_DISPATCH(apply_turbulence_vector)(block, turbulence, dt);
+    apply_turbulence_scalar(block.from(done), turbulence, dt);
 }
 
-void whirl_particles(const ParticleBlock& b, const Vortex& vortex, float dt) {
+void apply_vortex(const ParticleBlock& b, const Vortex& vortex, float dt) {
     const Vec3& a = vortex.axis;
     for (std::size_t i = 0; i < b.count; ++i) {
         const Vec3 offset = Vec3(b.x[i], b.y[i], b.z[i]) - vortex.origin;
         const float along = offset.x * a.x + offset.y * a.y + offset.z * a.z;
         const Vec3 out = offset - along * a;
         const float length2 = out.x * out.x + out.y * out.y + out.z * out.z;
-        const float share = length2 > 0 ? dt / std::sqrt(length2) : 0.0f;
+        const float scale = length2 > 0 ? dt / std::sqrt(length2) : 0.0f;
         const Vec3 tangent = {
             a.y * out.z - a.z * out.y, a.z * out.x - a.x * out.z, a.x * out.y - a.y * out.x};
-        b.vx[i] += share * (vortex.around * tangent.x - vortex.toward * out.x);
-        b.vy[i] += share * (vortex.around * tangent.y - vortex.toward * out.y);
-        b.vz[i] += share * (vortex.around * tangent.z - vortex.toward * out.z);
+        b.vx[i] += scale * (vortex.around * tangent.x - vortex.toward * out.x);
+        b.vy[i] += scale * (vortex.around * tangent.y - vortex.toward * out.y);
+        b.vz[i] += scale * (vortex.around * tangent.z - vortex.toward * out.z);
     }
 }
 
-void steer_particles(const ParticleBlock& b, const Steering& steering) {
+void apply_steering(const ParticleBlock& b, const Steering& steering) {
     const Vec3& a = steering.axis;
     for (std::size_t i = 0; i < b.count; ++i) {
         const Vec3 velocity = {b.vx[i], b.vy[i], b.vz[i]};
@@ -429,12 +429,12 @@ void steer_particles(const ParticleBlock& b, const Steering& steering) {
         const Vec3 tangent = {
             a.y * offset.z - a.z * offset.y, a.z * offset.x - a.x * offset.z,
             a.x * offset.y - a.y * offset.x};
-        const float reach =
+        const float radius =
             std::sqrt(tangent.x * tangent.x + tangent.y * tangent.y + tangent.z * tangent.z);
-        const float orbit = reach > 0 ? steering.orbit : 0.0f;
+        const float orbit = radius > 0 ? steering.orbit : 0.0f;
         const float left = std::max(speed - steering.loss, 0.0f);
         const float along = speed > 0 ? (1.0f - orbit) * left / speed : 0.0f;
-        const float around = reach > 0 ? orbit * left / reach : 0.0f;
+        const float around = radius > 0 ? orbit * left / radius : 0.0f;
         b.vx[i] = along * velocity.x + around * tangent.x;
         b.vy[i] = along * velocity.y + around * tangent.y;
         b.vz[i] = along * velocity.z + around * tangent.z;
@@ -454,21 +454,21 @@ void wrap_axis(float* x, std::size_t count, float center, float size) {
 }  // namespace
 
 void wrap_particles_scalar(const ParticleBlock& b, const Vec3& center, const Vec3& size) {
-    float* const places[] = {b.x, b.y, b.z};
+    float* const positions[] = {b.x, b.y, b.z};
     for (int axis = 0; axis < 3; ++axis) {
         if (size[axis] > 0 && std::isfinite(center[axis])) {
-            wrap_axis(places[axis], b.count, center[axis], size[axis]);
+            wrap_axis(positions[axis], b.count, center[axis], size[axis]);
         }
     }
 }
 
 void wrap_particles(const ParticleBlock& b, const Vec3& center, const Vec3& size) {
-    float* const places[] = {b.x, b.y, b.z};
+    float* const positions[] = {b.x, b.y, b.z};
     for (int axis = 0; axis < 3; ++axis) {
         if (size[axis] > 0 && std::isfinite(center[axis])) {
             const std::size_t done = HWY_DYNAMIC_DISPATCH(wrap_axis_vector)(
-                places[axis], b.count, center[axis], size[axis]);
-            wrap_axis(places[axis] + done, b.count - done, center[axis], size[axis]);
+                positions[axis], b.count, center[axis], size[axis]);
+            wrap_axis(positions[axis] + done, b.count - done, center[axis], size[axis]);
         }
     }
 }

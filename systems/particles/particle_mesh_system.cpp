@@ -14,11 +14,11 @@ namespace limn {
 namespace {
 
 constexpr float kMinScale = 1e-4f;      // so that normals have a direction
-constexpr float kMeshRestSpeed = 1.0f;  // at which colliding particles begin to spin less [m/s]
-constexpr float kMinSpeed = 1e-4f;      // that has a direction [m/s]
+constexpr float kMeshRestSpeed = 1.0f;  // below which colliding particles spin less [m/s]
+constexpr float kMinSpeed = 1e-4f;      // below which a velocity has no direction [m/s]
 
-/// As in particle.vert: 0 .. 1, a number for each index.
-float random_share(std::uint32_t bits, std::uint32_t index) {
+/// As random_signed() of lib/particle.glsl, but 0 .. 1: a random number for each index.
+float random_fraction(std::uint32_t bits, std::uint32_t index) {
     std::uint32_t h = (bits + index * 0x9e3779b9u) * 0x7feb352du;
     h = (h ^ (h >> 15)) * 0x846ca68bu;
     return static_cast<float>(h >> 8) * 0x1p-24f;
@@ -27,12 +27,12 @@ float random_share(std::uint32_t bits, std::uint32_t index) {
 enum : std::uint32_t { kScale = 8, kSpin, kAngle, kAxisZ, kAxisTurn, kMesh };
 
 float give_or_take(float mean, float spread, std::uint32_t bits, std::uint32_t index) {
-    return mean + spread * (2 * random_share(bits, index) - 1);
+    return mean + spread * (2 * random_fraction(bits, index) - 1);
 }
 
 Vec3 axis_of(std::uint32_t bits) {
-    const float z = 2 * random_share(bits, kAxisZ) - 1;
-    const float turn = 2 * kPi * random_share(bits, kAxisTurn);
+    const float z = 2 * random_fraction(bits, kAxisZ) - 1;
+    const float turn = 2 * kPi * random_fraction(bits, kAxisTurn);
     const float r = std::sqrt(std::max(1 - z * z, 0.0f));
     return {r * std::cos(turn), r * std::sin(turn), z};
 }
@@ -65,11 +65,11 @@ MeshId mesh_of_particles(const ParticleMesh& mesh, const MeshData* whole, std::u
     if (mesh.meshes.empty()) {
         return {};
     }
-    const float pick = random_share(key, kMesh) * static_cast<float>(mesh.meshes.size());
+    const float pick = random_fraction(key, kMesh) * static_cast<float>(mesh.meshes.size());
     return mesh.meshes[std::min(static_cast<std::size_t>(pick), mesh.meshes.size() - 1)];
 }
 
-/// Of all particles of an emitter in a step.
+/// What is the same for all particles of an emitter in a step.
 struct MeshStep {
     Affine world{};                   ///< of the emitter
     const MeshData* whole = nullptr;  ///< whose pieces they are, or null
@@ -93,14 +93,14 @@ MeshParticle step_instance(
     moved.key = key;
     moved.mesh = mesh_of_particles(mesh, step.whole, key);
     const bool as_emitter = mesh.facing == ParticleMeshFacing::Emitter;
-    const float begin = as_emitter ? 0.0f : 2 * kPi * random_share(key, kAngle);
+    const float begin = as_emitter ? 0.0f : 2 * kPi * random_fraction(key, kAngle);
     moved.angle = old != nullptr ? old->angle + free * spin * dt : begin + spin * pool.age[i];
-    const float share = std::clamp(pool.age[i] / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
+    const float life_fraction = std::clamp(pool.age[i] / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
     const float left = pool.life[i] - pool.age[i];
     const float shrunk = mesh.fade > 0 ? std::clamp(left / mesh.fade, 0.0f, 1.0f) : 1.0f;
     const float scale = std::max(
         give_or_take(mesh.scale, mesh.scale_spread, key, kScale)
-            * sample_curve(mesh.scale_curve, share) * shrunk,
+            * sample_curve(mesh.scale_curve, life_fraction) * shrunk,
         kMinScale);
     const bool flies = mesh.facing == ParticleMeshFacing::Velocity;
     if (old != nullptr && (stuck || (flies && !(speed > kMinSpeed)))) {

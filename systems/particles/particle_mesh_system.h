@@ -12,9 +12,9 @@
 
 namespace limn {
 
-// Places of particles that are meshes. A particle is found again in the next step by its random
-// bits, in the order of births; so an instance has the place it really had one step earlier, for
-// velocities and for frames between steps.
+// Transforms of particles that are meshes. A particle is recognized in the next step by its random
+// bits, in the order of births: so each instance has its true previous transform, for velocities
+// and for frames between steps.
 
 /// Adds a ParticleMeshState to every ParticleMesh that lacks one. Before update_particle_meshes,
 /// with a sync point in between.

@@ -15,11 +15,11 @@ namespace limn {
 namespace {
 
 constexpr float kGravity = 9.81f;            // [m/s^2]
-constexpr float kOrbitRate = 60.0f;          // in which `orbit` is what a step turns [1/s]
+constexpr float kOrbitRate = 60.0f;          // steps per second for which `orbit` is defined [1/s]
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
 const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
 
-constexpr float kMinDrag = 0.1f;  // at which falling leads to no velocity too large to add [1/s]
+constexpr float kMinDrag = 0.1f;  // from which the terminal velocity is small enough to add [1/s]
 
 }  // namespace
 
@@ -40,24 +40,23 @@ MotionStep find_motion(
     MotionStep found;
     if (motion.fields != 0) {
         found.forces.assign(forces.begin(), forces.end());
-        found.forces_share = motion.fields;
+        found.force_scale = motion.fields;
     }
     found.step = {
         .gravity = {0, -kGravity * motion.gravity, 0},
         .air = motion.wind + motion.weather * weather,
         .keep = std::exp(-std::max(motion.drag, 0.0f) * dt),
         .dt = dt,
-        .old_share = motion.integrator == ParticleIntegrator::ExplicitEuler  ? 1.0f
-                     : motion.integrator == ParticleIntegrator::SemiImplicit ? 0.0f
-                                                                             : 0.5f,
+        .old_weight = motion.integrator == ParticleIntegrator::ExplicitEuler  ? 1.0f
+                      : motion.integrator == ParticleIntegrator::SemiImplicit ? 0.0f
+                                                                              : 0.5f,
         .closed_form = closed_form};
     if (motion.drag >= kMinDrag) {
-        // Both lead to one velocity, exactly, however long the step is.
+        // Gravity and drag together approach the terminal velocity, exactly for any step.
         found.step.air += found.step.gravity / motion.drag;
         found.step.gravity = Vec3(0);
     }
-    // Drifts stay small, so that places in the noise keep their precision: it repeats every 4,096
-    // whirls.
+    // The drift repeats every 4,096 whirls, so that positions in the noise keep their precision.
     const auto turns = static_cast<float>(
         std::fmod(static_cast<double>(motion.turbulence_speed) * time.time, 4096.0));
     found.turbulence = {
@@ -69,11 +68,11 @@ MotionStep find_motion(
     found.vortex.toward = motion.attraction;
     found.steering.orbit = 1 - std::pow(1 - std::clamp(motion.orbit, 0.0f, 1.0f), kOrbitRate * dt);
     found.steering.loss = std::max(motion.brake, 0.0f) * dt;
-    turn_motion(found, world);
+    orient_motion(found, world);
     return found;
 }
 
-void turn_motion(MotionStep& motion, const Affine& world) {
+void orient_motion(MotionStep& motion, const Affine& world) {
     motion.vortex.origin = transform_point(world, Vec3(0));
     motion.vortex.axis = normalize_or(transform_vector(world, Vec3(0, 1, 0)), Vec3(0, 1, 0));
     motion.steering.origin = motion.vortex.origin;
@@ -85,34 +84,34 @@ namespace {
 void change_velocities(const MotionStep& motion, const ParticleBlock& block) {
     const float dt = motion.step.dt;
     if (motion.turbulence.strength != 0) {
-        stir_particles(block, motion.turbulence, dt);
+        apply_turbulence(block, motion.turbulence, dt);
     }
     if (!motion.forces.empty()) {
-        push_particles(block, motion.forces, motion.forces_share, dt);
+        apply_forces(block, motion.forces, motion.force_scale, dt);
     }
     if (motion.vortex.around != 0 || motion.vortex.toward != 0) {
-        whirl_particles(block, motion.vortex, dt);
+        apply_vortex(block, motion.vortex, dt);
     }
     if (motion.steering.orbit > 0 || motion.steering.loss > 0) {
-        steer_particles(block, motion.steering);
+        apply_steering(block, motion.steering);
     }
 }
 
-/// Places by the velocities of the beginning, which everything else changes.
+/// Explicit Euler: positions by the velocities at the beginning of the step.
 std::size_t move_by_old_velocities(const MotionStep& motion, const ParticleBlock& block) {
     std::array<std::vector<float>, 3> ends;
-    float* const places[] = {block.x, block.y, block.z};
+    float* const positions[] = {block.x, block.y, block.z};
     const float* const speeds[] = {block.vx, block.vy, block.vz};
     for (int axis = 0; axis < 3; ++axis) {
         ends[axis].resize(block.count);
         for (std::size_t i = 0; i < block.count; ++i) {
-            ends[axis][i] = places[axis][i] + speeds[axis][i] * motion.step.dt;
+            ends[axis][i] = positions[axis][i] + speeds[axis][i] * motion.step.dt;
         }
     }
     change_velocities(motion, block);
     const std::size_t dead = move_particles(block, motion.step);
     for (int axis = 0; axis < 3; ++axis) {
-        std::copy(ends[axis].begin(), ends[axis].end(), places[axis]);
+        std::copy(ends[axis].begin(), ends[axis].end(), positions[axis]);
     }
     return dead;
 }
@@ -121,7 +120,7 @@ std::size_t move_by_old_velocities(const MotionStep& motion, const ParticleBlock
 
 std::size_t move_block(const MotionStep& motion, const ParticleBlock& block) {
     std::size_t dead = 0;
-    if (motion.step.old_share == 1) {
+    if (motion.step.old_weight == 1) {
         dead = move_by_old_velocities(motion, block);
     } else {
         change_velocities(motion, block);

@@ -11,7 +11,7 @@
 
 namespace limn {
 
-/// Longest step that is simulated [s]; in a longer one particles move so much only.
+/// Longest step that is simulated [s]; longer ones are clamped.
 inline constexpr float kMaxParticleStep = 0.1f;
 
 /// `world` is the emitter's, `weather` the velocity of the wind [m/s], `forces` those of the
@@ -20,8 +20,8 @@ inline constexpr float kMaxParticleStep = 0.1f;
     const ParticleMotion& motion, const Affine& world, const Vec3& weather,
     std::span<const Force> forces, float dt, const FrameTime& time);
 
-/// The same about another emitter, at `world`.
-void turn_motion(MotionStep& motion, const Affine& world);
+/// Moves axes and origins to an emitter at `world`; the rest of the motion stays.
+void orient_motion(MotionStep& motion, const Affine& world);
 
 /// Moves particles by a step; returns how many have reached the end of life.
 std::size_t move_block(const MotionStep& motion, const ParticleBlock& block);

@@ -60,9 +60,9 @@ Axes obstacle_axes(const Affine& world) {
     for (int axis = 0; axis < 3; ++axis) {
         Vec3 unit(0);
         unit[axis] = 1;
-        const Vec3 reach = transform_vector(world, unit);
-        axes.length[axis] = glm::length(reach);
-        axes.unit[axis] = normalize_or(reach, unit);
+        const Vec3 axis_in_world = transform_vector(world, unit);
+        axes.length[axis] = glm::length(axis_in_world);
+        axes.unit[axis] = normalize_or(axis_in_world, unit);
     }
     return axes;
 }
@@ -75,7 +75,7 @@ BoxCollider make_box(const Axes& axes, const Vec3& center, const Vec3& size) {
     return {pose, size * axes.length};
 }
 
-/// None of a field that is turned, scaled or not there yet.
+/// False for a field that is rotated, scaled, or not transformed yet.
 bool is_upright_obstacle(const Affine& world) {
     constexpr float kTolerance = 1e-4f;
     for (int row = 0; row < 3; ++row) {

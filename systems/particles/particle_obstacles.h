@@ -24,7 +24,7 @@ struct ObstacleMesh {
     std::uint32_t version = 0;  ///< of the mesh
     Affine world{};
     bool deforms = false;
-    std::uint64_t frame = 0;        ///< in which it was last there
+    std::uint64_t frame = 0;        ///< in which it last existed
     std::vector<Vec3> positions{};  ///< [m]
     MeshBvh bvh{};
 };

@@ -33,8 +33,9 @@ class Spawns {
         for (double i = 0; i < std::min(count, free); ++i) {
             out_.push_back(spawn);
         }
-        constexpr double kMost = 1e12;  // also of infinitely many
-        dropped_ += count > free ? static_cast<std::uint64_t>(std::min(count - free, kMost)) : 0;
+        constexpr double kMaxDropped = 1e12;  // infinity included
+        dropped_ +=
+            count > free ? static_cast<std::uint64_t>(std::min(count - free, kMaxDropped)) : 0;
     }
 
     const ParticlePool& parent_;
@@ -44,8 +45,8 @@ class Spawns {
     std::uint64_t dropped_ = 0;
 };
 
-/// In equal intervals of a particle's age, of which the first is a random share: k births before
-/// age t where k = floor(rate t + share).
+/// Births at equal intervals of a particle's age, offset by a random fraction of an interval: until
+/// age t there are floor(rate t + fraction).
 void add_trail(
     Spawns& spawns, const ParticleEmitter& emitter, const ParticlePool& parent, std::size_t i,
     float dt) {
@@ -56,11 +57,11 @@ void add_trail(
     if (!(rate > 0) || age <= began) {
         return;
     }
-    const double share = (parent.look[i] >> 8) * 0x1p-24;
-    const double first = std::floor(rate * static_cast<double>(began) + share) + 1;
-    const double last = std::floor(rate * static_cast<double>(age) + share);
+    const double fraction = (parent.look[i] >> 8) * 0x1p-24;
+    const double first = std::floor(rate * static_cast<double>(began) + fraction) + 1;
+    const double last = std::floor(rate * static_cast<double>(age) + fraction);
     for (double k = first; k <= std::min(last, first + 4096); ++k) {
-        spawns.add_at(i, parent.age[i] - static_cast<float>((k - share) / rate), 1);
+        spawns.add_at(i, parent.age[i] - static_cast<float>((k - fraction) / rate), 1);
     }
 }
 

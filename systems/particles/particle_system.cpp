@@ -26,7 +26,7 @@ constexpr std::uint32_t kParticlesPerJob = 4096;  ///< at least: small emitters 
 
 // ---- independent emitters: all phases at once ----
 
-/// The motion of one emitter after another: many have the same settings.
+/// Reuses the motion of the previous emitter: many have the same settings.
 class MotionCache {
   public:
     explicit MotionCache(const StepContext& context) : context_(context) {}
@@ -35,7 +35,7 @@ class MotionCache {
     const MotionStep& find(const EmitterRow& row) {
         static const ParticleMotion kDefaultMotion;
         const ParticleMotion& settings = row.motion != nullptr ? *row.motion : kDefaultMotion;
-        // Bytes: padding that differs only costs time.
+        // Compares bytes: a difference in padding only costs time.
         if (!is_filled_ || std::memcmp(&settings, &settings_, sizeof(settings)) != 0) {
             step_ = find_emitter_motion(&settings, row.wrap, row.now->world, context_);
             std::memcpy(&settings_, &settings, sizeof(settings));
@@ -43,7 +43,7 @@ class MotionCache {
             return step_;
         }
         if (depends_on_transform()) {
-            turn_motion(step_, row.now->world);
+            orient_motion(step_, row.now->world);
         }
         set_wrap(step_, row.wrap, context_);
         return step_;
@@ -106,7 +106,7 @@ void emit_all(std::span<EmitterStep> emitters, const StepContext& context) {
     });
 }
 
-/// Marks that stuck particles leave; none where particles do not stick.
+/// Sizes the flags of stuck particles; empty where particles do not stick.
 void resize_stuck(std::span<const EmitterStep> emitters) {
     for (const EmitterStep& step : emitters) {
         ParticlePool& pool = *step.row.pool;
@@ -129,7 +129,8 @@ std::vector<MovedBlock> split_into_blocks(std::span<const EmitterStep> emitters)
     return blocks;
 }
 
-/// Ends of runs of blocks that are enough for a job; the same for any number of threads.
+/// Groups consecutive blocks into jobs and returns the end of each; the same for any number of
+/// threads.
 std::vector<std::size_t> split_into_jobs(std::span<const MovedBlock> blocks) {
     std::vector<std::size_t> ends;
     std::uint32_t particles = 0;
@@ -175,7 +176,7 @@ void collect_hits(
     for (const MovedBlock& block : blocks) {
         std::vector<ParticleHit>& hits = emitters[block.emitter].hits;
         hits.insert(hits.end(), block.hits.begin(), block.hits.end());
-        add_dents(block.hits, surroundings, ripples);
+        add_ripples(block.hits, surroundings, ripples);
     }
 }
 
@@ -222,8 +223,8 @@ void add_all_spawns(const EmitterSteps& steps, const StepContext& context) {
             const EmitterStep& child = steps.others[steps.children[i]];
             ParticlePool& pool = *child.row.pool;
             add_spawns(
-                *child.row.emitter, child.place.now, child.spawns, context.seed,
-                child.row.subject(), pool);
+                *child.row.emitter, child.pose.now, child.spawns, context.seed, child.row.subject(),
+                pool);
             pool.fresh = child.spawns.size();
         }
     });

@@ -20,7 +20,7 @@ namespace limn {
 //     retire     the dead are removed
 //     add        the recorded births
 //
-// An emitter of few particles that hit nothing and that no other emitter depends on does all of its
+// An emitter of few particles that hit nothing and that no other emitter depends on does its whole
 // step at once. Results do not depend on the number of threads.
 //
 // Particles are neither entities nor rows of archetypes but arrays of a component of their emitter:

@@ -17,7 +17,7 @@ namespace limn {
 namespace {
 
 constexpr float kPointGravity = 9.81f;  // [m/s^2]
-constexpr float kMinPointSpeed = 0.5f;  // at which a body still aims [m/s]
+constexpr float kMinPointSpeed = 0.5f;  // below which a body keeps its aim [m/s]
 
 float positive_or_zero(float value) {
     return std::max(finite_or(value, 0), 0.0f);
@@ -27,7 +27,7 @@ Vec3 finite_or_zero(const Vec3& v) {
     return is_finite(v) ? v : Vec3(0);
 }
 
-/// What acts on a body beside fields and wind.
+/// All that acts on a body but fields and wind.
 PointMassForces find_forces_on(
     const PointMass& body, const Quat& turn, const AirDrag* drag, const VariableMass* fuel,
     float dt) {
@@ -48,7 +48,7 @@ PointMassForces find_forces_on(
     return found;
 }
 
-/// Turns local -z along the flight, by the shortest way.
+/// Turns local -z along the flight, by the shortest rotation.
 Quat aimed(const Quat& turn, const Vec3& velocity) {
     if (!(glm::length(velocity) > kMinPointSpeed)) {
         return turn;

@@ -38,8 +38,9 @@ struct PointMassForces {
 [[nodiscard]] PointMass
 step_point_mass(const PointMass& body, const PointMassForces& forces, float dt);
 
-/// A step of all point masses, by kMaxParticleStep at most: they are there in the next step. Those
-/// whose mass, velocity or place is not finite stay and stop. After find_particle_obstacles.
+/// A step of all point masses, of at most kMaxParticleStep; their WorldTransforms follow in the
+/// next step. Those whose mass, velocity or position is not finite stay and stop. After
+/// find_particle_obstacles.
 void update_point_masses(
     Query<
         PointMass, Transform, Optional<const AirDrag>, Optional<const VariableMass>,

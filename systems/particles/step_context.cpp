@@ -16,7 +16,7 @@ StepContext find_step_context(const ParticleEnvironment& environment) {
         context.wind = current_weather(*environment.weather, *environment.gusts).wind();
     }
     context.forces = find_forces(environment.fields, environment.time->time);
-    context.eye = find_eye(environment.cameras);
+    context.eye = find_viewpoint(environment.cameras);
     return context;
 }
 
@@ -34,7 +34,7 @@ MotionStep find_emitter_motion(
 void set_wrap(MotionStep& motion, const ParticleWrap* wrap, const StepContext& context) {
     const bool wraps = wrap != nullptr && !motion.step.closed_form;
     motion.wrap_size = wraps ? wrap->size : Vec3(0);
-    motion.wrap_center = wraps ? context.eye.place : Vec3(0);
+    motion.wrap_center = wraps ? context.eye.position : Vec3(0);
 }
 
 }  // namespace limn

@@ -11,7 +11,7 @@
 #include "ecs/param_group.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 
 #include <cstdint>
 #include <vector>
@@ -43,7 +43,7 @@ struct StepContext {
     std::uint64_t seed = 0;     ///< of all random numbers
     Vec3 wind = {0, 0, 0};      ///< [m/s]
     std::vector<Force> forces;  ///< of all force fields
-    EmitterEye eye{};           ///< the active camera
+    Viewpoint eye{};            ///< the active camera
 };
 [[nodiscard]] StepContext find_step_context(const ParticleEnvironment& environment);
 
@@ -52,7 +52,7 @@ struct StepContext {
     const ParticleMotion* motion, const ParticleWrap* wrap, const Affine& world,
     const StepContext& context);
 
-/// Keeps the particles about the viewer if `wrap` is not null and their positions are integrated.
+/// Wraps the particles around the camera if `wrap` is not null and their positions are integrated.
 void set_wrap(MotionStep& motion, const ParticleWrap* wrap, const StepContext& context);
 
 }  // namespace limn

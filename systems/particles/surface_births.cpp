@@ -1,6 +1,6 @@
 #include "systems/particles/surface_births.h"
 
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -15,7 +15,7 @@
 namespace limn {
 namespace {
 
-/// Triangle `i` of the table's vertices, moved by `world`; false if it is none.
+/// Triangle `i` of the table's vertices, transformed by `world`; false if an index is out of range.
 bool find_source_triangle(
     const MeshData& mesh, const std::vector<Vec3>& positions, std::size_t i, const Affine& world,
     std::array<Vec3, 3>& corners) {
@@ -44,13 +44,13 @@ Quat with_up(const Vec3& up) {
     return {Vec3(0, 1, 0), up};
 }
 
-/// `local` is the place in the source's space; where it is at `at`, and how fast it moves.
+/// World position and velocity of a position in the space of the source.
 SurfacePoint
 follow_source(const SurfaceSource& source, const Vec3& local, const Affine& world, float dt) {
     SurfacePoint point;
     point.position = transform_point(world, local);
     const Vec3 moved =
-        transform_point(source.place.now, local) - transform_point(source.place.before, local);
+        transform_point(source.pose.now, local) - transform_point(source.pose.before, local);
     point.velocity = dt > 0 ? moved / dt : Vec3(0);
     return point;
 }
@@ -59,8 +59,8 @@ SurfacePoint mesh_point(
     const SurfaceSource& source, const SurfaceTable& table, const Affine& world, float dt,
     Random& random) {
     const MeshData& mesh = *source.mesh.data;
-    const double share = table.areas.back() * static_cast<double>(random.uniform());
-    const auto found = std::upper_bound(table.areas.begin(), table.areas.end(), share);
+    const double wanted = table.areas.back() * static_cast<double>(random.uniform());
+    const auto found = std::upper_bound(table.areas.begin(), table.areas.end(), wanted);
     const auto last = static_cast<std::ptrdiff_t>(table.areas.size()) - 1;
     const auto i = static_cast<std::size_t>(std::min(found - table.areas.begin(), last));
     const float root = std::sqrt(random.uniform());
@@ -112,14 +112,14 @@ std::optional<SurfacePoint> volume_point(
     return local ? std::optional(follow_source(source, *local, world, dt)) : std::nullopt;
 }
 
-/// Sums of the areas; false if there is none.
+/// Prefix sums of the areas; false if the total is 0.
 bool sum_areas(const SurfaceSource& source, SurfaceTable& table) {
     const MeshData& mesh = *source.mesh.data;
     table.areas.resize(mesh.indices.size() / 3);
     double sum = 0;
     std::array<Vec3, 3> corners{};
     for (std::size_t i = 0; i < table.areas.size(); ++i) {
-        if (find_source_triangle(mesh, table.positions, i, source.place.now, corners)) {
+        if (find_source_triangle(mesh, table.positions, i, source.pose.now, corners)) {
             const float area = 0.5f * glm::length(cross_of(corners));
             sum += std::isfinite(area) ? static_cast<double>(area) : 0.0;
         }
@@ -132,9 +132,9 @@ bool sum_areas(const SurfaceSource& source, SurfaceTable& table) {
 
 SurfaceSource find_surface_source(
     const ParticleSurface& surface, const ParticleMesh* mesh, Entity emitter,
-    const EmitterPlace& place, const MeshQuery& meshes, const Query<const Pose>& poses,
+    const EmitterPose& pose, const MeshQuery& meshes, const Query<const Pose>& poses,
     const Query<const MorphWeights>& morphs, const Assets& assets) {
-    SurfaceSource source{.surface = &surface, .place = place};
+    SurfaceSource source{.surface = &surface, .pose = pose};
     switch (surface.on) {
     case BirthSurface::Mesh:
     case BirthSurface::Volume: {
@@ -145,7 +145,7 @@ SurfaceSource find_surface_source(
                 instance->mesh, meshes.find<const Deformed>(entity),
                 meshes.find<const DeformerState>(entity), poses, morphs, assets,
                 meshes.find<const SurfaceBindingState>(entity));
-            source.place = place_of(
+            source.pose = emitter_pose(
                 *meshes.find<const WorldTransform>(entity),
                 *meshes.find<const PreviousWorldTransform>(entity));
         }
@@ -188,7 +188,7 @@ bool fill_surface_table(const SurfaceSource& source, SurfaceTable& table) {
 std::optional<SurfacePoint> surface_point(
     const SurfaceSource& source, const SurfaceTable& table, std::uint64_t number, float at,
     float dt, Random& random) {
-    const Affine world = mix_places(source.place, at);
+    const Affine world = interpolate_pose(source.pose, at);
     switch (source.surface->on) {
     case BirthSurface::Mesh:
         return mesh_point(source, table, world, dt, random);

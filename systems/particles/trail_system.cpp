@@ -10,15 +10,15 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxStepPoints = 2000;  // that one step may leave; more are a jump
-constexpr float kSharpTurn = 0.5f;      // cosine of the angle beyond which a path is straightened
+constexpr float kMaxStepPoints = 2000;  // of one step; more are a jump
+constexpr float kSharpTurn = 0.5f;      // cosine of the turn beyond which a path is straightened
 
 bool is_finite_point(const TrailPoint& point) {
     const Vec3 sum = point.position + point.span;
     return std::isfinite(sum.x + sum.y + sum.z);
 }
 
-/// Points of a strand: half as many again as its length takes, for what a step adds.
+/// Points of a strand: 1.5 times as many as its length needs, to leave room for those of a step.
 std::uint32_t capacity_of(const Trail& trail) {
     const float points = 1.5f * trail.length / trail_spacing(trail);
     return points > 0 ? static_cast<std::uint32_t>(std::min(points, 1500.0f)) + 8 : 8;
@@ -108,7 +108,7 @@ void follow_particles(TrailState& state, const Trail& trail, const ParticlePool&
         }
         if (found < known) {
             for (; next < found; ++next) {
-                state.strands[next].live = false;  // died between
+                state.strands[next].live = false;  // its particle has died
             }
             ++next;
             extend_strand(state, state.strands[found], trail, to, dt);
@@ -152,15 +152,15 @@ bool extend_strand(
     TrailState& state, TrailStrand& strand, const Trail& trail, const TrailPoint& to, float dt) {
     const TrailPoint from = strand.head;
     const float spacing = trail_spacing(trail);
-    const Vec3 way = to.position - from.position;
-    const float length = glm::length(way);
+    const Vec3 path = to.position - from.position;
+    const float length = glm::length(path);
     if (!is_finite_point(to) || !(length <= std::min(trail.jump, kMaxStepPoints * spacing))) {
         strand.live = false;
         return false;
     }
     const Vec3 came = from.position - strand.before;
-    const bool smooth = glm::dot(came, way) > kSharpTurn * glm::length(came) * length;
-    const Vec3 bend = smooth ? 0.5f * (way - came) : Vec3(0);
+    const bool smooth = glm::dot(came, path) > kSharpTurn * glm::length(came) * length;
+    const Vec3 bend = smooth ? 0.5f * (path - came) : Vec3(0);
     const int parts = std::clamp(static_cast<int>(2 * length / spacing), 1, 64);
     TrailPoint a = from;
     for (int i = 1; i <= parts; ++i) {
@@ -205,7 +205,8 @@ void age_trail(TrailState& state, const Trail& trail, float dt) {
 
 void update_trails(
     Query<const Trail, TrailState> trails, Query<const ParticlePool> pools,
-    Query<const WorldTransform, const PreviousWorldTransform> places, Res<const FrameTime> time) {
+    Query<const WorldTransform, const PreviousWorldTransform> transforms,
+    Res<const FrameTime> time) {
     trails.each([&](Entity entity, const Trail& trail, TrailState& state) {
         if (trail.path == TrailPath::Births) {
             return;
@@ -220,8 +221,8 @@ void update_trails(
             if (const auto* const pool = pools.find<const ParticlePool>(followed)) {
                 follow_particles(state, trail, *pool, time->step);
             }
-        } else if (const auto* const now = places.find<const WorldTransform>(followed)) {
-            const Affine& previous = places.find<const PreviousWorldTransform>(followed)->world;
+        } else if (const auto* const now = transforms.find<const WorldTransform>(followed)) {
+            const Affine& previous = transforms.find<const PreviousWorldTransform>(followed)->world;
             follow_entity(state, trail, now->world, previous, time->step);
         }
     });

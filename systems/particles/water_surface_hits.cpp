@@ -8,10 +8,10 @@
 namespace limn {
 namespace {
 
-constexpr float kNear = 5e-4f;        // height at which a search ends [m]
-constexpr int kSearchSteps = 12;      // of a search; three are enough in mild waves
-constexpr float kDentSpeed = 10.0f;   // of the hit that leaves a dent of depth `ripple` [m/s]
-constexpr float kDeepestDent = 4.0f;  // in units of `ripple`, however fast
+constexpr float kContactTolerance = 5e-4f;  // of the height at which a search ends [m]
+constexpr int kSearchSteps = 12;            // at most; three are enough in mild waves
+constexpr float kDentSpeed = 10.0f;         // of a hit that leaves a dent of depth `ripple` [m/s]
+constexpr float kMaxDent = 4.0f;            // in units of `ripple`
 
 float largest(std::span<const float> heights) {
     const auto highest = std::max_element(heights.begin(), heights.end());
@@ -30,8 +30,7 @@ Above look_down(const WaterSurface& surface, const Vec3& at) {
     return above;
 }
 
-/// The share of the way at which the height above the water vanishes: bisection and regula falsi
-/// in turn.
+/// The contact where the height above the water is 0: regula falsi, every third step bisection.
 std::optional<WaterContact>
 enter_one(const WaterSurface& surface, const Vec3& from, const Vec3& to) {
     const Above end = look_down(surface, to);
@@ -46,21 +45,21 @@ enter_one(const WaterSurface& surface, const Vec3& from, const Vec3& to) {
     float wet = 1;
     float height_dry = start.height;
     float height_wet = end.height;
-    WaterContact contact{.share = 1, .point = end.water.position, .normal = end.water.normal};
+    WaterContact contact{.fraction = 1, .point = end.water.position, .normal = end.water.normal};
     for (int step = 0; step < kSearchSteps; ++step) {
-        const float middle = step % 3 == 2 ? 0.5f : height_dry / (height_dry - height_wet);
-        contact.share = dry + (wet - dry) * middle;
-        const Vec3 at = from + contact.share * (to - from);
+        const float split = step % 3 == 2 ? 0.5f : height_dry / (height_dry - height_wet);
+        contact.fraction = dry + (wet - dry) * split;
+        const Vec3 at = from + contact.fraction * (to - from);
         const Above here = look_down(surface, at);
         if (!here.water.is_water) {
             return std::nullopt;
         }
         contact.point = {at.x, here.water.position.y, at.z};
         contact.normal = here.water.normal;
-        if (std::abs(here.height) < kNear) {
+        if (std::abs(here.height) < kContactTolerance) {
             break;
         }
-        (here.height < 0 ? wet : dry) = contact.share;
+        (here.height < 0 ? wet : dry) = contact.fraction;
         (here.height < 0 ? height_wet : height_dry) = here.height;
     }
     return contact;
@@ -97,7 +96,7 @@ enter_water(std::span<const ParticleWater> waters, const Vec3& from, const Vec3&
             continue;
         }
         std::optional<WaterContact> contact = enter_one(waters[i].surface, from, to);
-        if (contact && (!first || contact->share < first->share)) {
+        if (contact && (!first || contact->fraction < first->fraction)) {
             first = contact;
             first->water = static_cast<std::uint32_t>(i);
         }
@@ -105,9 +104,10 @@ enter_water(std::span<const ParticleWater> waters, const Vec3& from, const Vec3&
     return first;
 }
 
-RippleImpulse make_dent(const ParticleWater& water, const Vec3& point, const Vec3& velocity) {
+RippleImpulse
+make_ripple_impulse(const ParticleWater& water, const Vec3& point, const Vec3& velocity) {
     const Vec3 local = water.surface.frame.local(point);
-    const float speed = std::clamp(-velocity.y / kDentSpeed, 0.0f, kDeepestDent);
+    const float speed = std::clamp(-velocity.y / kDentSpeed, 0.0f, kMaxDent);
     return {
         .center = {local.x, local.z},
         .radius = water.ripple_radius,

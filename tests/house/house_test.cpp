@@ -389,14 +389,11 @@ TEST_CASE("house: bindings have names, in a header that shaders and C++ share") 
     const std::regex in_shaders(R"(binding = \d)");
     const std::regex in_sources(
         R"(bind_(texture|texture_name|image|storage|uniforms)\(\d|sampled\(.*, \d+[,)]|bind\([^,]*device[^,]*, \d)");
-    // Particles have theirs in numbers still.
-    const std::regex numbered("(particle|sprite|seen_depth|billboard|ribbon)");
     const auto check = [&](const std::vector<SourceFile>& sources, const std::regex& number) {
         for (const SourceFile& source : sources) {
             for (std::size_t i = 0; i < source.lines.size(); ++i) {
                 const std::string& line = source.lines[i];
-                if (!starts_with(line, "//") && std::regex_search(line, number)
-                    && !std::regex_search(source.path, numbered)) {
+                if (!starts_with(line, "//") && std::regex_search(line, number)) {
                     FAIL_CHECK(source.path << ":" << i + 1 << ": " << line << ", expected a name");
                 }
             }

@@ -102,12 +102,12 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "billboard: over the axis it keeps the last angle of a camera that came there"
+    "billboard: above the axis it keeps the last angle of a camera that came there"
     * technique("engine.billboard")) {
     // It comes from +z, with +x to its right, until it is exactly above.
-    const std::vector<Vec3> way = rights(
+    const std::vector<Vec3> approach = rights(
         "vec3(0.0, 1.0, 0.0)", {{0, 3, 1}, {0, 3, 0.01f}, {0, 3, 1e-5f}, {0, 3, 0}, {0, 0, 0}});
-    for (const Vec3& right : way) {
+    for (const Vec3& right : approach) {
         CHECK(glm::length(right - Vec3(1, 0, 0)) < 1e-5f);
     }
 }
@@ -156,20 +156,20 @@ TEST_CASE(
     BillboardList list;
     append_billboard(billboard, look, at({1, 2, 3}), 0.25, 0, list);
     REQUIRE(list.quads.size() == 1);
-    CHECK(list.places[0].share == near(0.25));
-    const Vec4 color = sample_colors(look.colors, list.places[0].share);
+    CHECK(list.shadings[0].color_at == near(0.25));
+    const Vec4 color = sample_colors(look.colors, list.shadings[0].color_at);
     CHECK(color.x == near(0.75));
     CHECK(color.z == near(0.25));
-    CHECK(list.places[0].opacity == near(1));
+    CHECK(list.shadings[0].opacity == near(1));
     CHECK(list.quads[0].up.y == near(2 * 1.5));
     CHECK(list.quads[0].right.x == near(1.5));
-    CHECK(list.places[0].position == Vec3(1, 2, 3));
+    CHECK(list.shadings[0].position == Vec3(1, 2, 3));
     list = {};
     append_billboard(billboard, look, at({1, 2, 3}), 0.75, 0, list);
-    CHECK(list.places[0].opacity == near(0).scale(1));
+    CHECK(list.shadings[0].opacity == near(0).scale(1));
 }
 
-TEST_CASE("billboard: numbers that are no numbers, and no extent, draw nothing") {
+TEST_CASE("billboard: NaN, and no extent, draw nothing") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     BillboardList list;
     for (const float bad : {kNan, 0.0f, -1.0f}) {
@@ -182,7 +182,7 @@ TEST_CASE("billboard: numbers that are no numbers, and no extent, draw nothing")
 }
 
 TEST_CASE_FIXTURE(
-    BillboardScene, "billboard: parallel to the image it is as large wherever it is seen from"
+    BillboardScene, "billboard: parallel to the image it is as large from any view"
                         * technique("engine.billboard")) {
     ParticleLook look = unlit({1, 1, 1});
     look.image = white();
@@ -192,7 +192,7 @@ TEST_CASE_FIXTURE(
     for (const Vec3& eye : {Vec3(2, 0, 0), Vec3(0, 0, -2), Vec3(1.2f, 1.6f, 0)}) {
         CHECK(std::abs(lit_pixels(eye) - front) <= 64);
     }
-    // And off the middle, where one that faces the eye would be seen larger: the same square.
+    // And off the center, where one that faces the eye would appear larger: the same square.
     world.query<WorldTransform>().each(
         [](WorldTransform& transform) { transform.world.row[0].w = 0.8f; });
     world.query<PreviousWorldTransform>().each(
@@ -251,22 +251,24 @@ TEST_CASE_FIXTURE(
     look.columns = 2;
     look.frame_rate = 10;
     const Entity entity = stand({.time = 0.05}, look, at({0, 0, 0}));
-    const auto middle = [&] { return rgb_at(radiance(this->look({0, 0, 2}, {0, 0, 0})), 32, 32); };
-    CHECK(middle().x > 0.9f);
+    const auto center_pixel = [&] {
+        return rgb_at(radiance(this->look({0, 0, 2}, {0, 0, 0})), 32, 32);
+    };
+    CHECK(center_pixel().x > 0.9f);
     world.get<Billboard>(entity).time = 0.15 + 1.0 / 60;
-    CHECK(middle().y > 0.9f);
-    CHECK(middle().x < 0.1f);
+    CHECK(center_pixel().y > 0.9f);
+    CHECK(center_pixel().x < 0.1f);
     ParticleLook blue = unlit({0, 0, 1});
     blue.image = white();
     stand({}, blue, at({0, 0, 0.5f}));
-    CHECK(middle().z > 0.9f);
-    CHECK(middle().y < 0.1f);
+    CHECK(center_pixel().z > 0.9f);
+    CHECK(center_pixel().y < 0.1f);
     ParticleLook added = unlit({0.5f, 0, 0});
     added.image = blue.image;
     added.cover = 0;
     stand({}, added, at({0, 0, 0.7f}));
-    CHECK(middle().z > 0.9f);
-    CHECK(middle().x == near(0.5).epsilon(0.01));
+    CHECK(center_pixel().z > 0.9f);
+    CHECK(center_pixel().x == near(0.5).epsilon(0.01));
 }
 
 TEST_CASE(
@@ -300,7 +302,8 @@ TEST_CASE(
     CHECK(shown < 1900);
 }
 
-TEST_CASE("particle visibility: a streak out of view is seen as far as its speed makes it reach") {
+TEST_CASE(
+    "particle visibility: a streak whose center is out of view is drawn if it extends into it") {
     const Frustum frustum = make_frustum(Scene().look({0, 0, 5}, {0, 0, 0}).clip_from_world);
     const auto shown = [&](float x, float stretch, float speed) {
         ParticleInstance instance;
@@ -353,16 +356,16 @@ TEST_CASE_FIXTURE(
     const Entity entity = world.create(
         ParticleEmitter{}, look, pool, WorldTransform{at({50, 0, 0})},
         PreviousWorldTransform{at({50, 0, 0})});
-    const auto middle = [&] {
+    const auto center_pixel = [&] {
         return rgb_at(radiance(this->look({0, 0, 2}, {0, 0, 0})), 32, 32).x;
     };
-    CHECK(middle() > 0.9f);
+    CHECK(center_pixel() > 0.9f);
     world.get<ParticleLook>(entity).culling = ParticleCulling::Bounds;
-    CHECK(middle() > 0.9f);
+    CHECK(center_pixel() > 0.9f);
     world.get<ParticleLook>(entity).culling = ParticleCulling::Emitter;
-    CHECK(middle() == 0);
+    CHECK(center_pixel() == 0);
     world.get<ParticleLook>(entity).cull_margin = 60;
-    CHECK(middle() > 0.9f);
+    CHECK(center_pixel() > 0.9f);
 }
 
 }  // namespace limn::test::billboard_drawing_test

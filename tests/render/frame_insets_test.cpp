@@ -25,7 +25,7 @@ void set_opaque(ImageData& image, int x, int y) {
 }
 
 /// The fraction of a frame that an inset cuts off.
-float fraction(std::uint32_t inset) {
+float inset_fraction(std::uint32_t inset) {
     return static_cast<float>(inset) / static_cast<float>(layout::kInsetSteps);
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("frame insets: no visible texel is cut off, and few invisible ones are
         const FrameInsets found =
             find_insets(image, kFrames, kFrames, static_cast<std::uint32_t>(frame));
         const auto fits = [](std::uint32_t inset, int transparent) {
-            const float texels = fraction(inset) * kFrame;
+            const float texels = inset_fraction(inset) * kFrame;
             const float filtered = static_cast<float>(transparent) - 0.5f;
             const bool keeps_what_is_visible = texels <= std::max(filtered, 0.0f);
             return keeps_what_is_visible && texels >= filtered - 1;
@@ -64,9 +64,9 @@ TEST_CASE("frame insets: no visible texel is cut off, and few invisible ones are
 TEST_CASE("frame insets: an empty frame keeps a few texels, a full one all") {
     ImageData image = make_book();
     const FrameInsets empty = find_insets(image, kFrames, kFrames, 4);
-    CHECK(fraction(empty.left + empty.right) < 1);
-    CHECK(fraction(empty.left + empty.right) > 0.95f);
-    CHECK(fraction(empty.bottom + empty.top) > 0.95f);
+    CHECK(inset_fraction(empty.left + empty.right) < 1);
+    CHECK(inset_fraction(empty.left + empty.right) > 0.95f);
+    CHECK(inset_fraction(empty.bottom + empty.top) > 0.95f);
     std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{255});
     CHECK(find_insets(image, kFrames, kFrames, 4) == FrameInsets{});
 }

@@ -90,8 +90,8 @@ std::vector<std::uint32_t> stable_order(std::vector<ParticleInstance> instances)
     return numbers_of(instances);
 }
 
-/// Pairs that are drawn in the wrong order, as a share of all.
-double inverted_share(const std::vector<ParticleInstance>& drawn, const ParticleSortView& view) {
+/// Pairs that are drawn in the wrong order, as a fraction of all.
+double inverted_fraction(const std::vector<ParticleInstance>& drawn, const ParticleSortView& view) {
     double inverted = 0;
     for (std::size_t a = 0; a < drawn.size(); ++a) {
         for (std::size_t b = a + 1; b < drawn.size(); ++b) {
@@ -125,7 +125,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Sorter, "gpu particle sort: places that are not numbers count as farthest"
+    Sorter, "gpu particle sort: positions that are NaN count as farthest"
                 * technique("particle.bitonic-sort")) {
     std::vector<ParticleInstance> instances = cloud(0, 100);
     instances[60].position.x = std::numeric_limits<float>::quiet_NaN();
@@ -150,8 +150,8 @@ TEST_CASE_FIXTURE(
 
     // 2,000 particles are 66 passes: 17 frames. Keys are those of the first one.
     sort = {};
-    const auto at_other_places = [](std::uint32_t place) {
-        std::vector<ParticleInstance> moved = cloud(place, 2000);
+    const auto other_cloud = [](std::uint32_t seed) {
+        std::vector<ParticleInstance> moved = cloud(seed, 2000);
         for (std::uint32_t i = 0; i < 2000; ++i) {
             moved[i].random = i;
         }
@@ -159,9 +159,9 @@ TEST_CASE_FIXTURE(
     };
     const std::vector<ParticleInstance> first = cloud(0, 2000);
     CHECK(numbers_of(frame(first, 0, 4)) == stable_order(first));
-    const std::vector<ParticleInstance> second = at_other_places(5000);
+    const std::vector<ParticleInstance> second = other_cloud(5000);
     CHECK(numbers_of(frame(second, 0, 4)) == stable_order(first));
-    const std::vector<ParticleInstance> third = at_other_places(9000);
+    const std::vector<ParticleInstance> third = other_cloud(9000);
     for (int i = 2; i < 17; ++i) {
         const std::vector<ParticleInstance> drawn = frame(third, 0, 4);
         CHECK(numbers_of(drawn) == stable_order(first));
@@ -180,7 +180,8 @@ TEST_CASE_FIXTURE(
         end += 31;
         const std::vector<ParticleInstance> alive = cloud(first, end - first);
         const std::vector<std::uint32_t> drawn = numbers_of(frame(alive, first, 4));
-        // In order: those that were there when the keys were read, whose places have not changed.
+        // In order: those that were there when the keys were read, whose positions have not
+        // changed.
         std::vector<ParticleInstance> expected = alive;
         const std::uint32_t known = sort.shown->first + sort.shown->count - first;
         std::stable_sort(
@@ -194,9 +195,9 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     Sorter, "gpu particle sort: behind a slow camera few pairs are out of order"
                 * technique("particle.sort-amortised")) {
-    // It moves 0.1 units a frame around a ball of 100, whose middle is 150 away. At four passes a
+    // It moves 0.1 units a frame around a ball of 100, whose center is 150 away. At four passes a
     // frame a sort takes 14 frames; at one 55, as a million particles do at four: the order shown
-    // is then up to 109 frames old, 4 degrees. Keys of the view that will be in the middle of that
+    // is then up to 109 frames old, 4 degrees. Keys of the view halfway through that
     // time leave a third of the 1.8 % that those of the view that was would leave.
     std::vector<ParticleInstance> ball = cloud(0, 1000);
     for (ParticleInstance& one : ball) {
@@ -214,8 +215,8 @@ TEST_CASE_FIXTURE(
         for (int i = 0; i < 220; ++i) {
             const std::vector<ParticleInstance> drawn = frame(ball, 0, passes, view_at(i));
             if (i % 10 == 8) {
-                double& share = i > 58 ? worst : first;
-                share = std::max(share, inverted_share(drawn, view_at(i)));
+                double& fraction = i > 58 ? worst : first;
+                fraction = std::max(fraction, inverted_fraction(drawn, view_at(i)));
             }
         }
         CHECK(first < 0.02);
@@ -225,7 +226,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "gpu particle sort: a steady camera is where it was expected, one that jumps is not"
+    "gpu particle sort: the view of a steady camera is predicted, one after a jump is not"
     * technique("particle.sort-amortised")) {
     const ParticleSortView previous = {{0, 1, 0}, {0, 0, -1}};
     const ParticleSortView now = {{0.5f, 1, 0.25f}, glm::normalize(Vec3(0.1f, 0, -1))};

@@ -32,7 +32,7 @@ namespace limn::test::gpu_particle_test {
 namespace {
 
 struct GpuParticle {
-    Vec4 place_age;
+    Vec4 position_age;
     Vec4 velocity_life;
 };
 
@@ -99,7 +99,7 @@ struct Executors : Scene {
         std::vector<GpuParticle> alive;
         for (std::uint32_t i = 0; i < pool.count; ++i) {
             const GpuParticle& one = slots[(pool.first + i) % pool.capacity];
-            if (one.place_age.w < std::abs(one.velocity_life.w)) {
+            if (one.position_age.w < std::abs(one.velocity_life.w)) {
                 alive.push_back(one);
             }
         }
@@ -115,12 +115,13 @@ struct Executors : Scene {
     gpu::RingBuffer ring{device().caps(), "steps", 1 << 20};
 };
 
-/// Largest distance between particles of the same number, as a share of how far they may have come.
-float largest_distance(const std::vector<GpuParticle>& gpu, const ParticlePool& cpu, float way) {
+/// Largest distance between particles of the same number, as a fraction of how far they may have
+/// come.
+float largest_distance(const std::vector<GpuParticle>& gpu, const ParticlePool& cpu, float range) {
     float largest = 0;
     for (std::size_t i = 0; i < gpu.size(); ++i) {
-        const Vec3 place = {cpu.x[i], cpu.y[i], cpu.z[i]};
-        largest = std::max(largest, glm::distance(Vec3(gpu[i].place_age), place) / way);
+        const Vec3 position = {cpu.x[i], cpu.y[i], cpu.z[i]};
+        largest = std::max(largest, glm::distance(Vec3(gpu[i].position_age), position) / range);
     }
     return largest;
 }
@@ -181,15 +182,15 @@ TEST_CASE("gpu particles: they bounce off planes, spheres and boxes where those 
         REQUIRE(gpu.size() == cpu.size());
         REQUIRE(gpu.size() == 600);
         // Where a particle touches an edge, rounding decides which side it leaves by.
-        std::size_t apart = 0;
+        std::size_t differ = 0;
         std::size_t bounced = 0;
         for (std::size_t i = 0; i < gpu.size(); ++i) {
-            const Vec3 place = {cpu.x[i], cpu.y[i], cpu.z[i]};
-            apart += glm::distance(Vec3(gpu[i].place_age), place) < 1e-3f ? 0 : 1;
+            const Vec3 position = {cpu.x[i], cpu.y[i], cpu.z[i]};
+            differ += glm::distance(Vec3(gpu[i].position_age), position) < 1e-3f ? 0 : 1;
             bounced += cpu.vy[i] > 0 || std::abs(cpu.vy[i]) < 0.1f ? 1 : 0;
         }
         CHECK(bounced > 100);
-        CHECK(apart <= gpu.size() / 100);
+        CHECK(differ <= gpu.size() / 100);
     }
 }
 
@@ -209,16 +210,16 @@ TEST_CASE("gpu particles: at 60 m/s none gets through a wall of a millimeter") {
         for (const float side : {-2.0f, 2.0f}) {
             Vec3 size(3);
             size[axis] = 0.0005f;
-            Vec3 place = center;
-            place[axis] += side;
-            both.add_obstacle({.shape = ColliderShape::Box, .size = size}, place);
+            Vec3 position = center;
+            position[axis] += side;
+            both.add_obstacle({.shape = ColliderShape::Box, .size = size}, position);
         }
     }
     both.step(120);
     const std::vector<GpuParticle> gpu = both.read();
     REQUIRE(gpu.size() == 800);
     for (const GpuParticle& one : gpu) {
-        const Vec3 offset = glm::abs(Vec3(one.place_age) - center);
+        const Vec3 offset = glm::abs(Vec3(one.position_age) - center);
         CHECK(std::max({offset.x, offset.y, offset.z}) < 2.001f);
     }
 }
@@ -372,7 +373,7 @@ TEST_CASE(
     REQUIRE(a.size() > 500);
     CHECK(a.size() == seldom.pool().size());
     for (std::size_t i = 0; i < a.size(); ++i) {
-        CHECK(a[i].place_age == b[i].place_age);
+        CHECK(a[i].position_age == b[i].position_age);
         CHECK(a[i].velocity_life == b[i].velocity_life);
     }
 }
@@ -396,7 +397,7 @@ TEST_CASE(
             const std::vector<GpuParticle> alive = both.read();
             CHECK(alive.size() <= window);
             CHECK(std::is_sorted(alive.begin(), alive.end(), [](const auto& a, const auto& b) {
-                return a.place_age.w > b.place_age.w;  // oldest first
+                return a.position_age.w > b.position_age.w;  // oldest first
             }));
         }
     }
@@ -425,7 +426,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "gpu particles: when the GPU begins anew they are where they were"
+    "gpu particles: when the GPU starts over they are where they were"
     * technique("particle.gpu-state")) {
     ParticleEmitter emitter = fountain();
     emitter.prewarm = 1;
@@ -438,7 +439,7 @@ TEST_CASE(
     REQUIRE(before.size() == 1000);
     REQUIRE(after.size() == before.size());
     for (std::size_t i = 0; i < before.size(); ++i) {
-        CHECK(after[i].place_age == before[i].place_age);
+        CHECK(after[i].position_age == before[i].position_age);
     }
     // Of those that live longer, steps are kept for a minute.
     emitter.rate = 0;
@@ -449,14 +450,14 @@ TEST_CASE(
     eternal.step(5000);
     CHECK(eternal.recorded().kept().size() <= 3601);
     CHECK(eternal.recorded().steps.size() <= 7205);
-    CHECK(eternal.read().size() == 0);  // nobody has seen them be born
-    Executors seen(emitter, {});
-    seen.step(10);
-    CHECK(seen.read().size() == 10);
-    seen.step(3000);
-    (void)seen.read();
-    seen.step(3000);
-    CHECK(seen.read().size() == 10);
+    CHECK(eternal.read().size() == 0);  // the steps of their births were dropped
+    Executors drawn(emitter, {});
+    drawn.step(10);
+    CHECK(drawn.read().size() == 10);
+    drawn.step(3000);
+    (void)drawn.read();
+    drawn.step(3000);
+    CHECK(drawn.read().size() == 10);
 }
 
 TEST_CASE(
@@ -477,12 +478,12 @@ TEST_CASE(
         REQUIRE(cpu.size() == born.size());
         const std::size_t dead = drawn.size() - born.size();
         for (std::size_t i = 0; i < born.size(); ++i) {
-            const float age = born[i].place_age.w;
+            const float age = born[i].position_age.w;
             CHECK(age == near(cpu.age[i]).scale(1).epsilon(1e-5));
-            Vec3 place = Vec3(born[i].place_age) + Vec3(born[i].velocity_life) * age;
-            place.y -= 9.81f * age * age;
-            CHECK(glm::distance(drawn[dead + i].position, place) < 1e-5f);
-            CHECK(glm::distance(Vec3(cpu.x[i], cpu.y[i], cpu.z[i]), place) < 2e-4f);
+            Vec3 position = Vec3(born[i].position_age) + Vec3(born[i].velocity_life) * age;
+            position.y -= 9.81f * age * age;
+            CHECK(glm::distance(drawn[dead + i].position, position) < 1e-5f);
+            CHECK(glm::distance(Vec3(cpu.x[i], cpu.y[i], cpu.z[i]), position) < 2e-4f);
         }
     }
 }
@@ -554,7 +555,7 @@ TEST_CASE(
     };
     const gpu::FloatImage cpu = drawn_by(both.cpu);
     CHECK(largest_difference(drawn_by(both.gpu), cpu) < 1e-5f);
-    both.world.get<Water>(water).absorption = Vec3(1000);  // those in it are not seen
+    both.world.get<Water>(water).absorption = Vec3(1000);  // those in it are invisible
     CHECK(largest_difference(drawn_by(both.gpu), cpu) > 0.3f);
 }
 
@@ -588,7 +589,7 @@ TEST_CASE(
         puff.size = 0.5f;
         puff.size_spread = 0.2f;
         puff.colors = {{.at = 0, .color = {1, 1, 1}, .opacity = 0.6f}};
-        puff.near_fade = 1000;  // not seen, but for its shadow
+        puff.near_fade = 1000;  // invisible, but for its shadow
         puff.shadow = 1;
         const RenderView view = both.look({1, 2, 4}, {1, 2, 1}, 64, 64);
         const auto shadowed_by = [&](Entity entity) {
@@ -642,7 +643,7 @@ TEST_CASE("gpu particles: no number makes a NaN, a hang or more than fits") {
             CHECK(alive.size() <= emitter.capacity);
             bool all_finite = true;
             for (const GpuParticle& one : alive) {
-                const Vec3 sum = Vec3(one.place_age) + Vec3(one.velocity_life);
+                const Vec3 sum = Vec3(one.position_age) + Vec3(one.velocity_life);
                 all_finite = all_finite && std::isfinite(sum.x + sum.y + sum.z);
             }
             CHECK(all_finite);
@@ -650,7 +651,7 @@ TEST_CASE("gpu particles: no number makes a NaN, a hang or more than fits") {
     }
 }
 
-TEST_CASE("gpu particles: a world that was loaded anew owes nothing to the one before") {
+TEST_CASE("gpu particles: a world that is loaded again keeps nothing of the previous one") {
     Executors first(fountain(), {});
     first.step(30);
     REQUIRE(first.read().size() == 200);
@@ -658,9 +659,9 @@ TEST_CASE("gpu particles: a world that was loaded anew owes nothing to the one b
     Executors second(fountain(), {.gravity = 0});
     second.step(30);
     std::swap(first.pools, second.pools);
-    const std::vector<GpuParticle> seen = second.read();
-    REQUIRE(seen.size() == second.pool().size());
-    CHECK(largest_distance(seen, second.pool(), 3 * 0.5f) < 1e-4f);
+    const std::vector<GpuParticle> found = second.read();
+    REQUIRE(found.size() == second.pool().size());
+    CHECK(largest_distance(found, second.pool(), 3 * 0.5f) < 1e-4f);
 }
 
 TEST_CASE(

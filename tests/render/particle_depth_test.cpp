@@ -31,13 +31,13 @@ constexpr float kDt = 1.0f / 60;
 constexpr float kSkin = 1e-4f;  // as the shader keeps from surfaces [m]
 
 /// A plane, as far as the camera sees it.
-struct SeenWall {
+struct DepthWall {
     Vec3 normal;   ///< unit
-    float offset;  ///< dot(normal, place) [m]
+    float offset;  ///< dot(normal, position) [m]
 };
 
 /// What a camera sees of a plane: no more than a texture and the camera's matrices.
-struct SeenScene : Scene {
+struct DepthScene : Scene {
     RenderView camera = look({0, 2.5f, 6}, {0, 0.8f, 0}, 160, 120);
     gpu::Texture depth;
     gpu::RingBuffer ring{device().caps(), "steps", 1 << 20};
@@ -45,14 +45,14 @@ struct SeenScene : Scene {
     FrameGraph graph{device()};
     Entity emitter;
 
-    SeenScene() {
+    DepthScene() {
         world.insert_resource(FrameTime{.step = kDt});
         world.insert_resource(RandomSeed{});
         world.insert_resource(WeatherState{});
         world.insert_resource(ParticleObstacles{});
     }
     /// `holes`: columns of pixels from here on see nothing.
-    void see(const SeenWall& wall, int holes = 1 << 20) {
+    void see(const DepthWall& wall, int holes = 1 << 20) {
         const auto& rows = camera.world_from_camera.row;
         const auto column = [&](int c) { return Vec3(rows[0][c], rows[1][c], rows[2][c]); };
         std::vector<float> pixels;
@@ -68,18 +68,18 @@ struct SeenScene : Scene {
             }
         }
         depth = gpu::Texture(
-            "seen", {.format = GL_R32F, .width = camera.width, .height = camera.height});
+            "previous depth", {.format = GL_R32F, .width = camera.width, .height = camera.height});
         depth.upload<float>(pixels, GL_RED, GL_FLOAT);
     }
-    void emit(ParticleEmitter settings, const ParticleCollision& collision, const Vec3& place) {
+    void emit(ParticleEmitter settings, const ParticleCollision& collision, const Vec3& position) {
         settings.executor = ParticleExecutor::Gpu;
         settings.seed = 5;
         emitter = world.create(
-            settings, ParticleMotion{}, collision, WorldTransform{at(place)},
-            PreviousWorldTransform{at(place)});
+            settings, ParticleMotion{}, collision, WorldTransform{at(position)},
+            PreviousWorldTransform{at(position)});
         world.run(add_gpu_particles);
     }
-    /// A step, and what the GPU makes of it: places and ages, velocities and lifetimes.
+    /// A step, and the states on the GPU: positions and ages, velocities and lifetimes.
     std::vector<Vec4> step() {
         FrameTime& time = world.resource<FrameTime>();
         time.time += static_cast<double>(time.step);
@@ -94,10 +94,10 @@ struct SeenScene : Scene {
             frame, emitter, world.get<const ParticleEmitter>(emitter),
             world.get<GpuParticles>(emitter), 0, std::nullopt,
             &world.get<const ParticleCollision>(emitter));
-        const SeenDepth seen = {
+        const PreviousDepth previous = {
             &depth, ring.push_value(make_view_block(camera, ClusterShape{}, LightList{}, false))};
         graph.begin_frame();
-        pools.update(graph, {.seen = seen});
+        pools.update(graph, {.depth = previous});
         graph.execute();
         ring.end_frame();
         const GpuParticlePool& pool = *pools.pools().begin()->second;
@@ -109,31 +109,31 @@ struct SeenScene : Scene {
 };
 
 struct Ball {
-    glm::dvec3 place;
+    glm::dvec3 position;
     glm::dvec3 velocity;
 };
 
 /// Ten plain lines: a step under gravity, with as many rebounds from a plane as fit in it.
-void step_ball(Ball& ball, const SeenWall& wall, const ParticleCollision& collision) {
+void step_ball(Ball& ball, const DepthWall& wall, const ParticleCollision& collision) {
     const glm::dvec3 normal(wall.normal);
     const glm::dvec3 old = ball.velocity;
     ball.velocity += glm::dvec3(0, -9.81, 0) * static_cast<double>(kDt);
-    glm::dvec3 to = ball.place + 0.5 * (old + ball.velocity) * static_cast<double>(kDt);
+    glm::dvec3 to = ball.position + 0.5 * (old + ball.velocity) * static_cast<double>(kDt);
     const auto above = [&](const glm::dvec3& p) {
         return glm::dot(normal, p) - static_cast<double>(wall.offset + collision.radius);
     };
     for (double left = static_cast<double>(kDt); above(to) < 0;) {
-        const double share = above(ball.place) / (above(ball.place) - above(to));
-        ball.place += share * (to - ball.place) + static_cast<double>(kSkin) * normal;
+        const double fraction = above(ball.position) / (above(ball.position) - above(to));
+        ball.position += fraction * (to - ball.position) + static_cast<double>(kSkin) * normal;
         const double toward = -glm::dot(normal, ball.velocity);
         const glm::dvec3 along = ball.velocity + toward * normal;
         ball.velocity =
             static_cast<double>(collision.friction) * along
             + (toward < 0.2 ? 0.0 : static_cast<double>(collision.bounce) * toward) * normal;
-        left *= 1 - share;
-        to = ball.place + left * ball.velocity;
+        left *= 1 - fraction;
+        to = ball.position + left * ball.velocity;
     }
-    ball.place = to;
+    ball.position = to;
 }
 
 ParticleEmitter handful() {
@@ -152,11 +152,11 @@ ParticleEmitter handful() {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    SeenScene, "particle depth: off a plane that was seen they bounce as ten plain lines say"
-                   * technique("particle.depth-collision")) {
+    DepthScene, "particle depth: off a visible plane they bounce as ten plain lines of C++ say"
+                    * technique("particle.depth-collision")) {
     for (const float radius : {0.0f, 0.04f}) {
         CAPTURE(radius);
-        const SeenWall wall = {glm::normalize(Vec3(0.15f, 1, 0.2f)), 0.1f};
+        const DepthWall wall = {glm::normalize(Vec3(0.15f, 1, 0.2f)), 0.1f};
         see(wall);
         const ParticleCollision collision = {
             .bounce = 0.6f, .friction = 0.8f, .radius = radius, .collide_depth = 0.2f};
@@ -177,7 +177,7 @@ TEST_CASE_FIXTURE(
                 const double falling = balls[k].velocity.y;
                 step_ball(balls[k], wall, collision);
                 rebounds += falling < -0.5 && balls[k].velocity.y > falling + 0.5 ? 1 : 0;
-                worst = std::max(worst, glm::distance(balls[k].place, glm::dvec3(found[2 * k])));
+                worst = std::max(worst, glm::distance(balls[k].position, glm::dvec3(found[2 * k])));
             }
         }
         CHECK(balls.size() == 200);
@@ -189,12 +189,12 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SeenScene, "particle depth: what the camera did not see, or is thinner, does not hold them"
-                   * technique("particle.depth-collision")) {
-    const SeenWall wall = {{0, 1, 0}, 0};
+    DepthScene, "particle depth: what the camera did not see, or is thinner, does not stop them"
+                    * technique("particle.depth-collision")) {
+    const DepthWall wall = {{0, 1, 0}, 0};
     const ParticleCollision collision = {
         .action = CollisionAction::Stick, .radius = 0, .collide_depth = 0.1f};
-    // The right half of the image sees nothing.
+    // The right half of the image is empty.
     see(wall, camera.width / 2);
     ParticleEmitter drops = handful();
     drops.speed = drops.speed_spread = 0;
@@ -216,7 +216,7 @@ TEST_CASE_FIXTURE(
     CHECK(held > 40);
     CHECK(held < 160);
     world.destroy(emitter);
-    // Behind what is seen, by more than its thickness, they fall freely.
+    // Behind the visible surface, by more than its thickness, they fall freely.
     pools = *GpuParticlePools::create(device());
     see(wall);
     emit(handful(), collision, {0, -1, 0});
@@ -228,7 +228,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(SeenScene, "particle depth: balls deeper than the thickness fall freely") {
+TEST_CASE_FIXTURE(DepthScene, "particle depth: balls deeper than the thickness fall freely") {
     see({{0, 1, 0}, 0});
     ParticleEmitter balls = handful();
     balls.size = Vec3(0.02f);
@@ -245,9 +245,9 @@ TEST_CASE_FIXTURE(SeenScene, "particle depth: balls deeper than the thickness fa
 }
 
 TEST_CASE_FIXTURE(
-    SeenScene, "particle depth: at 60 m/s none gets through what was seen"
-                   * technique("particle.depth-collision")) {
-    const SeenWall wall = {glm::normalize(Vec3(0, 0.5f, 1)), -1};
+    DepthScene, "particle depth: at 60 m/s none passes a visible surface"
+                    * technique("particle.depth-collision")) {
+    const DepthWall wall = {glm::normalize(Vec3(0, 0.5f, 1)), -1};
     see(wall);
     ParticleEmitter settings = handful();
     settings.speed = 60;
@@ -272,7 +272,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SeenScene,
+    DepthScene,
     "particle depth: no depth makes a NaN or a hang" * technique("particle.depth-collision")) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float value : {nan, 0.0f, -1.0f, 1e30f, 1e-30f}) {

@@ -7,13 +7,13 @@
 
 namespace limn::test {
 
-/// Particles at `places`, in the middle of their life of a second, all with the same random bits.
-inline ParticlePool pool_at(std::span<const Vec3> places, const Vec3& velocity = {0, 0, 0}) {
+/// Particles at `positions`, halfway through their life of a second, all with the same random bits.
+inline ParticlePool pool_at(std::span<const Vec3> positions, const Vec3& velocity = {0, 0, 0}) {
     ParticlePool pool;
-    for (const Vec3& place : places) {
-        pool.x.push_back(place.x);
-        pool.y.push_back(place.y);
-        pool.z.push_back(place.z);
+    for (const Vec3& position : positions) {
+        pool.x.push_back(position.x);
+        pool.y.push_back(position.y);
+        pool.z.push_back(position.z);
         pool.vx.push_back(velocity.x);
         pool.vy.push_back(velocity.y);
         pool.vz.push_back(velocity.z);

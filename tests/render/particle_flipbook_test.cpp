@@ -19,14 +19,14 @@ namespace {
 
 constexpr int kFrame = 64;         // pixels of a side, of the image drawn too
 constexpr float kRadius = 13;      // of the disc [px]
-constexpr Vec2 kStart = {20, 20};  // its middle in the first frame [px], y downward
+constexpr Vec2 kStart = {20, 20};  // its center in the first frame [px], y downward
 constexpr Vec2 kMove = {9, 6};     // from frame to frame [px]: its edge passes over itself
 constexpr Vec3 kMiddle[] = {{0, 0, 0}};
 constexpr float kStrength = 0.25f;  // of the motion map, in frames
 
-/// Opacity of the disc about `middle`, which falls over six pixels.
-float disc_at(const Vec2& middle, const Vec2& pixel) {
-    return 1 - glm::smoothstep(kRadius - 3, kRadius + 3, glm::distance(middle, pixel));
+/// Opacity of the disc about `center`, which falls over six pixels.
+float disc_at(const Vec2& center, const Vec2& pixel) {
+    return 1 - glm::smoothstep(kRadius - 3, kRadius + 3, glm::distance(center, pixel));
 }
 
 template <typename Texel>
@@ -96,7 +96,7 @@ struct FlipbookScene : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FlipbookScene, "particle flipbook: between frames a flying disc is one disc on its way"
+    FlipbookScene, "particle flipbook: between frames a moving disc is one disc on its path"
                        * technique("particle.motion-vectors")) {
     for (const float shown : {0.25f, 0.5f, 0.9f, 1.0f, 1.5f, 2.3f}) {
         CAPTURE(shown);

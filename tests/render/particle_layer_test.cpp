@@ -31,12 +31,12 @@ struct LayerScene : Scene {
                     glm::angleAxis(0.1f, Vec3(0, 0, 1)), {0.05f, 2, 1}));
         }
     }
-    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
+    Entity emit(const std::vector<Vec3>& positions, const ParticleLook& look) {
         ParticlePool pool;
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            pool.x.push_back(places[i].x);
-            pool.y.push_back(places[i].y);
-            pool.z.push_back(places[i].z);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            pool.x.push_back(positions[i].x);
+            pool.y.push_back(positions[i].y);
+            pool.z.push_back(positions[i].z);
             for (auto* column : {&pool.vx, &pool.vy, &pool.vz}) {
                 column->push_back(0);
             }
@@ -48,14 +48,14 @@ struct LayerScene : Scene {
     }
     /// Thirty puffs behind the bars.
     void add_smoke() {
-        std::vector<Vec3> places;
+        std::vector<Vec3> positions;
         for (int i = 1; i <= 30; ++i) {
-            const auto share = [&](double step) { return std::fmod(step * i, 1.0); };
-            places.emplace_back(
-                3 * share(0.8191725134) - 1.5, 3 * share(0.6710436067) - 1.5,
-                -0.5 - 2 * share(0.5497004779));
+            const auto fraction = [&](double step) { return std::fmod(step * i, 1.0); };
+            positions.emplace_back(
+                3 * fraction(0.8191725134) - 1.5, 3 * fraction(0.6710436067) - 1.5,
+                -0.5 - 2 * fraction(0.5497004779));
         }
-        emit(places, puff({0.9f, 0.2f, 0.1f}, 0.6f, 1.4f));
+        emit(positions, puff({0.9f, 0.2f, 0.1f}, 0.6f, 1.4f));
     }
     static ParticleLook puff(const Vec3& color, float opacity, float size) {
         ParticleLook look;
@@ -92,7 +92,7 @@ double decibels(const gpu::FloatImage& a, const gpu::FloatImage& b) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    LayerScene, "particle layer: smoke behind bars is that of all pixels, to 36 dB"
+    LayerScene, "particle layer: smoke behind bars is that of full resolution, to 36 dB"
                     * technique("particle.half-resolution")) {
     add_bars();
     add_smoke();
@@ -139,8 +139,8 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     LayerScene, "particle layer: a puff anywhere in the image is drawn whole, and when it is gone"
                     * technique("particle.half-resolution")) {
-    for (const Vec3& place : {Vec3(0.6f, 0.4f, 0), Vec3(-0.9f, -0.7f, 0), Vec3(0, 0.9f, -3)}) {
-        const Entity smoke = emit({place}, puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f));
+    for (const Vec3& position : {Vec3(0.6f, 0.4f, 0), Vec3(-0.9f, -0.7f, 0), Vec3(0, 0.9f, -3)}) {
+        const Entity smoke = emit({position}, puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f));
         const gpu::FloatImage full = drawn(ParticleResolution::Full);
         CHECK(decibels(drawn(ParticleResolution::Half), full) >= 40);
         CHECK(*std::max_element(full.pixels.begin(), full.pixels.end()) > 0.2f);
@@ -159,7 +159,7 @@ TEST_CASE_FIXTURE(LayerScene, "particle layer: puffs far apart in the image are 
 }
 
 TEST_CASE_FIXTURE(
-    LayerScene, "particle layer: points are as large as in the whole resolution"
+    LayerScene, "particle layer: points are as large as at full resolution"
                     * technique("particle.half-resolution")) {
     for (const auto facing : {ParticleFacing::Point, ParticleFacing::Pixels}) {
         ParticleLook point = puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f);
@@ -220,7 +220,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    LayerScene, "particle layer: it lies in the order where its middle one does"
+    LayerScene, "particle layer: it lies in the order where its median particle does"
                     * technique("particle.half-resolution")) {
     ParticleLook half = puff({1, 0, 0}, 0.9f, 4);
     half.resolution = ParticleResolution::Half;

@@ -21,15 +21,15 @@ namespace {
 struct LitScene : Scene {
     LitScene() { world.insert_resource(FrameTime{}); }
 
-    /// White, in the middle of their life of a second.
-    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
-        ParticlePool pool = pool_at(places, {1, 0.5f, 0.25f});
+    /// White, halfway through their life of a second.
+    Entity emit(const std::vector<Vec3>& positions, const ParticleLook& look) {
+        ParticlePool pool = pool_at(positions, {1, 0.5f, 0.25f});
         for (std::uint32_t i = 0; i < pool.look.size(); ++i) {
             pool.look[i] = i * 7919;
         }
         return world.create(ParticleEmitter{}, look, pool);
     }
-    Vec3 middle() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 9, 9)), 4, 4); }
+    Vec3 center_pixel() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 9, 9)), 4, 4); }
     void light_at(ParticleLitAt where) {
         world.query<const ParticleLook>().each([&](Entity entity, const ParticleLook&) {
             world.get<ParticleLook>(entity).lit_at = where;
@@ -56,7 +56,7 @@ ParticleLook lit_disc(float size, float forward) {
 }
 
 /// Radiance of a white disc that faces the camera, as the mean of its four corners: their normals
-/// lean outward by 0.8. `cosine`: between the ways to the light and to the camera.
+/// lean outward by 0.8. `cosine`: between the directions to the light and to the camera.
 double mean_of_corners(double cosine, double forward) {
     constexpr double kRoundness = 0.8;
     const double across = std::sqrt(1 - cosine * cosine);
@@ -74,7 +74,7 @@ double mean_of_corners(double cosine, double forward) {
     return (sum + std::abs(forward) * (lobe - sum)) / static_cast<double>(kPi);
 }
 
-/// Mean of 1 / d^2 over a ball around the origin, to a place at `away`.
+/// Mean of 1 / d^2 over a ball around the origin, to a position at `away`.
 double mean_over_ball(double radius, double away) {
     constexpr int kSteps = 400;
     double sum = 0;
@@ -93,7 +93,7 @@ double mean_over_ball(double radius, double away) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    LitScene, "particle light: in the middle it is the mean of the corners"
+    LitScene, "particle light: at the center it is the mean of the corners"
                   * technique("particle.lit-in-middle")) {
     const Entity one = emit({{0, 0, 0}}, lit_disc(1, 0));
     for (const float forward : {0.0f, 0.6f, -0.4f}) {
@@ -108,30 +108,30 @@ TEST_CASE_FIXTURE(
             CAPTURE(forward);
             CAPTURE(to_light.z);
             CHECK(
-                static_cast<double>(middle().x)
+                static_cast<double>(center_pixel().x)
                 == near(2 * mean_of_corners(to_light.z, forward)).epsilon(2e-3));
         }
     }
 }
 
 TEST_CASE_FIXTURE(
-    LitScene, "particle light: in the middle and at the corners, small ones give the same light"
+    LitScene, "particle light: at the center and at the corners, small ones give the same light"
                   * technique("particle.lit-in-middle")) {
     world.insert_resource(Environment{.intensity = 0.2f});
     shine(DirectionalLight{.illuminance = 0.3f}, look_at(Vec3(0), {1, -2, -1}));
     shine(PointLight{.color = {1, 0.5f, 0.2f}, .intensity = 20}, at({2, 3, 1}));
     shine(PointLight{.color = {0.2f, 0.5f, 1}, .intensity = 30}, at({-3, 0, -2}));
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (int i = 0; i < 200; ++i) {
         const float turn = 2.4f * static_cast<float>(i);
         const float away = 0.1f * std::sqrt(static_cast<float>(i));
-        places.emplace_back(away * std::cos(turn), away * std::sin(turn), 0.3f * std::sin(turn));
+        positions.emplace_back(away * std::cos(turn), away * std::sin(turn), 0.3f * std::sin(turn));
     }
     ParticleLook look = lit_disc(0.12f, 0.5f);
     look.cover = 0;
-    emit(places, look);
+    emit(positions, look);
     look.facing = ParticleFacing::Velocity;
-    emit(places, look);
+    emit(positions, look);
     const Vec3 in_middle = sum();
     light_at(ParticleLitAt::Corners);
     const Vec3 at_corners = sum();
@@ -149,26 +149,26 @@ TEST_CASE_FIXTURE(
     const Entity lamp = shine(PointLight{.intensity = 1.5f, .radius = 0}, at({0, 0, 1}));
     for (const ParticleLitAt where : {ParticleLitAt::Middle, ParticleLitAt::Corners}) {
         light_at(where);
-        for (const float share : {0.02f, 0.3f, 0.7f, 0.95f, 1.1f, 1.5f, 3.0f}) {
-            CAPTURE(share);
-            world.get<WorldTransform>(lamp).world = at({0, 0, share * radius});
-            const auto away = static_cast<double>(share * radius);
+        for (const float fraction : {0.02f, 0.3f, 0.7f, 0.95f, 1.1f, 1.5f, 3.0f}) {
+            CAPTURE(fraction);
+            world.get<WorldTransform>(lamp).world = at({0, 0, fraction * radius});
+            const auto away = static_cast<double>(fraction * radius);
             const double irradiance = 1.5 * mean_over_ball(static_cast<double>(radius), away);
             CHECK(
-                static_cast<double>(middle().x)
+                static_cast<double>(center_pixel().x)
                 == near(irradiance * mean_of_corners(1, 0)).epsilon(0.05));
         }
     }
 }
 
 TEST_CASE_FIXTURE(
-    LitScene, "particle light: lit in the middle or not, each in its place"
+    LitScene, "particle light: each is lit where its look says, all in one image"
                   * technique("particle.lit-in-middle")) {
-    // From the camera: the corners of each are lit alike. The middle of a quad is on the diagonal
+    // From the camera: the corners of each are lit alike. The center of a quad is on the diagonal
     // of its two triangles, where light is the mean of two corners, not of four.
     shine(PointLight{.intensity = 2, .radius = 0}, at({0, 0, 1}));
     ParticleLook look = lit_disc(0.2f, 0);
-    constexpr float kAside = 32.0f / 65;  // the middle of a pixel
+    constexpr float kAside = 32.0f / 65;  // the center of a pixel
     const std::vector<Vec3> left = {{-kAside, kAside, 0}, {-kAside, -kAside, 0}};
     emit(left, look);
     look.lit_at = ParticleLitAt::Corners;

@@ -30,12 +30,12 @@ struct Debris : Scene {
         for (int i = 0; i < 40; ++i) {
             const auto n = static_cast<float>(i);
             const Quat turn = glm::angleAxis(n, glm::normalize(Vec3(1, n, 2)));
-            const Vec3 place = {std::sin(3 * n), 0.02f * n, std::cos(5 * n)};
+            const Vec3 position = {std::sin(3 * n), 0.02f * n, std::cos(5 * n)};
             MeshParticle piece;
             piece.key = static_cast<std::uint32_t>(i);
             piece.mesh = i % 3 == 0 ? square : ball;
-            piece.now = affine_from(place, turn, Vec3(0.1f));
-            piece.before = affine_from(place - Vec3(0.05f, 0.02f, 0), turn, Vec3(0.1f));
+            piece.now = affine_from(position, turn, Vec3(0.1f));
+            piece.before = affine_from(position - Vec3(0.05f, 0.02f, 0), turn, Vec3(0.1f));
             pieces.push_back(piece);
         }
     }

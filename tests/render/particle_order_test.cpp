@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-// Particles among surfaces that are seen through: panes, media and water.
+// Particles among surfaces that are transparent: panes, media and water.
 
 namespace limn::test::particle_order_test {
 namespace {
@@ -19,7 +19,7 @@ struct OrderScene : Scene {
     OrderScene() { world.insert_resource(FrameTime{}); }
 
     /// A disc of 4 m at rest.
-    Entity emit(const Vec3& place, const Vec3& color, float opacity = 1) {
+    Entity emit(const Vec3& position, const Vec3& color, float opacity = 1) {
         ParticleLook look = look_;
         look.size = 4;
         look.colors = {{.at = 0, .color = color, .opacity = opacity}};
@@ -27,9 +27,9 @@ struct OrderScene : Scene {
         look.lit = 0;
         look.softness = 0;
         ParticlePool pool;
-        pool.x = {place.x};
-        pool.y = {place.y};
-        pool.z = {place.z};
+        pool.x = {position.x};
+        pool.y = {position.y};
+        pool.z = {position.z};
         pool.vx = pool.vy = pool.vz = {0};
         pool.age = {0.5f};
         pool.life = {1};
@@ -56,7 +56,7 @@ struct OrderScene : Scene {
             add(make_square()), add(Material{.base_color = {0, 0, 0, 1}, .roughness = 1}),
             affine_from({x, y, 0}, Quat(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0), Vec3(scale)));
     }
-    Vec3 middle() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33)), 16, 16); }
+    Vec3 center_pixel() { return rgb_at(radiance(look({0, 0, 1}, {0, 0, 0}, 33, 33)), 16, 16); }
 
     ParticleLook look_{};  ///< of those that are emitted, but for their size and color
 };
@@ -64,18 +64,19 @@ struct OrderScene : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    OrderScene, "particle order: behind a pane a sprite is seen through it, before it it hides it"
-                    * technique("particle.distance-sort")) {
+    OrderScene,
+    "particle order: a sprite behind a pane is visible through it, one in front hides it"
+        * technique("particle.distance-sort")) {
     add_pane(0, {0, 0, 1}, 0.25f);
     const Entity behind = emit({0, 0, -1}, {1, 0, 0});
-    Vec3 seen = middle();
-    CHECK(seen.x == test::near(0.75).epsilon(0.01));
-    CHECK(seen.z == test::near(0.25).epsilon(0.01));
+    Vec3 shown = center_pixel();
+    CHECK(shown.x == test::near(0.75).epsilon(0.01));
+    CHECK(shown.z == test::near(0.25).epsilon(0.01));
     world.destroy(behind);
     emit({0, 0, 0.5f}, {1, 0, 0});
-    seen = middle();
-    CHECK(seen.x == test::near(1).epsilon(0.01));
-    CHECK(seen.z < 0.01f);
+    shown = center_pixel();
+    CHECK(shown.x == test::near(1).epsilon(0.01));
+    CHECK(shown.z < 0.01f);
 }
 
 TEST_CASE_FIXTURE(
@@ -84,10 +85,10 @@ TEST_CASE_FIXTURE(
     add_pane(0, {0, 0, 1}, 0.5f);
     emit({0, 0, -1}, {1, 0, 0}, 0.8f);
     emit({0, 0, 0.3f}, {0, 1, 0}, 0.5f);
-    const Vec3 seen = middle();
-    CHECK(seen.x == test::near(0.8 * 0.5 * 0.5).epsilon(0.02));
-    CHECK(seen.z == test::near(0.5 * 0.5).epsilon(0.02));
-    CHECK(seen.y == test::near(0.5).epsilon(0.02));
+    const Vec3 shown = center_pixel();
+    CHECK(shown.x == test::near(0.8 * 0.5 * 0.5).epsilon(0.02));
+    CHECK(shown.z == test::near(0.5 * 0.5).epsilon(0.02));
+    CHECK(shown.y == test::near(0.5).epsilon(0.02));
 }
 
 TEST_CASE_FIXTURE(
@@ -100,10 +101,10 @@ TEST_CASE_FIXTURE(
         look_.sort = is_half ? ParticleSort::Distance : ParticleSort::Weighted;
         const Entity behind = emit({0, 0, -1}, {1, 0, 0}, 0.8f);
         const Entity before = emit({0, 0, 0.3f}, {0, 1, 0}, 0.5f);
-        const Vec3 seen = middle();
-        CHECK(seen.x == test::near(0.8 * 0.5 * 0.5).epsilon(0.02));
-        CHECK(seen.z == test::near(0.5 * 0.5).epsilon(0.02));
-        CHECK(seen.y == test::near(0.5).epsilon(0.02));
+        const Vec3 shown = center_pixel();
+        CHECK(shown.x == test::near(0.8 * 0.5 * 0.5).epsilon(0.02));
+        CHECK(shown.z == test::near(0.5 * 0.5).epsilon(0.02));
+        CHECK(shown.y == test::near(0.5).epsilon(0.02));
         world.destroy(behind);
         world.destroy(before);
     }
@@ -124,9 +125,9 @@ TEST_CASE_FIXTURE(
     const RenderView view = look({0, 3, 0.1f}, {0, 0, 0}, 33, 33);
     const auto mirrored = [&](float height) {
         const Entity one = emit({0, height, 0}, {1, 0, 0});
-        const Vec3 seen = rgb_at(radiance(view), 16, 16);
+        const Vec3 shown = rgb_at(radiance(view), 16, 16);
         world.destroy(one);
-        return seen;
+        return shown;
     };
     const Vec3 behind = mirrored(6);
     CHECK(behind.x > 0.005f);
@@ -155,24 +156,25 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene, "particle order: behind clear glass a sprite is seen, before it it hides the glass"
-                    * technique("particle.distance-sort")) {
+    OrderScene,
+    "particle order: a sprite behind clear glass is visible, one in front hides the glass"
+        * technique("particle.distance-sort")) {
     const Material glass = {
         .base_color = {1, 1, 1, 1}, .roughness = 0, .transmission = 1, .thickness = 0.1f};
     place(add(make_square()), add(glass), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(3)));
     for (const float z : {-1.0f, 0.5f}) {
         CAPTURE(z);
         const Entity one = emit({0, 0, z}, {1, 0, 0});
-        const Vec3 seen = middle();
-        CHECK(seen.x > 0.85f);
-        CHECK(seen.y < 0.05f);
+        const Vec3 shown = center_pixel();
+        CHECK(shown.x > 0.85f);
+        CHECK(shown.y < 0.05f);
         world.destroy(one);
     }
-    CHECK(middle().x < 0.05f);
+    CHECK(center_pixel().x < 0.05f);
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene, "particle order: above water a sprite hides it, below black water it is not seen"
+    OrderScene, "particle order: a sprite above water hides it, below black water it is invisible"
                     * technique("particle.distance-sort")) {
     world.create(
         Water{.absorption = {100, 100, 100}, .scattering = Vec3(0)}, WorldTransform{at({0, 0, 0})});
@@ -187,9 +189,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OrderScene, "particle order: below clear water they are seen from above"
+    OrderScene, "particle order: below clear water they are visible from above"
                     * technique("particle.distance-sort")) {
-    // A floor in the way of the light that comes back, so that only what is before it is seen.
+    // A floor in the way of the light that comes back, so that only what is before it is shown.
     add_floor();
     world.create(
         Water{.size = {16, 16}, .depth = 2, .absorption = Vec3(0), .scattering = Vec3(0)},
@@ -199,9 +201,9 @@ TEST_CASE_FIXTURE(
     const float bare = red();
     const Entity below = emit({0, -1, 0}, {1, 0, 0}, 0.5f);
     // All but the 2 % that are mirrored on the way out, by light that spreads over n^2.
-    const float seen = red();
-    CHECK(seen > bare + 0.3f);
-    CHECK(seen < bare + 0.5f);
+    const float shown = red();
+    CHECK(shown > bare + 0.3f);
+    CHECK(shown < bare + 0.5f);
     world.destroy(below);
     emit({0, 0.5f, 0}, {1, 0, 0}, 0.5f);
     CHECK(red() == test::near(0.5f + 0.5f * bare).epsilon(0.02));
@@ -288,9 +290,9 @@ TEST_CASE_FIXTURE(
         const RenderView view = look({0, 3, aside}, {0, 0, 0}, 33, 33);
         const auto seen_at = [&](float above_floor) {
             const Entity one = emit({0, above_floor - 2, 0}, {1, 1, 1});
-            const Vec3 seen = rgb_at(radiance(view), 16, 16);
+            const Vec3 shown = rgb_at(radiance(view), 16, 16);
             world.destroy(one);
-            return seen;
+            return shown;
         };
         const Vec3 low = seen_at(0.2f);
         const Vec3 high = seen_at(1);

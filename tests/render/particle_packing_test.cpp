@@ -41,7 +41,7 @@ TEST_CASE("particle packing: vectors pack what the plain loop packs, in its orde
         }
         for (std::size_t i = 0; i < packed; ++i) {
             CHECK(ours[i].position == plain[i].position);
-            CHECK(ours[i].look_and_share == plain[i].look_and_share);
+            CHECK(ours[i].look_and_life == plain[i].look_and_life);
             CHECK(ours[i].random == plain[i].random);
             const Vec4 a = ours[i].motion();
             const Vec4 b = plain[i].motion();
@@ -52,8 +52,7 @@ TEST_CASE("particle packing: vectors pack what the plain loop packs, in its orde
     }
 }
 
-TEST_CASE("particle packing: an instance has the look above the share, and velocities less the "
-          "observer's") {
+TEST_CASE("particle packing: the look is above the fraction of the life, velocities are relative") {
     ParticlePool pool = make_pool(32);
     pool.age.assign(32, 0.504f);
     pool.life.assign(32, 1.0f);
@@ -61,8 +60,8 @@ TEST_CASE("particle packing: an instance has the look above the share, and veloc
     std::vector<ParticleInstance> instances(32);
     REQUIRE(pack_particles(pool, kPacking, instances) == 32);
     for (const ParticleInstance& instance : instances) {
-        CHECK((instance.look_and_share >> 16) == 40000);
-        CHECK((instance.look_and_share & 0xffff) == 32767);
+        CHECK((instance.look_and_life >> 16) == 40000);
+        CHECK((instance.look_and_life & 0xffff) == 32767);
         CHECK(instance.motion().x == 2);
     }
 }

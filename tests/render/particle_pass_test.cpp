@@ -21,12 +21,12 @@ namespace {
 struct ParticleScene : Scene {
     ParticleScene() { world.insert_resource(FrameTime{}); }
 
-    /// Particles at rest, in the middle of their life of a second.
-    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
-        return world.create(ParticleEmitter{}, look, pool_at(places));
+    /// Particles at rest, halfway through their life of a second.
+    Entity emit(const std::vector<Vec3>& positions, const ParticleLook& look) {
+        return world.create(ParticleEmitter{}, look, pool_at(positions));
     }
     [[nodiscard]] RenderView view() const { return look({0, 0, 1}, {0, 0, 0}, 9, 9); }
-    Vec3 middle() { return rgb_at(radiance(view()), 4, 4); }
+    Vec3 center_pixel() { return rgb_at(radiance(view()), 4, 4); }
 };
 
 /// A disc that adds or hides light and does not soften.
@@ -90,7 +90,7 @@ TEST_CASE_FIXTURE(
         }
     }
     CHECK(worst < 0.002f);
-    // The first disc begins at pixel 33.6 and has its middle at 45.6.
+    // The first disc begins at pixel 33.6 and has its center at 45.6.
     CHECK(cut.at(33, 12, 0) < 1e-6f);
     CHECK(cut.at(45, 12, 0) > 0.95f);
 }
@@ -107,15 +107,16 @@ TEST_CASE_FIXTURE(
         streak.stretch = 20 * kPixel;  // at 1 m/s
         const Entity entity =
             world.create(ParticleEmitter{}, streak, pool_at({{Vec3(0, 0, 0)}}, along));
-        const gpu::FloatImage seen = radiance(look({0, 0, 1}, {0, 0, 0}, 96, 96));
+        const gpu::FloatImage shown = radiance(look({0, 0, 1}, {0, 0, 0}, 96, 96));
         float worst = 0;
         for (int y = 0; y < 96; ++y) {
             for (int x = 0; x < 96; ++x) {
-                const Vec2 place = {static_cast<float>(x) - 47.5f, 47.5f - static_cast<float>(y)};
-                const float up = glm::dot(place, Vec2(along)) / (0.5f * width + 10);
-                const float right = (place.x * along.y - place.y * along.x) / (0.5f * width);
+                const Vec2 position = {
+                    static_cast<float>(x) - 47.5f, 47.5f - static_cast<float>(y)};
+                const float up = glm::dot(position, Vec2(along)) / (0.5f * width + 10);
+                const float right = (position.x * along.y - position.y * along.x) / (0.5f * width);
                 const float expected = square(std::max(1 - square(up) - square(right), 0.0f));
-                worst = std::max(worst, std::abs(seen.at(x, y, 0) - expected));
+                worst = std::max(worst, std::abs(shown.at(x, y, 0) - expected));
             }
         }
         CHECK(worst < 0.004f);
@@ -150,12 +151,12 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle pass: whoever counts as one thing is ordered by its place"
+    "particle pass: particles that are sorted as one are ordered by their emitter's position"
     * technique("particle.distance-sort")) {
     std::vector<ParticleInstance> instances(6);
     for (std::uint32_t i = 0; i < 6; ++i) {
         instances[i].position = {0, 0, -static_cast<float>(i)};
-        instances[i].look_and_share = (i % 2) << 16;
+        instances[i].look_and_life = (i % 2) << 16;
     }
     DistanceOrder found;
     // Looks 0 at 0, -2, -4 m; looks 1 all at -3 m.
@@ -171,10 +172,10 @@ TEST_CASE_FIXTURE(
     // psize (1, 0, 0.01, 16)
     ParticleLook point = add_point_sprite(*this);
     point.attenuation = {1, 0, 0.01f};
-    for (const auto& seen :
+    for (const auto& row :
          {std::pair(0.1f, 15.9992f), std::pair(10.0f, 11.313708f), std::pair(100.0f, 1.592060f)}) {
-        const float distance = seen.first;
-        const float size = seen.second;
+        const float distance = row.first;
+        const float size = row.second;
         CAPTURE(distance);
         const Entity sprite = emit({{0, 0, -distance}}, point);
         const gpu::FloatImage image = radiance(look({0, 0, 0}, {0, 0, -1}, 96, 96));
@@ -189,10 +190,10 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ParticleScene,
-    "particle pass: a point sprite is as large in a corner of the image as in the middle"
+    "particle pass: a point sprite is as large in a corner of the image as in the center"
         * technique("particle.gpu-draw")) {
     ParticleLook point = add_point_sprite(*this);
-    for (const float shift : {0.0f, 1.0f, 1.9f}) {  // of 2.31 m from the middle to the edge
+    for (const float shift : {0.0f, 1.0f, 1.9f}) {  // of 2.31 m from the center to the edge
         CAPTURE(shift);
         const Entity sprite = emit({{shift, shift, -4}}, point);
         const gpu::FloatImage image = radiance(look({0, 0, 0}, {0, 0, -1}, 96, 96));
@@ -219,11 +220,11 @@ TEST_CASE_FIXTURE(
     board.image = add(image);
     board.facing = ParticleFacing::Pixels;
     board.turn_spread = 0;
-    const auto range_of = [&](const gpu::FloatImage& drawn, int middle) {  // of 6 x 6 pixels
+    const auto range_of = [&](const gpu::FloatImage& drawn, int center) {  // of 6 x 6 pixels
         float least = INFINITY;
         float most = 0;
         for (int i = 0; i < 36; ++i) {
-            const float value = rgb_at(drawn, middle - 3 + i % 6, 48 - 3 + i / 6).x;
+            const float value = rgb_at(drawn, center - 3 + i % 6, 48 - 3 + i / 6).x;
             least = std::min(least, value);
             most = std::max(most, value);
         }
@@ -249,13 +250,13 @@ TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: a disc drawn as a point is that drawn as a quad, to a tenth") {
     // Seen at a right angle, 7.5 to 30 pixels wide.
     for (const float size : {0.25f, 0.5f, 1.0f}) {
-        for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.09f, -0.07f, 0.02f)}) {
+        for (const Vec3& position : {Vec3(0, 0, 0), Vec3(0.09f, -0.07f, 0.02f)}) {
             CAPTURE(size);
             ParticleLook look = disc({3, 2, 1}, 0.8f, 0.5f);
             look.size = size;
             const auto drawn = [&](ParticleFacing facing) {
                 look.facing = facing;
-                const Entity one = emit({place}, look);
+                const Entity one = emit({position}, look);
                 gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 60, 60));
                 world.destroy(one);
                 return image;
@@ -304,8 +305,8 @@ TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: a small disc gives the light of its solid angle, to 2 %"
                        * technique("particle.gpu-draw")) {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
-    constexpr int kShifts = 8;                         // in a pixel, each way
-    for (const float diameter : {0.5f, 1.5f, 3.0f}) {  // [px], of 30 a meter in the middle
+    constexpr int kShifts = 8;                         // in a pixel, along each axis
+    for (const float diameter : {0.5f, 1.5f, 3.0f}) {  // [px], of 30 a meter at the center
         for (const float aside : {0.0f, 0.8f}) {       // to the right and up [m], a meter ahead
             CAPTURE(diameter);
             CAPTURE(aside);
@@ -320,7 +321,7 @@ TEST_CASE_FIXTURE(
                     sum += static_cast<double>(rgb_at(image, pixel % 60, pixel / 60).x);
                 }
             }
-            // Its profile integrates to a third of its area, and a pixel off the middle spans less.
+            // Its profile integrates to a third of its area, and a pixel off the center spans less.
             const float cosine = 1 / glm::length(Vec3(aside, aside, 1));
             const float expected = kPi / 3 * square(0.5f * diameter) / cosine;
             CHECK(
@@ -382,9 +383,9 @@ TEST_CASE_FIXTURE(
     ParticleLook flat = disc({0, 1, 0}, 1, 1);
     flat.facing = ParticleFacing::Ground;
     emit({{0, 0, -0.2f}}, point);
-    emit({{0, 0.001f, 0}}, flat);  // seen from its edge
-    CHECK(middle().x > 0.98f);
-    CHECK(middle().y < 0.02f);
+    emit({{0, 0.001f, 0}}, flat);  // edge-on
+    CHECK(center_pixel().x > 0.98f);
+    CHECK(center_pixel().y < 0.02f);
 }
 
 TEST_CASE_FIXTURE(
@@ -392,10 +393,10 @@ TEST_CASE_FIXTURE(
                        * technique("engine.particle-params, particle.gpu-draw")) {
     // Half a second of the life of one is left.
     ParticleLook look = disc({1, 1, 1}, 1, 1);
-    const float whole = (emit({{0, 0, 0}}, look), middle().x);
+    const float whole = (emit({{0, 0, 0}}, look), center_pixel().x);
     const auto faded = [&](float fade) {
         world.query<ParticleLook>().each([&](ParticleLook& drawn) { drawn.fade = fade; });
-        return middle().x / whole;
+        return center_pixel().x / whole;
     };
     CHECK(faded(0.25f) == near(1).epsilon(1e-3));
     CHECK(faded(0.5f) == near(1).epsilon(1e-3));
@@ -409,8 +410,8 @@ TEST_CASE_FIXTURE(
     ParticleLook look = disc({1, 0, 0}, 1, 1);
     look.colors.push_back({.at = 1, .color = {0, 0, 0.5f}});
     emit({{0, 0, 0}}, look);
-    CHECK(middle().x == near(0.5).epsilon(2e-3));
-    CHECK(middle().z == near(0.25).epsilon(2e-3));
+    CHECK(center_pixel().x == near(0.5).epsilon(2e-3));
+    CHECK(center_pixel().z == near(0.25).epsilon(2e-3));
 }
 
 TEST_CASE_FIXTURE(
@@ -428,10 +429,10 @@ TEST_CASE_FIXTURE(
                 .wave = wave, .base = 0.4f, .amplitude = 0.5f, .phase = phase, .frequency = 1.3f};
             world.query<ParticleLook>().each(
                 [&](ParticleLook& drawn) { drawn.color_function = function; });
-            const double share = evaluate_share(function, 0.5 - static_cast<double>(lag));
-            const Vec3 color = middle();
-            CHECK(color.z == near(share).scale(1).epsilon(5e-3));
-            CHECK(color.x == near(1 - share).scale(1).epsilon(5e-3));
+            const double fraction = evaluate_share(function, 0.5 - static_cast<double>(lag));
+            const Vec3 color = center_pixel();
+            CHECK(color.z == near(fraction).scale(1).epsilon(5e-3));
+            CHECK(color.x == near(1 - fraction).scale(1).epsilon(5e-3));
         }
     }
 }
@@ -448,7 +449,7 @@ TEST_CASE_FIXTURE(
     for (std::uint32_t i = 0; i < 60; ++i) {
         world.query<ParticlePool>().each(
             [&](ParticlePool& pool) { pool.look[0] = i * 0x9e3779b9u; });
-        const Vec3 color = middle();
+        const Vec3 color = center_pixel();
         low = glm::min(low, color);
         high = glm::max(high, color);
     }
@@ -464,7 +465,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "particle pass: between steps they are back on their way, and not there before birth"
+    "particle pass: between steps they are earlier on their paths, and absent before birth"
     * technique("particle.gpu-draw")) {
     ParticlePool pool;
     for (const float age : {0.5f, 0.01f}) {
@@ -482,8 +483,8 @@ TEST_CASE(
     append_particles(pool, 5, 0.1f, instances);
     REQUIRE(instances.size() == 1);
     CHECK(instances[0].position.x == test::near(2));
-    CHECK((instances[0].look_and_share >> 16) == 5);
-    CHECK((instances[0].look_and_share & 0xffff) / 65535.0 == test::near(0.2).epsilon(1e-3));
+    CHECK((instances[0].look_and_life >> 16) == 5);
+    CHECK((instances[0].look_and_life & 0xffff) / 65535.0 == test::near(0.2).epsilon(1e-3));
 }
 
 TEST_CASE(
@@ -515,43 +516,43 @@ TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: they fade near the camera and far from it, and in between not") {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
     emit({{0, 0, 0}}, look);
-    const float plain = middle().x;
+    const float plain = center_pixel().x;
     world.clear();
     look.near_fade = 0.9f;  // the camera is 1 m away
     look.far_fade = 2;
     emit({{0, 0, 0}}, look);
-    CHECK(middle().x == near(plain));
+    CHECK(center_pixel().x == near(plain));
     world.clear();
     look.near_fade = 2;
     emit({{0, 0, 0}}, look);
-    CHECK(middle().x == near(0.5f * plain).epsilon(0.01));
+    CHECK(center_pixel().x == near(0.5f * plain).epsilon(0.01));
     world.clear();
     look.near_fade = 0;
     look.far_fade = 1.25f;  // midway between 0.75 and 1.25
     emit({{0, 0, 0}}, look);
-    CHECK(middle().x == near(0.5f * plain).epsilon(0.01));
+    CHECK(center_pixel().x == near(0.5f * plain).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(
     ParticleScene, "particle pass: light adds up, in any order; black and what is hidden add none"
                        * technique("particle.light-source-render")) {
-    const std::vector<Vec3> places = {{0, 0, -0.3f}, {0, 0, 0}, {0, 0, -0.1f}, {0, 0, 0.2f}};
-    emit(places, disc({0.25f, 0.5f, 1}, 0.5f, 0));
-    const Vec3 four = middle();
+    const std::vector<Vec3> positions = {{0, 0, -0.3f}, {0, 0, 0}, {0, 0, -0.1f}, {0, 0, 0.2f}};
+    emit(positions, disc({0.25f, 0.5f, 1}, 0.5f, 0));
+    const Vec3 four = center_pixel();
     for (int c = 0; c < 3; ++c) {
         CHECK(four[c] == near(4 * 0.5f * Vec3(0.25f, 0.5f, 1)[c]).epsilon(1e-5));
     }
     world.clear();
-    emit({places[3], places[1], places[0], places[2]}, disc({0.25f, 0.5f, 1}, 0.5f, 0));
-    CHECK(glm::length(middle() - four) < 1e-5f);
-    emit(places, disc({0, 0, 0}, 1, 0));
-    CHECK(glm::length(middle() - four) < 1e-5f);
+    emit({positions[3], positions[1], positions[0], positions[2]}, disc({0.25f, 0.5f, 1}, 0.5f, 0));
+    CHECK(glm::length(center_pixel() - four) < 1e-5f);
+    emit(positions, disc({0, 0, 0}, 1, 0));
+    CHECK(glm::length(center_pixel() - four) < 1e-5f);
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
         at({0, 0, -0.2f}));
     emit({{0, 0, -0.5f}}, disc({9, 9, 9}, 1, 1));
-    CHECK(middle().z == near(1 + 3 * 0.5f).epsilon(1e-5));  // one of the four is behind, too
+    CHECK(center_pixel().z == near(1 + 3 * 0.5f).epsilon(1e-5));  // one of the four is behind, too
 }
 
 TEST_CASE_FIXTURE(
@@ -566,12 +567,12 @@ TEST_CASE_FIXTURE(
     Vec3 want = 0.5f * red;
     want = 0.25f * want + 0.75f * green;
     want = 0.75f * want + 0.25f * blue;
-    CHECK(glm::length(middle() - want) < 2e-3f);
+    CHECK(glm::length(center_pixel() - want) < 2e-3f);
     // Half a cover hides half as much.
     world.clear();
     emit({{0, 0, -0.6f}}, disc(red, 1, 1));
     emit({{0, 0, 0}}, disc(green, 0.5f, 0.5f));
-    CHECK(glm::length(middle() - (0.75f * red + 0.5f * green)) < 2e-3f);
+    CHECK(glm::length(center_pixel() - (0.75f * red + 0.5f * green)) < 2e-3f);
 }
 
 TEST_CASE_FIXTURE(
@@ -584,7 +585,7 @@ TEST_CASE_FIXTURE(
     for (const float ahead : {0.1f, 0.2f, 0.4f, 0.6f}) {
         CAPTURE(ahead);
         emit({{0, 0, ahead}}, look);
-        CHECK(middle().x == near(std::min(ahead / 0.4f, 1.0f)).epsilon(1e-3));
+        CHECK(center_pixel().x == near(std::min(ahead / 0.4f, 1.0f)).epsilon(1e-3));
         world.query<const ParticlePool>().each(
             [&](Entity entity, const ParticlePool&) { world.get<ParticlePool>(entity) = {}; });
     }
@@ -597,13 +598,13 @@ TEST_CASE_FIXTURE(
     look.emission = 0;
     look.lit = 1;
     emit({{0, 0, 0}}, look);
-    CHECK(middle() == Vec3(0));
+    CHECK(center_pixel() == Vec3(0));
     const auto sun = [&](const Vec3& travels, float illuminance) {
         world.query<const DirectionalLight>().each([&](Entity entity, const DirectionalLight&) {
             world.get<DirectionalLight>(entity).illuminance = 0;
         });
         shine(DirectionalLight{.illuminance = illuminance}, look_at(Vec3(0), travels));
-        return middle().x;
+        return center_pixel().x;
     };
     const float front = sun({0, 0, -1}, 1);
     const float behind = sun({0, 0, 1}, 1);
@@ -621,7 +622,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ParticleScene, "particle pass: a streak is as long as its way, and points along it") {
+    ParticleScene, "particle pass: a streak is as long as its path, and points along it") {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
     look.size = 0.1f;
     look.facing = ParticleFacing::Velocity;
@@ -664,7 +665,7 @@ TEST_CASE_FIXTURE(
     look.frame_rate =
         2.5f;  // half a second: a quarter into the second frame, before the first again
     emit({{0, 0, 0}}, look);
-    const Vec3 color = middle();
+    const Vec3 color = center_pixel();
     CHECK(color.y == near(0.75f).epsilon(0.02));
     CHECK(color.x == near(0.25f).epsilon(0.02));
 }
@@ -686,18 +687,18 @@ TEST_CASE_FIXTURE(
     look.frame_rate = 2.5f;
     look.frames = ParticleFrames::Pick;
     emit({{0, 0, 0}}, look);
-    const Vec3 picked = middle();
+    const Vec3 picked = center_pixel();
     CHECK(std::max(picked.x, picked.y) == near(1).epsilon(0.02));
     CHECK(std::min(picked.x, picked.y) == near(0));
     world.clear();
     look.frames = ParticleFrames::Shuffle;
-    emit({{0, 0, 0}}, look);  // a quarter on the way to the other frame
-    const Vec3 shuffled = middle();
+    emit({{0, 0, 0}}, look);  // a quarter of the transition to the other frame
+    const Vec3 shuffled = center_pixel();
     const bool is_second_first = picked.y > 0.5f;
     CHECK(shuffled.y == near(is_second_first ? 0.25f : 0.75f).epsilon(0.02));
 }
 
-TEST_CASE_FIXTURE(ParticleScene, "particle pass: what tumbles is at times seen edge-on") {
+TEST_CASE_FIXTURE(ParticleScene, "particle pass: tumbling quads are edge-on at times") {
     ParticleLook look = disc({1, 1, 1}, 1, 0);
     look.turn_spread = 0;
     const auto lit_pixels = [&] {
@@ -715,9 +716,9 @@ TEST_CASE_FIXTURE(ParticleScene, "particle pass: what tumbles is at times seen e
         world.clear();
         look.tumble = speed;
         emit({{0, 0, 0}}, look);
-        const int seen = lit_pixels();
-        CHECK(seen <= whole + 4);  // the near half looms
-        narrowest = std::min(narrowest, seen);
+        const int count = lit_pixels();
+        CHECK(count <= whole + 4);  // the near half looms
+        narrowest = std::min(narrowest, count);
     }
     CHECK(narrowest < whole / 2);
 }

@@ -38,16 +38,16 @@ struct ShadowScene : Scene {
     Entity add_sun() {
         return shine(DirectionalLight{.illuminance = 3}, at({0, 0, 5}));  // along -z
     }
-    /// Particles at rest, in the middle of their life.
-    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
-        return world.create(ParticleEmitter{}, look, pool_at(places));
+    /// Particles at rest, halfway through their life.
+    Entity emit(const std::vector<Vec3>& positions, const ParticleLook& look) {
+        return world.create(ParticleEmitter{}, look, pool_at(positions));
     }
     gpu::FloatImage wall_image(float z = 0) { return radiance(look({0, 0, z + 2}, {0, 0, z})); }
-    /// At the middle of the wall; a pixel is 1/16 m.
-    Vec3 middle(float z = 0) { return rgb_at(wall_image(z), 32, 32); }
+    /// At the center of the wall; a pixel is 1/16 m.
+    Vec3 center_pixel(float z = 0) { return rgb_at(wall_image(z), 32, 32); }
 };
 
-/// Of this opacity in the middle; it casts a shadow and is not seen by a camera that is near.
+/// Of this opacity at the center; it casts a shadow, and is invisible to a camera nearby.
 ParticleLook caster(float size, float opacity) {
     ParticleLook look;
     look.size = size;
@@ -59,14 +59,14 @@ ParticleLook caster(float size, float opacity) {
 
 /// A cloud of 60 discs in x, y = -0.9 .. 0.9 and z = 0.6 .. 3.4, by the Weyl sequence.
 std::vector<Vec3> cloud() {
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (int i = 1; i <= 60; ++i) {
-        const auto share = [&](double step) { return std::fmod(step * i, 1.0); };
-        places.emplace_back(
-            1.8 * share(0.8191725134) - 0.9, 1.8 * share(0.6710436067) - 0.9,
-            0.6 + 2.8 * share(0.5497004779));
+        const auto fraction = [&](double step) { return std::fmod(step * i, 1.0); };
+        positions.emplace_back(
+            1.8 * fraction(0.8191725134) - 0.9, 1.8 * fraction(0.6710436067) - 0.9,
+            0.6 + 2.8 * fraction(0.5497004779));
     }
-    return places;
+    return positions;
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("particle shadow: the map of a sun holds what casts, whole and in depth") {
+TEST_CASE("particle shadow: the map of a sun covers all casters, in depth too") {
     const Vec3 axis = glm::normalize(Vec3(0.4f, -0.8f, 0.2f));
     const std::vector<ShadowBall> balls = {{{1, 2, 3}, 0.5f}, {{-2, 0, 1}, 1}, {{0, 5, 0}, 0.1f}};
     const ParticleShadowView view = view_from_sun(4, axis, balls);
@@ -129,11 +129,11 @@ TEST_CASE("particle shadow: the map of a sun holds what casts, whole and in dept
     CHECK(std::abs(glm::dot(view.right, axis)) < 1e-6f);
     CHECK(std::abs(glm::dot(view.up, axis)) < 1e-6f);
     for (const ShadowBall& ball : balls) {
-        for (const Vec3& way : {view.right, view.up, axis}) {
+        for (const Vec3& direction : {view.right, view.up, axis}) {
             for (const float side : {-1.0f, 1.0f}) {
-                const Vec4 place = Vec4(ball.middle + side * ball.radius * way, 1);
+                const Vec4 position = Vec4(ball.center + side * ball.radius * direction, 1);
                 for (int row = 0; row < 3; ++row) {
-                    const float at = glm::dot(view.record[static_cast<std::size_t>(row)], place);
+                    const float at = glm::dot(view.record[static_cast<std::size_t>(row)], position);
                     CHECK(at > -1e-4f);
                     CHECK(at < 1 + 1e-4f);
                 }
@@ -149,40 +149,40 @@ TEST_CASE_FIXTURE(
     ShadowScene, "particle shadow: a surface behind a puff gets the light that it leaves"
                      * technique("particle.shadow")) {
     add_sun();
-    const float open = middle().x;
+    const float open = center_pixel().x;
     const float edge = wall_image().at(4, 4, 0);
     ParticleLook look = caster(1, 0.5f);
     const Entity puff = emit({{0.03125f, -0.03125f, 0.8f}}, look);
-    CHECK(middle().x / open == near(0.5).epsilon(0.01));
+    CHECK(center_pixel().x / open == near(0.5).epsilon(0.01));
     CHECK(wall_image().at(4, 4, 0) / edge == near(1).epsilon(1e-3));  // beside it
     // Two that lie one behind the other leave the product.
     const Entity other = emit({{0.03125f, -0.03125f, 1.6f}}, look);
-    CHECK(middle().x / open == near(0.25).epsilon(0.01));
+    CHECK(center_pixel().x / open == near(0.25).epsilon(0.01));
     world.destroy(other);
     // A factor on the opacity, and one on the optical depth of each color.
     look.shadow = 0.4f;
     world.add(puff, ParticleLook(look));
-    CHECK(middle().x / open == near(0.8).epsilon(0.01));
+    CHECK(center_pixel().x / open == near(0.8).epsilon(0.01));
     look.shadow = 1;
     look.shadow_tint = {0, 0.5f, 1};
     world.add(puff, ParticleLook(look));
-    const Vec3 tinted = middle() / open;
+    const Vec3 tinted = center_pixel() / open;
     CHECK(tinted.x == near(1).epsilon(0.01));
     CHECK(tinted.y == near(std::sqrt(0.5)).epsilon(0.01));
     CHECK(tinted.z == near(0.5).epsilon(0.01));
     // What only adds light hides none.
     look.cover = 0;
     world.add(puff, ParticleLook(look));
-    CHECK(middle().z / open == near(1).epsilon(1e-3));
+    CHECK(center_pixel().z / open == near(1).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(
     ShadowScene, "particle shadow: within a cloud it is the sum over all particles, to 0.03"
                      * technique("particle.shadow")) {
-    const std::vector<Vec3> places = cloud();
+    const std::vector<Vec3> positions = cloud();
     std::vector<oracle::ShadowDisc> discs;
-    for (const Vec3& place : places) {
-        discs.push_back({.middle = place, .diameter = 0.8, .opacity = 0.3});
+    for (const Vec3& position : positions) {
+        discs.push_back({.center = position, .diameter = 0.8, .opacity = 0.3});
     }
     add_sun();
     for (const auto& placed :
@@ -196,7 +196,7 @@ TEST_CASE_FIXTURE(
         });
         const gpu::FloatImage open = wall_image(z);
         if (world.query<const ParticlePool>().empty()) {
-            emit(places, caster(0.8f, 0.3f));
+            emit(positions, caster(0.8f, 0.3f));
         }
         world.query<ParticleLook>().each([](ParticleLook& caster) { caster.shadow = 1; });
         const gpu::FloatImage found = wall_image(z);
@@ -204,9 +204,9 @@ TEST_CASE_FIXTURE(
         double darkest = 1;
         for (int y = 0; y < 64; ++y) {
             for (int x = 0; x < 64; ++x) {
-                const glm::dvec3 place = {
+                const glm::dvec3 position = {
                     (x + 0.5) / 16 - 2, 2 - (y + 0.5) / 16, static_cast<double>(z)};
-                const double exact = oracle::disc_transmittance(discs, place, {0, 0, -1});
+                const double exact = oracle::disc_transmittance(discs, position, {0, 0, -1});
                 const double transmitted =
                     static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
                 sum += (transmitted - exact) * (transmitted - exact);
@@ -223,18 +223,18 @@ TEST_CASE_FIXTURE(
                      * technique("particle.shadow")) {
     world.destroy(wall);
     add_sun();
-    ParticleLook seen = caster(0.5f, 0.9f);
-    seen.near_fade = 0;
-    seen.shadow = 0;
-    seen.softness = 0;
-    emit({{0, 0, 0}}, seen);
-    const float open = middle().x;
+    ParticleLook visible = caster(0.5f, 0.9f);
+    visible.near_fade = 0;
+    visible.shadow = 0;
+    visible.softness = 0;
+    emit({{0, 0, 0}}, visible);
+    const float open = center_pixel().x;
     // The puff between it and the sun is out of the camera's sight, the one behind it is not.
     const Entity before = emit({{0, 0, 4}}, caster(6, 0.6f));
-    CHECK(middle().x / open == near(0.4).epsilon(0.02));
+    CHECK(center_pixel().x / open == near(0.4).epsilon(0.02));
     world.destroy(before);
     emit({{0, 0, -4}}, caster(6, 0.6f));
-    CHECK(middle().x / open == near(1).epsilon(0.02));
+    CHECK(center_pixel().x / open == near(1).epsilon(0.02));
 }
 
 TEST_CASE_FIXTURE(
@@ -243,11 +243,11 @@ TEST_CASE_FIXTURE(
     world.create(
         SpotLight{.intensity = 40, .radius = 20, .inner_angle = 0.5f, .outer_angle = 0.6f},
         Shadow{}, WorldTransform{at({0, 0, 4})});
-    const float open = middle().x;
+    const float open = center_pixel().x;
     REQUIRE(open > 0);
     emit({{0.02f, 0.02f, 2}}, caster(1, 0.5f));
-    CHECK(middle().x / open == near(0.5).epsilon(0.02));
-    // The disc is seen at twice its size: at 0.75 m from the middle, r = 0.75 of its radius.
+    CHECK(center_pixel().x / open == near(0.5).epsilon(0.02));
+    // The disc appears at twice its size: at 0.75 m from the center, r = 0.75 of its radius.
     const gpu::FloatImage image = wall_image();
     world.query<ParticleLook>().each([](ParticleLook& look) { look.shadow = 0; });
     const gpu::FloatImage bare = wall_image();
@@ -257,7 +257,8 @@ TEST_CASE_FIXTURE(
         image.at(44, 32, 0) / bare.at(44, 32, 0) == near(1 - 0.5 * inside * inside).epsilon(0.03));
 }
 
-TEST_CASE_FIXTURE(ShadowScene, "particle shadow: where none casts there is no pass, nor a trace") {
+TEST_CASE_FIXTURE(
+    ShadowScene, "particle shadow: without casters there is neither a pass nor a shadow") {
     add_sun();
     const gpu::FloatImage open = wall_image();
     ParticleLook look = caster(1, 0.5f);
@@ -270,9 +271,10 @@ TEST_CASE_FIXTURE(ShadowScene, "particle shadow: where none casts there is no pa
     CHECK(frame_graph(shared_renderer()).was_run("particle shadows"));
 }
 
-TEST_CASE_FIXTURE(ShadowScene, "particle shadow: what is broken casts none, and breaks nothing") {
+TEST_CASE_FIXTURE(
+    ShadowScene, "particle shadow: particles that are not finite cast none, and break nothing") {
     add_sun();
-    const float open = middle().x;
+    const float open = center_pixel().x;
     const float huge = std::numeric_limits<float>::max();
     ParticleLook look = caster(1, 1);
     emit({{kNaN, 0, 1}, {huge, huge, huge}, {0, -INFINITY, 1}}, look);
@@ -280,11 +282,11 @@ TEST_CASE_FIXTURE(ShadowScene, "particle shadow: what is broken casts none, and 
     emit({{0, 0, 1}}, look);
     look.shadow = -3;
     emit({{0, 0, 1}}, look);
-    CHECK(middle().x == near(static_cast<double>(open)).epsilon(1e-3));
+    CHECK(center_pixel().x == near(static_cast<double>(open)).epsilon(1e-3));
     look.shadow = 9;  // as 1
     look.shadow_tint = {kNaN, -2, 7};
     emit({{0, 0, 1}}, look);
-    const Vec3 found = middle() / open;
+    const Vec3 found = center_pixel() / open;
     CHECK(found.x == near(1).epsilon(0.01));
     CHECK(found.y == near(1).epsilon(0.01));
     CHECK(found.z == near(0.02).epsilon(0.05));

@@ -104,7 +104,7 @@ bool equal(const ParticleInstance& a, const ParticleInstance& b) {
 
 }  // namespace
 
-TEST_CASE("particle share: the stride is the least power of two that leaves the share or less") {
+TEST_CASE("particle share: the stride is the least power of two that leaves the fraction or less") {
     CHECK(particle_stride(1) == 1);
     CHECK(particle_stride(0.99f) == 2);
     CHECK(particle_stride(0.5f) == 2);
@@ -115,7 +115,8 @@ TEST_CASE("particle share: the stride is the least power of two that leaves the 
     CHECK(particle_stride(std::nanf("")) == 1);
 }
 
-TEST_CASE("particle share: those that are left are where they are among all, to the bit") {
+TEST_CASE(
+    "particle share: those that are left have the states that they have among all, to the bit") {
     for (const std::uint32_t stride : {2u, 8u, 64u}) {
         Fountain all;
         Fountain some;

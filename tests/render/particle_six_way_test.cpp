@@ -35,8 +35,8 @@ struct SixWayScene : Scene {
         look_.turn_spread = 0;
         look_.colors = {{.at = 0, .color = {0.5f, 0.5f, 0.5f}}};
     }
-    /// The middle of a particle at the origin, seen from +z.
-    Vec3 middle(const ParticleLook& look) {
+    /// The center pixel of a particle at the origin, seen from +z.
+    Vec3 center_pixel(const ParticleLook& look) {
         ParticlePool pool;
         for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz}) {
             column->push_back(0);
@@ -52,14 +52,14 @@ struct SixWayScene : Scene {
     Vec3 lit_from(const Vec3& side, const ParticleLook& look) {
         const Vec3 eye = glm::normalize(side);
         const Entity sun = shine(DirectionalLight{.illuminance = kPi}, look_at(eye, {0, 0, 0}));
-        const Vec3 found = middle(look);
+        const Vec3 found = center_pixel(look);
         world.destroy(sun);
         return found;
     }
     ParticleLook look_;
 };
 
-float share(int side) {
+float response(int side) {
     return 0.5f * static_cast<float>(kSides[static_cast<std::size_t>(side)]) / 255;
 }
 
@@ -70,16 +70,16 @@ TEST_CASE_FIXTURE(
     for (int side = 0; side < 6; ++side) {
         CAPTURE(side);
         const Vec3 found = lit_from(kFrom[static_cast<std::size_t>(side)], look_);
-        CHECK(found.x == near(share(side)).epsilon(0.01));
-        CHECK(found.z == near(share(side)).epsilon(0.01));
+        CHECK(found.x == near(response(side)).epsilon(0.01));
+        CHECK(found.z == near(response(side)).epsilon(0.01));
     }
 }
 
 TEST_CASE_FIXTURE(
     SixWayScene, "particle six-way: between sides they count by the squares of the cosines") {
     const Vec3 from = glm::normalize(Vec3(-1, 2, 0.5f));
-    const float expected =
-        from.x * from.x * share(3) + from.y * from.y * share(1) + from.z * from.z * share(5);
+    const float expected = from.x * from.x * response(3) + from.y * from.y * response(1)
+                           + from.z * from.z * response(5);
     CHECK(lit_from(from, look_).y == near(expected).epsilon(0.01));
     // So what is as bright from all sides is as bright from between them.
     look_.image = add(plain_image({128, 128, 128, 255}));
@@ -90,15 +90,15 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(SixWayScene, "particle six-way: its sides turn with the particle") {
     look_.spin = kPi;  // a quarter, at the age of half a second
     // Its right is the world's above.
-    CHECK(lit_from({0, 1, 0}, look_).x == near(share(0)).epsilon(0.01));
-    CHECK(lit_from({-1, 0, 0}, look_).x == near(share(1)).epsilon(0.01));
-    CHECK(lit_from({0, 0, 1}, look_).x == near(share(5)).epsilon(0.01));
+    CHECK(lit_from({0, 1, 0}, look_).x == near(response(0)).epsilon(0.01));
+    CHECK(lit_from({-1, 0, 0}, look_).x == near(response(1)).epsilon(0.01));
+    CHECK(lit_from({0, 0, 1}, look_).x == near(response(5)).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(
     SixWayScene, "particle six-way: it glows by the opacity of the second image, lit or not") {
     look_.emission = 3;
-    CHECK(middle(look_).x == near(0.5 * 3 * 51 / 255).epsilon(0.01));
+    CHECK(center_pixel(look_).x == near(0.5 * 3 * 51 / 255).epsilon(0.01));
     look_.lit = 0;
     CHECK(lit_from({1, 0, 0}, look_).x == near(0.5 * 3 * 51 / 255).epsilon(0.01));
 }
@@ -109,11 +109,11 @@ TEST_CASE_FIXTURE(
         Environment{.sky = SkyKind::Uniform, .zenith = {2, 2, 2}, .visible = false});
     float sum = 0;
     for (int side = 0; side < 6; ++side) {
-        sum += share(side);
+        sum += response(side);
     }
     // Over all directions the square of a cosine on one side is 2 pi / 3 of the radiance; a white
     // surface sends back 1 / pi of its irradiance.
-    CHECK(middle(look_).x == near(2 * sum * 2 / 3).epsilon(0.02));
+    CHECK(center_pixel(look_).x == near(2 * sum * 2 / 3).epsilon(0.02));
 }
 
 TEST_CASE_FIXTURE(SixWayScene, "particle six-way: others beside it are drawn as without it") {

@@ -48,7 +48,7 @@ struct Points : Scene {
     }
     /// `extent`: half of the box that they are born in [m].
     Entity emit(
-        const ParticleLook& look, std::uint32_t count = 1, const Vec3& place = {0, 0, 0},
+        const ParticleLook& look, std::uint32_t count = 1, const Vec3& position = {0, 0, 0},
         const Vec3& extent = {0, 0, 0}) {
         ParticleEmitter emitter;
         emitter.executor = ParticleExecutor::Gpu;
@@ -64,7 +64,8 @@ struct Points : Scene {
         ParticleMotion motion;
         motion.gravity = 0;
         return world.create(
-            emitter, motion, look, WorldTransform{at(place)}, PreviousWorldTransform{at(place)});
+            emitter, motion, look, WorldTransform{at(position)},
+            PreviousWorldTransform{at(position)});
     }
     void bear() {
         world.run(add_gpu_particles);
@@ -83,7 +84,7 @@ struct Points : Scene {
     }
 };
 
-/// What a GPU's half floats round [share of the light], or the integers.
+/// What a GPU's half floats round [fraction of the light], or the integers.
 float rounding(const Points& scene) {
     return scene.device().caps().profile == gpu::Profile::Gpu ? 1e-3f : 2e-5f;
 }
@@ -180,7 +181,7 @@ TEST_CASE("particle splats: many faint ones count in full beside a bright one") 
     CHECK(sum(true) / sum(false) == near(1).epsilon(0.03));
 }
 
-TEST_CASE("particle splats: a hundred thousand at one place are as bright as all together") {
+TEST_CASE("particle splats: a hundred thousand at one pixel are as bright as their sum") {
     Points scene;
     scene.emit(Points::look_of(3, {0.5f, 0.25f, 0.125f}), 100000);
     const Vec3 found = rgb_at(scene.picture(), kSide / 2, kSide / 2);
@@ -237,9 +238,9 @@ TEST_CASE("particle splats: the brightest is that of colors, their spread and em
     ParticleLook look = Points::look_of(1, {0.5f, 0.25f, 1});
     look.emission = 3;
     look.color_spread = {1, 0, 0.25f};
-    CHECK(brightest_of(make_look_record(look, {})) == near(3 * 1.5f));
+    CHECK(max_light(make_look_record(look, {})) == near(3 * 1.5f));
     look.emission = std::numeric_limits<float>::infinity();
-    CHECK(brightest_of(make_look_record(look, {})) == 0);
+    CHECK(max_light(make_look_record(look, {})) == 0);
 }
 
 }  // namespace limn::test::particle_splats_test

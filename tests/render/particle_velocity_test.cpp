@@ -18,7 +18,7 @@ namespace {
 constexpr int kSize = 96;
 constexpr float kDt = 1.0f / 60;
 
-/// A particle on its way, seen by a camera on its own.
+/// A moving particle and a moving camera.
 struct MovingParticle : Scene {
     glm::dvec3 where = {0.1, 0.2, 0};  ///< at the end of the step [m]
     glm::dvec3 velocity = {6, -3, 4};  ///< likewise [m/s]
@@ -66,7 +66,7 @@ struct MovingParticle : Scene {
         const glm::dvec4 clip = glm::dmat4(clip_from_world) * glm::dvec4(p, 1);
         return {kSize * (0.5 + 0.5 * clip.x / clip.w), kSize * (0.5 - 0.5 * clip.y / clip.w)};
     }
-    /// Velocity of the pixel in the middle of the particle, less that of where it was and is.
+    /// Velocity of the pixel at the center of the particle, less that of where it was and is.
     double error(const RenderView& view, const glm::dvec3& now, const glm::dvec3& before) {
         emit();
         const gpu::FloatImage found = aov(view, "velocity");

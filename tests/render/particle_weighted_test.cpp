@@ -42,7 +42,7 @@ struct WeightedScene : Scene {
         made.push_back(world.create(ParticleEmitter{}, look, pool));
     }
     gpu::FloatImage picture() { return radiance(look({0, 0, 3}, {0, 0, 0}, kSize, kSize)); }
-    Vec3 middle() { return rgb_at(picture(), kSize / 2, kSize / 2); }
+    Vec3 center_pixel() { return rgb_at(picture(), kSize / 2, kSize / 2); }
     void clear() {
         for (const Entity entity : made) {
             world.destroy(entity);
@@ -83,27 +83,27 @@ TEST_CASE_FIXTURE(
     WeightedScene,
     "particle weighted: layers hide what is behind by the product of their transmittances"
         * technique("particle.weighted-blended")) {
-    const Vec3 open = middle();
+    const Vec3 open = center_pixel();
     emit(-3, {9, 9, 9}, 1, ParticleSort::Distance);  // a white card behind
-    const Vec3 card = middle();
+    const Vec3 card = center_pixel();
     for (const float z : {-2.0f, 0.0f, 1.5f}) {
         emit(z, {0, 0, 0}, 0.4f, ParticleSort::Weighted);
     }
     emit(1, {0, 0, 0}, 0.25f, ParticleSort::Weighted);
     const float kept = 0.6f * 0.6f * 0.6f * 0.75f;
     CHECK(card.x > open.x + 5);
-    CHECK(middle().x == near(kept * card.x).epsilon(2e-3));
+    CHECK(center_pixel().x == near(kept * card.x).epsilon(2e-3));
 }
 
 TEST_CASE_FIXTURE(
-    WeightedScene, "particle weighted: the picture does not depend on the order"
+    WeightedScene, "particle weighted: the image does not depend on the order"
                        * technique("particle.weighted-blended")) {
     const auto drawn = [&](bool reversed) {
         for (int i = 0; i < 12; ++i) {
             const int n = reversed ? 11 - i : i;
-            const float share = static_cast<float>(n) / 11;
+            const float fraction = static_cast<float>(n) / 11;
             emit(
-                share * 2 - 1, {share, 1 - share, 0.5f}, 0.2f + 0.5f * share,
+                fraction * 2 - 1, {fraction, 1 - fraction, 0.5f}, 0.2f + 0.5f * fraction,
                 ParticleSort::Weighted);
         }
         gpu::FloatImage image = picture();
@@ -119,7 +119,7 @@ TEST_CASE_FIXTURE(
     for (const float side : {-1.0f, 1.0f}) {
         emit(side, {1, 0, 0}, 0.6f, ParticleSort::Weighted);
         emit(-side, {0, 0, 1}, 0.6f, ParticleSort::Weighted);
-        const Vec3 found = middle();
+        const Vec3 found = center_pixel();
         clear();
         const float near_one = side > 0 ? found.x : found.z;
         const float far_one = side > 0 ? found.z : found.x;
@@ -132,14 +132,14 @@ TEST_CASE_FIXTURE(
     WeightedScene, "particle weighted: what only adds light adds, whatever the sort says") {
     emit(0.5f, {1, 0, 0}, 0.5f, ParticleSort::Weighted, 0);
     emit(0, {2, 0, 0}, 0.5f, ParticleSort::Weighted, 0);
-    const Vec3 both = middle();
+    const Vec3 both = center_pixel();
     clear();
-    const Vec3 none = middle();
+    const Vec3 none = center_pixel();
     CHECK(both.x - none.x == near(0.5 + 1.0).epsilon(0.02));
 }
 
 TEST_CASE_FIXTURE(
-    WeightedScene, "particle weighted: no place and no color makes a NaN"
+    WeightedScene, "particle weighted: no position and no color makes a NaN"
                        * technique("particle.weighted-blended")) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     emit(kInfinity, {1, 1, 1}, 0.5f, ParticleSort::Weighted);

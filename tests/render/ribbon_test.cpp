@@ -73,16 +73,17 @@ ParticleLook line(float size, float opacity = 1, float cover = 0) {
 struct RibbonScene : Scene {
     RibbonScene() { world.insert_resource(FrameTime{.step = 0.02f}); }
 
-    /// A trail through `places`, from the oldest on.
-    void draw_trail(const std::vector<Vec3>& places, const ParticleLook& look, Trail trail = {}) {
+    /// A trail through `positions`, from the oldest on.
+    void
+    draw_trail(const std::vector<Vec3>& positions, const ParticleLook& look, Trail trail = {}) {
         TrailState state;
-        state.capacity = static_cast<std::uint32_t>(places.size());
+        state.capacity = static_cast<std::uint32_t>(positions.size());
         TrailStrand strand;
-        for (const Vec3& place : places) {
-            state.points.push_back({place, 0.02f, trail.span});
+        for (const Vec3& position : positions) {
+            state.points.push_back({position, 0.02f, trail.span});
         }
         strand.count = strand.number = state.capacity;
-        strand.head = strand.previous = {places.back(), 0, trail.span};
+        strand.head = strand.previous = {positions.back(), 0, trail.span};
         state.strands.push_back(strand);
         trail.length = trail.life = 1000;
         world.create(trail, state, look);
@@ -92,8 +93,7 @@ struct RibbonScene : Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(
-    RenderTest, "ribbon: a straight one is as wide as it should be, seen from anywhere") {
+TEST_CASE_FIXTURE(RenderTest, "ribbon: a straight one has its width from any view") {
     const std::vector<Vec4> edges = evaluate_shader(
         kRibbonCode,
         "vec3 along = direction(x.x); vec3 to_camera = direction(x.x + 500.5);"
@@ -172,8 +172,8 @@ TEST_CASE(
                 ribbons_of({.spacing = 0.25f, .length = length, .life = life}, state);
             const RibbonPoint& head = list.points[1];
             const RibbonPoint& tail = list.points[list.points.size() - 2];
-            CHECK(head.share == 0);
-            CHECK(tail.share == near(1).epsilon(1e-4));
+            CHECK(head.curve_at == 0);
+            CHECK(tail.curve_at == near(1).epsilon(1e-4));
             CHECK(head.u == 0);
             CHECK(tail.u == near(1));
             CHECK(
@@ -208,7 +208,7 @@ TEST_CASE("ribbon: texture stays with the points of a trail while it moves on an
 }
 
 TEST_CASE(
-    "ribbon: between steps the head is on its way, and points it has not reached are not there") {
+    "ribbon: between steps the head is on its path, and points it has not reached are absent") {
     const Trail trail = {.spacing = 0.25f, .length = 2, .life = 100};
     const TrailState state = straight_strand(41);
     const RibbonList list = ribbons_of(trail, state, 0.01f);
@@ -244,7 +244,7 @@ TEST_CASE("ribbon: through particles it goes from the youngest to the oldest, an
     CHECK(line == std::vector<float>{-0.5f, -0.5f, 0, 1, 2, 3, 89, 89, 90});
     CHECK(u[2] == near(-105 / 4.0));
     CHECK(u[5] == near(-102 / 4.0));
-    CHECK(list.points[list.segments[3] + 1].share == near(0.1));
+    CHECK(list.points[list.segments[3] + 1].curve_at == near(0.1));
 }
 
 TEST_CASE("ribbon: a beam reaches exactly from end to end, between steps as well") {
@@ -258,10 +258,10 @@ TEST_CASE("ribbon: a beam reaches exactly from end to end, between steps as well
         RibbonList list;
         append_beam({.jag = 0.3f, .detail = 5}, state, {}, alpha, 0, list);
         CHECK(list.points[1].position == Vec3(0, 2 - 2 * alpha, 0));
-        CHECK(list.points[1].share == 0);
+        CHECK(list.points[1].curve_at == 0);
         const RibbonPoint& end = list.points[list.points.size() - 2];
         CHECK(end.position == Vec3(8, 0, 4 - 4 * alpha));
-        CHECK(end.share == 1);
+        CHECK(end.curve_at == 1);
         CHECK(end.u == near(1));
     }
     RibbonList none;
@@ -278,7 +278,7 @@ TEST_CASE("ribbon: branches leave their beam at one of its points, and end as it
     for (const std::uint32_t before : list.segments) {
         const bool is_cap = points[before].position == points[before + 3].position;
         const RibbonPoint& begin = points[before + 1];
-        if (is_cap && begin.share > 0 && begin.share < 1) {
+        if (is_cap && begin.curve_at > 0 && begin.curve_at < 1) {
             ++branches;
             bool found = false;
             for (const Vec3& point : list.bolt) {
@@ -288,14 +288,14 @@ TEST_CASE("ribbon: branches leave their beam at one of its points, and end as it
         }
     }
     CHECK(branches == 9);
-    CHECK(points[points.size() - 2].share == 1);
+    CHECK(points[points.size() - 2].curve_at == 1);
 }
 
 TEST_CASE("ribbon: points that coincide or are not finite leave no segment") {
     RibbonList list;
     const float nan = std::nanf("");
-    for (const Vec3& place : {Vec3(1), Vec3(1), Vec3(nan), Vec3(2), Vec3(2.00001f)}) {
-        list.strip.push_back({place, 0, Vec3(0), 0});
+    for (const Vec3& position : {Vec3(1), Vec3(1), Vec3(nan), Vec3(2), Vec3(2.00001f)}) {
+        list.strip.push_back({position, 0, Vec3(0), 0});
     }
     list.add_strip();
     CHECK(list.segments.size() == 3);
@@ -324,12 +324,12 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     RibbonScene, "ribbon: pieces meet without a seam, and bends glow no more than the rest"
                      * technique("engine.trail")) {
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (int i = 0; i <= 40; ++i) {
         const float angle = kPi * static_cast<float>(i) / 40;
-        places.emplace_back(-0.6f * std::cos(angle), 0.6f * std::sin(angle) - 0.3f, 0);
+        positions.emplace_back(-0.6f * std::cos(angle), 0.6f * std::sin(angle) - 0.3f, 0);
     }
-    draw_trail(places, line(0.2f));
+    draw_trail(positions, line(0.2f));
     const gpu::FloatImage found = image();
     float most = 0;
     for (const float value : found.pixels) {
@@ -337,7 +337,7 @@ TEST_CASE_FIXTURE(
     }
     CHECK(most <= 1.001f);
     for (int i = 2; i <= 38; ++i) {
-        const Vec3& p = places[static_cast<std::size_t>(i)];
+        const Vec3& p = positions[static_cast<std::size_t>(i)];
         const int x = static_cast<int>(32.5f + 32.5f * p.x);
         const int y = static_cast<int>(32.5f - 32.5f * p.y);
         CHECK(std::max(found.at(x, y, 0), found.at(x, 64 - y, 0)) > 0.8f);
@@ -345,7 +345,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(RibbonScene, "ribbon: it is blended among other particles by its distance") {
-    const auto middle = [&](float depth) {
+    const auto center_pixel = [&](float depth) {
         world.clear();
         draw_trail({{-0.7f, 0, depth}, {0.7f, 0, depth}}, line(0.4f, 1, 1));
         ParticlePool pool;
@@ -360,9 +360,9 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: it is blended among other particles by i
         world.create(ParticleEmitter{}, green, pool);
         return rgb_at(image(), 32, 32);
     };
-    CHECK(middle(0.2f).x > 0.95f);
-    CHECK(middle(-0.2f).x < 0.05f);
-    CHECK(middle(-0.2f).y > 0.9f);
+    CHECK(center_pixel(0.2f).x > 0.95f);
+    CHECK(center_pixel(-0.2f).x < 0.05f);
+    CHECK(center_pixel(-0.2f).y > 0.9f);
 }
 
 TEST_CASE_FIXTURE(RibbonScene, "ribbon: one thinner than a pixel is fainter, not dotted") {
@@ -392,7 +392,7 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: a blade's is spanned as the blade was, w
         high += found.at(32, i, 0) > 1e-4f ? 1 : 0;
     }
     CHECK(std::abs(high - 0.8 * 32.5) <= 2);
-    CHECK(found.at(32, 32, 0) > 0.95f);  // in the middle
+    CHECK(found.at(32, 32, 0) > 0.95f);  // at the center
     const gpu::FloatImage above = radiance(look({0, 1, 0.001f}, {0, 0, 0}, 65, 65));
     high = 0;
     for (int i = 0; i < 65; ++i) {
@@ -401,7 +401,8 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: a blade's is spanned as the blade was, w
     CHECK(high <= 1);  // edge-on
 }
 
-TEST_CASE_FIXTURE(RibbonScene, "ribbon: a beam is drawn between its ends, at the time it is seen") {
+TEST_CASE_FIXTURE(
+    RibbonScene, "ribbon: a beam is drawn between its ends, at the time of the frame") {
     const BeamState state = {
         .shown = true,
         .start = {-0.5f, 0, 0},

@@ -20,8 +20,8 @@ namespace {
 const Vec3 kStart = {1, 2, 3};
 const Vec3 kEnd = {5, -1, 15};  // 13 m away
 
-Affine at(const Vec3& place) {
-    return affine_from(place, {1, 0, 0, 0}, {1, 1, 1});
+Affine at(const Vec3& position) {
+    return affine_from(position, {1, 0, 0, 0}, {1, 1, 1});
 }
 
 std::vector<Vec3> bolt(float jag, std::uint32_t detail, std::uint64_t seed = 7) {
@@ -39,8 +39,8 @@ struct Beams {
         world.insert_resource(Assets{});
         world.insert_resource(ParticleObstacles{});
     }
-    Entity add(const Beam& beam, const Affine& place) {
-        const Entity entity = world.create(beam, WorldTransform{place});
+    Entity add(const Beam& beam, const Affine& world_from_beam) {
+        const Entity entity = world.create(beam, WorldTransform{world_from_beam});
         world.run(add_beam_states);
         return entity;
     }
@@ -95,7 +95,7 @@ TEST_CASE("beam: its shape lasts for a period of its rate, and is the same in ev
     CHECK(beam_random({.seed = 5}, one, 1).word() == beam_random({.seed = 5}, {8, 2}, 1).word());
 }
 
-TEST_CASE("beam: it goes to an entity or along -z, and is gone when either has no place") {
+TEST_CASE("beam: it goes to an entity or along -z, and is gone when either has no transform") {
     Beams beams;
     const Entity target = beams.world.create(WorldTransform{at(kEnd)});
     const Entity to = beams.add({.to = target}, at(kStart));

@@ -90,7 +90,7 @@ TEST_CASE(
              {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
             column->push_back(0.5f);
         }
-        push_particles(particle_block(pool, 0, 1), forces, 1, 1);
+        apply_forces(particle_block(pool, 0, 1), forces, 1, 1);
         return velocity_of(pool);
     };
     const Vec3 forward = pushed();
@@ -127,18 +127,20 @@ TEST_CASE(
     CHECK(std::abs(place_of(spring.pool()).y) < 0.02f);
 }
 
-TEST_CASE("force fields: an emitter takes its share of them, or none") {
-    for (const float share : {0.0f, 1.0f, -2.5f}) {
+TEST_CASE("force fields: an emitter scales them, or ignores them") {
+    for (const float fraction : {0.0f, 1.0f, -2.5f}) {
         Emitters scene;
         ParticleEmitter emitter = burst(1);
         emitter.speed = 0;
-        scene.add(emitter, {.gravity = 0, .fields = share});
+        scene.add(emitter, {.gravity = 0, .fields = fraction});
         const Quat leaning = glm::normalize(Quat(0.8f, 0.1f, 0.3f, -0.2f));
         scene.world.create(
             ForceField{.strength = 2}, WorldTransform{affine_from({}, leaning, Vec3(1))});
         scene.run(60);
-        const Vec3 expected = 2 * share * (leaning * Vec3(0, 1, 0));
-        CHECK(glm::distance(velocity_of(scene.pool()), expected) < 0.04f * std::abs(share) + 1e-6f);
+        const Vec3 expected = 2 * fraction * (leaning * Vec3(0, 1, 0));
+        CHECK(
+            glm::distance(velocity_of(scene.pool()), expected)
+            < 0.04f * std::abs(fraction) + 1e-6f);
     }
 }
 

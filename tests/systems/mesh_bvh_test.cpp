@@ -69,30 +69,30 @@ Mesh make_ball(int rings, int sectors, const Vec3& center, float dents) {
     return mesh;
 }
 
-/// Brute force in double precision (Moeller and Trumbore 1997). `margin`: how far, in shares and
-/// barycentric coordinates, all triangles are from being hit or missed the other way.
+/// Brute force in double precision (Moeller and Trumbore 1997). `margin`: how far, in fractions and
+/// barycentric coordinates, all triangles are from being deciding the other way.
 struct Reference {
-    double share = std::numeric_limits<double>::infinity();
+    double fraction = std::numeric_limits<double>::infinity();
     double margin = std::numeric_limits<double>::infinity();
 };
 
 Reference first_hit_reference(const Mesh& mesh, const Segment& segment) {
     Reference first;
     const Dvec3 from(segment.from);
-    const Dvec3 way = Dvec3(segment.to) - from;
+    const Dvec3 path = Dvec3(segment.to) - from;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const Dvec3 a(mesh.positions[mesh.indices[i]]);
         const Dvec3 ab = Dvec3(mesh.positions[mesh.indices[i + 1]]) - a;
         const Dvec3 ac = Dvec3(mesh.positions[mesh.indices[i + 2]]) - a;
-        const Dvec3 p = glm::cross(way, ac);
+        const Dvec3 p = glm::cross(path, ac);
         const double det = glm::dot(ab, p);
         const double u = glm::dot(from - a, p) / det;
         const Dvec3 q = glm::cross(from - a, ab);
-        const double v = glm::dot(way, q) / det;
+        const double v = glm::dot(path, q) / det;
         const double t = glm::dot(ac, q) / det;
         const double inside = std::min({u, v, 1 - u - v, t, 1 - t});
         if (inside >= 0) {
-            first.share = std::min(first.share, t);
+            first.fraction = std::min(first.fraction, t);
         }
         if (!std::isnan(inside)) {
             first.margin = std::min(first.margin, std::abs(inside));
@@ -126,10 +126,10 @@ TEST_CASE("mesh bvh: the first hit is that of brute force in double precision") 
         }
         ++decided;
         const MeshHit found = first_hit(bvh, segment);
-        REQUIRE((found.triangle != kNoTriangle) == (expected.share <= 1));
+        REQUIRE((found.triangle != kNoTriangle) == (expected.fraction <= 1));
         if (found.triangle != kNoTriangle) {
             ++hits;
-            CHECK(std::abs(static_cast<double>(found.share) - expected.share) < 2e-5);
+            CHECK(std::abs(static_cast<double>(found.fraction) - expected.fraction) < 2e-5);
         }
     }
     CHECK(decided > 3900);
@@ -144,11 +144,11 @@ TEST_CASE("mesh bvh: a hit tells its triangle and the normal that sees it counte
     const MeshBvh bvh = build_mesh_bvh(mesh.positions, mesh.indices);
     const MeshHit down = first_hit(bvh, {{0.25f, 1, -0.25f}, {0.25f, -3, -0.25f}});
     CHECK(down.triangle == 1);
-    CHECK(down.share == near(0.25));
+    CHECK(down.fraction == near(0.25));
     CHECK(glm::distance(down.normal, Vec3(0, 1, 0)) < 1e-6f);
     const MeshHit up = first_hit(bvh, {{0.25f, -2, -0.25f}, {0.25f, 2, -0.25f}});
     CHECK(up.triangle == 0);
-    CHECK(up.share == near(0.25));
+    CHECK(up.fraction == near(0.25));
     CHECK(glm::distance(up.normal, Vec3(0, 1, 0)) < 1e-6f);
     CHECK(first_hit(bvh, {{0.25f, 1, -0.25f}, {0.25f, 0.01f, -0.25f}}).triangle == kNoTriangle);
     CHECK(first_hit(bvh, {{0.75f, 1, -0.75f}, {0.75f, -3, -0.75f}}).triangle == kNoTriangle);
@@ -219,14 +219,14 @@ TEST_CASE("mesh bvh: along an axis, in the plane of faces and along edges a box 
                 const MeshHit back = first_hit(bvh, {to, from});
                 CHECK(forth.triangle != kNoTriangle);
                 CHECK(back.triangle != kNoTriangle);
-                CHECK(forth.share == near(1.0 / 3));
-                CHECK(back.share == near(1.0 / 3));
+                CHECK(forth.fraction == near(1.0 / 3));
+                CHECK(back.fraction == near(1.0 / 3));
             }
         }
     }
 }
 
-TEST_CASE("mesh bvh: a way cut in two at the surface does not slip between its halves") {
+TEST_CASE("mesh bvh: a segment cut in two at the surface does not slip between its halves") {
     const Mesh mesh = make_ball(16, 24, {5, 6, 7}, 0.2f);
     const MeshBvh bvh = build_mesh_bvh(mesh.positions, mesh.indices);
     Random random(5, 5, 5, 5);
@@ -235,9 +235,9 @@ TEST_CASE("mesh bvh: a way cut in two at the surface does not slip between its h
         const Vec3 from = Vec3(5, 6, 7) + 0.4f * random.uniform() * random.direction();
         const Vec3 to = from + 3.0f * random.direction();
         const MeshHit whole = first_hit(bvh, {from, to});
-        const Vec3 middle = from + whole.share * (to - from);
-        const bool hit = first_hit(bvh, {from, middle}).triangle != kNoTriangle
-                         || first_hit(bvh, {middle, to}).triangle != kNoTriangle;
+        const Vec3 center = from + whole.fraction * (to - from);
+        const bool hit = first_hit(bvh, {from, center}).triangle != kNoTriangle
+                         || first_hit(bvh, {center, to}).triangle != kNoTriangle;
         leaks += hit ? 0 : 1;
     }
     CHECK(leaks == 0);
@@ -348,16 +348,16 @@ TEST_CASE("mesh bvh: built twice it has the same bits, and holds each triangle o
     REQUIRE(a.nodes.size() == b.nodes.size());
     REQUIRE(a.leaves.size() == b.leaves.size());
     CHECK(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(a.nodes[0])) == 0);
-    std::vector<int> seen(mesh.indices.size() / 3);
+    std::vector<int> counts(mesh.indices.size() / 3);
     for (std::size_t i = 0; i < a.leaves.size(); ++i) {
         for (std::size_t lane = 0; lane < MeshBvh::kTriangles; ++lane) {
             CHECK(a.leaves[i].triangle[lane] == b.leaves[i].triangle[lane]);
             if (a.leaves[i].triangle[lane] != kNoTriangle) {
-                ++seen[a.leaves[i].triangle[lane]];
+                ++counts[a.leaves[i].triangle[lane]];
             }
         }
     }
-    CHECK(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
+    CHECK(std::all_of(counts.begin(), counts.end(), [](int times) { return times == 1; }));
 }
 
 TEST_CASE("mesh bvh: empty meshes and triangles that are none are never hit, others stay") {
@@ -372,13 +372,13 @@ TEST_CASE("mesh bvh: empty meshes and triangles that are none are never hit, oth
                                                 1, 0, 1, 99, 0, 1, 2, 6, 7, 8};
     MeshBvh bvh = build_mesh_bvh(positions, indices);
     CHECK(first_hit(bvh, down).triangle == 6);
-    CHECK(first_hit(bvh, down).share == near(0.25));
+    CHECK(first_hit(bvh, down).fraction == near(0.25));
     for (const float gone : {nan, inf}) {  // the upper one goes, and comes back
         positions[7].x = gone;
         refit_mesh_bvh(bvh, positions, indices);
-        CHECK(bvh.reach == 1);
+        CHECK(bvh.largest == 1);
         CHECK(first_hit(bvh, down).triangle == 5);
-        CHECK(first_hit(bvh, down).share == near(0.5));
+        CHECK(first_hit(bvh, down).fraction == near(0.5));
     }
     positions[7].x = 1;
     refit_mesh_bvh(bvh, positions, indices);
@@ -394,7 +394,8 @@ TEST_CASE("mesh bvh: empty meshes and triangles that are none are never hit, oth
     CHECK(hits[0].triangle == kNoTriangle);
 }
 
-TEST_CASE("mesh bvh: thousands of triangles in one place, or at ever smaller scales, are built") {
+TEST_CASE(
+    "mesh bvh: thousands of triangles at one position, or at ever smaller scales, are built") {
     Mesh heap;
     Mesh nested;
     for (int i = 0; i < 3000; ++i) {

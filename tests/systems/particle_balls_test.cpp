@@ -22,7 +22,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-Vec3 place(const ParticlePool& pool, std::size_t i) {
+Vec3 position(const ParticlePool& pool, std::size_t i) {
     return {pool.x[i], pool.y[i], pool.z[i]};
 }
 Vec3 velocity(const ParticlePool& pool, std::size_t i) {
@@ -72,7 +72,7 @@ Pairs all_pairs(const ParticlePool& pool, float radius) {
     Pairs pairs;
     for (std::uint32_t a = 0; a < pool.size(); ++a) {
         for (std::uint32_t b = a + 1; b < pool.size(); ++b) {
-            const Vec3 offset = place(pool, b) - place(pool, a);
+            const Vec3 offset = position(pool, b) - position(pool, a);
             if (glm::dot(offset, offset) < 4 * radius * radius) {
                 pairs.emplace_back(a, b);
             }
@@ -202,7 +202,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle balls: of two at one place each goes its way, the same in each run"
+    "particle balls: two at one position part in a direction that is the same in each run"
     * technique("particle.interparticle")) {
     const auto run = [] {
         ParticlePool pool;
@@ -212,26 +212,26 @@ TEST_CASE(
         return pool;
     };
     const ParticlePool pool = run();
-    CHECK(glm::distance(place(pool, 0), place(pool, 1)) == near(0.2));
+    CHECK(glm::distance(position(pool, 0), position(pool, 1)) == near(0.2));
     CHECK(same_bits(pool, run()));
 }
 
 TEST_CASE(
-    "particle balls: what sticks to a surface stays, and whoever meets it goes back"
+    "particle balls: one that sticks to a surface stays, and others bounce off it"
     * technique("particle.interparticle")) {
     ParticlePool pool;
     add_ball(pool, {0, 0, 0});
     add_ball(pool, {0.15f, 0, 0}, {-4, 0, 0});
     pool.stuck = {1, 0};
     collide_balls({.radius = 0.1f, .bounce = 1}, {}, kStep, pool);
-    CHECK(place(pool, 0) == Vec3(0));
+    CHECK(position(pool, 0) == Vec3(0));
     CHECK(velocity(pool, 0) == Vec3(0));
     CHECK(pool.x[1] == near(0.2));
     CHECK(velocity(pool, 1).x == near(4));
 }
 
 TEST_CASE(
-    "particle balls: a hundred thousand at one place end, and no place is NaN"
+    "particle balls: a hundred thousand at one position terminate without NaN"
     * technique("particle.interparticle")) {
     ParticlePool pool;
     for (int i = 0; i < 100000; ++i) {
@@ -242,7 +242,7 @@ TEST_CASE(
     CHECK(pairs.size() <= 64 * 100000u);
     collide_balls({.radius = 0.05f}, {}, kStep, pool);
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        REQUIRE(is_finite(place(pool, i)));
+        REQUIRE(is_finite(position(pool, i)));
     }
     ParticlePool none;
     collide_balls({}, {}, kStep, none);
@@ -284,11 +284,11 @@ TEST_CASE(
     double overlap = 0;
     double speed = 0;
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        CHECK(glm::length(place(pool, i)) < 0.8f - kRadius + 0.02f);
+        CHECK(glm::length(position(pool, i)) < 0.8f - kRadius + 0.02f);
         highest = std::max(highest, pool.y[i]);
-        speed += static_cast<double>(glm::distance(place(pool, i), place(before, i))) / 300;
+        speed += static_cast<double>(glm::distance(position(pool, i), position(before, i))) / 300;
         for (std::size_t j = 0; j < i; ++j) {
-            const float apart = glm::distance(place(pool, i), place(pool, j));
+            const float apart = glm::distance(position(pool, i), position(pool, j));
             overlap = std::max(overlap, static_cast<double>(2 * kRadius - apart));
         }
     }

@@ -4,7 +4,7 @@
 #include "ecs/components/water_spray.h"
 #include "systems/particles/birth_attributes.h"
 #include "systems/particles/birth_kernels.h"
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 #include "systems/particles/particle_births.h"
 #include "tests/near.h"
 #include "tests/systems/particle_emitters.h"
@@ -102,8 +102,8 @@ TEST_CASE(
     CHECK(far / near == test::near(0.5).epsilon(0.01));
     // A ball of 0.5 m at 10 m, in an image of 2 tan(0.5) by 16 / 9 of it.
     const double height = 2 * std::tan(0.5);
-    const double share = 3.14159 * 0.25 / 99.75 / (height * height * 16 / 9);
-    CHECK(near == test::near(1e5 * share).epsilon(0.01));
+    const double fraction = 3.14159 * 0.25 / 99.75 / (height * height * 16 / 9);
+    CHECK(near == test::near(1e5 * fraction).epsilon(0.01));
     seen_from(0.1f);
     scene.run(1);
     CHECK(
@@ -125,7 +125,7 @@ TEST_CASE("particles: births are evenly spaced in time, across steps too") {
     CHECK(pool.age.front() <= 5 * kStep);
 }
 
-TEST_CASE("particles: bursts come at their time and again, and with the duration anew") {
+TEST_CASE("particles: bursts come at their times, repeat, and start over with the duration") {
     Emitters scene(0.1f);
     ParticleEmitter emitter = steady(0);
     emitter.bursts = {{.time = 0.25f, .count = 5, .spread = 0, .interval = 0.5f, .repeats = 2}};
@@ -305,13 +305,13 @@ TEST_CASE(
     Random random(1, 2, 3, 4);
     constexpr int kCount = 50000;
     const float cone = 0.7f;
-    const float middle = 0.5f * (1 + std::cos(cone));  // halves the cap's area
+    const float halving = 0.5f * (1 + std::cos(cone));  // halves the cap's area
     int inner = 0;
     for (int i = 0; i < kCount; ++i) {
         const Vec3 v = sample_cone(cone, random);
         REQUIRE(std::abs(glm::length(v) - 1) < 1e-5f);
         REQUIRE(v.y >= std::cos(cone) - 1e-6f);
-        inner += v.y > middle ? 1 : 0;
+        inner += v.y > halving ? 1 : 0;
     }
     CHECK(inner / double{kCount} == test::near(0.5).epsilon(0.02));
 }
@@ -366,9 +366,9 @@ TEST_CASE("particles: a moving emitter leaves no gaps, and gives on its velocity
     emitter.speed = 0;
     emitter.inherit = 0;
     const Entity entity = scene.add(emitter, falling(0));
-    const auto place = [](float x) { return affine_from({x, 0, 0}, Quat(1, 0, 0, 0), Vec3(1)); };
-    scene.world.get<WorldTransform>(entity).world = place(6);
-    scene.world.get<PreviousWorldTransform>(entity).world = place(5);
+    const auto at_x = [](float x) { return affine_from({x, 0, 0}, Quat(1, 0, 0, 0), Vec3(1)); };
+    scene.world.get<WorldTransform>(entity).world = at_x(6);
+    scene.world.get<PreviousWorldTransform>(entity).world = at_x(5);
     scene.run();
     REQUIRE(scene.pool().size() == 10);
     for (std::size_t i = 0; i < 10; ++i) {
@@ -395,13 +395,14 @@ TEST_CASE("particles: the curves of births are those of the library") {
         const double root = std::cbrt(exact);
         root_error = std::max(root_error, std::abs(static_cast<double>(cube_root(x)) - root));
         const double power = std::exp(exact);
-        exp_error = std::max(exp_error, std::abs(static_cast<double>(exp_of_share(x)) / power - 1));
+        exp_error =
+            std::max(exp_error, std::abs(static_cast<double>(exp_of_fraction(x)) / power - 1));
     }
     CHECK(turn_error < 2e-7);
     CHECK(root_error < 2e-7);
     CHECK(exp_error < 4e-7);
     CHECK(cube_root(0) < 1e-13f);
-    CHECK(exp_of_share(0) == 1);
+    CHECK(exp_of_fraction(0) == 1);
 }
 
 namespace {
@@ -454,10 +455,10 @@ void check_births(const BirthDraw& draw, const BirthRun& run, std::uint64_t numb
 TEST_CASE(
     "particles: births in vectors have the bits of those drawn one by one"
     * technique("particle.generation-shape")) {
-    const EmitterPlace still = {
+    const EmitterPose still = {
         affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f}),
         affine_from({1, 2, 3}, Quat(0.8f, 0, 0.6f, 0), {1, 2, 0.5f})};
-    EmitterPlace moving = still;
+    EmitterPose moving = still;
     moving.now = affine_from({2, 2, 4}, Quat(0.6f, 0, 0, 0.8f), {1, 1, 1});
     const ParticleStep fall = {
         .gravity = {0.1f, -9.8f, 0}, .air = {3, 0, 1}, .keep = 0.9f, .dt = 0.02f};

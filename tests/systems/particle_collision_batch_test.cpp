@@ -58,7 +58,7 @@ struct Swarm {
             .first = static_cast<std::uint32_t>(first)};
     }
     CollidingParticles all() { return part(0, x.size()); }
-    ParticleWays ways() {
+    ParticlePaths paths() {
         return {
             .x0 = x0,
             .y0 = y0,
@@ -105,9 +105,9 @@ struct Scene {
             heights.push_back(random.uniform(-3.0f, -1.5f));
         }
         for (std::uint32_t i = 0; i < 60; ++i) {
-            const Vec3 middle = random_vector(random, 3);
+            const Vec3 center = random_vector(random, 3);
             for (std::uint32_t corner = 0; corner < 3; ++corner) {
-                positions.push_back(middle + random_vector(random, 0.5f));
+                positions.push_back(center + random_vector(random, 0.5f));
                 indices.push_back(3 * i + corner);
             }
         }
@@ -161,7 +161,7 @@ TEST_CASE("particle collision: a batch moves each particle as if it were alone")
     CHECK(moved > 500);
 }
 
-TEST_CASE("particle collision: those that touch nothing keep the bits of where they were going") {
+TEST_CASE("particle collision: without contact the end of the path is kept to the bit") {
     const Scene scene;
     Swarm swarm = make_swarm(4000, 3, 5, 0);
     for (float& y : swarm.y) {
@@ -194,9 +194,10 @@ TEST_CASE("particle collision: the quick test misses no contact and no particle 
         Swarm swarm = make_swarm(5000, 5, speed, 0.2f);
         for (std::size_t c = 0; c < set.colliders.size(); ++c) {
             CAPTURE(c);
-            std::vector<std::uint32_t> found(swarm.x.size() + kReachRoom);
+            std::vector<std::uint32_t> found(swarm.x.size() + kCandidatePadding);
             const std::size_t count = find_near(
-                swarm.ways(), 0, swarm.x.size(), std::span(set.reach).subspan(c, 1), found.data());
+                swarm.paths(), 0, swarm.x.size(), std::span(set.bounds).subspan(c, 1),
+                found.data());
             std::vector<bool> near(swarm.x.size());
             for (std::size_t i = 0; i < count; ++i) {
                 near[found[i]] = true;
@@ -223,13 +224,13 @@ TEST_CASE("particle collision: the quick test knows how far a ball looks along a
     const std::uint32_t indices[] = {0, 1, 2};
     const MeshBvh bvh = build_mesh_bvh(positions, indices);
     const Collider mesh = MeshCollider{.bvh = &bvh};
-    const ColliderReach reach = find_reach(mesh);
+    const ColliderBounds bounds = find_collider_bounds(mesh);
     Swarm swarm;
-    const Vec3 way = {0.95f, -0.31f, 0};
-    swarm.add(Vec3(0.1f, 0, 0) - 1.6f * way, way, 0.2f, 1);  // ends 0.6 m before the triangle
+    const Vec3 path = {0.95f, -0.31f, 0};
+    swarm.add(Vec3(0.1f, 0, 0) - 1.6f * path, path, 0.2f, 1);  // ends 0.6 m before the triangle
     REQUIRE(first_contact(mesh, swarm.from(0), swarm.to(0), 0.2f));
-    std::vector<std::uint32_t> found(1 + kReachRoom);
-    CHECK(find_near(swarm.ways(), 0, 1, {&reach, 1}, found.data()) == 1);
+    std::vector<std::uint32_t> found(1 + kCandidatePadding);
+    CHECK(find_near(swarm.paths(), 0, 1, {&bounds, 1}, found.data()) == 1);
 }
 
 TEST_CASE("particle collision: particles over the low parts of a height field are left out") {
@@ -238,15 +239,15 @@ TEST_CASE("particle collision: particles over the low parts of a height field ar
         ramp.push_back(0.1f * static_cast<float>(i % 11));
     }
     const Collider field = HeightCollider{.width = 11, .depth = 11, .heights = ramp};
-    const ColliderReach reach = find_reach(field);
+    const ColliderBounds bounds = find_collider_bounds(field);
     Swarm swarm;
     for (int i = 0; i < 20; ++i) {  // the surface is at 0.2 there and rises to 1
         swarm.add({2, i == 7 ? 0.21f : 0.5f, 5}, {2, -2, 2});
     }
-    std::vector<std::uint32_t> found(swarm.x.size() + kReachRoom);
-    CHECK(find_near(swarm.ways(), 0, 20, {&reach, 1}, found.data()) == 1);
+    std::vector<std::uint32_t> found(swarm.x.size() + kCandidatePadding);
+    CHECK(find_near(swarm.paths(), 0, 20, {&bounds, 1}, found.data()) == 1);
     CHECK(found[0] == 7);
-    CHECK(find_near_scalar(swarm.ways(), 0, 20, {&reach, 1}, found.data()) == 1);
+    CHECK(find_near_scalar(swarm.paths(), 0, 20, {&bounds, 1}, found.data()) == 1);
 }
 
 TEST_CASE("particle collision: the quick test is the same on every vector width") {
@@ -255,17 +256,17 @@ TEST_CASE("particle collision: the quick test is the same on every vector width"
     Swarm swarm = make_swarm(1003, 6, 100, 0.1f);
     swarm.x[17] = std::numeric_limits<float>::quiet_NaN();
     swarm.y0[18] = std::numeric_limits<float>::infinity();
-    std::vector<std::uint32_t> a(swarm.x.size() + kReachRoom);
-    std::vector<std::uint32_t> b(swarm.x.size() + kReachRoom);
-    for (std::size_t c = 0; c < set.reach.size(); ++c) {
-        for (const std::size_t size : {std::size_t{1}, set.reach.size() - c}) {
-            const std::span<const ColliderReach> reach = std::span(set.reach).subspan(c, size);
-            const std::size_t expected = find_near_scalar(swarm.ways(), 3, 1000, reach, b.data());
+    std::vector<std::uint32_t> a(swarm.x.size() + kCandidatePadding);
+    std::vector<std::uint32_t> b(swarm.x.size() + kCandidatePadding);
+    for (std::size_t c = 0; c < set.bounds.size(); ++c) {
+        for (const std::size_t size : {std::size_t{1}, set.bounds.size() - c}) {
+            const std::span<const ColliderBounds> bounds = std::span(set.bounds).subspan(c, size);
+            const std::size_t expected = find_near_scalar(swarm.paths(), 3, 1000, bounds, b.data());
             CHECK(std::find(b.begin(), b.end(), 17u) != b.end());
             CHECK(std::find(b.begin(), b.end(), 18u) != b.end());
             for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
                 hwy::SetSupportedTargetsForTest(target);
-                CHECK(find_near(swarm.ways(), 3, 1000, reach, a.data()) == expected);
+                CHECK(find_near(swarm.paths(), 3, 1000, bounds, a.data()) == expected);
                 const auto end = a.begin() + static_cast<std::ptrdiff_t>(expected);
                 CHECK(std::equal(a.begin(), end, b.begin()));
             }
@@ -295,7 +296,7 @@ TEST_CASE("particle collision: how a range is cut in blocks does not change a bi
     }
 }
 
-TEST_CASE("particle collision: hits tell who, what, where and how fast, in order") {
+TEST_CASE("particle collision: hits hold particle, collider, position and velocity, in order") {
     const Collider floor[] = {SphereCollider{.center = {50, 0, 0}}, PlaneCollider{}};
     ColliderSet set;
     set_colliders(set, floor);

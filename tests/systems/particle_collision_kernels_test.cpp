@@ -138,7 +138,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("particle collision: kernels see who is just below the highest point of a field") {
+TEST_CASE("particle collision: kernels find particles just below the highest point of a field") {
     // Almost level: many are near the highest point, some above and some below the surface.
     std::vector<float> level(121);
     Random random(5, 5, 5, 5);

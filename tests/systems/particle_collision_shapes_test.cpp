@@ -30,7 +30,7 @@ Vec3 random_vector(Random& random, float size) {
     return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
-/// A collider beside an independent measure of how far outside a place is.
+/// A collider beside an independent measure of how far outside a position is.
 struct Shape {
     std::string name;
     Collider collider;
@@ -83,9 +83,9 @@ double above_hills(const Dvec3& p) {
 std::vector<Shape> make_shapes() {
     const Vec3 normal(1, 2, -0.5f);
     const Vec3 center(0.2f, -0.1f, 0.3f);
-    const Mat4 place =
+    const Mat4 box_pose =
         glm::translate(Mat4(1), center) * glm::rotate(Mat4(1), 0.8f, glm::normalize(Vec3(1, 1, 0)));
-    const glm::dmat4 box_from_world = glm::inverse(glm::dmat4(place));
+    const glm::dmat4 box_from_world = glm::inverse(glm::dmat4(box_pose));
     const Vec3 half(0.9f, 0.3f, 0.6f);
     std::vector<Shape> shapes;
     for (const float radius : {0.0f, 0.2f}) {
@@ -101,7 +101,7 @@ std::vector<Shape> make_shapes() {
             {"hollow", SphereCollider{.center = center, .radius = 1.5f, .inverted = true}, radius,
              [=](const Dvec3& p) { return double{1.5f} - r - glm::length(p - Dvec3(center)); }});
         shapes.push_back(
-            {"box", BoxCollider{.world_from_box = to_affine(place), .half = half}, radius,
+            {"box", BoxCollider{.world_from_box = to_affine(box_pose), .half = half}, radius,
              [=](const Dvec3& p) {
                  const Dvec3 local =
                      glm::abs(box_from_world * glm::dvec4(p, 1)) - glm::dvec4(half, 0);
@@ -114,7 +114,8 @@ std::vector<Shape> make_shapes() {
 
 }  // namespace
 
-TEST_CASE("particle collision: the first contact is where dense samples of the way turn negative") {
+TEST_CASE(
+    "particle collision: the first contact is where dense samples of the path turn negative") {
     constexpr int kSamples = 500;
     Random random(2, 2, 2, 2);
     for (const Shape& shape : make_shapes()) {
@@ -124,8 +125,8 @@ TEST_CASE("particle collision: the first contact is where dense samples of the w
         for (int n = 0; n < 1000; ++n) {
             const Vec3 from = random_vector(random, 2);
             const Vec3 to = random_vector(random, 2);
-            const auto at = [&](double share) {
-                return shape.outside(Dvec3(from) + share * (Dvec3(to) - Dvec3(from)));
+            const auto at = [&](double fraction) {
+                return shape.outside(Dvec3(from) + fraction * (Dvec3(to) - Dvec3(from)));
             };
             const std::optional<Contact> found =
                 first_contact(shape.collider, from, to, shape.radius);
@@ -133,10 +134,10 @@ TEST_CASE("particle collision: the first contact is where dense samples of the w
                 CHECK(!found);
                 continue;
             }
-            const double share = found ? double{found->share} : 1.0;
+            const double fraction = found ? double{found->fraction} : 1.0;
             contacts += found ? 1 : 0;
             bool clear = true;
-            for (int i = 0; i <= kSamples && i < share * kSamples - 1e-3; ++i) {
+            for (int i = 0; i <= kSamples && i < fraction * kSamples - 1e-3; ++i) {
                 clear = clear && at(i / double{kSamples}) > -1e-6;
             }
             CHECK(clear);
@@ -158,7 +159,7 @@ TEST_CASE("particle collision: the first contact is where dense samples of the w
 }
 
 TEST_CASE(
-    "particle collision: pushed out is outside, at once, by the shortest way"
+    "particle collision: one push moves a particle outside, by the shortest distance"
     * technique("particle.constraints")) {
     Random random(3, 3, 3, 3);
     for (const Shape& shape : make_shapes()) {
@@ -261,11 +262,11 @@ TEST_CASE("particle collision: a mesh is met from both sides, at the first of it
     const MeshCollider mesh = {.bvh = &bvh};
     const auto down = first_contact(mesh, {0, 1, 0}, {0, -1, 0});
     REQUIRE(down);
-    CHECK(double{down->share} == near(0.5));
+    CHECK(double{down->fraction} == near(0.5));
     CHECK(down->normal == Vec3(0, 1, 0));
     const auto up = first_contact(mesh, {0, -1, 0}, {0, 1, 0});
     REQUIRE(up);
-    CHECK(double{up->share} == near(0.4995));
+    CHECK(double{up->fraction} == near(0.4995));
     CHECK(up->normal == Vec3(0, -1, 0));
     CHECK(!first_contact(mesh, {9, 1, 0}, {9, -1, 0}));
     CHECK(!first_contact(MeshCollider{}, {0, 1, 0}, {0, -1, 0}));
@@ -283,13 +284,13 @@ TEST_CASE(
         const float lean = random.uniform(0.0f, 1.3f);
         const float around = random.uniform(0.0f, 6.28f);
         const float side = n % 2 == 0 ? 1.0f : -1.0f;
-        const Vec3 way = random.uniform(0.2f, 3.0f)
-                         * Vec3(
-                             std::sin(lean) * std::cos(around), -side * std::cos(lean),
-                             std::sin(lean) * std::sin(around));
+        const Vec3 path = random.uniform(0.2f, 3.0f)
+                          * Vec3(
+                              std::sin(lean) * std::cos(around), -side * std::cos(lean),
+                              std::sin(lean) * std::sin(around));
         const Vec3 from(0, side * (radius + random.uniform(0.0f, 0.5f)), 0);
-        const auto found = first_contact(MeshCollider{.bvh = &bvh}, from, from + way, radius);
-        const bool reaches = std::abs(from.y) - std::abs(way.y) < radius;
+        const auto found = first_contact(MeshCollider{.bvh = &bvh}, from, from + path, radius);
+        const bool reaches = std::abs(from.y) - std::abs(path.y) < radius;
         CHECK(found.has_value() == reaches);
         if (found) {
             CHECK(double{found->point.y} == near(double{side * radius}).epsilon(1e-4));
@@ -304,12 +305,12 @@ TEST_CASE("particle collision: a ball nearer to a mesh than its radius touches a
     const MeshBvh bvh = build_mesh_bvh(positions, indices);
     const auto found = first_contact(MeshCollider{.bvh = &bvh}, {0, 0.2f, 0}, {0, -1, 0}, 0.5f);
     REQUIRE(found);
-    CHECK(found->share == 0);
+    CHECK(found->fraction == 0);
     CHECK(found->point == Vec3(0, 0.5f, 0));
     CHECK(!first_contact(MeshCollider{.bvh = &bvh}, {0, 0.2f, 0}, {0, 1, 0}, 0.5f));
 }
 
-TEST_CASE("particle collision: ways without length or that are not finite meet nothing") {
+TEST_CASE("particle collision: paths without length or that are not finite hit nothing") {
     const Collider plane = PlaneCollider{};
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
@@ -323,7 +324,7 @@ TEST_CASE("particle collision: a tangent on the wall of a hollow leaves it at on
     const Collider hollow = SphereCollider{.radius = 1, .inverted = true};
     const auto found = first_contact(hollow, {1, 0, 0}, {1, 1, 0});
     REQUIRE(found);
-    CHECK(found->share == 0);
+    CHECK(found->fraction == 0);
     CHECK(found->normal == Vec3(-1, 0, 0));
 }
 

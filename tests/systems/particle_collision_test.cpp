@@ -67,7 +67,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle collision: long normals are normalized, shares beyond 0 .. 1 are clamped"
+    "particle collision: long normals are normalized, fractions beyond 0 .. 1 are clamped"
     * technique("particle.plane-response")) {
     CHECK(respond({3, -4, 0}, {0, 10, 0}, {0.5f, 0.5f}) == Vec3(1.5f, 2, 0));
     CHECK(respond({3, -4, 0}, {0, 1, 0}, {7, 7}) == Vec3(3, 4, 0));
@@ -127,7 +127,7 @@ TEST_CASE(
     check_near(end.velocity, {1, 0, 0});
 }
 
-TEST_CASE("particle collision: a mirror gives the same way by time and by length") {
+TEST_CASE("particle collision: a mirror gives the same path by time and by length") {
     for (const auto mode : {CollisionOptions::Mode::Time, CollisionOptions::Mode::Length}) {
         const CollisionResult end = move_with_collisions(
             {0, 1, 0}, {1, -2, 0}, 1, {&kFloor, 1}, kMirror, {.skin = 1e-6f, .mode = mode});
@@ -136,7 +136,7 @@ TEST_CASE("particle collision: a mirror gives the same way by time and by length
     }
 }
 
-TEST_CASE("particle collision: without contact a particle goes its way") {
+TEST_CASE("particle collision: without contact a particle keeps its path") {
     const CollisionResult end =
         move_with_collisions({1, 2, 3}, {0.5f, -1, 0.25f}, 1, {&kFloor, 1}, kMirror);
     CHECK(end.position == Vec3(1.5f, 1, 3.25f));
@@ -144,7 +144,7 @@ TEST_CASE("particle collision: without contact a particle goes its way") {
     CHECK(end.contacts == 0);
 }
 
-TEST_CASE("particle collision: a surface that takes all speed is where the way ends") {
+TEST_CASE("particle collision: a surface that takes all speed is where the path ends") {
     for (const auto mode : {CollisionOptions::Mode::Time, CollisionOptions::Mode::Length}) {
         const CollisionResult end = move_with_collisions(
             {0, 1, 0}, {1, -2, 0}, 1, {&kFloor, 1}, {0, 0}, {.skin = 1e-6f, .mode = mode});
@@ -267,7 +267,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "particle collision: who starts inside does not bounce in the next step either"
+    "particle collision: a particle that starts inside does not bounce in the next step either"
     * technique("particle.penetration-guard")) {
     CollisionResult now = {.position = {0, -0.1f, 0}, .velocity = {0, -5, 0}};
     for (int i = 0; i < 3; ++i) {
@@ -431,14 +431,14 @@ int count_escaped(const Room& room, float half, std::span<const Collider> walls,
 
 }  // namespace
 
-TEST_CASE("particle collision: of 100,000 ways at 60 m/s none passes a box 1 mm thick") {
+TEST_CASE("particle collision: of 100,000 paths at 60 m/s none passes a box 1 mm thick") {
     const Room room(0.8f);
     CHECK(count_escaped(room, 0.8f, room.boxes, 0) == 0);
     CHECK(count_escaped(room, 0.8f, room.boxes, 0.01f) == 0);
 }
 
 TEST_CASE(
-    "particle collision: of 100,000 ways at 60 m/s none passes a mesh 1 mm thick"
+    "particle collision: of 100,000 paths at 60 m/s none passes a mesh 1 mm thick"
     * technique("particle.collision-loop")) {
     const Room room(0.8f);
     const MeshBvh bvh = build_mesh_bvh(room.positions, room.indices);

@@ -122,7 +122,7 @@ TEST_CASE("particle deaths: a mixed pool comes back into the order of ages, rows
 }
 
 TEST_CASE(
-    "particle deaths: whoever is told by its order keeps it, and nobody else"
+    "particle deaths: order is kept only where something depends on it"
     * technique("particle.system")) {
     Emitters scene;
     const Entity plain = scene.add(restless());

@@ -23,9 +23,9 @@ TEST_CASE("particles: vectors give the bits of the plain loops, for any number")
             .air = {2, 1, -1},
             .keep = 0.93f,
             .dt = 0.017f,
-            .old_share = 0.3f};
-        stir_particles(particle_block(a, 0, count), noise, 0.02f);
-        stir_particles_scalar(particle_block(b, 0, count), noise, 0.02f);
+            .old_weight = 0.3f};
+        apply_turbulence(particle_block(a, 0, count), noise, 0.02f);
+        apply_turbulence_scalar(particle_block(b, 0, count), noise, 0.02f);
         CHECK(same_bits(a, b));
         const std::size_t dead = move_particles(particle_block(a, 0, count), step);
         CHECK(dead == move_particles_scalar(particle_block(b, 0, count), step));

@@ -101,7 +101,7 @@ TEST_CASE(
     CHECK(none.step(10).empty());
 }
 
-TEST_CASE("particle meshes: an instance was where its particle was, whoever else dies") {
+TEST_CASE("particle meshes: an instance was where its particle was, whichever others die") {
     Meshes all(spray(), three_meshes(), falling());
     std::vector<MeshParticle> before = all.step(60);
     int found = 0;

@@ -52,7 +52,7 @@ TEST_CASE(
         CHECK(pool.vy[i] == test::near(3 - 9.81 * age).scale(9).epsilon(1e-5));
         CHECK(pool.y[i] == test::near(3 * age - 4.905 * age * age).scale(3).epsilon(1e-5));
     }
-    // With drag, velocities are those of its decay, and whoever is younger is behind.
+    // With drag, velocities are those of its decay, and younger ones are behind.
     ParticleMotion slowed;
     slowed.gravity = 0;
     slowed.drag = 12;
@@ -83,10 +83,10 @@ TEST_CASE("particles: with drag they fall as they should, whatever the step") {
         const double last = 2 - 9.81 / 1.5;
         CHECK(scene.pool().vy[0] == test::near(last + (20 - last) * left).epsilon(1e-5));
         // Places by means of velocities: off by (drag dt)^2 / 12 of what drag takes.
-        const double place = last * 3 + (20 - last) * (1 - left) / 1.5;
+        const double position = last * 3 + (20 - last) * (1 - left) / 1.5;
         const double turned = (20 - last) / 1.5;
         const double bound = turned * std::pow(1.5 * static_cast<double>(dt), 2) / 12;
-        CHECK(std::abs(static_cast<double>(scene.pool().y[0]) - place) < bound + 1e-4);
+        CHECK(std::abs(static_cast<double>(scene.pool().y[0]) - position) < bound + 1e-4);
     }
 }
 
@@ -124,7 +124,7 @@ struct Orbiting {
         emitter.life = 1e5f;
         motion.gravity = 0;
         const Entity entity = scene.add(emitter, motion);
-        // Born, then put in its place. The book's axis is z: its x, y are z, x here.
+        // Born, then moved to its start. The book's axis is z: its x, y are z, x here.
         scene.run();
         auto& pool = scene.world.get<ParticlePool>(entity);
         pool.z[0] = 10;
@@ -133,7 +133,7 @@ struct Orbiting {
         pool.vx[0] = velocity.y;
         scene.run(steps);
     }
-    Vec2 place() { return {scene.pool().z[0], scene.pool().x[0]}; }
+    Vec2 position() { return {scene.pool().z[0], scene.pool().x[0]}; }
     Vec2 velocity() { return {scene.pool().vz[0], scene.pool().vx[0]}; }
 };
 
@@ -146,30 +146,30 @@ TEST_CASE(
     const auto near = [](const Vec2& a, const Vec2& b) { return glm::distance(a, b) < 1e-5f; };
     Orbiting turned({3, 4}, {.orbit = 1, .integrator = SemiImplicit});
     CHECK(near(turned.velocity(), {0, 5}));
-    CHECK(near(turned.place(), {10, 0.5f}));
+    CHECK(near(turned.position(), {10, 0.5f}));
     Orbiting one_pass({3, 4}, {.orbit = 1, .integrator = ExplicitEuler});
     CHECK(near(one_pass.velocity(), {0, 5}));
-    CHECK(near(one_pass.place(), {10.3f, 0.4f}));
+    CHECK(near(one_pass.position(), {10.3f, 0.4f}));
     Orbiting braked({3, 4}, {.brake = 2, .integrator = SemiImplicit});
     CHECK(near(braked.velocity(), {2.88f, 3.84f}));
-    CHECK(near(braked.place(), {10.288f, 0.384f}));
+    CHECK(near(braked.position(), {10.288f, 0.384f}));
     // A factor of the direction per 1/60 s: six of them in this step.
     const float half = 1 - std::pow(0.5f, 1 / 6.0f);
     Orbiting mixed({1, 0}, {.orbit = half, .integrator = SemiImplicit});
     CHECK(near(mixed.velocity(), {0.5f, 0.5f}));
     CHECK(near(Orbiting({3, 4}, {}).velocity(), {3, 4}));
-    CHECK(near(Orbiting({3, 4}, {.integrator = ExplicitEuler}).place(), {10.3f, 0.4f}));
+    CHECK(near(Orbiting({3, 4}, {.integrator = ExplicitEuler}).position(), {10.3f, 0.4f}));
     // At rest after |v| / brake, and it stays.
     Orbiting stopped({3, 4}, {.brake = 2, .integrator = SemiImplicit}, 26);
     CHECK(stopped.velocity() == Vec2(0));
     // A polygon of tangents leaves the circle: r^2 grows by (v dt)^2 in each step.
     Orbiting around({0, 5}, {.orbit = 1, .integrator = SemiImplicit}, 100);
-    CHECK(glm::length(around.place()) == test::near(11.180340));
+    CHECK(glm::length(around.position()) == test::near(11.180340));
     CHECK(glm::length(around.velocity()) == test::near(5));
     // On the axis and at rest nothing turns, and nothing is NaN.
     Orbiting still({0, 0}, {.orbit = 1, .brake = 1});
     CHECK(still.velocity() == Vec2(0));
-    CHECK(still.place() == Vec2(10, 0));
+    CHECK(still.position() == Vec2(10, 0));
 }
 
 TEST_CASE("particles: one thrown upward turns at v / g, v^2 / 2 g high") {
@@ -216,8 +216,8 @@ TEST_CASE("particles: opposite forces cancel") {
     ParticlePool pool = random_pool(100);
     const ParticlePool before = pool;
     const ParticleBlock block = particle_block(pool, 0, pool.size());
-    whirl_particles(block, {.around = 3, .toward = 2}, 0.1f);
-    whirl_particles(block, {.around = -3, .toward = -2}, 0.1f);
+    apply_vortex(block, {.around = 3, .toward = 2}, 0.1f);
+    apply_vortex(block, {.around = -3, .toward = -2}, 0.1f);
     for (std::size_t i = 0; i < pool.size(); ++i) {
         CHECK(pool.vx[i] == test::near(before.vx[i]).scale(1).epsilon(1e-5));
     }
@@ -229,7 +229,7 @@ TEST_CASE("particles: a vortex turns about its axis and pulls toward it, by unit
     pool.y = {9, 1, 2};
     pool.z = {0, -3, 0};
     const ParticlePool before = pool;
-    whirl_particles(
+    apply_vortex(
         particle_block(pool, 0, 3),
         {.origin = {5, 0, 0}, .axis = {0, 1, 0}, .around = 4, .toward = 6}, 0.5f);
     // The first is at -x of the axis: around it is +z, toward it +x.
@@ -266,7 +266,7 @@ TEST_CASE("particles: curl noise has no sources and the strength that it is aske
 }
 
 TEST_CASE("particles: gradients of the noise are those of differences, and continue across cells") {
-    // An integral over a closed way is 0 for a gradient.
+    // An integral along a closed path is 0 for a gradient.
     Random random(5, 6, 7, 8);
     for (int i = 0; i < 50; ++i) {
         const Vec3 center = {random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
@@ -278,10 +278,10 @@ TEST_CASE("particles: gradients of the noise are those of differences, and conti
                 const double angle = 2 * 3.14159265358979 * t / kSides;
                 return center + Vec3(std::cos(angle), 0.5 * std::sin(2 * angle), std::sin(angle));
             };
-            const Vec3 way = at(s + 1) - at(s);
+            const Vec3 path = at(s + 1) - at(s);
             const Vec3 slope = noise_gradient(at(s + 0.5), 77);
-            around += static_cast<double>(glm::dot(slope, way));
-            length += static_cast<double>(glm::length(slope) * glm::length(way));
+            around += static_cast<double>(glm::dot(slope, path));
+            length += static_cast<double>(glm::length(slope) * glm::length(path));
         }
         CHECK(std::abs(around) < 1e-3 * length);
     }

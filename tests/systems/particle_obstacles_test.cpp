@@ -202,7 +202,7 @@ TEST_CASE(
     scene.world.add(square, MorphWeights{.weights = {0.75f}, .previous = {0.75f}});
     scene.run(60);
     scene.check_height(1 + 2 * 0.75);
-    // A skin whose joints nobody has: as it is at rest.
+    // A skin without joints: as it is at rest.
     scene.world.get<MorphWeights>(square).weights = {std::nanf("")};
     scene.drop(kStop);
     scene.run(60);
@@ -328,7 +328,7 @@ TEST_CASE("particle obstacles: drops end on the waves, where a query has them") 
     CHECK(scene.impulses().empty());  // of a collider that ripples by 0
 }
 
-TEST_CASE("particle obstacles: a way enters water where it is as high as the water is there") {
+TEST_CASE("particle obstacles: a path enters water where it is as high as the surface") {
     Pond scene(0.4f, 0);
     const ParticleWater water = {.surface = scene.surface(), .highest = 1.5f};
     for (int i = 0; i < 100; ++i) {
@@ -337,10 +337,10 @@ TEST_CASE("particle obstacles: a way enters water where it is as high as the wat
         const Vec3 to = {-x, 0.2f, 0.5f * x};
         const auto contact = enter_water({&water, 1}, from, to);
         REQUIRE(contact);
-        const Vec3 there = from + contact->share * (to - from);
+        const Vec3 there = from + contact->fraction * (to - from);
         CHECK(glm::distance(contact->point, there) < 1e-3f);
         CHECK(!enter_water({&water, 1}, to, from));  // from below
-        CHECK(!enter_water({&water, 1}, from, from + 0.5f * contact->share * (to - from)));
+        CHECK(!enter_water({&water, 1}, from, from + 0.5f * contact->fraction * (to - from)));
     }
 }
 
@@ -353,10 +353,10 @@ TEST_CASE("particle obstacles: a roof keeps drops from the water, and what is be
     CHECK(scene.pool().size() == 0);
     CHECK(scene.impulses().empty());
     const Entity bubbles = scene.drop({.action = CollisionAction::Kill});
-    for (auto* place :
+    for (auto* position :
          {&scene.world.get<WorldTransform>(bubbles).world,
           &scene.world.get<PreviousWorldTransform>(bubbles).world}) {
-        *place = affine_from({0, 0.9f, 0}, Quat(1, 0, 0, 0), Vec3(1));
+        *position = affine_from({0, 0.9f, 0}, Quat(1, 0, 0, 0), Vec3(1));
     }
     scene.run(5);
     CHECK(scene.pool(1).size() == 100);

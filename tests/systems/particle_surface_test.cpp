@@ -138,7 +138,7 @@ struct Surfaces : Emitters {
         world.add(entity, surface);
         return entity;
     }
-    Vec3 place(std::size_t i, std::size_t which = 0) {
+    Vec3 position(std::size_t i, std::size_t which = 0) {
         const ParticlePool& all = pool(which);
         return {all.x[i], all.y[i], all.z[i]};
     }
@@ -161,7 +161,7 @@ TEST_CASE(
     REQUIRE(scene.pool().size() == 40000);
     std::vector<double> cells(64, 0);  // of 4 x 1 squares before scaling, 16 x 4 of them
     for (std::size_t i = 0; i < 40000; ++i) {
-        const Vec3 local = (scene.place(i) - Vec3(5, 6, 7)) / Vec3(2, 1, 3);
+        const Vec3 local = (scene.position(i) - Vec3(5, 6, 7)) / Vec3(2, 1, 3);
         CHECK(std::abs(local.y) < 1e-6f);
         const auto column = static_cast<int>(std::floor((local.x + 1) * 4));
         const auto row = static_cast<int>(std::floor(local.z * 4));
@@ -195,7 +195,7 @@ TEST_CASE(
     std::size_t turned = 0;
     for (std::size_t i = 0; i < 2000; ++i) {
         const Vec3 normal = scene.velocity(i) / 6.0f;
-        const Vec3 born = scene.place(i) - scene.velocity(i) * kStep - 0.25f * normal;
+        const Vec3 born = scene.position(i) - scene.velocity(i) * kStep - 0.25f * normal;
         CHECK(born.z > 10);
         CHECK(born.z < 11);
         const bool upright = normal.x < -0.5f;  // what faced +y faces -x
@@ -213,7 +213,7 @@ TEST_CASE(
     scene.emit(resting(100), {.entity = mesh});
     scene.run();
     for (std::size_t i = 0; i < 100; ++i) {
-        CHECK(scene.place(i, 1).y == near(8));
+        CHECK(scene.position(i, 1).y == near(8));
     }
 }
 
@@ -262,16 +262,17 @@ TEST_CASE(
     constexpr std::size_t kFine = 4000;
     std::vector<Vec3> curve;
     for (std::size_t k = 0; k <= kFine; ++k) {
-        const double share = static_cast<double>(k) / kFine;
-        curve.push_back(transform_point(at, path_frame_at(path, share * path.length()).position));
+        const double fraction = static_cast<double>(k) / kFine;
+        curve.push_back(
+            transform_point(at, path_frame_at(path, fraction * path.length()).position));
     }
     std::vector<double> counts(kParts, 0);
     for (std::size_t i = 0; i < 20000; ++i) {
-        const Vec3 place = scene.place(i);
+        const Vec3 position = scene.position(i);
         std::size_t nearest = 0;
         float distance = 1e9f;
         for (std::size_t k = 0; k <= kFine; ++k) {
-            const float d = glm::dot(curve[k] - place, curve[k] - place);
+            const float d = glm::dot(curve[k] - position, curve[k] - position);
             if (d < distance) {
                 distance = d;
                 nearest = k;
@@ -301,12 +302,12 @@ TEST_CASE("particle surface: along a path +y of the shape is up and +z ahead") {
     scene.run();
     for (std::size_t i = 0; i < 500; ++i) {
         CHECK(glm::distance(scene.velocity(i), Vec3(0, 3, 0)) < 1e-5f);
-        CHECK(std::abs(scene.place(i).x) < 0.5f);
-        CHECK(scene.place(i).z == std::clamp(scene.place(i).z, -4.0f, 0.0f));
+        CHECK(std::abs(scene.position(i).x) < 0.5f);
+        CHECK(scene.position(i).z == std::clamp(scene.position(i).z, -4.0f, 0.0f));
     }
 }
 
-TEST_CASE("particle surface: they take over a share of the velocity of the place") {
+TEST_CASE("particle surface: they inherit a fraction of the velocity of the surface") {
     Surfaces scene;
     const Entity mesh = scene.add_instance(scene.add_mesh(two_rectangles()), placed({0, 0, 0}));
     scene.world.get<WorldTransform>(mesh).world =
@@ -314,7 +315,7 @@ TEST_CASE("particle surface: they take over a share of the velocity of the place
     scene.emit(resting(300), {.entity = mesh, .inherit = 0.5f});
     scene.run();
     for (std::size_t i = 0; i < 300; ++i) {
-        const Vec3 born = scene.place(i);
+        const Vec3 born = scene.position(i);
         CHECK(
             glm::distance(scene.velocity(i), glm::cross(Vec3(0, 0.6f, 0), born))
             < 0.02f * glm::length(born));
@@ -362,7 +363,7 @@ TEST_CASE("particle surface: a triangle that is not finite is left out, the othe
     scene.run();
     REQUIRE(scene.pool().size() == 3000);
     for (std::size_t i = 0; i < 3000; ++i) {
-        const Vec3 born = scene.place(i);
+        const Vec3 born = scene.position(i);
         CHECK(born.x / 3 + born.z < 1.0001f);  // its neighbor's half of the rectangle
     }
 }
@@ -384,7 +385,7 @@ TEST_CASE(
     // 1 along y; 4 in the second, which is within the first one's grid but apart from it.
     std::vector<double> cells(36, 0);
     for (std::size_t i = 0; i < 40000; ++i) {
-        const Vec3 local = glm::inverse(turn) * (scene.place(i) - Vec3(5, 6, 7)) / Vec3(2, 1, 3);
+        const Vec3 local = glm::inverse(turn) * (scene.position(i) - Vec3(5, 6, 7)) / Vec3(2, 1, 3);
         const bool is_first = local.y < 1.5f;
         const Vec3 cube = glm::floor(2.0f * (local - (is_first ? Vec3(-1, 0, -1) : Vec3(0, 2, 0))));
         const Vec3 cubes = is_first ? Vec3(4, 2, 4) : Vec3(2, 1, 2);
@@ -417,7 +418,7 @@ TEST_CASE(
     double square = 0;
     for (std::size_t i = 0; i < 30000; ++i) {
         CHECK(glm::distance(scene.velocity(i), Vec3(0, 3, 0)) < 1e-5f);
-        const Vec3 born = scene.place(i) - scene.velocity(i) * kStep - Vec3(1, 0, 0);
+        const Vec3 born = scene.position(i) - scene.velocity(i) * kStep - Vec3(1, 0, 0);
         REQUIRE(glm::length(born) < 2.0001f);
         mean += born / 30000.0f;
         square += static_cast<double>(glm::dot(born, born)) / 30000;
@@ -484,8 +485,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("particle surface: a place depends on the number of the birth alone") {
-    const auto places = [](float rate, int steps, float life = 1000) {
+TEST_CASE("particle surface: a position depends only on the number of the birth") {
+    const auto positions = [](float rate, int steps, float life = 1000) {
         Surfaces scene;
         const Entity mesh = scene.add_instance(scene.add_mesh(two_rectangles()), placed(Vec3(0)));
         ParticleEmitter emitter = resting(10000);
@@ -497,15 +498,15 @@ TEST_CASE("particle surface: a place depends on the number of the birth alone") 
         scene.run(steps);
         std::vector<Vec3> all;
         for (std::size_t i = 0; i < scene.pool().size(); ++i) {
-            all.push_back(scene.place(i));
+            all.push_back(scene.position(i));
         }
         return all;
     };
-    const std::vector<Vec3> slow = places(600, 60);
+    const std::vector<Vec3> slow = positions(600, 60);
     REQUIRE(slow.size() == 600);
-    CHECK(slow == places(6000, 6));
+    CHECK(slow == positions(6000, 6));
     CHECK(slow[0] != slow[1]);
-    const std::vector<Vec3> last = places(600, 60, 0.5f);  // the others are dead
+    const std::vector<Vec3> last = positions(600, 60, 0.5f);  // the others are dead
     REQUIRE(last.size() == 300);
     CHECK(std::equal(last.begin(), last.end(), slow.end() - 300));
 }
@@ -583,20 +584,20 @@ TEST_CASE(
     Exploding scene({}, 2, placed({10, 0, 0}));
     scene.step(12);
     REQUIRE(scene.pool().size() == 3);
-    const float way = 5 * 12 * kStep;
-    CHECK(glm::distance(scene.place(0), Vec3(11 + way, 0, 0)) < 1e-4f);
-    CHECK(glm::distance(scene.place(1), Vec3(10, 2 + way, 0)) < 1e-4f);
-    CHECK(glm::distance(scene.place(2), Vec3(10, 0, 0)) == near(way));
+    const float path = 5 * 12 * kStep;
+    CHECK(glm::distance(scene.position(0), Vec3(11 + path, 0, 0)) < 1e-4f);
+    CHECK(glm::distance(scene.position(1), Vec3(10, 2 + path, 0)) < 1e-4f);
+    CHECK(glm::distance(scene.position(2), Vec3(10, 0, 0)) == near(path));
     // Elsewhere with another seed.
     Exploding other({}, 2, placed({10, 0, 0}));
     other.world.get<ParticleEmitter>(other.emitter).seed = 99;
     other.step(12);
-    CHECK(glm::distance(scene.place(2), other.place(2)) > 0.01f);
+    CHECK(glm::distance(scene.position(2), other.position(2)) > 0.01f);
     // Away from a blast elsewhere.
     Exploding aside({});
     aside.world.get<ParticleSurface>(aside.emitter).blast = {1, -3, 0};
     aside.step(12);
-    CHECK(glm::distance(aside.place(0), Vec3(1, way, 0)) < 1e-4f);
+    CHECK(glm::distance(aside.position(0), Vec3(1, path, 0)) < 1e-4f);
 }
 
 TEST_CASE(

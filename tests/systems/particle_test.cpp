@@ -164,7 +164,7 @@ TEST_CASE(
 }
 
 TEST_CASE("particles: an emitter moves the same whether or not others are born by it") {
-    // Whoever gives birth to nobody is stepped at once, together with others alike.
+    // Emitters without children do their whole step at once.
     ParticleEmitter emitter = steady(90);
     emitter.shape = EmitterShape::Ball;
     emitter.bursts = {{.time = 0.2f, .count = 30, .spread = 9, .interval = 0.3f, .repeats = 2}};
@@ -274,7 +274,7 @@ TEST_CASE("particles: without room none is born, and a lifetime of 0 is over at 
     CHECK(scene.pool(1).clock.dropped == 0);
 }
 
-TEST_CASE("particles: an emitter without a place has none, one that lost its parent goes on") {
+TEST_CASE("particles: an emitter without a transform has none, one that lost its parent goes on") {
     Emitters scene;
     const Entity nowhere = scene.world.create(steady(600));
     scene.world.run(add_particle_pools);

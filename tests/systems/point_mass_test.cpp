@@ -51,9 +51,9 @@ Arc fly(PointMass body, float drag, float dt) {
         const double dx = 0.5 * static_cast<double>(body.velocity.x + next.velocity.x) * step;
         const double dy = 0.5 * static_cast<double>(body.velocity.y + next.velocity.y) * step;
         if (y + dy < 0) {
-            const double share = y / -dy;
-            arc.range = x + share * dx;
-            arc.time += share * step;
+            const double fraction = y / -dy;
+            arc.range = x + fraction * dx;
+            arc.time += fraction * step;
             arc.last_velocity = next.velocity;
             return arc;
         }
@@ -107,7 +107,7 @@ struct Bodies {
             world.run(update_point_masses);
         }
     }
-    Vec3 place(Entity body) { return world.get<const Transform>(body).position; }
+    Vec3 position(Entity body) { return world.get<const Transform>(body).position; }
     const PointMass& mass(Entity body) { return world.get<const PointMass>(body); }
 };
 
@@ -154,14 +154,14 @@ TEST_CASE(
     for (const int steps : {30, 60, 120}) {  // of 4 s
         const float dt = 4.0f / static_cast<float>(steps);
         PointMass body = thrown(90, 45);
-        Vec3 place(0);
+        Vec3 position(0);
         for (int i = 0; i < steps; ++i) {
             const PointMass next = step_point_mass(body, falling_in_air(kSphereDrag), dt);
-            place += 0.5f * dt * (body.velocity + next.velocity);
+            position += 0.5f * dt * (body.velocity + next.velocity);
             body = next;
         }
         const glm::dvec4 exact = reference_after(90, static_cast<double>(kSphereDrag) / 5, 4);
-        const double error = glm::distance(glm::dvec2(place.x, place.y), glm::dvec2(exact));
+        const double error = glm::distance(glm::dvec2(position.x, position.y), glm::dvec2(exact));
         CHECK(error < 1.2 * static_cast<double>(dt * dt));  // of 170 m
         CHECK((last_error == 0 || error < 0.3 * last_error));
         last_error = error;
@@ -296,9 +296,9 @@ TEST_CASE(
     const Entity leaf = scene.world.create(
         Transform{}, PointMass{.mass = 0.001f, .gravity = 0}, AirDrag{.weather = 1});
     scene.run(60);
-    CHECK(scene.place(ball).x == near(6).epsilon(1e-4));
-    CHECK(scene.place(ball).y == near(2 - kGravity / 2).epsilon(1e-4));
-    CHECK(scene.place(ball).z == 3.0f);
+    CHECK(scene.position(ball).x == near(6).epsilon(1e-4));
+    CHECK(scene.position(ball).y == near(2 - kGravity / 2).epsilon(1e-4));
+    CHECK(scene.position(ball).z == 3.0f);
     CHECK(scene.mass(leaf).velocity.x == near(10).epsilon(0.05));
     scene.world.create(ForceField{.strength = 9.81f}, WorldTransform{Affine{}});  // up
     const float before = scene.mass(ball).velocity.y;
@@ -307,7 +307,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "point mass: it bounces by the share of its speed, ends by a hit, or sticks"
+    "point mass: it keeps a fraction of its speed when it bounces, ends by a hit, or sticks"
     * technique("particle.projectile")) {
     for (const CollisionAction action :
          {CollisionAction::Bounce, CollisionAction::Kill, CollisionAction::Stick}) {
@@ -321,14 +321,14 @@ TEST_CASE(
         CHECK_FALSE(scene.world.has<Lifetime>(ball));
         scene.run(2);
         CHECK(scene.world.has<Lifetime>(ball) == (action == CollisionAction::Kill));
-        const Vec3 place = scene.place(ball);
-        CHECK(place.y > 0.2f);
+        const Vec3 position = scene.position(ball);
+        CHECK(position.y > 0.2f);
         if (action == CollisionAction::Bounce) {
             CHECK(scene.mass(ball).velocity.y == near(30));
         }
         scene.run(30);
         if (action == CollisionAction::Stick) {
-            CHECK(scene.place(ball).y == near(0.2).epsilon(1e-2));
+            CHECK(scene.position(ball).y == near(0.2).epsilon(1e-2));
             CHECK(scene.mass(ball).velocity == Vec3(0));
         }
     }
@@ -344,7 +344,7 @@ TEST_CASE(
     const Entity fixed = scene.world.create(
         Transform{.position = {1, 2, 3}}, PointMass{.velocity = {1, 1, 1}, .mass = 0});
     scene.run(10);
-    CHECK(scene.place(fixed) == Vec3(1, 2, 3));
+    CHECK(scene.position(fixed) == Vec3(1, 2, 3));
     for (const float bad : {kNan, kInf, -kInf, 1e30f, -1e30f, 0.0f}) {
         CAPTURE(bad);
         for (int field = 0; field < 12; ++field) {
@@ -361,7 +361,7 @@ TEST_CASE(
             const Entity entity =
                 scene.world.create(Transform{.position = {0, 5, 0}}, body, drag, fuel, collision);
             scene.run(30);
-            CHECK(is_finite(scene.place(entity)));
+            CHECK(is_finite(scene.position(entity)));
             CHECK(is_finite(scene.mass(entity).velocity));
             scene.world.destroy(entity);
         }

@@ -21,8 +21,8 @@ namespace {
 
 using Path = std::function<Vec3(float)>;
 
-Affine at(const Vec3& place) {
-    return affine_from(place, {1, 0, 0, 0}, {1, 1, 1});
+Affine at(const Vec3& position) {
+    return affine_from(position, {1, 0, 0, 0}, {1, 1, 1});
 }
 
 /// An entity with a trail that is moved along a path.
@@ -37,10 +37,10 @@ struct Flight {
         entity = world.create(trail, WorldTransform{at(start)}, PreviousWorldTransform{at(start)});
         world.run(add_trail_states);
     }
-    void move_to(const Affine& place) {
+    void move_to(const Affine& pose) {
         Affine& now = world.get<WorldTransform>(entity).world;
         world.get<PreviousWorldTransform>(entity).world = now;
-        now = place;
+        now = pose;
         world.run(update_trails);
     }
     void fly(const Path& path, float until) {
@@ -70,9 +70,9 @@ float distance_to(const std::vector<TrailPoint>& line, const Vec3& point) {
     float nearest = 1e9f;
     for (std::size_t i = 1; i < line.size(); ++i) {
         const Vec3 a = line[i - 1].position;
-        const Vec3 way = line[i].position - a;
-        const float t = glm::clamp(glm::dot(point - a, way) / glm::dot(way, way), 0.0f, 1.0f);
-        nearest = std::min(nearest, glm::distance(point, a + way * t));
+        const Vec3 path = line[i].position - a;
+        const float t = glm::clamp(glm::dot(point - a, path) / glm::dot(path, path), 0.0f, 1.0f);
+        nearest = std::min(nearest, glm::distance(point, a + path * t));
     }
     return nearest;
 }
@@ -99,7 +99,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "trail: on a circle points are a spacing apart and reach no farther than the length"
+    "trail: on a circle points are a spacing apart and extend no farther than the length"
     * technique("engine.trail")) {
     const Trail trail = {.spacing = 0.1f, .length = 5, .life = 100};
     Flight flight(trail, circle(0), 1.0f / 60);
@@ -170,9 +170,9 @@ TEST_CASE("trail: a jump, a teleport and NaN break it" * technique("engine.trail
     for (const TrailStrand& strand : flight.state().strands) {
         live += strand.live ? 1 : 0;
         for (std::uint32_t i = 0; i < strand.count; ++i) {
-            const Vec3 place = trail_point(flight.state(), strand, i).position;
-            CHECK(std::isfinite(place.x));
-            CHECK(glm::distance(place, strand.head.position) < 10);
+            const Vec3 position = trail_point(flight.state(), strand, i).position;
+            CHECK(std::isfinite(position.x));
+            CHECK(glm::distance(position, strand.head.position) < 10);
         }
     }
     CHECK(live == 1);

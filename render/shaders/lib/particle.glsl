@@ -3,8 +3,8 @@
 #include "lib/periodic.glsl"
 #include "particle_gpu.h"
 
-layout(binding = 2) uniform usamplerBuffer particles;
-layout(binding = 3) uniform samplerBuffer looks;
+layout(binding = kParticlesUnit) uniform usamplerBuffer particles;
+layout(binding = kLooksUnit) uniform samplerBuffer looks;
 
 const int kFacingCamera = 0;  // ParticleFacing
 const int kFacingVelocity = 1;
@@ -18,7 +18,7 @@ struct Particle {
     vec3 position;  // [m]
     vec3 velocity;  // [m/s]
     float age;      // [s]
-    float share;    // of its life
+    float life_fraction;
     int look;
     uint random;
     bool is_dead;
@@ -31,10 +31,10 @@ Particle read_particle(int index) {
     for (int i = 0; i < int(kParticleWords); ++i) {
         words[i] = texelFetch(particles, index * int(kParticleWords) + i).x;
     }
-    vec3 place = uintBitsToFloat(uvec3(words[0], words[1], words[2]));
+    vec3 position = uintBitsToFloat(uvec3(words[0], words[1], words[2]));
     vec2 velocity_xy = unpackHalf2x16(words[4]);
     vec2 velocity_z_age = unpackHalf2x16(words[5]);
-    return Particle(place, vec3(velocity_xy, velocity_z_age.x), velocity_z_age.y, float(words[3] & 0xffffu) / 65535.0,
+    return Particle(position, vec3(velocity_xy, velocity_z_age.x), velocity_z_age.y, float(words[3] & 0xffffu) / 65535.0,
                     int(words[3] >> 16), words[6], velocity_z_age.y < 0.0, int(words[4]), uintBitsToFloat(words[5]));
 }
 
@@ -44,12 +44,12 @@ struct Quad {
     vec3 up;
 };
 
-// Of the quad's vertices, -1 .. 1, as a strip.
+// The corners of a quad as a triangle strip, -1 .. 1.
 vec2 corner_of(int vertex) {
     return 2.0 * vec2(vertex & 1, vertex >> 1) - 1.0;
 }
 
-float random_share(uint bits, uint index) {  // -1 .. 1
+float random_signed(uint bits, uint index) {  // -1 .. 1
     uint h = (bits + index * 0x9e3779b9u) * 0x7feb352du;
     h = (h ^ (h >> 15)) * 0x846ca68bu;
     return float(h >> 8) * (2.0 / 16777216.0) - 1.0;
@@ -59,7 +59,7 @@ vec4 look_texel(int look, uint texel) {
     return texelFetch(looks, look * int(kLookTexels) + int(texel));
 }
 
-// What most shapes need of a look: texels 0 to 3, and kLookMore (particle_gpu.h).
+// The texels of a look that most shapes need: 0 to 3, and kLookMore (particle_gpu.h).
 struct Look {
     int index;
     vec4 shape;
@@ -83,37 +83,37 @@ float size_factor(int look, float at) {
 
 // Diameter [m]; `shape`: texel 0 of the look.
 float size_of(Particle p, vec4 shape) {
-    return max(shape.x + shape.y * random_share(p.random, 0u), 0.0)
-           * size_factor(p.look, p.share * float(kLookSamples - 1u));
+    return max(shape.x + shape.y * random_signed(p.random, 0u), 0.0)
+           * size_factor(p.look, p.life_fraction * float(kLookSamples - 1u));
 }
 
-// Color and opacity at its age, wherever it is seen from.
+// Color and opacity at its age, without the fades by distance.
 vec4 color_of(Particle p) {
     vec4 wave = look_texel(p.look, kLookMore + 2u);
     vec4 varied = look_texel(p.look, kLookMore + 3u);
-    float place = p.share;
+    float at_life = p.life_fraction;
     bool has_age = uint(look_texel(p.look, 2u).w) < kFacingRibbon;
     if (has_age && p.age >= 0.0 && (wave.y != 0.0 || wave.z != 0.0)) {
-        place = clamp(wave.y + wave.z * periodic_wave(int(wave.x), varied.x * p.age, wave.w), 0.0, 1.0);
+        at_life = clamp(wave.y + wave.z * periodic_wave(int(wave.x), varied.x * p.age, wave.w), 0.0, 1.0);
     }
-    float at = place * float(kLookSamples - 1u);
+    float at = at_life * float(kLookSamples - 1u);
     int i = min(int(at), int(kLookSamples) - 2);
     vec4 color = mix(look_texel(p.look, kLookColors + uint(i)), look_texel(p.look, kLookColors + uint(i) + 1u),
                      at - float(i));
     if (varied.yzw != vec3(0.0)) {
-        vec3 chance = vec3(random_share(p.random, 6u), random_share(p.random, 7u), random_share(p.random, 8u));
+        vec3 chance = vec3(random_signed(p.random, 6u), random_signed(p.random, 7u), random_signed(p.random, 8u));
         color.rgb = max(color.rgb + varied.yzw * chance, vec3(0.0));
     }
     float fade = look_texel(p.look, kLookMore + 1u).w;
-    if (fade > 0.0 && p.share > 0.0) {
-        color.a *= clamp(p.age * (1.0 - p.share) / (p.share * fade), 0.0, 1.0);
+    if (fade > 0.0 && p.life_fraction > 0.0) {
+        color.a *= clamp(p.age * (1.0 - p.life_fraction) / (p.life_fraction * fade), 0.0, 1.0);
     }
     return color;
 }
 
 // Angle of the quad [rad]; `streak`: texel 1 of the look.
 float angle_of(Particle p, vec4 shape, vec4 streak) {
-    return shape.z * random_share(p.random, 1u) + (shape.w + streak.x * random_share(p.random, 2u)) * p.age;
+    return shape.z * random_signed(p.random, 1u) + (shape.w + streak.x * random_signed(p.random, 2u)) * p.age;
 }
 
 struct Flipbook {
@@ -122,11 +122,11 @@ struct Flipbook {
     float progress;  // toward it, 0 .. 1
     vec2 numbers;    // of the frame and the next one
 };
-// Which frame it shows; `book`: texel 3 of the look; `kind`: ParticleFrames.
+// The frame that it shows, with a fraction; `book`: texel 3 of the look; `kind`: ParticleFrames.
 float frame_shown(Particle p, vec4 book, int kind) {
     float count = book.x * book.y;
-    float shown = book.z > 0.0 ? p.age * book.z : p.share * (count - 1.0);
-    float chance = floor((0.5 + 0.5 * random_share(p.random, 5u)) * count);
+    float shown = book.z > 0.0 ? p.age * book.z : p.life_fraction * (count - 1.0);
+    float chance = floor((0.5 + 0.5 * random_signed(p.random, 5u)) * count);
     return kind == kFramesPick ? chance : kind == kFramesShuffle ? shown + chance : shown;
 }
 Flipbook flipbook_at(float shown, vec4 book, int kind) {

@@ -1,7 +1,7 @@
 // The corner of a billboard's quad: after lib/particle_sprite.glsl.
 
 #include "lib/billboard.glsl"
-layout(binding = 26) uniform samplerBuffer billboard_quads;
+layout(binding = kBillboardQuadsUnit) uniform samplerBuffer billboard_quads;
 
 const int kAlignedView = 1;  // BillboardAlignment
 const int kAlignedAxis = 2;
@@ -24,7 +24,7 @@ Quad billboard_quad(Particle p) {
     return Quad(right, up);
 }
 
-// Sets the particle's velocity, and its age to that of something that has always been there.
+// Sets the particle's velocity, and an age that is larger than any frame time.
 ParticleCorner billboard_corner(inout Particle p, Look look, int vertex) {
     float away = distance(p.position, view.camera_ws.xyz);
     ParticleCorner c;

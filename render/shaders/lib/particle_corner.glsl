@@ -1,6 +1,5 @@
-// A vertex of a particle, whatever its shape, and what it hands to the fragments: after lib/particle.glsl,
-// lib/particle_varyings.glsl and lib/view.glsl. Definitions: those of lib/lighting.glsl, lib/particle_shading.glsl and
-// lib/particle_pass.glsl, and
+// A vertex of a particle of any shape, and its varyings: after lib/particle.glsl, lib/particle_varyings.glsl and
+// lib/view.glsl. Definitions: those of lib/lighting.glsl, lib/particle_shading.glsl and lib/particle_pass.glsl, and
 //   CLIPPED  by the view's plane
 
 uniform int first;         // of the particles to draw
@@ -9,7 +8,7 @@ uniform float framed;      // extent of the image, as a fraction of the viewport
 
 struct ParticleCorner {
     vec3 offset;       // from the particle's position [m]
-    vec3 normal;       // toward which it is lit
+    vec3 normal;       // for lighting
     vec3 coordinates;  // `corner` of lib/particle_varyings.glsl
     Quad quad;
     float size;  // diameter [m]

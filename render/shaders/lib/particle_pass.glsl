@@ -2,7 +2,7 @@
 //   VELOCITY  where they were in the previous frame, without light
 //   FOCUS     their depth where they cover enough, without light
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
-//   IN_WATER  seen from above, before the water is drawn over them; after lib/lighting.glsl
+//   IN_WATER  visible from above, before the water is drawn over them; after lib/lighting.glsl
 #ifdef VELOCITY
 #include "lib/particle_motion.glsl"
 layout(location = 6) out vec3 previous_clip;  // clip x, y, w
@@ -14,10 +14,10 @@ const bool kHidesRibbons = false;
 #ifdef WEIGHTED
 uniform vec2 weight_range;  // nearest distance ahead [m], 1 / (farthest - nearest)
 
-const float kWeightFall = 8.0;  // optical depth of the cloud that the weights suit
+const float kWeightFall = 8.0;  // optical depth of the cloud that the weights assume
 #endif
 
-// Factor on the opacity, or what multiplies it to a value above 1 where it counts.
+// Factor on the opacity; for VELOCITY and FOCUS scaled by the threshold, so that a product above 1 passes.
 float cover_in_pass(Look look) {
 #if defined(VELOCITY)
     return look.glow.z / max(look_texel(look.index, kLookMotion).z, 1e-6);
@@ -49,7 +49,7 @@ bool is_out_of_water(vec3 position_ws) {
 void write_pass(Particle p, Look look, vec3 corner_ws, float ahead) {
 #if defined(VELOCITY)
     vec4 pull = look_texel(look.index, kLookMotion + 1u);
-    vec3 previous_ws = previous_place(corner_ws, p.velocity, p.age, pull);
+    vec3 previous_ws = previous_position(corner_ws, p.velocity, p.age, pull);
     previous_clip = (view.previous_clip_from_world * vec4(previous_ws, 1.0)).xyw;
 #elif defined(WEIGHTED)
     weight = exp(-kWeightFall * clamp((ahead - weight_range.x) * weight_range.y, 0.0, 1.0));

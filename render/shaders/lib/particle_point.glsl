@@ -1,13 +1,13 @@
-// Particles that are discs which face the camera, of particle.vert and particle_splat.comp. Include after
-// lib/particle.glsl and lib/view.glsl.
+// Sizes and colors of particles, discs that face the camera among them, for particle.vert and particle_splat.comp. Include
+// after lib/particle.glsl and lib/view.glsl.
 
-// Extent of a pixel at this place [m].
+// Extent of a pixel at this position [m].
 float pixel_extent(vec3 position_ws) {
     float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
     return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
 }
 
-// Color and opacity from `away` [m]: some fade near by, or far away.
+// Color and opacity at the distance `away` [m], with the fades near the camera and far from it.
 vec4 color_from(Particle p, float away) {
     vec4 more = look_texel(p.look, kLookMore);
     vec4 color = color_of(p);
@@ -16,7 +16,7 @@ vec4 color_from(Particle p, float away) {
     return color;
 }
 
-// Diameter from `away` [m], also of what is as wide as so many pixels; `shape`: texel 0 of the look.
+// Diameter [m] at the distance `away`, for sizes in pixels too; `shape`: texel 0 of the look.
 float size_from(Particle p, vec4 shape, int facing, float away) {
     float size = size_of(p, shape);
     if (facing == kFacingPixels) {
@@ -26,7 +26,7 @@ float size_from(Particle p, vec4 shape, int facing, float away) {
     return size;
 }
 
-// Diameter [px]. One that faces the camera is an oval off the image's middle: a disc as large.
+// Diameter [px]. A disc that faces the camera projects to an ellipse off the image's center: that of a circle of equal area.
 float point_diameter(vec3 position_ws, float size, int facing, float away) {
     float diameter = size / pixel_extent(position_ws);
     if (facing == kFacingCamera) {
@@ -35,7 +35,7 @@ float point_diameter(vec3 position_ws, float size, int facing, float away) {
     return diameter;
 }
 
-// Less than a pixel: fainter instead of smaller.
+// Discs smaller than a pixel are drawn fainter instead of smaller.
 float point_opacity(float diameter) {
     return min(diameter * diameter, 1.0);
 }

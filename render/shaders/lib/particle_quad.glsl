@@ -1,10 +1,10 @@
-// Where the quad of a particle is: after lib/particle.glsl and lib/view.glsl.
+// The quad of a particle: after lib/particle.glsl and lib/view.glsl.
 
-const float kFilterPixels = 1.0;  // that a mip level as coarse as a pixel spreads what a frame shows
+const float kFilterPixels = 1.0;  // by which filtering spreads a frame's content, at texels as large as pixels
 
 const float kRoundness = 0.8;  // how far the normals at the corners lean outward, by eye
 
-// Toward which a corner, or a position on the way to it, faces.
+// Normal at a corner, or between it and the center.
 vec3 rounded_normal(vec3 position_ws, vec3 offset) {
     return normalize(to_viewer(position_ws) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
 }
@@ -31,18 +31,18 @@ Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, floa
         float speed = length(p.velocity);
         vec3 along = speed > 1e-6 ? p.velocity / speed : up;
         vec3 across = cross(along, to_camera);
-        float seen = length(across);  // its length in the image, of what it would be from the side
-        across = seen > 1e-3 ? across / seen : right;
+        float projected = length(across);  // sine of the angle between the velocity and the view ray
+        across = projected > 1e-3 ? across / projected : right;
         return Quad(half_size * across, (half_size + 0.5 * streak.y * speed) * along);
     }
     if (tumble > 0.0) {
-        float lean = tumble * (0.6 + 0.4 * random_share(p.random, 3u)) * p.age + 3.14159 * random_share(p.random, 4u);
+        float lean = tumble * (0.6 + 0.4 * random_signed(p.random, 3u)) * p.age + 3.14159 * random_signed(p.random, 4u);
         right = cos(lean) * right + sin(lean) * cross(right, up);
     }
     return Quad(half_size * right, half_size * up);
 }
 
-// Left, bottom, right and top of what a frame shows, as a quad's corners (render/particles/frame_insets.h).
+// Left, bottom, right and top of a frame's content, in the quad's coordinates (render/particles/frame_insets.h).
 vec4 frame_box(int look, float number) {
     const float kBase = float(kInsetSteps / 2u);
     const vec4 kDigits = vec4(1.0, kBase, kBase * kBase, kBase * kBase * kBase);
@@ -52,7 +52,8 @@ vec4 frame_box(int look, float number) {
     return vec4(-1.0 + insets.xy, 1.0 - insets.zw);
 }
 
-// The corner of a quad of what the book shows now; `pixel`: extent of a pixel [m], which filters may blur across.
+// The corner of a quad trimmed to the content of the current frames; `pixel`: extent of a pixel [m], by which filtering may
+// spread it.
 vec2 trimmed_corner(vec2 corner, int look, Flipbook book, Quad quad, float pixel) {
     vec4 a = frame_box(look, book.numbers.x);
     vec4 b = frame_box(look, book.numbers.y);

@@ -1,16 +1,16 @@
 // The corner of a segment of a ribbon: after lib/particle_corner.glsl and lib/particle_quad.glsl.
 
 #include "lib/ribbon.glsl"
-layout(binding = 8) uniform samplerBuffer ribbon_points;
+layout(binding = kRibbonPointsUnit) uniform samplerBuffer ribbon_points;
 
-// A segment from `begin` to `end`, between its neighbors; a join where these coincide.
+// A segment from `begin` to `end`, with the points of its neighbors; a join if `begin` and `end` coincide.
 struct RibbonSegment {
     vec3 before;
     vec3 begin;
     vec3 end;
     vec3 after;
-    vec4 point;  // the end at which the corner is: position, texture coordinate along the ribbon
-    vec4 rest;   // its span, its position on the look's curves
+    vec4 point;  // at the corner: position, texture coordinate along the ribbon
+    vec4 rest;   // at the corner: span, position on the look's curves
 };
 
 vec4 ribbon_texel(int point, int texel) {
@@ -46,7 +46,7 @@ vec4 ribbon_side(RibbonSegment s, int vertex, float half_width, bool has_image) 
 ParticleCorner ribbon_corner(inout Particle p, Look look, int vertex) {
     RibbonSegment segment = ribbon_segment(p.record, vertex & 1);
     p.position = segment.point.xyz;
-    p.share = segment.rest.w;
+    p.life_fraction = segment.rest.w;
     float away = distance(p.position, view.camera_ws.xyz);
     ParticleCorner c;
     c.size = size_from(p, look.shape, int(look.glow.w), away);
@@ -59,14 +59,14 @@ ParticleCorner ribbon_corner(inout Particle p, Look look, int vertex) {
     float side = corner_of(vertex).y;
     float half_width = 1.0;
     if (span == vec3(0.0)) {
-        float thinnest = pixel_extent(p.position);  // fainter instead of narrower: thin ones would break up into dots
+        float thinnest = pixel_extent(p.position);  // below it fainter instead of narrower, or it would break up into dots
         c.color.a *= min(0.5 * c.size / thinnest, 1.0);
         half_width = max(0.5 * c.size, thinnest);
         vec4 across = ribbon_side(segment, vertex, half_width, !is_disc);
         c.offset = across.xyz;
         side = across.w;
     } else {
-        c.offset = side * 0.5 * size_factor(look.index, p.share * float(kLookSamples - 1u)) * span;
+        c.offset = side * 0.5 * size_factor(look.index, p.life_fraction * float(kLookSamples - 1u)) * span;
         p.position += 0.5 * span;
     }
     c.normal = rounded_normal(p.position, c.offset);

@@ -8,7 +8,7 @@
 #define NORMALS vec3
 #endif
 
-const float kShadeReach = 0.5;  // of the way to its corners at which it is shadowed by others, by eye
+const float kShadedFraction = 0.5;  // of the distance to the corners, at which shadows of particles are sampled, by eye
 
 #ifdef MEAN_OF_CORNERS
 vec3 surrounding_light(vec3 position_ws, mat4x3 normals) {
@@ -48,8 +48,9 @@ vec3 scattered(Incoming light, NORMALS normals, vec3 to_camera, float forward) {
 }
 
 #ifdef LOCAL_LIGHTS
-// Mean of 1 / d^2 over a ball, by its value in the middle: 3 (2 + (1 / x - x) ln|(1 + x) / (1 - x)|) / 4 of 1 / radius^2,
-// where x = d / radius, to 5 %. Without it, a puff about a lamp would be as bright as what touches the lamp.
+// Mean of 1 / d^2 over a ball, relative to 1 / d^2 at its center. The mean is
+// 3 (2 + (1 / x - x) ln|(1 + x) / (1 - x)|) / 4 / radius^2 with x = d / radius, fitted to 5 %. Without it, a puff around a
+// lamp would be as bright as a surface that touches the lamp.
 float mean_over_ball(float d2, float radius) {
     float x2 = max(d2, 1e-4) / max(radius * radius, 1e-12);
     return x2 < 1.0 ? x2 * (3.0 - x2 * (0.7 + 0.8 * x2)) : 1.0 + 0.5 / (x2 * x2);
@@ -89,10 +90,10 @@ vec3 scattered_light(vec3 position_ws, NORMALS normals, float forward, float rad
     return sum;
 }
 
-// Where a corner is lit: where shadows of particles are, it varies over the quad.
-vec3 lit_place(Particle p, vec3 offset) {
+// The position at which a corner is lit: it varies over the quad only if there are shadows of particles.
+vec3 lit_position(Particle p, vec3 offset) {
 #ifdef PARTICLE_SHADOWS
-    return p.position + kShadeReach * offset;
+    return p.position + kShadedFraction * offset;
 #else
     return p.position;
 #endif

@@ -1,20 +1,20 @@
 // Light that a particle emits and scatters, in fog: part of lib/particle_corner.glsl. Definitions: those of
 // lib/lighting.glsl, and
 //   LIT         some particle scatters light that is evaluated at its corners
-//   LIT_MIDDLE  some scatters light that particle_light.comp has evaluated
+//   LIT_CENTER  some scatters light that particle_light.comp has evaluated
 //   SIX_WAY     some have images of the light from six sides
-//   IN_WATER    without fog: the water that is drawn over them gets it
+//   IN_WATER    without fog, which the water that is drawn over them gets
 #ifdef LIT
 #include "lib/particle_scattering.glsl"
 #endif
 #ifdef SIX_WAY
 #include "lib/particle_six_way.glsl"
 #endif
-#ifdef LIT_MIDDLE
-layout(binding = 28) uniform samplerBuffer middle_light;  // of each particle to draw
+#ifdef LIT_CENTER
+layout(binding = kCenterLightUnit) uniform samplerBuffer center_light;  // of each particle to draw
 #endif
 
-// Of the particle's position: in the image [px], and along the view axis [m].
+// Projection of a position: pixel [px], distance along the view axis [m].
 vec3 pixel_and_distance(vec3 position_ws) {
     vec4 clip = view.clip_from_world * vec4(position_ws, 1.0);
     vec2 pixel = (clip.xy / max(clip.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
@@ -25,9 +25,9 @@ vec3 pixel_and_distance(vec3 position_ws) {
 vec3 particle_radiance(Particle p, Look look, ParticleCorner c, int index) {
     vec3 radiance = vec3(look.glow.x);
     bool is_lit = look.glow.y > 0.0;
-#ifdef LIT_MIDDLE
+#ifdef LIT_CENTER
     bool is_lit_once = look_texel(look.index, kLookFocus).y > 0.0;
-    radiance += is_lit_once ? texelFetch(middle_light, index).rgb : vec3(0.0);
+    radiance += is_lit_once ? texelFetch(center_light, index).rgb : vec3(0.0);
     is_lit = is_lit && !is_lit_once;
 #endif
 #ifdef SIX_WAY
@@ -37,7 +37,7 @@ vec3 particle_radiance(Particle p, Look look, ParticleCorner c, int index) {
     if (is_lit) {
         vec3 at = pixel_and_distance(p.position);
         radiance += look.glow.y
-                    * scattered_light(lit_place(p, c.offset), c.normal, look.streak.w, 0.5 * c.size, at.xy, at.z);
+                    * scattered_light(lit_position(p, c.offset), c.normal, look.streak.w, 0.5 * c.size, at.xy, at.z);
     }
 #endif
     return radiance;

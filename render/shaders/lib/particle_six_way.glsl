@@ -11,7 +11,7 @@ struct SixWayLight {
     vec3 negative[3];
 };
 
-// A light counts at the sides that it faces by the squares of its cosines, whose sum is 1.
+// Adds a light to the three sides that face it, weighted by the squared cosines, whose sum is 1.
 void add_light(inout SixWayLight sum, Incoming light, mat3 axes) {
     vec3 cosines = light.to_light * axes;
     for (int i = 0; i < 3; ++i) {
@@ -57,7 +57,7 @@ void write_six_way(Particle p, Look look, ParticleCorner c, vec3 at) {
     if (is_six_way(look) && look.glow.y > 0.0) {
         vec3 away_axis = -to_viewer(p.position);
         mat3 axes = mat3(normalize(c.quad.right), normalize(c.quad.up), away_axis);
-        SixWayLight sides = six_way_light(lit_place(p, c.offset), -away_axis, axes, 0.5 * c.size, at.xy, at.z);
+        SixWayLight sides = six_way_light(lit_position(p, c.offset), -away_axis, axes, 0.5 * c.size, at.xy, at.z);
         vec3 white = c.color.rgb * look.glow.y * c.color.a;
         for (int i = 0; i < 3; ++i) {
             positive_side[i].rgb = white * sides.positive[i];

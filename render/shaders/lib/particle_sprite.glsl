@@ -1,16 +1,16 @@
 // The corner of a sprite: after lib/particle_corner.glsl and lib/particle_quad.glsl.
 
-const float kSmallDisc = 3.0;  // half its width, up to which it is drawn as one triangle [px]
+const float kSmallDisc = 3.0;  // radius up to which a disc is drawn as one triangle [px]
 
-// Of a triangle around the unit disc; the other one of the quad has no area. Along the diagonal of a quad, a software
-// OpenGL shades the blocks of both triangles.
+// Corners of a triangle around the unit disc; the other triangle of the quad is degenerate. A software OpenGL shades the
+// pixel blocks along the diagonal of a quad twice.
 vec2 triangle_corner(int vertex) {
     const float kApex = 1.5;
     const float kBase = 2.2360680;  // (apex + 1) / sqrt(apex^2 - 1)
     return vertex < 2 ? vec2(float(2 * vertex - 1) * kBase, -1.0) : vec2(0.0, kApex);
 }
 
-// Corner of the part of the quad that is drawn: without the transparent rim of its image, or around a small disc.
+// Corner of the part of the quad that is drawn: without transparent margins of its image, or around a small disc.
 vec2 drawn_corner(vec3 position, Look look, Flipbook book, Quad quad, int vertex) {
     vec2 corner = corner_of(vertex);
 #ifdef IMAGES
@@ -24,7 +24,7 @@ vec2 drawn_corner(vec3 position, Look look, Flipbook book, Quad quad, int vertex
     return is_small_disc ? triangle_corner(vertex) : corner;
 }
 
-// Of a quad whose size, color, axes and flipbook are known.
+// Sets the corner of a quad whose size, color, axes and flipbook are set.
 void set_quad_corner(inout ParticleCorner c, Particle p, Look look, int vertex) {
     vec2 at = drawn_corner(p.position, look, c.book, c.quad, vertex);
     c.coordinates = vec3(at, 1.0);

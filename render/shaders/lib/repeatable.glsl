@@ -1,5 +1,5 @@
-// Functions made of additions, multiplications and operations on bits alone, with the same bits as those of
-// ecs/base/repeatable_math.h. `precise` keeps multiplications and additions apart.
+// Functions made only of additions, multiplications and bit operations, bit-identical to those of
+// ecs/base/repeatable_math.h. `precise` prevents fused multiply-add.
 
 float repeatable_reciprocal(float x) {
     uint bits = floatBitsToUint(x);

@@ -1,14 +1,16 @@
-// The image of a particle: a frame of a flipbook on its way to the next, or a soft disc. Definitions:
+// The image of a particle: a frame of a flipbook mixed with the next, or a soft disc. Definitions:
 //   IMAGES   some particle has an image
 //   FLIPBOOKS  some of them have several frames
 //   RIBBONS  some are segments of ribbons, along which it repeats
 //   POINTS   all are discs, drawn as points
-//   MOTION   some flipbook has a motion map: both frames are fetched where it has been or will be what is seen between
-//            them, so that shapes move instead of cross-fading (particle.motion-vectors)
+//   MOTION   some flipbook has a motion map: both frames are fetched where what is visible between them has been or
+//            will be, so that shapes move instead of cross-fading (particle.motion-vectors)
 // Techniques: particle.motion-vectors
 
+#include "particle_gpu.h"
+
 #ifdef IMAGES
-layout(binding = 0) uniform sampler2DArray images;
+layout(binding = kSpriteImagesUnit) uniform sampler2DArray images;
 
 // The frame at `offset`; `frames` as in lib/particle.glsl.
 vec4 image_at(sampler2DArray book, vec2 uv, vec4 frames, vec2 offset, float layer) {
@@ -22,26 +24,26 @@ vec4 image_at(sampler2DArray book, vec2 uv, vec4 frames, vec2 offset, float laye
 }
 
 #ifdef MOTION
-layout(binding = 1) uniform sampler2DArray motion_maps;
+layout(binding = kSpriteMotionsUnit) uniform sampler2DArray motion_maps;
 
-// How far what the frame at `offset` has at `uv` moves until the next frame, as a share of the frame; `motion`: layer of
-// the map, what its full value means.
+// Motion at `uv` from the frame at `offset` to the next one, as a fraction of the frame; `motion`: layer of the map, what
+// its full value means.
 vec2 motion_at(vec2 uv, vec4 frames, vec2 offset, vec2 motion) {
     vec2 encoded = textureLod(motion_maps, vec3(uv * frames.xy + offset, motion.x), 0.0).rg;
     return motion.y * (encoded * (255.0 / 127.0) - 128.0 / 127.0);
 }
 
-// Not beyond the centers of the frame's outermost texels.
+// Clamped to the centers of the frame's outermost texels.
 vec2 within_frame(vec2 uv, vec4 frames) {
-    vec2 rim = 0.5 / (vec2(textureSize(images, 0).xy) * frames.xy);
-    return clamp(uv, rim, 1.0 - rim);
+    vec2 half_texel = 0.5 / (vec2(textureSize(images, 0).xy) * frames.xy);
+    return clamp(uv, half_texel, 1.0 - half_texel);
 }
 #endif
 
-// The frame at `place` in the quad, on its way to the next; arguments as of sprite_at, layer >= 0.
+// The frame at `position` in the quad, mixed with the next; arguments as of sprite_at, layer >= 0.
 vec4 book_at(
-    sampler2DArray book, vec2 place, vec4 frames, vec2 next_frame, float progress, float layer, vec2 motion) {
-    vec2 uv = vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
+    sampler2DArray book, vec2 position, vec4 frames, vec2 next_frame, float progress, float layer, vec2 motion) {
+    vec2 uv = vec2(0.5 + 0.5 * position.x, 0.5 - 0.5 * position.y);
     vec2 from = uv;
     vec2 to = uv;
 #if defined(MOTION) && defined(FLIPBOOKS)
@@ -58,8 +60,8 @@ vec4 book_at(
 }
 #endif
 
-// Place in the quad, -1 .. 1, of a fragment; `corner` as in particle.vert.
-vec2 sprite_place(vec3 corner) {
+// Position in the quad, -1 .. 1, of a fragment; `corner` as in particle.vert.
+vec2 sprite_position(vec3 corner) {
 #ifdef POINTS
     return vec2(2.0, -2.0) * (gl_PointCoord - 0.5);
 #elif !defined(RIBBONS)
@@ -70,14 +72,14 @@ vec2 sprite_place(vec3 corner) {
 }
 
 // Color, and opacity in a.
-//   place     in the quad, -1 .. 1
+//   position  in the quad, -1 .. 1
 //   layer     of its image; < 0: none
-//   motion    layer of its motion map, < 0: none; what the map's full value means, as a share of a frame
-vec4 sprite_at(vec2 place, vec4 frames, vec2 next_frame, float progress, float layer, vec2 motion) {
-    float inside = max(1.0 - dot(place, place), 0.0);
+//   motion    layer of its motion map, < 0: none; what the map's full value means, as a fraction of a frame
+vec4 sprite_at(vec2 position, vec4 frames, vec2 next_frame, float progress, float layer, vec2 motion) {
+    float inside = max(1.0 - dot(position, position), 0.0);
     vec4 disc = vec4(1.0, 1.0, 1.0, inside * inside);
 #ifdef IMAGES
-    vec4 shown = book_at(images, place, frames, next_frame, progress, max(layer, 0.0), motion);
+    vec4 shown = book_at(images, position, frames, next_frame, progress, max(layer, 0.0), motion);
     return layer < 0.0 ? disc : shown;
 #else
     return disc;

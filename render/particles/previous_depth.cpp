@@ -1,32 +1,33 @@
-#include "render/particles/seen_depth.h"
+#include "render/particles/previous_depth.h"
 
 #include "render/fullscreen.h"
 #include "render/light/light_clusters.h"
 #include "render/light/light_list.h"
+#include "render/shaders/particle_gpu.h"
 #include "render/view_block.h"
 
 // Techniques: particle.depth-collision
 
 namespace limn {
 
-SeenDepth recall_depth(const DepthMemory& memory, const FrameData& frame) {
+PreviousDepth recall_depth(const DepthMemory& memory, const FrameData& frame) {
     const bool follows = memory.frame && *memory.frame + 1 == frame.number && frame.since_last;
-    return follows ? SeenDepth{&memory.depth, frame.ring->push_value(memory.camera)} : SeenDepth{};
+    return follows ? PreviousDepth{&memory.depth, frame.ring->push_value(memory.camera)}
+                   : PreviousDepth{};
 }
 
 void remember_depth(
     FrameGraph& graph, const gpu::Program& copy, const ViewData& view, DepthMemory& memory) {
-    constexpr unsigned kSceneDepthUnit = 4;
     const IVec2 size = view.size();
     if (memory.depth.width() != size.x || memory.depth.height() != size.y) {
         memory.depth =
-            gpu::Texture("seen depth", {.format = GL_R32F, .width = size.x, .height = size.y});
+            gpu::Texture("previous depth", {.format = GL_R32F, .width = size.x, .height = size.y});
     }
     memory.camera = make_view_block(view.camera, ClusterShape{}, LightList{}, false);
     memory.frame = view.frame->number;
     add_fullscreen_pass(
-        graph, "seen depth", {sampled(view.gbuffer.depth, kSceneDepthUnit)},
-        {discarded(graph.import("seen depth", memory.depth))}, &copy);
+        graph, "previous depth", {sampled(view.gbuffer.depth, layout::kParticleDepthUnit)},
+        {discarded(graph.import("previous depth", memory.depth))}, &copy);
 }
 
 }  // namespace limn

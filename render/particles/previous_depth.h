@@ -14,24 +14,24 @@ namespace gpu {
 class Program;
 }  // namespace gpu
 
-// What the camera saw in the previous frame, for what meets it in this one before it is drawn
-// anew: particles on the GPU (ParticleCollision::collide_depth).
+// The depth of the previous frame, with which particles on the GPU collide before this frame is
+// drawn (ParticleCollision::collide_depth).
 
 /// Kept from frame to frame.
 struct DepthMemory {
     gpu::Texture depth{};                  ///< R32F, as Gbuffer::depth
-    layout::ViewBlock camera{};            ///< from which it was seen
+    layout::ViewBlock camera{};            ///< of that frame
     std::optional<std::uint64_t> frame{};  ///< FrameData::number of that frame
 };
 
-/// Of the previous frame, for this one.
-struct SeenDepth {
-    const gpu::Texture* depth = nullptr;  ///< null: nothing was seen
+/// For this frame.
+struct PreviousDepth {
+    const gpu::Texture* depth = nullptr;  ///< null: not available
     gpu::RingSlice camera{};              ///< layout::ViewBlock
 };
 
-/// Nothing after a cut, or where frames were left out.
-[[nodiscard]] SeenDepth recall_depth(const DepthMemory& memory, const FrameData& frame);
+/// None after a cut, or if frames were skipped.
+[[nodiscard]] PreviousDepth recall_depth(const DepthMemory& memory, const FrameData& frame);
 
 /// Adds the pass that copies the depth of a view.
 void remember_depth(

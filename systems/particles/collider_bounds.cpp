@@ -1,4 +1,4 @@
-#include "systems/particles/collider_reach.h"
+#include "systems/particles/collider_bounds.h"
 
 #include "ecs/base/check.h"
 
@@ -9,18 +9,18 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "systems/particles/collider_reach.cpp"
+#define HWY_TARGET_INCLUDE "systems/particles/collider_bounds.cpp"
 #include <hwy/foreach_target.h>
 // after foreach_target
 #include <hwy/highway.h>
 
-#ifndef LIMN_COLLIDER_REACH
-#define LIMN_COLLIDER_REACH
-namespace limn::collider_reach {
+#ifndef LIMN_COLLIDER_BOUNDS
+#define LIMN_COLLIDER_BOUNDS
+namespace limn::collider_bounds {
 
 inline constexpr float kSkin = 0x1p-20f;  // of coordinates: 8 units in the last place
 
-}  // namespace limn::collider_reach
+}  // namespace limn::collider_bounds
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -32,7 +32,7 @@ namespace {
 #if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE  // no vectors, or none that structs can hold
 
 std::size_t find_near_vector(
-    const ParticleWays&, std::size_t, std::size_t, std::span<const ColliderReach>, std::uint32_t*,
+    const ParticlePaths&, std::size_t, std::size_t, std::span<const ColliderBounds>, std::uint32_t*,
     std::size_t&) {
     return 0;
 }
@@ -89,9 +89,9 @@ HWY_INLINE M far_from_box(const Bounds& box, const V3& from, const V3& to, V gro
         beyond(from.z, to.z, box.min.z, box.max.z, grow));
 }
 
-HWY_INLINE M
-far_above_field(const ColliderReach& reach, const V3& from, const V3& to, const V3& way, V grow) {
-    const HeightCollider& field = reach.field;
+HWY_INLINE M far_above_field(
+    const ColliderBounds& bounds, const V3& from, const V3& to, const V3& path, V grow) {
+    const HeightCollider& field = bounds.field;
     const V zero = hn::Zero(d);
     const auto coordinate = [&](V at, float origin, float cell, int points) {
         const V u = hn::Mul(hn::Sub(at, set(origin)), set(1.0f / cell));
@@ -116,58 +116,61 @@ far_above_field(const ColliderReach& reach, const V3& from, const V3& to, const 
     const V surface =
         hn::Add(set(field.origin.y), hn::Add(back, hn::Mul(hn::Sub(front, back), fz)));
     const V rise = hn::Add(
-        hn::Mul(hn::Abs(way.x), set(reach.slope.x)), hn::Mul(hn::Abs(way.z), set(reach.slope.y)));
+        hn::Mul(hn::Abs(path.x), set(bounds.slope.x)),
+        hn::Mul(hn::Abs(path.z), set(bounds.slope.y)));
     const V highest = hn::Add(hn::Add(surface, rise), grow);
     return hn::And(hn::Gt(from.y, highest), hn::Gt(to.y, highest));
 }
 
 HWY_INLINE M far_from(
-    const ColliderReach& reach, const V3& from, const V3& to, const V3& way, V radius, V margin) {
-    const V grow = hn::Mul(hn::Add(radius, margin), set(reach.stretch));
-    switch (reach.kind) {
-    case ColliderReach::Kind::Plane: {
-        const V3 normal = set(reach.normal);
-        const V level = hn::Add(set(reach.offset), grow);
+    const ColliderBounds& bounds, const V3& from, const V3& to, const V3& path, V radius,
+    V margin) {
+    const V grow = hn::Mul(hn::Add(radius, margin), set(bounds.stretch));
+    switch (bounds.kind) {
+    case ColliderBounds::Kind::Plane: {
+        const V3 normal = set(bounds.normal);
+        const V level = hn::Add(set(bounds.offset), grow);
         return hn::And(hn::Gt(dot(from, normal), level), hn::Gt(dot(to, normal), level));
     }
-    case ColliderReach::Kind::Hollow: {
-        const V inner = hn::Max(hn::Sub(set(reach.radius), grow), hn::Zero(d));
-        const V3 a = minus(from, set(reach.center));
-        const V3 b = minus(to, set(reach.center));
+    case ColliderBounds::Kind::Hollow: {
+        const V inner = hn::Max(hn::Sub(set(bounds.radius), grow), hn::Zero(d));
+        const V3 a = minus(from, set(bounds.center));
+        const V3 b = minus(to, set(bounds.center));
         const V inner2 = hn::Mul(inner, inner);
         return hn::And(hn::Lt(dot(a, a), inner2), hn::Lt(dot(b, b), inner2));
     }
-    case ColliderReach::Kind::Field: {
-        const M far = far_from_box(reach.box, from, to, grow);
-        return hn::AllTrue(d, far) ? far : hn::Or(far, far_above_field(reach, from, to, way, grow));
+    case ColliderBounds::Kind::Field: {
+        const M far = far_from_box(bounds.box, from, to, grow);
+        return hn::AllTrue(d, far) ? far
+                                   : hn::Or(far, far_above_field(bounds, from, to, path, grow));
     }
-    case ColliderReach::Kind::Box:
+    case ColliderBounds::Kind::Box:
         break;
     }
-    return far_from_box(reach.box, from, to, grow);
+    return far_from_box(bounds.box, from, to, grow);
 }
 
 std::size_t find_near_vector(
-    const ParticleWays& ways, std::size_t first, std::size_t count,
-    std::span<const ColliderReach> reach, std::uint32_t* out, std::size_t& found) {
+    const ParticlePaths& paths, std::size_t first, std::size_t count,
+    std::span<const ColliderBounds> bounds, std::uint32_t* out, std::size_t& found) {
     const std::size_t lanes = hn::Lanes(d);
     std::size_t done = 0;
     for (; done + lanes <= count; done += lanes) {
         const std::size_t i = first + done;
-        const V3 from = load(ways.x0, ways.y0, ways.z0, i);
-        const V3 to = load(ways.x1, ways.y1, ways.z1, i);
-        const V3 way = minus(to, from);
+        const V3 from = load(paths.x0, paths.y0, paths.z0, i);
+        const V3 to = load(paths.x1, paths.y1, paths.z1, i);
+        const V3 path = minus(to, from);
         const V radius =
-            ways.radius.empty() ? set(ways.one_radius) : hn::LoadU(d, ways.radius.data() + i);
+            paths.radius.empty() ? set(paths.one_radius) : hn::LoadU(d, paths.radius.data() + i);
         const V sum =
             hn::Add(hn::Add(hn::Add(from.x, from.y), from.z), hn::Add(hn::Add(to.x, to.y), to.z));
         M near = hn::Not(hn::Eq(hn::Sub(sum, sum), hn::Zero(d)));  // not finite
         const V size =
-            hn::Mul(set(collider_reach::kSkin), hn::Add(largest_of(from), largest_of(way)));
-        const V skin = hn::Max(set(ways.skin), size);
+            hn::Mul(set(collider_bounds::kSkin), hn::Add(largest_of(from), largest_of(path)));
+        const V skin = hn::Max(set(paths.skin), size);
         const V margin = hn::Add(skin, skin);
-        for (const ColliderReach& each : reach) {
-            near = hn::Or(near, hn::Not(far_from(each, from, to, way, radius, margin)));
+        for (const ColliderBounds& each : bounds) {
+            near = hn::Or(near, hn::Not(far_from(each, from, to, path, radius, margin)));
         }
         if (!hn::AllFalse(d, near)) {
             const auto numbers = hn::Iota(du, static_cast<std::uint32_t>(i));
@@ -194,29 +197,29 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// 4 radii beyond the end of the way, see first_contact, and one for the ball itself.
+// 4 radii beyond the end of the path, as first_contact tests, and one for the ball itself.
 constexpr float kMeshRadii = 5;
 
 float largest_of(const Vec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-ColliderReach reach_of(const PlaneCollider& plane) {
+ColliderBounds bounds_of_shape(const PlaneCollider& plane) {
     return {
-        .kind = ColliderReach::Kind::Plane,
+        .kind = ColliderBounds::Kind::Plane,
         .normal = normalize_or(plane.normal, Vec3(0, 1, 0)),
         .offset = plane.offset};
 }
 
-ColliderReach reach_of(const SphereCollider& sphere) {
+ColliderBounds bounds_of_shape(const SphereCollider& sphere) {
     if (sphere.inverted) {
         return {
-            .kind = ColliderReach::Kind::Hollow, .center = sphere.center, .radius = sphere.radius};
+            .kind = ColliderBounds::Kind::Hollow, .center = sphere.center, .radius = sphere.radius};
     }
     return {.box = {sphere.center - Vec3(sphere.radius), sphere.center + Vec3(sphere.radius)}};
 }
 
-ColliderReach reach_of(const BoxCollider& box) {
+ColliderBounds bounds_of_shape(const BoxCollider& box) {
     const Mat4 m = to_mat4(box.world_from_box);
     const Vec3 center(m[3]);
     Vec3 half(0);
@@ -226,12 +229,12 @@ ColliderReach reach_of(const BoxCollider& box) {
     return {.box = {center - half, center + half}};
 }
 
-ColliderReach reach_of(const HeightCollider& field) {
+ColliderBounds bounds_of_shape(const HeightCollider& field) {
     if (field.width < 2 || field.depth < 2) {
         return {};
     }
     LIMN_CHECK(field.heights.size() >= static_cast<std::size_t>(field.width * field.depth));
-    ColliderReach reach = {.kind = ColliderReach::Kind::Field, .field = field};
+    ColliderBounds bounds = {.kind = ColliderBounds::Kind::Field, .field = field};
     float highest = -kInfinity;
     Vec2 rise(0);  // per cell; NaN compares false
     for (int j = 0; j < field.depth; ++j) {
@@ -245,30 +248,30 @@ ColliderReach reach_of(const HeightCollider& field) {
             rise.y = along > rise.y ? along : rise.y;
         }
     }
-    reach.slope = rise / field.cell;
+    bounds.slope = rise / field.cell;
     const float x = static_cast<float>(field.width - 1) * field.cell.x;
     const float z = static_cast<float>(field.depth - 1) * field.cell.y;
     const Vec3 origin = field.origin;
-    reach.box = {
+    bounds.box = {
         {origin.x, -kInfinity, origin.z}, {origin.x + x, origin.y + highest, origin.z + z}};
-    // A ball touches the plane of its cell: where that is steep, more than its radius above.
-    reach.stretch = 1 + reach.slope.x + reach.slope.y;
-    return reach;
+    // A ball touches the tangent plane of its cell: on slopes, higher than a radius above.
+    bounds.stretch = 1 + bounds.slope.x + bounds.slope.y;
+    return bounds;
 }
 
-ColliderReach reach_of(const MeshCollider& mesh) {
-    ColliderReach reach = {.stretch = kMeshRadii};
+ColliderBounds bounds_of_shape(const MeshCollider& mesh) {
+    ColliderBounds bounds = {.stretch = kMeshRadii};
     if (mesh.bvh != nullptr && !mesh.bvh->nodes.empty()) {
         const MeshBvh::Node& root = mesh.bvh->nodes[0];
         for (std::size_t child = 0; child < MeshBvh::kChildren; ++child) {
             if (root.child[child] != MeshBvh::kNoChild) {
                 const auto& b = root.bounds;
-                grow(reach.box, Vec3(b[0][0][child], b[0][1][child], b[0][2][child]));
-                grow(reach.box, Vec3(b[1][0][child], b[1][1][child], b[1][2][child]));
+                grow(bounds.box, Vec3(b[0][0][child], b[0][1][child], b[0][2][child]));
+                grow(bounds.box, Vec3(b[1][0][child], b[1][1][child], b[1][2][child]));
             }
         }
     }
-    return reach;
+    return bounds;
 }
 
 // ---- the same as above, for one particle
@@ -287,8 +290,8 @@ bool far_from_box(const Bounds& box, const Vec3& from, const Vec3& to, float gro
 }
 
 bool far_above_field(
-    const ColliderReach& reach, const Vec3& from, const Vec3& to, const Vec3& way, float grow) {
-    const HeightCollider& field = reach.field;
+    const ColliderBounds& bounds, const Vec3& from, const Vec3& to, const Vec3& path, float grow) {
+    const HeightCollider& field = bounds.field;
     const auto coordinate = [](float at, float origin, float cell, int points) {
         const float u = (at - origin) * (1.0f / cell);
         const auto last = static_cast<float>(points - 1);
@@ -305,7 +308,7 @@ bool far_above_field(
     const float back = h[0] + (h[1] - h[0]) * fx;
     const float front = h[field.width] + (h[field.width + 1] - h[field.width]) * fx;
     const float surface = field.origin.y + (back + (front - back) * fz);
-    const float rise = std::abs(way.x) * reach.slope.x + std::abs(way.z) * reach.slope.y;
+    const float rise = std::abs(path.x) * bounds.slope.x + std::abs(path.z) * bounds.slope.y;
     const float highest = surface + rise + grow;
     return from.y > highest && to.y > highest;
 }
@@ -315,40 +318,40 @@ float dot(const Vec3& a, const Vec3& b) {
 }
 
 bool is_far(
-    const ColliderReach& reach, const Vec3& from, const Vec3& to, float radius, float margin) {
-    const float grow = (radius + margin) * reach.stretch;
-    switch (reach.kind) {
-    case ColliderReach::Kind::Plane: {
-        const float level = reach.offset + grow;
-        return dot(from, reach.normal) > level && dot(to, reach.normal) > level;
+    const ColliderBounds& bounds, const Vec3& from, const Vec3& to, float radius, float margin) {
+    const float grow = (radius + margin) * bounds.stretch;
+    switch (bounds.kind) {
+    case ColliderBounds::Kind::Plane: {
+        const float level = bounds.offset + grow;
+        return dot(from, bounds.normal) > level && dot(to, bounds.normal) > level;
     }
-    case ColliderReach::Kind::Hollow: {
-        const float inner = std::max(reach.radius - grow, 0.0f);
-        const Vec3 a = from - reach.center;
-        const Vec3 b = to - reach.center;
+    case ColliderBounds::Kind::Hollow: {
+        const float inner = std::max(bounds.radius - grow, 0.0f);
+        const Vec3 a = from - bounds.center;
+        const Vec3 b = to - bounds.center;
         return dot(a, a) < inner * inner && dot(b, b) < inner * inner;
     }
-    case ColliderReach::Kind::Field:
-        return far_from_box(reach.box, from, to, grow)
-               || far_above_field(reach, from, to, to - from, grow);
-    case ColliderReach::Kind::Box:
+    case ColliderBounds::Kind::Field:
+        return far_from_box(bounds.box, from, to, grow)
+               || far_above_field(bounds, from, to, to - from, grow);
+    case ColliderBounds::Kind::Box:
         break;
     }
-    return far_from_box(reach.box, from, to, grow);
+    return far_from_box(bounds.box, from, to, grow);
 }
 
 std::size_t find_near_from(
-    const ParticleWays& ways, std::size_t first, std::size_t end,
-    std::span<const ColliderReach> reach, std::uint32_t* out, std::size_t found) {
+    const ParticlePaths& paths, std::size_t first, std::size_t end,
+    std::span<const ColliderBounds> bounds, std::uint32_t* out, std::size_t found) {
     for (std::size_t i = first; i < end; ++i) {
-        const Vec3 from(ways.x0[i], ways.y0[i], ways.z0[i]);
-        const Vec3 to(ways.x1[i], ways.y1[i], ways.z1[i]);
-        const float radius = ways.radius.empty() ? ways.one_radius : ways.radius[i];
-        const auto touches = [&](const ColliderReach& each) {
-            return may_touch(each, from, to, radius, ways.skin);
+        const Vec3 from(paths.x0[i], paths.y0[i], paths.z0[i]);
+        const Vec3 to(paths.x1[i], paths.y1[i], paths.z1[i]);
+        const float radius = paths.radius.empty() ? paths.one_radius : paths.radius[i];
+        const auto touches = [&](const ColliderBounds& each) {
+            return may_touch(each, from, to, radius, paths.skin);
         };
         const bool unknown = !is_finite(from) || !is_finite(to);
-        if (unknown || std::any_of(reach.begin(), reach.end(), touches)) {
+        if (unknown || std::any_of(bounds.begin(), bounds.end(), touches)) {
             out[found++] = static_cast<std::uint32_t>(i);
         }
     }
@@ -357,33 +360,33 @@ std::size_t find_near_from(
 
 }  // namespace
 
-ColliderReach find_reach(const Collider& collider) {
-    return std::visit([](const auto& shape) { return reach_of(shape); }, collider);
+ColliderBounds find_collider_bounds(const Collider& collider) {
+    return std::visit([](const auto& shape) { return bounds_of_shape(shape); }, collider);
 }
 
 float skin_of(const Vec3& from, const Vec3& to, float skin) {
-    return std::max(skin, collider_reach::kSkin * (largest_of(from) + largest_of(to - from)));
+    return std::max(skin, collider_bounds::kSkin * (largest_of(from) + largest_of(to - from)));
 }
 
 bool may_touch(
-    const ColliderReach& reach, const Vec3& from, const Vec3& to, float radius, float skin) {
+    const ColliderBounds& bounds, const Vec3& from, const Vec3& to, float radius, float skin) {
     const float margin = 2 * skin_of(from, to, skin);
-    return !is_finite(from) || !is_finite(to) || !is_far(reach, from, to, radius, margin);
+    return !is_finite(from) || !is_finite(to) || !is_far(bounds, from, to, radius, margin);
 }
 
 std::size_t find_near(
-    const ParticleWays& ways, std::size_t first, std::size_t count,
-    std::span<const ColliderReach> reach, std::uint32_t* found) {
+    const ParticlePaths& paths, std::size_t first, std::size_t count,
+    std::span<const ColliderBounds> bounds, std::uint32_t* found) {
     std::size_t near = 0;
     const std::size_t done =
-        HWY_DYNAMIC_DISPATCH(find_near_vector)(ways, first, count, reach, found, near);
-    return find_near_from(ways, first + done, first + count, reach, found, near);
+        HWY_DYNAMIC_DISPATCH(find_near_vector)(paths, first, count, bounds, found, near);
+    return find_near_from(paths, first + done, first + count, bounds, found, near);
 }
 
 std::size_t find_near_scalar(
-    const ParticleWays& ways, std::size_t first, std::size_t count,
-    std::span<const ColliderReach> reach, std::uint32_t* found) {
-    return find_near_from(ways, first, first + count, reach, found, 0);
+    const ParticlePaths& paths, std::size_t first, std::size_t count,
+    std::span<const ColliderBounds> bounds, std::uint32_t* found) {
+    return find_near_from(paths, first, first + count, bounds, found, 0);
 }
 
 }  // namespace limn

@@ -1,4 +1,4 @@
-#include "systems/particles/emitter_place.h"
+#include "systems/particles/emitter_pose.h"
 
 #include "systems/particles/particle_births.h"
 
@@ -16,22 +16,22 @@ constexpr std::uint32_t kSurface = name_hash("particle surface");
 
 }  // namespace
 
-EmitterPlace place_of(const WorldTransform& now, const PreviousWorldTransform& previous) {
+EmitterPose emitter_pose(const WorldTransform& now, const PreviousWorldTransform& previous) {
     const Vec4& row = previous.world.row[0];
     const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
     return {is_new ? now.world : previous.world, now.world};
 }
 
-Affine mix_places(const EmitterPlace& place, float at) {
-    Affine mixed = place.before;
+Affine interpolate_pose(const EmitterPose& pose, float at) {
+    Affine mixed = pose.before;
     for (int i = 0; i < 3; ++i) {
-        mixed.row[i] += (place.now.row[i] - place.before.row[i]) * at;
+        mixed.row[i] += (pose.now.row[i] - pose.before.row[i]) * at;
     }
     return mixed;
 }
 
-EmitterEye find_eye(const Query<const Camera, const WorldTransform>& cameras) {
-    EmitterEye eye;
+Viewpoint find_viewpoint(const Query<const Camera, const WorldTransform>& cameras) {
+    Viewpoint eye;
     bool found = false;
     cameras.each([&](const Camera& camera, const WorldTransform& transform) {
         if (camera.active && !found) {
@@ -42,16 +42,16 @@ EmitterEye find_eye(const Query<const Camera, const WorldTransform>& cameras) {
     return eye;
 }
 
-float seen_share(const ParticleEmitter& emitter, const Affine& world, const EmitterEye& eye) {
+float screen_coverage(const ParticleEmitter& emitter, const Affine& world, const Viewpoint& eye) {
     if (!emitter.by_screen_area) {
         return 1;
     }
-    const Vec3 reach = transform_vector(world, {emitter.size.x, 0, 0});
-    const Vec3 side = transform_vector(world, {0, emitter.size.y, 0});
+    const Vec3 width = transform_vector(world, {emitter.size.x, 0, 0});
+    const Vec3 height = transform_vector(world, {0, emitter.size.y, 0});
     const Vec3 depth = transform_vector(world, {0, 0, emitter.size.z});
-    const float radius = std::max({glm::length(reach), glm::length(side), glm::length(depth)});
-    return screen_share(
-        radius, glm::distance(transform_point(world, Vec3(0)), eye.place), eye.fov_y);
+    const float radius = std::max({glm::length(width), glm::length(height), glm::length(depth)});
+    return screen_coverage(
+        radius, glm::distance(transform_point(world, Vec3(0)), eye.position), eye.fov_y);
 }
 
 std::uint64_t subject_of(const ParticleEmitter& emitter, Entity entity) {
@@ -67,8 +67,8 @@ bool is_unused(const EmitterClock& clock) {
 }
 
 int prewarm_steps(const ParticleEmitter& emitter, float dt) {
-    constexpr float kMost = 60;  // [s]
-    const float time = std::clamp(finite_or(emitter.prewarm, 0), 0.0f, kMost);
+    constexpr float kMaxPrewarm = 60;  // [s]
+    const float time = std::clamp(finite_or(emitter.prewarm, 0), 0.0f, kMaxPrewarm);
     return dt > 0 ? static_cast<int>(time / dt + 0.5f) : 0;
 }
 
