@@ -234,6 +234,7 @@ TEST_CASE("cli: shows lists techniques with their levels, and how to show one") 
         run_limn(folder, {"shows", "shadow.stencil-pass"}).out.find("On and off must look the same")
         != std::string::npos);
     check_fails(folder, {"render", "--show", "shadow.penumbr", "-o", "a.png"}, 1, "did you mean");
+    check_fails(folder, {"render", "--show", "bloom", "-o", "a.png"}, 1, "`limn shows bloom`");
     check_fails(folder, {"render", "ocean", "--show", "shadow.pcf", "-o", "a.png"}, 1, "ocean");
     check_fails(folder, {"render", "a.glb", "--show", "shadow.pcf", "-o", "a.png"}, 1, "model");
 }

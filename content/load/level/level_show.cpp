@@ -286,9 +286,9 @@ Result<FoundShow> find_show(std::string_view technique) {
         names.emplace_back(found.show.technique);
     }
     return fail(
-        "found no level that shows {}, expected one of `limn shows`{}; of a level of your own, "
-        "`limn play FILE --show {}`",
-        technique, did_you_mean(technique, names), technique);
+        "found no level that shows {}, expected an id{}; `limn shows {}` searches by name; of a "
+        "level of your own, `limn play FILE --show {}`",
+        technique, did_you_mean(technique, names), technique, technique);
 }
 
 }  // namespace limn
