@@ -86,8 +86,8 @@ TEST_CASE("techniques: the page finds a technique by name, with the files of its
     });
     REQUIRE(row != page.end());
     CHECK(row->find("bloom") != std::string::npos);
-    CHECK(row->ends_with("| `render/glow.cpp` | `tests/glow_test.cpp`: `glow: it is`; "
-                         "`tests/lens_test.cpp`: `lens: all` | `museum` |"));
+    CHECK(row->ends_with(": `render/glow.cpp` | glow_test: `glow: it is`; lens_test: `lens: all` | "
+                         "`museum` |"));
 }
 
 TEST_CASE("techniques: each is in the specification or says where it is from, and not both") {
