@@ -47,7 +47,7 @@ class Commands {
         std::byte* values = nullptr;
         const Entity entity = buffer_->create(record_layout<std::remove_cvref_t<Ts>...>, values);
         [[maybe_unused]] std::size_t position = 0;
-        (put(values + Layout::kPlaces.offsets[position++], std::forward<Ts>(components)), ...);
+        (put(values + Layout::kPacking.offsets[position++], std::forward<Ts>(components)), ...);
         return entity;
     }
     void destroy(Entity entity) const { buffer_->record(CommandOp::Destroy, entity, key_layout<>); }

@@ -51,7 +51,7 @@ void hash_casters(
                 cull_boxes(volumes[v].frustum, block.boxes, rows, visible);
                 cull_visible_boxes(volumes[v].shading, block.boxes, rows, visible);
                 cull_boxes_by_distance(
-                    volumes[v].eye, volumes[v].reach, block.boxes, rows, visible);
+                    volumes[v].eye, volumes[v].range, block.boxes, rows, visible);
                 for (std::uint32_t i = 0; i < block.size(); ++i) {
                     sums[b * count + v] += visible[i] != 0 ? block.caster_hashes[i] : 0;
                 }

@@ -111,7 +111,7 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bo
         for (const DeformBatch& batch : shapes.work().batches) {
             if (warm_up) {
                 const bool previous{shapes.vertices().previous_positions()};
-                for (const std::uint32_t flags : flags_of_later_frames(batch.flags, before)) {
+                for (const std::uint32_t flags : flags_of_later_frames(batch.flags, previous)) {
                     run_batch(device, pass, shapes.vertices(), batch, flags);
                 }
             }

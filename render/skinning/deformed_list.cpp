@@ -209,11 +209,12 @@ void DeformedList::find_wrinkles(
     if (!displaced) {
         return;
     }
-    const Vec3 center = transform_point(
+    const Vec3 world_center = transform_point(
         world.get<WorldTransform>(entry.entity).world,
         center(meshes_->meshes()[entry.mesh.index].bounds));
     entry.displacement =
-        surface->displacement * fade_until(surface->displacement_until, glm::distance(center, eye));
+        surface->displacement
+        * fade_until(surface->displacement_until, glm::distance(world_center, eye));
     if (entry.displacement > 0) {
         entry.largest_fold = wrinkles->largest_fold;
         entry.folds = hash_folds(*surface, wrinkles->source, entry.displacement);
