@@ -9,22 +9,22 @@
 
 namespace limn::oracle {
 
-// What soft discs without an image leave of directional light, by adding up the optical depth of
-// each: what render/particles/particle_shadow_pass.h has as a series. A disc faces the light and is
-// a slab as thick as its diameter.
+// Transmittance of directional light through soft discs without an image, by the sum of their
+// optical depths, which render/particles/particle_shadow_pass.h approximates by a series. A disc
+// faces the light and is a slab as thick as its diameter.
 
 struct ShadowDisc {
-    glm::dvec3 middle;   ///< [m]
+    glm::dvec3 center;   ///< [m]
     double diameter;     ///< [m], > 0
-    double opacity = 1;  ///< of its middle, 0 .. 1
+    double opacity = 1;  ///< of its center, 0 .. 1
 };
 
-/// Transmittance at `place` of light that travels along `axis` (unit).
+/// Transmittance at `position` of light that travels along `axis` (unit).
 [[nodiscard]] inline double disc_transmittance(
-    const std::vector<ShadowDisc>& discs, const glm::dvec3& place, const glm::dvec3& axis) {
+    const std::vector<ShadowDisc>& discs, const glm::dvec3& position, const glm::dvec3& axis) {
     double depth = 0;
     for (const ShadowDisc& disc : discs) {
-        const glm::dvec3 to = place - disc.middle;
+        const glm::dvec3 to = position - disc.center;
         const double ahead = glm::dot(to, axis);
         const double r = 2 * glm::length(to - ahead * axis) / disc.diameter;
         const double inside = std::max(1 - r * r, 0.0);

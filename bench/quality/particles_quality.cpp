@@ -61,7 +61,7 @@ struct Fountain : QualityScene {
     }
 };
 
-dvec3 place_of(const ParticlePool& pool, std::size_t i) {
+dvec3 position_of(const ParticlePool& pool, std::size_t i) {
     return {pool.x[i], pool.y[i], pool.z[i]};
 }
 dvec3 velocity_of(const ParticlePool& pool, std::size_t i) {
@@ -86,7 +86,7 @@ ParticleEmitter burst_of(float count) {
 // ---- motion
 
 /// Where the GPU has them.
-Result<std::vector<Vec3>> places_on_gpu(HeadlessRenderer& headless, const Fountain& fountain) {
+Result<std::vector<Vec3>> positions_on_gpu(HeadlessRenderer& headless, const Fountain& fountain) {
     gpu::Device& device = *headless.device;
     GpuParticlePools pools = LIMN_TRY(GpuParticlePools::create(device));
     gpu::RingBuffer ring(device.caps(), "steps", 1 << 20);
@@ -105,11 +105,11 @@ Result<std::vector<Vec3>> places_on_gpu(HeadlessRenderer& headless, const Founta
     const GpuParticlePool& pool = *pools.pools().begin()->second;
     std::vector<Vec4> slots(std::size_t{2} * pool.capacity);
     pool.state.read(0, std::as_writable_bytes(std::span(slots)));
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (std::uint32_t i = 0; i < pool.count; ++i) {
-        places.emplace_back(slots[2 * ((pool.first + i) % pool.capacity)]);
+        positions.emplace_back(slots[2 * ((pool.first + i) % pool.capacity)]);
     }
-    return places;
+    return positions;
 }
 
 /// Ten seconds of 5,000 particles under gravity, in air that drags them along.
@@ -124,14 +124,14 @@ Status measure_motion(HeadlessRenderer& headless, QualityReport& report) {
     std::vector<dvec3> x;
     std::vector<dvec3> v;
     for (std::size_t i = 0; i < cpu.pool().size(); ++i) {
-        x.push_back(place_of(cpu.pool(), i));
+        x.push_back(position_of(cpu.pool(), i));
         v.push_back(velocity_of(cpu.pool(), i));
     }
     const std::vector<dvec3> x0 = x;
     const std::vector<dvec3> v0 = v;
-    std::vector<double> way(x.size());
+    std::vector<double> path(x.size());
 
-    // The plain loop: forces, velocities and places by the midpoints of half a millisecond.
+    // The plain loop: forces, velocities and positions by the midpoints of half a millisecond.
     constexpr int kParts = 32;
     const double dt = static_cast<double>(kStep);
     const double h = dt / kParts;
@@ -140,31 +140,31 @@ Status measure_motion(HeadlessRenderer& headless, QualityReport& report) {
     const dvec3 g = {0, -9.81, 0};
     for (std::size_t i = 0; i < x.size(); ++i) {
         for (int part = 0; part < (kSteps - 1) * kParts; ++part) {
-            const dvec3 middle = v[i] + 0.5 * h * (g - k * (v[i] - air));
-            v[i] += h * (g - k * (middle - air));
-            x[i] += h * middle;
-            way[i] += h * glm::length(middle);
+            const dvec3 mean = v[i] + 0.5 * h * (g - k * (v[i] - air));
+            v[i] += h * (g - k * (mean - air));
+            x[i] += h * mean;
+            path[i] += h * glm::length(mean);
         }
     }
     cpu.step(kSteps - 1);
     gpu.step(kSteps);
-    const std::vector<Vec3> gpu_places = LIMN_TRY(places_on_gpu(headless, gpu));
+    const std::vector<Vec3> gpu_positions = LIMN_TRY(positions_on_gpu(headless, gpu));
 
     const double t = (kSteps - 1) * dt;
     double cpu_error = 0;
     double gpu_error = 0;
     double exact_error = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const dvec3 found = place_of(cpu.pool(), i);
-        cpu_error = std::max(cpu_error, glm::distance(found, x[i]) / way[i]);
-        gpu_error = std::max(gpu_error, glm::distance(dvec3(gpu_places[i]), x[i]) / way[i]);
+        const dvec3 found = position_of(cpu.pool(), i);
+        cpu_error = std::max(cpu_error, glm::distance(found, x[i]) / path[i]);
+        gpu_error = std::max(gpu_error, glm::distance(dvec3(gpu_positions[i]), x[i]) / path[i]);
         const dvec3 last = air + g / k;  // the velocity that drag leads to
         const dvec3 exact = x0[i] + last * t + (v0[i] - last) * ((1 - std::exp(-k * t)) / k);
-        exact_error = std::max(exact_error, glm::distance(found, exact) / way[i]);
+        exact_error = std::max(exact_error, glm::distance(found, exact) / path[i]);
     }
-    report.at_most("CPU: distance to the plain loop, of the way", cpu_error, 1e-4);
-    report.at_most("GPU: distance to the plain loop, of the way", gpu_error, 1e-4);
-    report.at_most("CPU: distance to the exact motion, of the way", exact_error, 1e-4);
+    report.at_most("CPU: distance to the plain loop, of the path", cpu_error, 1e-4);
+    report.at_most("GPU: distance to the plain loop, of the path", gpu_error, 1e-4);
+    report.at_most("CPU: distance to the exact motion, of the path", exact_error, 1e-4);
     return Done{};
 }
 
@@ -264,13 +264,13 @@ void measure_tunnelling(QualityReport& report) {
 constexpr ColorKey kColors[] = {
     {0, {1, 0.3f, 0.1f}, 0.9f}, {0.5f, {0.9f, 0.8f, 0.2f}, 0.7f}, {1, {0.1f, 0.3f, 0.9f}, 0.8f}};
 
-/// Color and opacity at a share of the life, straight between the keys.
-glm::dvec4 color_at(double share) {
-    const int i = share < 0.5 ? 0 : 1;
+/// Color and opacity at a fraction of the life, straight between the keys.
+glm::dvec4 color_at(double fraction) {
+    const int i = fraction < 0.5 ? 0 : 1;
     const auto key = [](const ColorKey& color_key) {
         return glm::dvec4(color_key.color, static_cast<double>(color_key.opacity));
     };
-    return glm::mix(key(kColors[i]), key(kColors[i + 1]), 2 * share - i);
+    return glm::mix(key(kColors[i]), key(kColors[i + 1]), 2 * fraction - i);
 }
 
 /// All discs of a pixel in the order in which its ray meets them.
@@ -281,10 +281,10 @@ dvec3 blend_exactly(const ParticlePool& pool, double radius, const dvec3& eye, c
     };
     std::vector<Hit> hits;
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        const dvec3 middle = place_of(pool, i);
-        const dvec3 normal = glm::normalize(eye - middle);
-        const double distance = glm::dot(middle - eye, normal) / glm::dot(ray, normal);
-        const dvec3 off = (eye + distance * ray - middle) / radius;
+        const dvec3 center = position_of(pool, i);
+        const dvec3 normal = glm::normalize(eye - center);
+        const double distance = glm::dot(center - eye, normal) / glm::dot(ray, normal);
+        const dvec3 off = (eye + distance * ray - center) / radius;
         const double inside = 1 - glm::dot(off, off);
         if (distance > 0 && inside > 0) {
             glm::dvec4 color =
@@ -381,13 +381,14 @@ void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
     ParticleLook look;
     look.size = 0.7f;
     look.colors = {{.at = 0, .opacity = 0.35f}};
-    look.near_fade = 1000;  // not seen by the camera
+    look.near_fade = 1000;  // invisible to the camera
     Fountain fountain(emitter, {.gravity = 0});
     fountain.step(180);
     fountain.add_light(DirectionalLight{.illuminance = 3}, placed_at({0, 0, 5}));
     std::vector<oracle::ShadowDisc> discs;
     for (std::size_t i = 0; i < fountain.pool().size(); ++i) {
-        discs.push_back({.middle = place_of(fountain.pool(), i), .diameter = 0.7, .opacity = 0.35});
+        discs.push_back(
+            {.center = position_of(fountain.pool(), i), .diameter = 0.7, .opacity = 0.35});
     }
     const MeshId square = fountain.add(quality_square());
     const MaterialId white = fountain.add(Material{.base_color = {1, 1, 1, 1}, .roughness = 1});
@@ -404,8 +405,8 @@ void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
         double sum = 0;
         for (int y = 0; y < kHeight; ++y) {
             for (int x = 0; x < kHeight; ++x) {
-                const dvec3 place = eye_of(view) + 2.0 * pixel_ray(view, x, y);
-                const double exact = oracle::disc_transmittance(discs, place, {0, 0, -1});
+                const dvec3 position = eye_of(view) + 2.0 * pixel_ray(view, x, y);
+                const double exact = oracle::disc_transmittance(discs, position, {0, 0, -1});
                 const auto transmitted = static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
                 sum += (transmitted - exact) * (transmitted - exact);
             }
