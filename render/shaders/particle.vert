@@ -1,5 +1,5 @@
-// A particle as a quad: a sprite, a billboard or a segment of a ribbon, in any sequence within one draw call. Definitions:
-// those of lib/particle_corner.glsl, and
+// A particle as a quad: a sprite, a billboard or a segment of a ribbon, in any sequence within one draw call.
+// Definitions: those of lib/particle_corner.glsl, and
 //   RIBBONS     some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
 // Techniques: engine.particle-cpu, engine.particle-params, particle.gpu-draw

@@ -133,7 +133,8 @@ Touch first_touch(int first_collider, int collider_count, vec3 from, vec3 delta,
     return nearest;
 }
 
-// Pushes a particle that moves from `position` to `to` out of a solid. Returns whether it was inside by more than rounding.
+// Pushes a particle that moves from `position` to `to` out of a solid. Returns whether it was inside by more than
+// rounding.
 bool leave(vec4 exit_plane, inout vec3 position, inout vec3 to, inout vec3 velocity) {
     if (exit_plane.w <= 0.0) {
         return false;
@@ -149,8 +150,8 @@ bool leave(vec4 exit_plane, inout vec3 position, inout vec3 to, inout vec3 veloc
     return is_inside;
 }
 
-// Resolves the collisions of a particle that a step of `dt` seconds has moved from `start`. `response`: bounce, friction,
-// radius, action (word).
+// Resolves the collisions of a particle that a step of `dt` seconds has moved from `start`. `response`: bounce,
+// friction, radius, action (word).
 void collide(inout Particle p, vec3 start, float dt, int first_collider, int collider_count, vec4 response) {
     uint action = floatBitsToUint(response.w);
     bool stops = action != kBounce;

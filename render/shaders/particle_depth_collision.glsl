@@ -1,6 +1,6 @@
-// The depth of the previous frame as an obstacle for particles: at each pixel, a plane through it and its neighbors. Only
-// the pixels at a few points along the path are tested, so that anything narrower in the image than their spacing may be
-// missed. Included by particle_collide.glsl.
+// The depth of the previous frame as an obstacle for particles: at each pixel, a plane through it and its neighbors.
+// Only the pixels at a few points along the path are tested, so that anything narrower in the image than their spacing
+// may be missed. Included by particle_collide.glsl.
 // Techniques: particle.depth-collision
 
 #include "lib/view.glsl"  // of the previous frame

@@ -1,5 +1,5 @@
-// Upsamples a layer of half the resolution: bilinearly between the four nearest texels, without those on another surface
-// than the pixel (render/particles/particle_layer.h).
+// Upsamples a layer of half the resolution: bilinearly between the four nearest texels, without those on another
+// surface than the pixel (render/particles/particle_layer.h).
 // Techniques: particle.half-resolution
 #version 450
 #include "lib/view.glsl"

@@ -1,5 +1,5 @@
-// Downsamples the depth: of each 2 x 2 pixels the depth at their center if they are on one surface, else the nearest or the
-// farthest in a checkerboard (render/particles/particle_layer.h).
+// Downsamples the depth: of each 2 x 2 pixels the depth at their center if they are on one surface, else the nearest or
+// the farthest in a checkerboard (render/particles/particle_layer.h).
 #version 450
 #include "particle_gpu.h"
 
@@ -10,8 +10,8 @@ vec4 depths_about(ivec2 corner) {
     return textureGather(scene_depth, vec2(corner) / vec2(textureSize(scene_depth, 0)));
 }
 
-// Whether the depth changes from b to c about as much as before and after. Depths are near / distance, which is linear in
-// the image on planes.
+// Whether the depth changes from b to c about as much as before and after. Depths are near / distance, which is linear
+// in the image on planes.
 bool is_smooth(float a, float b, float c, float d) {
     return abs(c - b) <= 2.0 * min(abs(b - a), abs(d - c)) + 0.01 * min(b, c);
 }

@@ -1,4 +1,5 @@
-// Adds a particle's slab to the Fourier series of each ray (lib/fourier_opacity.glsl). Definitions: IMAGES, FLIPBOOKS, MOTION.
+// Adds a particle's slab to the Fourier series of each ray (lib/fourier_opacity.glsl). Definitions: IMAGES, FLIPBOOKS,
+// MOTION.
 #version 450
 #include "lib/fourier_opacity.glsl"
 #include "lib/sprite.glsl"

@@ -1,4 +1,5 @@
-// Fits the maps of particle shadows to casters that the GPU moves (render/particles/particle_shadow_pass.h). Definition:
+// Fits the maps of particle shadows to casters that the GPU moves (render/particles/particle_shadow_pass.h).
+// Definition:
 //   RECORD  the rows of the maps, by one invocation; else the ranges of positions of an emitter's particles
 // Techniques: particle.gpu-shadow
 #version 450

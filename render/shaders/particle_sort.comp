@@ -1,4 +1,5 @@
-// Sorts the particles of an emitter from back to front (particle.distance-sort, particle.bitonic-sort). One definition at most:
+// Sorts the particles of an emitter from back to front (particle.distance-sort, particle.bitonic-sort). One definition
+// at most:
 //   KEYS    writes an entry for each particle, and fills up with entries that come last
 //   PASS    one pass of the bitonic sort, an invocation for each pair
 //   LOCAL   all passes of the runs `run` .. `last_run` whose partners are less than 1,024 apart, in shared memory

@@ -1,5 +1,5 @@
-// Splats discs that only add light, one per invocation, into sums at the pixels that they cover. The sums are integers, so
-// that they do not depend on the order (render/particles/particle_splats.h).
+// Splats discs that only add light, one per invocation, into sums at the pixels that they cover. The sums are integers,
+// so that they do not depend on the order (render/particles/particle_splats.h).
 // Techniques: particle.gpu-draw
 #version 450
 #include "lib/particle.glsl"

@@ -1,6 +1,6 @@
-// Births and motion of particles, one per invocation: all steps since it last ran (particle.gpu-init, particle.gpu-update).
-// The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definitions: that of particle_collide.glsl,
-// and, for the common cases, because a software OpenGL executes both sides of every branch,
+// Births and motion of particles, one per invocation: all steps since it last ran (particle.gpu-init,
+// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definitions: that
+// of particle_collide.glsl, and, for the common cases, because a software OpenGL executes both sides of every branch,
 //   OLD    all particles were born before these steps
 //   PLAIN  with OLD: a single step with only gravity and drag
 // Techniques: engine.particle-params, particle.circular-list, particle.forces, particle.gpu-init,

@@ -1,5 +1,5 @@
-// Velocity of pixels that particles cover, as gbuffer.frag writes it for surfaces: where opacity times cover is above the
-// threshold of the look. Definitions: those of lib/sprite.glsl, and SOFT as in particle.frag.
+// Velocity of pixels that particles cover, as gbuffer.frag writes it for surfaces: where opacity times cover is above
+// the threshold of the look. Definitions: those of lib/sprite.glsl, and SOFT as in particle.frag.
 // Techniques: particle.velocity
 #version 450
 #define VARYING in

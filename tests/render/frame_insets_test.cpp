@@ -83,12 +83,12 @@ TEST_CASE("frame insets: no frame is read beyond the image, and none of an inval
 }
 
 TEST_CASE("frame insets: all four are packed as digits of one float") {
-    constexpr std::uint32_t kMost = layout::kInsetSteps / 2 - 1;
-    const FrameInsets all = {kMost, kMost - 1, 1, kMost};
+    constexpr std::uint32_t kMax = layout::kInsetSteps / 2 - 1;
+    const FrameInsets all = {kMax, kMax - 1, 1, kMax};
     double rest = static_cast<double>(pack_insets(all));
     for (const std::uint32_t digit : {all.left, all.bottom, all.right, all.top}) {
-        CHECK(std::fmod(rest, kMost + 1.0) == digit);
-        rest = std::floor(rest / (kMost + 1.0));
+        CHECK(std::fmod(rest, kMax + 1.0) == digit);
+        rest = std::floor(rest / (kMax + 1.0));
     }
     CHECK(rest == 0);
 }

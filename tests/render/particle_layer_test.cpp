@@ -194,8 +194,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    LayerScene,
-    "particle layer: ground seen at a shallow angle shows no checkerboard through mist") {
+    LayerScene, "particle layer: ground at a shallow angle shows no checkerboard through mist") {
     const MaterialId black = add(Material{.base_color = {0, 0, 0, 1}});
     place(
         add(make_square()), black,

@@ -78,7 +78,7 @@ struct Points : Scene {
         }
     }
     /// From a meter away.
-    gpu::FloatImage picture() {
+    gpu::FloatImage draw_view() {
         bear();
         return radiance(look({0, 0, 1}, {0, 0, 0}, kSide, kSide));
     }
@@ -116,7 +116,7 @@ TEST_CASE(
         const Vec3 color = {2, 0.5f, 0.25f};
         const float aside = 0.3f;  // [px]
         scene.emit(Points::look_of(pixels, color), 1, {aside * kPixel, 0, 0});
-        const gpu::FloatImage image = scene.picture();
+        const gpu::FloatImage image = scene.draw_view();
         const float radius = 0.5f * std::max(pixels, 1.0f);
         const float faint = std::min(pixels * pixels, 1.0f);  // instead of smaller
         for (int y = 0; y < kSide; ++y) {
@@ -134,7 +134,7 @@ TEST_CASE(
 
 TEST_CASE(
     "particle splats: the image is that of rasterized points" * technique("particle.gpu-draw")) {
-    const auto picture = [](bool rasterize) {
+    const auto drawn = [](bool rasterize) {
         Points scene;
         ParticleLook dots = Points::look_of(1.7f, {0.2f, 0.3f, 0.4f});
         dots.size_spread = 0.5f * dots.size;
@@ -147,14 +147,14 @@ TEST_CASE(
         for (const ParticleLook& look : {dots, sprites}) {
             scene.emit(rasterize ? rasterized(look) : look, 700, {0, 0, -0.4f}, {1, 1, 1});
         }
-        return scene.picture();
+        return scene.draw_view();
     };
-    const gpu::FloatImage splats = picture(false);
+    const gpu::FloatImage splats = drawn(false);
     CHECK(sum_of_red(splats) > 30);
     // Which places them to 1/256 of a pixel: a disc of one changes by .006 of its light. Hardware
     // may have diameters in steps of 1/8 of a pixel.
     const float bound = Points::device().caps().software ? 0.004f : 0.05f;
-    CHECK(largest_difference(splats, picture(true)) < bound);
+    CHECK(largest_difference(splats, drawn(true)) < bound);
 }
 
 TEST_CASE("particle splats: what is behind something opaque adds nothing, what is before it all") {
@@ -164,7 +164,7 @@ TEST_CASE("particle splats: what is behind something opaque adds nothing, what i
             scene.add(make_square()), scene.add(Material{}),
             affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(3)));
         scene.emit(Points::look_of(9, {1, 1, 1}), 1, {0, 0, z});
-        const double light = sum_of_red(scene.picture());
+        const double light = sum_of_red(scene.draw_view());
         CHECK((z < 0 ? light == 0 : light > 10));
     }
 }
@@ -176,7 +176,7 @@ TEST_CASE("particle splats: many faint ones count in full beside a bright one") 
         if (beside) {
             scene.emit(Points::look_of(2, {0, 0, 1}), 1, {0.9f, 0, 0});
         }
-        return sum_of_red(scene.picture());
+        return sum_of_red(scene.draw_view());
     };
     CHECK(sum(true) / sum(false) == near(1).epsilon(0.03));
 }
@@ -184,7 +184,7 @@ TEST_CASE("particle splats: many faint ones count in full beside a bright one") 
 TEST_CASE("particle splats: a hundred thousand at one pixel are as bright as their sum") {
     Points scene;
     scene.emit(Points::look_of(3, {0.5f, 0.25f, 0.125f}), 100000);
-    const Vec3 found = rgb_at(scene.picture(), kSide / 2, kSide / 2);
+    const Vec3 found = rgb_at(scene.draw_view(), kSide / 2, kSide / 2);
     CHECK(found.x == near(50000).epsilon(0.001));
     CHECK(found.y == near(25000).epsilon(0.001));
     CHECK(found.z == near(12500).epsilon(0.001));
@@ -193,8 +193,8 @@ TEST_CASE("particle splats: a hundred thousand at one pixel are as bright as the
 TEST_CASE("particle splats: the next frame begins without light") {
     Points scene;
     scene.emit(Points::look_of(3, {1, 1, 1}), 50, {0, 0, 0}, {0.5f, 0.5f, 0});
-    const gpu::FloatImage first = scene.picture();
-    CHECK(largest_difference(first, scene.picture()) == 0);
+    const gpu::FloatImage first = scene.draw_view();
+    CHECK(largest_difference(first, scene.draw_view()) == 0);
 }
 
 TEST_CASE("particle splats: glass before them dims them, and glass behind them does not") {
@@ -207,7 +207,7 @@ TEST_CASE("particle splats: glass before them dims them, and glass behind them d
             scene.place(scene.add(make_square()), scene.add(glass), at({0, 0, z}));
             const ParticleLook look = Points::look_of(5, {1, 1, 1});
             scene.emit(rasterize ? rasterized(look) : look);
-            return sum_of_red(scene.picture());
+            return sum_of_red(scene.draw_view());
         };
         CHECK(light(false) == near(light(true)).epsilon(0.001));
         CHECK((z > 0 ? light(false) < 5 : light(false) > 5));

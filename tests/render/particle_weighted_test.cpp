@@ -41,8 +41,8 @@ struct WeightedScene : Scene {
         pool.look.push_back(7);
         made.push_back(world.create(ParticleEmitter{}, look, pool));
     }
-    gpu::FloatImage picture() { return radiance(look({0, 0, 3}, {0, 0, 0}, kSize, kSize)); }
-    Vec3 center_pixel() { return rgb_at(picture(), kSize / 2, kSize / 2); }
+    gpu::FloatImage draw_view() { return radiance(look({0, 0, 3}, {0, 0, 0}, kSize, kSize)); }
+    Vec3 center_pixel() { return rgb_at(draw_view(), kSize / 2, kSize / 2); }
     void clear() {
         for (const Entity entity : made) {
             world.destroy(entity);
@@ -69,10 +69,10 @@ TEST_CASE_FIXTURE(
     for (const float cover : {0.3f, 1.0f}) {
         CAPTURE(cover);
         emit(0, {4, 2, 1}, 0.7f, ParticleSort::Distance, cover);
-        const gpu::FloatImage sorted = picture();
+        const gpu::FloatImage sorted = draw_view();
         clear();
         emit(0, {4, 2, 1}, 0.7f, ParticleSort::Weighted, cover);
-        const gpu::FloatImage weighted = picture();
+        const gpu::FloatImage weighted = draw_view();
         clear();
         CHECK(rgb_at(sorted, kSize / 2, kSize / 2).x > 1);
         CHECK(largest_difference(sorted, weighted) < 4 * 1e-4f);
@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(
                 fraction * 2 - 1, {fraction, 1 - fraction, 0.5f}, 0.2f + 0.5f * fraction,
                 ParticleSort::Weighted);
         }
-        gpu::FloatImage image = picture();
+        gpu::FloatImage image = draw_view();
         clear();
         return image;
     };
@@ -146,7 +146,7 @@ TEST_CASE_FIXTURE(
     emit(std::numeric_limits<float>::quiet_NaN(), {1, 1, 1}, 0.5f, ParticleSort::Weighted);
     emit(0, {1e6f, 1e6f, 1e6f}, 1, ParticleSort::Weighted);
     emit(2.99f, {1, 1, 1}, 1e-6f, ParticleSort::Weighted);
-    for (const float value : picture().pixels) {
+    for (const float value : draw_view().pixels) {
         CHECK(std::isfinite(value));
     }
 }

@@ -70,7 +70,7 @@ Mesh make_ball(int rings, int sectors, const Vec3& center, float dents) {
 }
 
 /// Brute force in double precision (Moeller and Trumbore 1997). `margin`: how far, in fractions and
-/// barycentric coordinates, all triangles are from being deciding the other way.
+/// barycentric coordinates, all triangles are from deciding the other way.
 struct Reference {
     double fraction = std::numeric_limits<double>::infinity();
     double margin = std::numeric_limits<double>::infinity();

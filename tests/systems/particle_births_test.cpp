@@ -249,7 +249,7 @@ TEST_CASE(
     scene.run();
     const ParticlePool& pool = scene.pool();
     REQUIRE(pool.size() == 20000);
-    const float reach = std::sqrt(2.0f);
+    const float spread = std::sqrt(2.0f);
     float thick = 0;
     float nearest = 20;
     float farthest = 0;
@@ -259,10 +259,10 @@ TEST_CASE(
         farthest = std::max(farthest, radius);
         thick = std::max(thick, std::abs(pool.z[i]));
     }
-    CHECK(nearest >= 10 - reach);
-    CHECK(nearest < 10 - 0.9f * reach);
-    CHECK(farthest <= 10 + reach);
-    CHECK(farthest > 10 + 0.9f * reach);
+    CHECK(nearest >= 10 - spread);
+    CHECK(nearest < 10 - 0.9f * spread);
+    CHECK(farthest <= 10 + spread);
+    CHECK(farthest > 10 + 0.9f * spread);
     CHECK(thick <= 1);
     CHECK(thick > 0.99f);
 }
@@ -279,19 +279,19 @@ TEST_CASE(
     scene.add(emitter, falling(0));
     scene.run();
     const ParticlePool& pool = scene.pool();
-    const auto reach = [](const std::vector<float>& v, float mean) {
-        float most = 0;
+    const auto max_deviation = [](const std::vector<float>& v, float mean) {
+        float largest = 0;
         double sum = 0;
         for (const float x : v) {
-            most = std::max(most, std::abs(x - mean));
+            largest = std::max(largest, std::abs(x - mean));
             sum += x;
         }
         CHECK(sum / static_cast<double>(v.size()) == near(mean).scale(1).epsilon(0.03));
-        return most;
+        return largest;
     };
-    CHECK(reach(pool.vx, 0) == near(2).epsilon(0.001));
-    CHECK(reach(pool.vy, 5) == near(1).epsilon(0.001));
-    CHECK(reach(pool.vz, 0) == near(0.5).epsilon(0.001));
+    CHECK(max_deviation(pool.vx, 0) == near(2).epsilon(0.001));
+    CHECK(max_deviation(pool.vy, 5) == near(1).epsilon(0.001));
+    CHECK(max_deviation(pool.vz, 0) == near(0.5).epsilon(0.001));
     double product = 0;
     for (std::size_t i = 0; i < pool.size(); ++i) {
         product += pool.vx[i] * (pool.vy[i] - 5);

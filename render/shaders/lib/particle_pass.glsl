@@ -1,4 +1,5 @@
-// What differs between the passes that draw particles: after lib/particle.glsl and lib/view.glsl. Definitions, one at most:
+// What differs between the passes that draw particles: after lib/particle.glsl and lib/view.glsl. Definitions, one at
+// most:
 //   VELOCITY  where they were in the previous frame, without light
 //   FOCUS     their depth where they cover enough, without light
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)

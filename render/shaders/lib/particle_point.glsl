@@ -1,5 +1,5 @@
-// Sizes and colors of particles, discs that face the camera among them, for particle.vert and particle_splat.comp. Include
-// after lib/particle.glsl and lib/view.glsl.
+// Sizes and colors of particles, discs that face the camera among them, for particle.vert and particle_splat.comp.
+// Include after lib/particle.glsl and lib/view.glsl.
 
 // Extent of a pixel at this position [m].
 float pixel_extent(vec3 position_ws) {
@@ -26,7 +26,8 @@ float size_from(Particle p, vec4 shape, int facing, float away) {
     return size;
 }
 
-// Diameter [px]. A disc that faces the camera projects to an ellipse off the image's center: that of a circle of equal area.
+// Diameter [px]. A disc that faces the camera projects to an ellipse off the image's center: that of a circle of equal
+// area.
 float point_diameter(vec3 position_ws, float size, int facing, float away) {
     float diameter = size / pixel_extent(position_ws);
     if (facing == kFacingCamera) {

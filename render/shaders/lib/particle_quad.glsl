@@ -52,8 +52,8 @@ vec4 frame_box(int look, float number) {
     return vec4(-1.0 + insets.xy, 1.0 - insets.zw);
 }
 
-// The corner of a quad trimmed to the content of the current frames; `pixel`: extent of a pixel [m], by which filtering may
-// spread it.
+// The corner of a quad trimmed to the content of the current frames; `pixel`: extent of a pixel [m], by which filtering
+// may spread it.
 vec2 trimmed_corner(vec2 corner, int look, Flipbook book, Quad quad, float pixel) {
     vec4 a = frame_box(look, book.numbers.x);
     vec4 b = frame_box(look, book.numbers.y);

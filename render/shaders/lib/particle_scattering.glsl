@@ -48,9 +48,9 @@ vec3 scattered(Incoming light, NORMALS normals, vec3 to_camera, float forward) {
 }
 
 #ifdef LOCAL_LIGHTS
-// Mean of 1 / d^2 over a ball, relative to 1 / d^2 at its center. The mean is
-// 3 (2 + (1 / x - x) ln|(1 + x) / (1 - x)|) / 4 / radius^2 with x = d / radius, fitted to 5 %. Without it, a puff around a
-// lamp would be as bright as a surface that touches the lamp.
+// Mean of 1 / d^2 over a ball, relative to 1 / d^2 at its center. The mean is 3 (2 + (1 / x - x) ln|(1 + x) / (1 - x)|)
+// / 4 / radius^2 with x = d / radius, fitted to 5 %. Without it, a puff around a lamp would be as bright as a surface
+// that touches the lamp.
 float mean_over_ball(float d2, float radius) {
     float x2 = max(d2, 1e-4) / max(radius * radius, 1e-12);
     return x2 < 1.0 ? x2 * (3.0 - x2 * (0.7 + 0.8 * x2)) : 1.0 + 0.5 / (x2 * x2);

@@ -2,8 +2,8 @@
 
 const float kSmallDisc = 3.0;  // radius up to which a disc is drawn as one triangle [px]
 
-// Corners of a triangle around the unit disc; the other triangle of the quad is degenerate. A software OpenGL shades the
-// pixel blocks along the diagonal of a quad twice.
+// Corners of a triangle around the unit disc; the other triangle of the quad is degenerate. A software OpenGL shades
+// the pixel blocks along the diagonal of a quad twice.
 vec2 triangle_corner(int vertex) {
     const float kApex = 1.5;
     const float kBase = 2.2360680;  // (apex + 1) / sqrt(apex^2 - 1)

@@ -1,5 +1,5 @@
-// Varyings from particle.vert to its fragment shaders. Definitions: VARYING, `out` in the former and `in` in the latter;
-// those of particle.vert and
+// Varyings from particle.vert to its fragment shaders. Definitions: VARYING, `out` in the former and `in` in the
+// latter; those of particle.vert and
 //   WEIGHTED  into the sums of a weighted mean (render/particles/particle_weighted.h)
 //   IN_WATER  visible from above, before the water is drawn over it
 // Values that are the same at all corners are flat.

@@ -25,8 +25,8 @@ bool ribbon_turn(vec3 before, vec3 point, vec3 after, vec3 to_camera, out vec3 c
 }
 
 // Offset from `point` to the left edge: perpendicular to the projected ribbon; at a turn, along the miter of its two
-// segments. The miter is limited to kMaxMiter half widths, and by the length of the shorter segment, so that ends viewed
-// head-on neither spike nor fold. `otherwise`: direction if both segments are end-on.
+// segments. The miter is limited to kMaxMiter half widths, and by the length of the shorter segment, so that ends
+// viewed head-on neither spike nor fold. `otherwise`: direction if both segments are end-on.
 vec3 ribbon_edge(vec3 before, vec3 point, vec3 after, vec3 to_camera, vec3 otherwise, float half_width) {
     vec3 came;
     vec3 goes;
@@ -41,8 +41,8 @@ vec3 ribbon_edge(vec3 before, vec3 point, vec3 after, vec3 to_camera, vec3 other
     return half_width * min(miter, min(kMaxMiter, sqrt(1.0 + ratio * ratio))) * side;
 }
 
-// A corner of the join that fills the wedge on the outside of a turn between two segments with square ends, for a half width
-// of 1: two triangles with `point` as their common corner. In w the coordinate across the ribbon, -1 .. 1.
+// A corner of the join that fills the wedge on the outside of a turn between two segments with square ends, for a half
+// width of 1: two triangles with `point` as their common corner. In w the coordinate across the ribbon, -1 .. 1.
 vec4 ribbon_join(vec3 before, vec3 point, vec3 after, int vertex, vec3 to_camera, vec3 otherwise) {
     vec3 came;
     vec3 goes;

@@ -26,8 +26,8 @@ vec4 image_at(sampler2DArray book, vec2 uv, vec4 frames, vec2 offset, float laye
 #ifdef MOTION
 layout(binding = kSpriteMotionsUnit) uniform sampler2DArray motion_maps;
 
-// Motion at `uv` from the frame at `offset` to the next one, as a fraction of the frame; `motion`: layer of the map, what
-// its full value means.
+// Motion at `uv` from the frame at `offset` to the next one, as a fraction of the frame; `motion`: layer of the map,
+// what its full value means.
 vec2 motion_at(vec2 uv, vec4 frames, vec2 offset, vec2 motion) {
     vec2 encoded = textureLod(motion_maps, vec3(uv * frames.xy + offset, motion.x), 0.0).rg;
     return motion.y * (encoded * (255.0 / 127.0) - 128.0 / 127.0);
