@@ -54,7 +54,7 @@ bool WaterBodiesEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& waters = view.data.publish<WaterSurfaces>();
     const auto* planar = frame.data.find<PlanarReflection>();
     waters.textures = &textures;
-    place_waters(
+    build_water_list(
         textures.sources, view.camera,
         planar != nullptr && view.is(kMainViews) ? planar->water : Entity{}, textures.ripples,
         textures.seas, waters.list);

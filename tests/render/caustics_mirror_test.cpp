@@ -73,7 +73,7 @@ class Grotto : public Scene {
             {.fov_y = radians(20.0f), .near = 0.01f}, pose, pose, {.width = 32, .height = 32});
     }
 
-    /// A map as CausticPlace and texels, the row of least z first.
+    /// A map as CausticTile and texels, the row of least z first.
     struct Map {
         Vec2 corner;
         Vec2 size;

@@ -121,11 +121,11 @@ TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels are what the query says, to th
     RippleAtlas atlas;
     atlas.update(all, 4096);
     const gpu::FloatImage image = gpu::read_floats(atlas.texture());
-    REQUIRE(atlas.places().size() == 6);
+    REQUIRE(atlas.tiles().size() == 6);
     for (std::size_t i = 0; i < 6; ++i) {
-        const AtlasPlace& place = atlas.places()[i];
-        CHECK(place.fits == (all[i] != nullptr && all[i] != &none));
-        if (!place.fits) {
+        const RippleTile& tile = atlas.tiles()[i];
+        CHECK(tile.fits == (all[i] != nullptr && all[i] != &none));
+        if (!tile.fits) {
             continue;
         }
         const RippleState& state = *all[i];
@@ -135,8 +135,8 @@ TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels are what the query says, to th
                 const IVec2 cell = glm::clamp(IVec2(x, z), IVec2(0), state.cells - 1);
                 const Vec2 middle = state.cell * (Vec2(cell) + 0.5f - 0.5f * Vec2(state.cells));
                 const RipplePoint point = sample_ripples(state, middle);
-                const int row = image.height - 1 - (place.corner.y + z);
-                const auto texel = [&](int c) { return image.at(place.corner.x + x, row, c); };
+                const int row = image.height - 1 - (tile.corner.y + z);
+                const auto texel = [&](int c) { return image.at(tile.corner.x + x, row, c); };
                 CHECK(std::abs(texel(0) - point.height) < 1e-6f);
                 CHECK(std::abs(texel(1) - point.velocity) < 1e-4f);
                 CHECK(std::abs(texel(2) - point.slope.x) < 1e-5f);

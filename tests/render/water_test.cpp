@@ -171,7 +171,7 @@ TEST_CASE("water patches: they stay where they are in the water, however the cam
     append_water_patches(source_of({0, 0}, {1234.5f, 2, -99.9f}), patches);
     for (const WaterPatch& p : patches) {
         CHECK(std::abs(p.corner.x / p.size - std::round(p.corner.x / p.size)) < 1e-4f);
-        CHECK(std::log2(kWaterReach / p.size) == std::round(std::log2(kWaterReach / p.size)));
+        CHECK(std::log2(kWaterRange / p.size) == std::round(std::log2(kWaterRange / p.size)));
     }
 }
 

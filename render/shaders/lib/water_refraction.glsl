@@ -10,7 +10,7 @@
 const int kTracedRefraction = 0;
 const int kShiftedRefraction = 1;
 const int kFloorRefraction = 2;
-const float kShift = 0.02;  // share of the image, for a horizontal normal
+const float kShift = 0.02;  // fraction of the image, for a horizontal normal
 
 #ifdef FLOOR_MAP
 layout(binding = kFloorMapUnit) uniform sampler2D floor_map;  // repeats
