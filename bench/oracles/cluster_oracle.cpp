@@ -35,7 +35,7 @@ slopes_of_tile(int tile, const ClusterShape& shape, int pixels, double jitter, d
 
 }  // namespace
 
-bool reaches(const LightReach& light, const DVec3& point) {
+bool reaches(const LightRange& light, const DVec3& point) {
     const DVec3 offset = point - DVec3(light.center);
     const double distance = glm::length(offset);
     return distance < light.radius
@@ -43,7 +43,7 @@ bool reaches(const LightReach& light, const DVec3& point) {
 }
 
 std::vector<std::vector<std::uint32_t>> brute_force_lists(
-    const RenderView& view, const ClusterShape& shape, std::span<const LightReach> lights,
+    const RenderView& view, const ClusterShape& shape, std::span<const LightRange> lights,
     double slack) {
     const auto& r = view.world_from_camera.row;
     const auto column = [&](int c) { return DVec3(r[0][c], r[1][c], r[2][c]); };

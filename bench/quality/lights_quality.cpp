@@ -167,8 +167,8 @@ void measure_images(HeadlessRenderer& headless, QualityReport& report) {
 }
 
 /// A light of random reach; every third is a spot light.
-LightReach random_reach(Numbers& numbers, int i) {
-    LightReach light = {numbers.in_cube(25), std::exp2(3 * numbers.signed_unit())};
+LightRange random_reach(Numbers& numbers, int i) {
+    LightRange light = {numbers.in_cube(25), std::exp2(3 * numbers.signed_unit())};
     if (i % 3 == 0) {
         light.axis = normalize_or(numbers.in_cube(1), {0, 1, 0});
         light.cosine = std::cos(radians(45 + 44 * numbers.signed_unit()));
@@ -203,7 +203,7 @@ Status measure_lists(HeadlessRenderer& headless, QualityReport& report) {
         const oracle::ClusterReadbackLists lists = readback.run(view, lights);
         for (int k = 0; k < 400; ++k) {
             // Near a light, so that few tests fall on unlit points.
-            const LightReach& chosen = lights.reach[static_cast<std::size_t>(k % kLightsAtOnce)];
+            const LightRange& chosen = lights.reach[static_cast<std::size_t>(k % kLightsAtOnce)];
             const Vec3 point = chosen.center + numbers.in_cube(chosen.radius);
             Vec3 pixel;
             if (!find_pixel(view, point, pixel)) {

@@ -28,7 +28,7 @@ Vec3 camera_position(const RenderView& view) {
     return {r[0].w, r[1].w, r[2].w};
 }
 
-bool is_unbounded(const LightReach& light) {
+bool is_unbounded(const LightRange& light) {
     return !(light.radius < kMaxDistance);
 }
 
@@ -83,7 +83,7 @@ layout::uvec2 pack(const ClusterBox& box) {
 
 }  // namespace
 
-ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightReach> reach) {
+ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRange> reach) {
     ClusterShape shape;
     while (std::max(view.width, view.height) > shape.tile * kMaxTiles) {
         shape.tile *= 2;
@@ -92,7 +92,7 @@ ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRea
     shape.rows = (view.height + shape.tile - 1) / shape.tile;
     const Vec3 eye = camera_position(view);
     float farthest = view.near * 100;
-    for (const LightReach& light : reach) {
+    for (const LightRange& light : reach) {
         const float end = to_view(view.world_from_camera, light.center - eye).z + light.radius;
         farthest = std::isfinite(end) ? std::max(farthest, end) : farthest;
     }
@@ -105,12 +105,12 @@ ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRea
 }
 
 bool find_cells(
-    const RenderView& view, const ClusterShape& shape, const LightReach& light, ClusterBox& box) {
+    const RenderView& view, const ClusterShape& shape, const LightRange& light, ClusterBox& box) {
     box = {{0, shape.columns - 1}, {0, shape.rows - 1}, {0, shape.slices - 1}};
     if (is_unbounded(light)) {
         return true;
     }
-    const ReachSphere around = reach_sphere(light);
+    const RangeSphere around = range_sphere(light);
     const float radius = around.radius * (1 + kSlack);
     const Vec3 c = to_view(view.world_from_camera, around.center - camera_position(view));
     const float end = (c.z + radius) * (1 + kSlack);
@@ -140,7 +140,7 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
     clusters.dropped = 0;
     const Vec3 eye = camera_position(view);
     for (std::size_t i = 0; i < lights.reach.size(); ++i) {
-        const LightReach& light = lights.reach[i];
+        const LightRange& light = lights.reach[i];
         ClusterBox box;
         if (!find_cells(view, clusters.shape, light, box)) {
             continue;
@@ -149,7 +149,7 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
             ++clusters.dropped;
             continue;
         }
-        const ReachSphere around = reach_sphere(light);
+        const RangeSphere around = range_sphere(light);
         const float radius2 = is_unbounded(light) ? -1.0f : square(around.radius * (1 + kSlack));
         const auto index = static_cast<float>(i + static_cast<std::size_t>(lights.directional));
         clusters.lights.push_back(

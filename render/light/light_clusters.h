@@ -65,14 +65,14 @@ struct ClusterLights {
 
 /// Shape whose slices span the distances from the near plane to the end of the farthest light.
 [[nodiscard]] ClusterShape
-make_cluster_shape(const RenderView& view, std::span<const LightReach> reach);
+make_cluster_shape(const RenderView& view, std::span<const LightRange> reach);
 
 /// Fills `clusters` with the `lights` that reach into the view.
 void place_lights(const RenderView& view, const LightList& lights, ClusterLights& clusters);
 
 /// The cells that a light may touch; false if it is wholly behind the camera or off screen.
 [[nodiscard]] bool find_cells(
-    const RenderView& view, const ClusterShape& shape, const LightReach& light, ClusterBox& box);
+    const RenderView& view, const ClusterShape& shape, const LightRange& light, ClusterBox& box);
 
 /// The cell of a pixel at `distance` along the view axis [m]; the same as in lib/lighting.glsl.
 [[nodiscard]] int cell_of(const ClusterShape& shape, float pixel_x, float pixel_y, float distance);

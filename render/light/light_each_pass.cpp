@@ -59,7 +59,7 @@ void add_over_screen(
 
 void add_in_volume(
     gpu::Device& device, LightEachPass& pass, const ViewData& view, int light,
-    const LightReach& reach) {
+    const LightRange& reach) {
     const bool cone = reach.cosine > kMinConeCosine;
     const float sine = std::sqrt(std::max(1 - square(reach.cosine), 0.0f));
     const Vec4 sphere = Vec4(reach.center, reach.radius);
@@ -141,7 +141,7 @@ void draw_each_light(FrameGraph& graph, LightEachPass& pass, const ViewData& vie
         }
         for (const layout::ClusterLight& placed : view.data.get<ClusterLights>().lights) {
             const int light = static_cast<int>(placed.axis.w);
-            const LightReach& reach = lights.reach[light - lights.directional];
+            const LightRange& reach = lights.reach[light - lights.directional];
             if (method == LightMethod::Volumes && std::isfinite(reach.radius)) {
                 add_in_volume(context.device(), pass, view, light, reach);
             } else {

@@ -20,7 +20,7 @@ class World;
 // bench/oracles/light_oracle.h.
 
 /// The range of a point or spot light: a sphere, for spots cut to a cone.
-struct LightReach {
+struct LightRange {
     Vec3 center;            ///< [m]
     float radius = 0;       ///< [m]; INFINITY: unbounded
     Vec3 axis = {0, 0, 0};  ///< of a spot, unit; 0: omnidirectional
@@ -53,7 +53,7 @@ struct ProjectingLight {
 
 struct LightList {
     std::vector<layout::LightRecord> records;
-    std::vector<LightReach> reach;            ///< of the point and spot lights only
+    std::vector<LightRange> reach;            ///< of the point and spot lights only
     std::vector<ShadowedLight> shadowed;      ///< in the order of the records
     std::vector<ProjectingLight> projecting;  ///< in the order of the records
     double time = 0;                          ///< time shown [s]

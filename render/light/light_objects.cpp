@@ -32,9 +32,9 @@ void add_object(
 }  // namespace
 
 void append_objects_of_light(
-    const LightReach& light, std::span<const BoxBlock> boxes, int count,
+    const LightRange& light, std::span<const BoxBlock> boxes, int count,
     std::vector<std::uint32_t>& objects) {
-    const ReachSphere around = reach_sphere(light);
+    const RangeSphere around = range_sphere(light);
     std::uint8_t touched[kCullBlock];
     for (int first = 0; first < count; first += kCullBlock) {
         const int n = std::min(count - first, kCullBlock);

@@ -39,7 +39,7 @@ struct LightObjects {
 
 /// Appends those of the first `count` boxes that the light may reach.
 void append_objects_of_light(
-    const LightReach& light, std::span<const BoxBlock> boxes, int count,
+    const LightRange& light, std::span<const BoxBlock> boxes, int count,
     std::vector<std::uint32_t>& objects);
 
 /// Fills `found` for the opaque instances of `list`, which must have been collected with boxes.

@@ -33,14 +33,14 @@ Quarters read_quarters() {
         vec2 rows = vec2(begin.y + y, begin.y + y + 1);
         vec2 below = min(rows, middle.y);
         vec2 above = max(rows, middle.y);
-        float down = 2.0 * tent_share(below.x, below.y, middle.y, ratio.y);
-        float up = 2.0 * tent_share(above.x, above.y, middle.y, ratio.y);
+        float down = 2.0 * tent_fraction(below.x, below.y, middle.y, ratio.y);
+        float up = 2.0 * tent_fraction(above.x, above.y, middle.y, ratio.y);
         for (int x = 0; x < 5; ++x) {
             vec2 columns = vec2(begin.x + x, begin.x + x + 1);
             vec2 before = min(columns, middle.x);
             vec2 behind = max(columns, middle.x);
-            float left = 2.0 * tent_share(before.x, before.y, middle.x, ratio.x);
-            float right = 2.0 * tent_share(behind.x, behind.y, middle.x, ratio.x);
+            float left = 2.0 * tent_fraction(before.x, before.y, middle.x, ratio.x);
+            float right = 2.0 * tent_fraction(behind.x, behind.y, middle.x, ratio.x);
             // At most one pixel beyond the border, where clamping equals mirroring.
             vec3 light = texelFetch(scene_radiance, clamp(begin + ivec2(x, y), ivec2(0), last), 0).rgb;
             q.left_down += left * down * light;

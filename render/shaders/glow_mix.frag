@@ -22,9 +22,9 @@ vec4 glow_at_pixel(ivec2 size) {
     ivec2 begin = ivec2(floor(from / ratio - 0.5));
     vec4 mean = vec4(0.0);
     for (int y = 0; y < 3; ++y) {
-        float share_y = tent_share(from.y, from.y + 1.0, (float(begin.y + y) + 0.5) * ratio.y, ratio.y);
+        float share_y = tent_fraction(from.y, from.y + 1.0, (float(begin.y + y) + 0.5) * ratio.y, ratio.y);
         for (int x = 0; x < 3; ++x) {
-            float share_x = tent_share(from.x, from.x + 1.0, (float(begin.x + x) + 0.5) * ratio.x, ratio.x);
+            float share_x = tent_fraction(from.x, from.x + 1.0, (float(begin.x + x) + 0.5) * ratio.x, ratio.x);
             mean += share_x * share_y * texelFetch(glow, clamp(begin + ivec2(x, y), ivec2(0), glow_size - 1), 0);
         }
     }

@@ -49,7 +49,7 @@ void main() {
     float ratio = float(sizes) / float(count);
     int begin = int(ceil((float(at) - 1.0) / ratio - 1.5));
     for (int i = begin; i < begin + 5; ++i) {
-        float share = ratio * smooth_share(float(at), (float(i) + 0.5) * ratio, ratio);
+        float share = ratio * smooth_fraction(float(at), (float(i) + 0.5) * ratio, ratio);
         sum += share * source_at(across, i, count);
     }
 #else
@@ -57,9 +57,9 @@ void main() {
     float middle = (float(at) + 0.5) * ratio;
     int begin = int(floor(middle - 2.0 * ratio)) - 1;
     for (int i = begin; i < begin + 11; ++i) {
-        float share = 0.5 * smooth_share(float(i), middle, ratio)
-                      + 0.25 * smooth_share(float(i), middle - ratio, ratio)
-                      + 0.25 * smooth_share(float(i), middle + ratio, ratio);
+        float share = 0.5 * smooth_fraction(float(i), middle, ratio)
+                      + 0.25 * smooth_fraction(float(i), middle - ratio, ratio)
+                      + 0.25 * smooth_fraction(float(i), middle + ratio, ratio);
         sum += share * source_at(across, i, count);
     }
 #endif

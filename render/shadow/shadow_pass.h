@@ -18,8 +18,8 @@ namespace limn {
 // Order    before lighting
 // Shaders  mesh.vert, shadow_map.frag
 //
-// Casters are drawn double-sided: a wall casts a shadow whichever way it faces. The maps have no
-// bias; lighting applies it (lib/shadow.glsl).
+// Casters are drawn double-sided: a wall casts a shadow whichever side faces the light. The maps
+// have no bias; lighting applies it (lib/shadow.glsl).
 
 /// Maps and volumes of a view's lights. Publishes ShadowList and VolumeList in prepare(),
 /// ShadowMaps and ShadowMasks in draw(); sets the shadows of the view's LightList.

@@ -21,8 +21,8 @@ class RandomLights {
     Vec3 direction() { return normalize_or(in_cube(1), {0, 1, 0}); }
 
     /// Point lights and, every third, a spot.
-    LightReach reach() {
-        LightReach light = {in_cube(25), std::exp2(3 * signed_unit())};
+    LightRange reach() {
+        LightRange light = {in_cube(25), std::exp2(3 * signed_unit())};
         if (++made_ % 3 == 0) {
             light.axis = direction();
             light.cosine = std::cos(radians(45 + 44 * signed_unit()));
@@ -42,7 +42,7 @@ class RandomLights {
     int made_ = 0;
 };
 
-LightList list_of(std::vector<LightReach> reach, int directional = 0) {
+LightList list_of(std::vector<LightRange> reach, int directional = 0) {
     LightList list;
     list.reach = std::move(reach);
     list.directional = directional;
@@ -69,14 +69,14 @@ TEST_CASE_FIXTURE(
     int reached = 0;
     while (tests < 100000 || reached < 10000) {
         const RenderView view = random.view();
-        std::vector<LightReach> reach;
+        std::vector<LightRange> reach;
         for (int i = 0; i < 60; ++i) {
             reach.push_back(random.reach());
         }
         const oracle::ClusterReadbackLists lists = build(view, list_of(reach, 2));
         for (int k = 0; k < 400; ++k) {
             // A point that some light reaches, so that the test is not wasted on the dark.
-            const LightReach& chosen = reach[k % reach.size()];
+            const LightRange& chosen = reach[k % reach.size()];
             const Vec3 p = chosen.center + random.in_cube(chosen.radius);
             const Vec4 clip = view.clip_from_world * Vec4(p, 1);
             if (clip.w < view.near || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w) {
@@ -102,7 +102,7 @@ TEST_CASE_FIXTURE(
     RandomLights random(11);
     for (int n = 0; n < 6; ++n) {
         const RenderView view = random.view();
-        std::vector<LightReach> reach;
+        std::vector<LightRange> reach;
         for (int i = 0; i < 100; ++i) {
             reach.push_back(random.reach());
             reach.back().cosine = -1;  // the sphere around a narrow cone ends beyond the radius
@@ -129,7 +129,7 @@ TEST_CASE_FIXTURE(
     RandomLights random(9);
     const Affine pose = look_at({0, 0, 60}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 640, .height = 360});
-    std::vector<LightReach> reach;
+    std::vector<LightRange> reach;
     for (int i = 0; i < 4096; ++i) {
         reach.push_back({random.in_cube(40), 1.5f});
     }
@@ -156,7 +156,7 @@ TEST_CASE_FIXTURE(
         const Affine pose = look_at({0, 0, 20}, {0, 0, 0});
         const RenderView view =
             make_render_view({}, pose, pose, {.width = size.x, .height = size.y});
-        std::vector<LightReach> reach;
+        std::vector<LightRange> reach;
         for (int i = 0; i < 70; ++i) {
             reach.push_back(random.reach());
         }
@@ -187,7 +187,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE("clusters: what would overflow the lists is left out, counted, and lost to no other") {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 1920, .height = 1080});
-    std::vector<LightReach> reach(1000, {{0, 0, 0}, INFINITY});
+    std::vector<LightRange> reach(1000, {{0, 0, 0}, INFINITY});
     reach.push_back({{0, 0, 0}, 1});
     ClusterLights clusters;
     place_lights(view, list_of(reach), clusters);

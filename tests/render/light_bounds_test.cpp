@@ -157,8 +157,8 @@ TEST_CASE(
     Random random;
     for (const float angle : {5.0f, 30.0f, 44.0f, 46.0f, 70.0f, 89.0f}) {
         const Vec3 axis = random.direction();
-        const LightReach reach = {{1, 2, 3}, 4, axis, std::cos(radians(angle))};
-        const ReachSphere sphere = reach_sphere(reach);
+        const LightRange reach = {{1, 2, 3}, 4, axis, std::cos(radians(angle))};
+        const RangeSphere sphere = range_sphere(reach);
         CHECK(sphere.radius <= 4.001f);
         for (int i = 0; i < 2000; ++i) {
             const Vec3 direction = random.direction();
@@ -168,7 +168,7 @@ TEST_CASE(
             }
         }
     }
-    CHECK(reach_sphere({{1, 2, 3}, 4}).radius == 4);
+    CHECK(range_sphere({{1, 2, 3}, 4}).radius == 4);
 }
 
 TEST_CASE(
@@ -188,7 +188,7 @@ TEST_CASE(
     int dropped = 0;
     for (int i = 0; i < 300; ++i) {
         const Vec3 axis = random.direction();
-        const LightReach reach = {{0, 0, 0}, 5, axis, std::cos(radians(random.number(5, 80)))};
+        const LightRange reach = {{0, 0, 0}, 5, axis, std::cos(radians(random.number(5, 80)))};
         const Vec3 low = random.direction() * random.number(0, 6);
         const Bounds box = {low, low + Vec3(random.number(0.1f, 2))};
         const bool kept = reaches_box(reach, box);

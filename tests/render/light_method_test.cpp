@@ -507,7 +507,7 @@ TEST_CASE(
         boxes.push_back({c - h, c + h});
     }
     for (int n = 0; n < 50; ++n) {
-        const LightReach light = {
+        const LightRange light = {
             20.0f * Vec3(unit(random), unit(random), unit(random)), 4 + 3 * unit(random)};
         std::vector<std::uint32_t> found;
         append_objects_of_light(light, blocks, 1500, found);

@@ -56,7 +56,7 @@ uniform float filter_kind;
 layout(location = 0) out vec4 lit;
 void main() {
     ShadowPoint p = ShadowPoint(st, 0.5, vec2(0.0), vec4(0.0, 0.0, 8.0, 8.0));
-    lit = vec4(filtered_share(p, vec4(filter_kind, 1.0, 0.0, 2.0), vec2(0.0), true));
+    lit = vec4(filtered_visibility(p, vec4(filter_kind, 1.0, 0.0, 2.0), vec2(0.0), true));
 })");
         return files;
     }
