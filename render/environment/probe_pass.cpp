@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-constexpr int kWarmUpResolution = 16;  ///< of faces that nobody sees [px]
+constexpr int kWarmUpResolution = 16;  ///< of faces drawn only to compile shaders [px]
 constexpr int kProbeSamples = 64;      ///< per texel of a probe's reflection map
 
 /// The probes as lit passes read them in a view.

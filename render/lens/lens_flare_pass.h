@@ -40,8 +40,8 @@ struct FlareSprite {
     float light = 0;   ///< index of its light
     Vec3 radiance = {0, 0, 0};
     float softness = 0;  ///< half of the width of its edge
-    /// Where a ray meets a rim, in units of its radius: x * p + (y, z). w: FlareShape of the rim,
-    /// or -1 for none.
+    /// Where a ray crosses the plane of a rim, in units of its radius: x * p + (y, z). w:
+    /// FlareShape of the rim, or -1 for none.
     Vec4 rims[4] = {{0, 0, 0, -1}, {0, 0, 0, -1}, {0, 0, 0, -1}, {0, 0, 0, -1}};
 };
 

@@ -17,7 +17,7 @@ namespace limn {
 //               [1 0; 2/R 1] (y, u)               reflected
 //
 // with R > 0 where the center of curvature lies ahead. The product of the matrices of a path is its
-// ray transfer (ABCD) matrix, whose first row gives the height at which a ray meets a plane. Each
+// ray transfer (ABCD) matrix, whose first row gives the height at which a ray crosses a plane. Each
 // pair of surfaces is a path: a ghost, and an image of the aperture stop whose position and size
 // follow from the rows for the stop and the sensor. After Hullin et al., "Physically-Based
 // Real-Time Lens Flare Rendering", 2011, and Lee and Eisemann, "Practical Real-Time Lens-Flare
@@ -26,7 +26,7 @@ namespace limn {
 // Left out: dispersion, aberrations (ghosts of strongly tilted light are bent and have
 // caustics), paths of more than two reflections, rims other than that of the front surface.
 
-/// A spherical surface, in the order in which light meets them.
+/// A spherical surface; listed in the order in which light crosses them.
 struct LensSurface {
     double radius = 0;     ///< of curvature [mm], > 0: convex toward the front; 0: the aperture
     double thickness = 0;  ///< distance to the next surface [mm]

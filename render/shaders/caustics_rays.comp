@@ -1,5 +1,5 @@
-// Traces light from the points of a grid on the water: refracted by the surface and down to what lies below, or
-// reflected and up to what stands above (lib/caustic_landing.glsl). One invocation per ray. Definitions: OCEAN, and
+// Traces light from the points of a grid on the water: refracted by the surface and down to the ground, or
+// reflected and up to the surfaces above (lib/caustic_landing.glsl). One invocation per ray. Definitions: OCEAN, and
 // those of lib/shadow.glsl.
 // Techniques: caustic.projected-vertices, caustic.refraction-pool
 #version 450

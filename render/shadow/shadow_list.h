@@ -42,7 +42,7 @@ struct WaterShadows {
     std::vector<WaterShadow> requests;
 };
 
-/// What shaders must know of shadows: the definitions of lib/shadow.glsl.
+/// The kinds of shadows that shaders must support: the definitions of lib/shadow.glsl.
 struct ShadowKinds {
     bool maps = false;      ///< some light, or water, has a map
     bool masks = false;     ///< some light has shadow volumes

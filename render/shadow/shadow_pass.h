@@ -26,7 +26,7 @@ namespace limn {
 struct ShadowEffect {
     ProgramVariants casters;
     gpu::Texture atlas;   ///< 1x1 until there is a shadow
-    ShadowKinds level{};  ///< of this frame: what the lights of the level may need
+    ShadowKinds level{};  ///< of this frame: kinds that the lights of the level may need
     ShadowCollector maps{};
     VolumeCollector volumes{};
     std::optional<ShadowVolumePass> volume_pass{};  ///< created with the first volume

@@ -60,7 +60,7 @@ inline constexpr int kMaxCascades = 4;
 
 /// Planes that bound the possible casters into the slice of the camera's view between two
 /// distances, `margin` [m] farther out: the slice extruded toward the sun, bounded by planes
-/// through the edges of its silhouette as seen from the sun.
+/// through the edges of its silhouette as viewed from the sun.
 [[nodiscard]] Frustum shading_planes(
     const RenderView& camera, const Vec3& to_sun, double slice_near, double slice_far,
     double margin);

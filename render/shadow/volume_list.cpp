@@ -84,7 +84,7 @@ ShadowMethod choose_shadow_method(ShadowMethod requested, bool has_volume) {
 }
 
 bool shadow_may_contain(const Bounds& box, const Vec4& light, const Vec3& center, float radius) {
-    // The shadow of the box lies behind it as seen from the light: test whether the segment from
+    // The shadow of the box lies behind it as viewed from the light: test whether the segment from
     // the sphere's center to the light hits the box, enlarged by the radius.
     const Vec3 low = box.min - Vec3(radius);
     const Vec3 high = box.max + Vec3(radius);

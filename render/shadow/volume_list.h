@@ -20,7 +20,7 @@ namespace limn {
 // logged once, if kMaxVolumeLights others precede it or if a caster in its range cannot have a
 // volume: a mesh that is not closed or is deformed, or a material with holes (shadow.selection).
 // Only casters within the light's range are considered (shadow.caster-cull); of these, casters
-// whose volume lies off screen are skipped, but not casters that are themselves off screen.
+// whose volume is off screen are skipped, but not casters that are themselves off screen.
 //
 // Closed casters whose volume cannot contain the eye are counted by z-pass, where an infinite
 // volume needs no caps; the others by z-fail.

@@ -10,13 +10,13 @@
 
 namespace limn {
 
-// The waters of a frame, for lighting what is submerged in them, and the maps of their caustics.
+// The waters of a frame, for lighting submerged surfaces, and the maps of their caustics.
 //
 // A map is parameterized along light refracted by flat water: a point at depth d below the surface
 // at rest maps to where its ray entered, xz - bent d, in the water's own space. So all points of a
 // ray share a texel, walls are covered like floors, and under flat water the map is 1 everywhere. A
-// shadow view with the same parameterization holds the depth of the ground and what blocks the
-// light.
+// shadow view with the same parameterization holds the depth of the ground and of what blocks
+// the light.
 //
 // Reflected light is the same upside down: a point at height h maps to where its ray left the
 // water, xz - bent h. There the map is 1 above flat water and 0 outside.

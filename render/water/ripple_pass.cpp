@@ -75,7 +75,7 @@ void collect_hazes(const World& world, const RenderView& view, double time, Ripp
                   const PreviousWorldTransform* before) {
             const Mat4 pose =
                 to_mat4(world_at(jumps, entity, now, before, {view.alpha, view.alpha}));
-            // The box lies within the sphere about its farthest corner.
+            // The box is within the sphere through its farthest corner.
             float radius = 0;
             for (int corner = 0; corner < 4; ++corner) {
                 const Vec4 local(corner % 2 == 0 ? -1 : 1, corner / 2 == 0 ? -1 : 1, 1, 0);

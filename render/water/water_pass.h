@@ -46,8 +46,8 @@ struct WaterEffect {
     void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };
 
-/// What planar water mirrors: asks for the mirrored view, whose image it stores with distances and
-/// blurred levels. Publishes PlanarReflection.
+/// Planar reflections: requests the mirrored view, and stores its image with distances and blurred
+/// levels. Publishes PlanarReflection.
 struct WaterMirrorEffect {
     const gpu::Program* copy = nullptr;
     gpu::Texture map{};

@@ -58,7 +58,7 @@ bool WaterBodiesEffect::prepare(const FrameData& frame, ViewData& view) {
         textures.sources, view.camera,
         planar != nullptr && view.is(kMainViews) ? planar->water : Entity{}, textures.ripples,
         textures.seas, waters.list);
-    if (view.is(kMirrorView)) {  // what the water mirrors, without water
+    if (view.is(kMirrorView)) {  // the mirrored scene has no water
         waters.list.patches.clear();
         waters.list.around.reset();
     }

@@ -29,11 +29,11 @@ struct Reflector {
     float n_v;
     uint model;        // kModel*
     float alpha2;      // roughness^4
-    vec3 diffuse;      // albedo of the diffuse part, less what the specular part reflects
+    vec3 diffuse;      // albedo of the diffuse part, less the reflectance of the specular part
     vec3 specular_0;   // reflectance at normal incidence, with multiple scattering; factor of Response::specular
     vec3 specular_90;  // the same at grazing angles; factor of Response::fresnel
     vec3 mirror;       // specular reflectance for a uniform environment
-    vec4 own;          // of the lobe: its file says what
+    vec4 own;          // parameters of the lobe, defined by its file
 #ifdef SHADE_SUBSURFACE
     vec3 diffusion;    // d of the profile of Subsurface [m]
 #endif

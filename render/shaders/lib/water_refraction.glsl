@@ -30,7 +30,7 @@ RayHit floor_refraction(WaterRecord water, vec3 position, vec3 bent) {
 #endif
 
 #ifdef LOOKS
-// The image, offset by the tilt of the normal; never what is in front of the water or above it (Vlachos et al. 2004).
+// The image, offset by the tilt of the normal; never surfaces in front of the water or above it (Vlachos et al. 2004).
 RayHit shifted_refraction(WaterRecord water, vec3 position, vec3 normal) {
     float here = dot(position - view.camera_ws.xyz, view.ray_forward.xyz);
     vec2 lean = vec2(dot(normal.xz, view.ray_right.xz) / length(view.ray_right.xyz), dot(normal.xz, view.ray_forward.xz));

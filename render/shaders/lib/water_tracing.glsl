@@ -8,7 +8,7 @@ layout(binding = kBehindWaterDepthUnit) uniform sampler2D behind_depth;
 layout(binding = kHighestWaterUnit) uniform sampler2D highest_surfaces;  // water_columns.frag
 
 // Of reflected rays.
-const float kMirrorStep = 10.0;       // [px] on average; what is narrower may be missed
+const float kMirrorStep = 10.0;       // [px] on average; narrower objects may be missed
 const float kMinMirrorSteps = 10.0;
 const float kMaxMirrorSteps = 48.0;
 const float kMirrorDistance = 2000.0; // maximum length of a ray [m]
@@ -178,8 +178,8 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
 }
 
 // Hit of a refracted ray on screen: steps until it is behind a surface, then bisection; a single step if it goes
-// `downward` from a pixel without ground, where it can only hit what stands in the water. Surfaces in front of the water are ignored.
-// `max_distance`: distance after which a hit is certain [m].
+// `downward` from a pixel without ground, where it can only hit objects in the water. Surfaces in front of the water are
+// ignored. `max_distance`: distance after which a hit is certain [m].
 RayHit trace_refraction(vec3 position, vec3 direction, float max_distance, bool downward) {
     vec2 pixel = gl_FragCoord.xy;
     ScreenRay ray = screen_ray(position, direction);
