@@ -38,7 +38,7 @@ class Random {
 }  // namespace
 
 TEST_CASE(
-    "light_bounds: the slopes of a sphere's tangents are the closed form"
+    "light_bounds: the slopes of a sphere's tangents match the closed form"
     * technique("shadow.light-scissor")) {
     const SlopeRange ahead = sphere_slopes(0, -10, 1, 0.1f);
     CHECK(ahead.high == test::near(0.1005038).epsilon(1e-5));
@@ -47,35 +47,35 @@ TEST_CASE(
     CHECK(aside.low == test::near(0.4734014).epsilon(1e-5));
     CHECK(aside.high == test::near(1.1265986).epsilon(1e-5));
     for (const float k : {aside.low, aside.high}) {
-        // The line x = -k z passes the middle at the radius.
+        // The line x = -k z passes the center at the radius.
         CHECK(std::abs(3 - k * 4) / std::sqrt(1 + k * k) == test::near(1).epsilon(1e-4));
     }
 }
 
 TEST_CASE(
-    "light_bounds: every point of a sphere that is seen lies in the rectangle, none is spared"
+    "light_bounds: every visible point of a sphere is in the rectangle, which is tight"
     * technique("shadow.light-scissor")) {
     Random random;
-    int seen = 0;
+    int visible = 0;
     for (int i = 0; i < 400; ++i) {
         const RenderView view =
             looking({0, 0, 0}, random.direction(), 0.3f, {random.number(-0.5f, 0.5f), 0.25f});
         const float radius = random.number(0.05f, 4);
-        const Vec3 middle = random.direction() * random.number(0, 8);
-        const LightBounds bounds = light_bounds(view, middle, radius);
+        const Vec3 center = random.direction() * random.number(0, 8);
+        const LightBounds bounds = light_bounds(view, center, radius);
         Vec2 low = Vec2(INFINITY);
         Vec2 high = Vec2(-INFINITY);
         for (int k = 0; k < 2000; ++k) {
             // Of the ball, not only its surface: the near plane cuts into it.
             const float r = k % 2 == 0 ? radius : radius * random.number(0, 1);
-            const Vec4 clip = view.clip_from_world * Vec4(middle + random.direction() * r, 1);
+            const Vec4 clip = view.clip_from_world * Vec4(center + random.direction() * r, 1);
             const float depth = clip.z / clip.w;
             const Vec2 pixel = (0.5f * Vec2(clip) / clip.w + 0.5f) * Vec2(320, 180);
             if (clip.w < view.near || pixel.x < 0 || pixel.y < 0 || pixel.x > 320
                 || pixel.y > 180) {
                 continue;
             }
-            ++seen;
+            ++visible;
             low = glm::min(low, pixel);
             high = glm::max(high, pixel);
             REQUIRE(pixel.x >= static_cast<float>(bounds.x) - 1e-3f);
@@ -96,7 +96,7 @@ TEST_CASE(
             CHECK(static_cast<float>(bounds.y + bounds.height) - high.y < slack);
         }
     }
-    CHECK(seen > 10000);
+    CHECK(visible > 10000);
 }
 
 TEST_CASE(
@@ -113,7 +113,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "light_bounds: a light behind the camera or beside the image reaches nothing"
+    "light_bounds: a light behind the camera or off screen has an empty rectangle"
     * technique("shadow.depth-bounds")) {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1});
     CHECK(is_empty(light_bounds(view, {0, 0, 3}, 1)));
@@ -123,7 +123,7 @@ TEST_CASE(
     CHECK_FALSE(is_empty(light_bounds(view, {0, 0, -5}, 1)));
 }
 
-TEST_CASE("light_bounds: grown, a rectangle holds both and touches them, whichever comes first") {
+TEST_CASE("light_bounds: grow gives the tight union of two rectangles, in either order") {
     const LightBounds low = {2, 3, 4, 5, 0.2f, 0.4f};
     const LightBounds high = {10, 1, 6, 20, 0.1f, 0.3f};
     const LightBounds both = {2, 1, 14, 20, 0.1f, 0.4f};
@@ -139,7 +139,7 @@ TEST_CASE("light_bounds: grown, a rectangle holds both and touches them, whichev
 }
 
 TEST_CASE(
-    "light_bounds: depths are those of the nearest and the farthest point"
+    "light_bounds: the depth range is that of the nearest and the farthest point"
     * technique("shadow.depth-bounds")) {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1}, 1.0f);
     const LightBounds bounds = light_bounds(view, {0, 0, -10}, 1);
@@ -152,18 +152,17 @@ TEST_CASE(
     CHECK(forward(bounds.depth_min) == test::near(0.918274).epsilon(1e-6));
 }
 
-TEST_CASE(
-    "light_bounds: the sphere about a cone holds all of it and is no larger than the light's") {
+TEST_CASE("light_bounds: the sphere around a cone contains it and is no larger than the light's") {
     Random random;
     for (const float angle : {5.0f, 30.0f, 44.0f, 46.0f, 70.0f, 89.0f}) {
         const Vec3 axis = random.direction();
-        const LightRange reach = {{1, 2, 3}, 4, axis, std::cos(radians(angle))};
-        const RangeSphere sphere = range_sphere(reach);
+        const LightRange range = {{1, 2, 3}, 4, axis, std::cos(radians(angle))};
+        const RangeSphere sphere = range_sphere(range);
         CHECK(sphere.radius <= 4.001f);
         for (int i = 0; i < 2000; ++i) {
             const Vec3 direction = random.direction();
-            if (glm::dot(direction, axis) >= reach.cosine) {
-                const Vec3 p = reach.center + direction * random.number(0, 4);
+            if (glm::dot(direction, axis) >= range.cosine) {
+                const Vec3 p = range.center + direction * random.number(0, 4);
                 REQUIRE(glm::distance(p, sphere.center) <= sphere.radius * 1.0001f);
             }
         }
@@ -172,7 +171,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "caster_cull: a box counts if its nearest point is within the light's radius"
+    "caster_cull: a box is kept if its nearest point is within the light's radius"
     * technique("shadow.caster-cull")) {
     const Bounds box = {{2, 2, 2}, {3, 3, 3}};
     CHECK_FALSE(reaches_box({{0, 0, 0}, 3.4f}, box));
@@ -182,23 +181,23 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "caster_cull: no box that a spot's cone touches is dropped, those behind it are"
+    "caster_cull: no box that a spot's cone touches is culled, boxes behind it are"
     * technique("shadow.caster-cull")) {
     Random random;
     int dropped = 0;
     for (int i = 0; i < 300; ++i) {
         const Vec3 axis = random.direction();
-        const LightRange reach = {{0, 0, 0}, 5, axis, std::cos(radians(random.number(5, 80)))};
+        const LightRange range = {{0, 0, 0}, 5, axis, std::cos(radians(random.number(5, 80)))};
         const Vec3 low = random.direction() * random.number(0, 6);
         const Bounds box = {low, low + Vec3(random.number(0.1f, 2))};
-        const bool kept = reaches_box(reach, box);
+        const bool kept = reaches_box(range, box);
         dropped += kept ? 0 : 1;
         for (int k = 0; k < 200; ++k) {
             const Vec3 p = {
                 random.number(box.min.x, box.max.x), random.number(box.min.y, box.max.y),
                 random.number(box.min.z, box.max.z)};
             const float d = glm::length(p);
-            if (d <= reach.radius && glm::dot(p, axis) >= reach.cosine * d) {
+            if (d <= range.radius && glm::dot(p, axis) >= range.cosine * d) {
                 REQUIRE(kept);
             }
         }

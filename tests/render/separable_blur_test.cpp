@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "separable blur: two passes of 7 are the 49 weights at once"
+    RenderTest, "separable blur: two passes of 7 taps equal the 49 weights in one"
                     * technique("post.separable-blur")) {
     const LightImage picture = noise();
     for (const BlurKernel& kernel : {kBinomialKernel, kBox, kAskew}) {
@@ -132,7 +132,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "separable blur: a uniform image stays so, at its edges too"
+    RenderTest, "separable blur: a uniform image stays uniform, also at its edges"
                     * technique("post.separable-blur")) {
     LightImage even = oracle::make_black_image(5, 3);
     for (glm::dvec3& pixel : even.pixels) {
