@@ -23,8 +23,8 @@ float kernel_coverage(float radius, float aperture) {
     return clamp(radius + 0.5 - aperture, 0.0, 1.0);
 }
 
-// Fine far circles over wide ones, for a texel with kernel `own`. That bounds the circles of farther texels, which would
-// otherwise bleed over it. Fine circles are always in front of wide ones.
+// Fine far circles over wide ones, for a texel with kernel `own`. That bounds the circles of farther texels, which
+// would otherwise bleed over it. Fine circles are always in front of wide ones.
 vec4 gather_far(ivec2 here, vec2 own, bool is_fine, float range, vec4 behind) {
     ivec2 last = ivec2(focus.size.zw) - 1;
     vec4 front = vec4(0.0);

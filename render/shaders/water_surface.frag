@@ -1,5 +1,5 @@
-// Visibility buffer of water surfaces, shaded per pixel by water.frag: triangles are small, and a GPU shades more pixels
-// than those that each covers. Definition VELOCITY.
+// Visibility buffer of water surfaces, shaded per pixel by water.frag: triangles are small, and a GPU shades more
+// pixels than each covers. Definition VELOCITY.
 #version 450
 #include "lib/water_visibility.glsl"
 #include "lib/velocity.glsl"

@@ -67,6 +67,7 @@ void main() {
 #else
     vec3 downwelling = downwelling_light(water);
 #endif
-    vec3 veiled = scene * transmittance + scattered_light(water, downwelling, below, normalize(ray)) * (1.0 - transmittance);
+    vec3 scattered = scattered_light(water, downwelling, below, normalize(ray));
+    vec3 veiled = scene * transmittance + scattered * (1.0 - transmittance);
     radiance = vec4(storable(is_under(water, lens) ? veiled : scene), 1.0);
 }

@@ -199,7 +199,8 @@ void add_map(
     list.maps.push_back(
         {.window = Vec4(window.corner, window.size),
          .to_sun = Vec4(source.to_sun, static_cast<float>(source.body)),
-         .bent = Vec4(slant, depth_range, (above ? reflectance : 1 - reflectance) * source.to_sun.y),
+         .bent =
+             Vec4(slant, depth_range, (above ? reflectance : 1 - reflectance) * source.to_sun.y),
          .shadows = Vec4(0),
          .world = Vec4(Vec3(source.light.position), -1),
          .grid =
@@ -227,8 +228,8 @@ void add_below(
     const bool unbounded = body.shape.y <= 0 || body.shape.z <= 0;
     const int count = unbounded ? caustics.cascades : 1;
     sunken.maps = {
-        static_cast<float>(list.tiles.size()), static_cast<float>(count),
-        static_cast<float>(light), 0.999f * depth};
+        static_cast<float>(list.tiles.size()), static_cast<float>(count), static_cast<float>(light),
+        0.999f * depth};
     sunken.bent = Vec4(slant, caustics.strength, static_cast<float>(caustics.shaft_steps));
     Caustics ring = caustics;
     for (int i = 0; i < count; ++i) {

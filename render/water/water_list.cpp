@@ -14,10 +14,10 @@ namespace limn {
 namespace {
 
 constexpr float kMaxRippleHeight = 0.5f;  ///< [m]; higher ripples may be culled
-constexpr float kCellsPerWave = 16.0f;   ///< of the finest grid, for the shortest wave
-constexpr float kMinPatchSide = 0.125f;  ///< side of a patch [m]
-constexpr float kCellPixels = 28.0f;     ///< maximum size of a patch cell on screen [px]
-constexpr float kMaxDetail = 12.0f;      ///< for very large images
+constexpr float kCellsPerWave = 16.0f;    ///< of the finest grid, for the shortest wave
+constexpr float kMinPatchSide = 0.125f;   ///< side of a patch [m]
+constexpr float kCellPixels = 28.0f;      ///< maximum size of a patch cell on screen [px]
+constexpr float kMaxDetail = 12.0f;       ///< for very large images
 
 /// Appends the first `lines` of the table, and its rings.
 void add_waves(const WaveTable& table, std::size_t lines, const WaterSources& at, WaterList& list) {

@@ -192,8 +192,8 @@ VisibleWater draw_surfaces(
              .target = GL_TEXTURE_2D_ARRAY}),
         create_target(graph, "water pixels", GL_DEPTH_COMPONENT32F, size)};
     std::vector<Use> writes = {
-        target_level(cleared(visible.surfaces), 0, 0), target_level(discarded(visible.surfaces), 0, 1),
-        view.gbuffer.depth};
+        target_level(cleared(visible.surfaces), 0, 0),
+        target_level(discarded(visible.surfaces), 0, 1), view.gbuffer.depth};
     if (view.velocity) {
         writes.emplace_back(view.gbuffer.velocity);
     }
@@ -227,7 +227,8 @@ VisibleWater draw_surfaces(
     state.depth = {.test = true, .write = true, .func = GL_ALWAYS};
     add_fullscreen_pass(
         graph, "water pixels", {sampled(visible.surfaces, layout::kVisibleWaterUnit)},
-        {discarded(visible.pixels)}, effect.pixels, state, [](PassContext&, const gpu::Program&) {});
+        {discarded(visible.pixels)}, effect.pixels, state,
+        [](PassContext&, const gpu::Program&) {});
     return visible;
 }
 

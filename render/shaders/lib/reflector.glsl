@@ -109,8 +109,8 @@ struct LightSum {
 };
 
 #ifdef SMOOTH_NORMALS
-// Fade of light on wrinkled skin by the cosine at the skin without wrinkles: its back is unlit, and highlights of single
-// slopes do not pop up where it turns to the light (wrinkle.compression.lighting).
+// Fade of light on wrinkled skin by the cosine at the skin without wrinkles: its back is unlit, and highlights of
+// single slopes do not pop up where it turns to the light (wrinkle.compression.lighting).
 float grazing_fade(float cosine) {
     return clamp(8.0 * cosine, 0.0, 1.0);
 }

@@ -55,7 +55,8 @@ vec3 probe_direction(ProbeRecord probe, vec3 position, vec3 direction) {
     vec3 d = to_probe_space(probe, direction, 0.0);
     vec3 inverse = 1.0 / mix(d, vec3(1e-8), lessThan(abs(d), vec3(1e-8)));
     vec3 distances = max((1.0 - p) * inverse, (-1.0 - p) * inverse);
-    return position + max(min(distances.x, min(distances.y, distances.z)), 0.0) * direction - probe.capture_position.xyz;
+    float path = max(min(distances.x, min(distances.y, distances.z)), 0.0);
+    return position + path * direction - probe.capture_position.xyz;
 }
 #endif
 

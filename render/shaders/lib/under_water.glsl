@@ -56,7 +56,8 @@ vec3 bent_to_light(Underwater water, vec3 to_light) {
     return -refract_ray(vec3(0.0, 1.0, 0.0), to_light, 1.0 / water.index);
 }
 
-// Irradiance at the point relative to that above the water, both perpendicular to the light; `to_light` above the water.
+// Irradiance at the point relative to that above the water, both perpendicular to the light; `to_light` above the
+// water.
 vec3 underwater_transmittance(Underwater water, vec3 to_light, vec3 bent) {
     float through = 1.0 - fresnel(to_light.y, water.index);
     float down = max(bent.y, 0.1);

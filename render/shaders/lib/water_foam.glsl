@@ -11,8 +11,8 @@ const float kThinFoam = 0.4;
 const float kBubbleAlbedo = 0.3;  // of the bubbles below foam, by eye, and their depth [m]
 const float kBubbleDepth = 1.5;
 
-// White fraction of a pixel at q where foam covers `cover` of the water; `footprint`: side of the pixel [m]. Fades to the
-// cover itself where the pattern is too fine to resolve.
+// White fraction of a pixel at q where foam covers `cover` of the water; `footprint`: side of the pixel [m]. Fades to
+// the cover itself where the pattern is too fine to resolve.
 float foam_coverage(float cover, vec2 q, float footprint) {
     float level = log2(max(footprint * float(textureSize(foam_pattern, 0).x) / kFoamTile, 1.0));
     float stays = textureLod(foam_pattern, q / kFoamTile, level).r;

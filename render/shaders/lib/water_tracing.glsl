@@ -15,7 +15,7 @@ const float kMirrorDistance = 2000.0; // maximum length of a ray [m]
 const int kMaxClearTiles = 64;
 const float kMirrorThickness = 0.2;   // of the surfaces they hit, relative to the path, by eye
 const int kBendSteps = 8;
-const float kOpenDistance = 150.0;    // of refracted rays in pixels without ground: farther hits are lost in the water [m]
+const float kOpenDistance = 150.0;    // of refracted rays in pixels without ground: farther hits are ignored [m]
 // After a hit, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel iterates as long as the loop of a neighbor
 // runs.
 #ifdef FROM_BELOW
@@ -102,8 +102,8 @@ float clear_distance(vec2 from, vec2 along, float end, Side side) {
 }
 
 // Radiance along a reflected ray: from the image where the ray hits something on screen, else `around`, at infinite
-// distance. The ray is marched in the image, where pixels and the reciprocal of the distance are linear, until it leaves
-// the screen; steps grow from the first tile with anything above the water.
+// distance. The ray is marched in the image, where pixels and the reciprocal of the distance are linear, until it
+// leaves the screen; steps grow from the first tile with anything above the water.
 RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     ScreenRay ray = screen_ray(position, direction);
     vec2 from = gl_FragCoord.xy;
@@ -128,7 +128,8 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
         float fraction = min(++step / count, 1.0);
         high = met ? high : u_begin + rest * fraction * (0.3 + 0.7 * fraction);
         float surface = blocking_nearness(from + high * along, side);
-        // A surface that it passes far behind does not stop it; under water, where there is no sky to fall back to, any does.
+        // A surface that it passes far behind does not stop it; under water, where there is no sky to fall back to, any
+        // does.
         bool near = side.up < 0.0 || (z - kMirrorThickness * low * z - 0.05) * surface < 1.0;
         float nearness = (1.0 - high * ray.along.z) * inverse_from;
         z = 1.0 / nearness;
@@ -137,8 +138,8 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
         ahead = met ? ahead : -behind;
         low = met ? low : high;
     } while (!met && step < count);
-    // It passed behind a surface in the last step: bisect, and assume a plane between the last two points unless they are
-    // on different surfaces.
+    // It passed behind a surface in the last step: bisect, and assume a plane between the last two points unless they
+    // are on different surfaces.
     int steps = 0;
     do {
         float midpoint = 0.5 * (low + high);
@@ -178,8 +179,8 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
 }
 
 // Hit of a refracted ray on screen: steps until it is behind a surface, then bisection; a single step if it goes
-// `downward` from a pixel without ground, where it can only hit objects in the water. Surfaces in front of the water are
-// ignored. `max_distance`: distance after which a hit is certain [m].
+// `downward` from a pixel without ground, where it can only hit objects in the water. Surfaces in front of the water
+// are ignored. `max_distance`: distance after which a hit is certain [m].
 RayHit trace_refraction(vec3 position, vec3 direction, float max_distance, bool downward) {
     vec2 pixel = gl_FragCoord.xy;
     ScreenRay ray = screen_ray(position, direction);
